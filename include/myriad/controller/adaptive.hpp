@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// Step-size control by the embedded error estimate: proposes a step, judges a trial, and says how long the next one is.
+#pragma once
+
+#include <limits>
+
+#include "myriad/controller/fast_power.hpp"
+#include "myriad/controller/norm.hpp"
+#include "myriad/integrator/state.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// The next step of every lane: the one wanted, or what is left of the domain. A step that falls short of t_end by less
+/// than a thousandth of itself is stretched, so that no sliver is left over; its error is tested like any other.
+template <class Model, class Method, class S>
+MYRIAD_FUNCTION void propose_adaptive_step(integration_state<Model, Method, S>& s) {
+    using R = real_of<S>;
+    const S remaining = s.data.t_end - s.data.t;
+    s.final_step = abs(remaining) <= abs(s.data.h_next) * S(R(1.001));
+    s.h = select(s.final_step, remaining, s.data.h_next);
+}
+
+/// Ends lanes that can make no step: not_finite where that was why their last trial failed.
+template <class Model, class Method, class S>
+MYRIAD_FUNCTION void end_stuck_lanes(integration_state<Model, Method, S>& s, const mask_of<S>& stuck) {
+    s.end_lanes(stuck & s.last_not_finite, status::not_finite);
+    s.end_lanes(stuck & !s.last_not_finite, status::step_underflow);
+}
+
+/// Accepts or rejects the trial of every lane and sets `data.h_next`, the elementary (I) controller of the MPGOS package:
+/// factor 0.9 q^(-1/(p+1)) after an accepted and 0.9 q^(-1/p) after a rejected step, with q the largest ratio of error to
+/// tolerance and p the order of the error estimate, kept within the options' limits (Hairer, Norsett, Wanner, Solving
+/// ODE I, II.4, eq. (4.13)). Lanes whose trial is not finite (or not `valid`) are rejected with the smallest factor.
+/// Lanes that are rejected at the minimum step end. Returns the accepted lanes.
+template <class Model, class Method, class S>
+MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>>& args,
+                                        integration_state<Model, Method, S>& s,
+                                        const rk_trial<Method, S, n_state<Model>>& trial, const mask_of<S>& valid) {
+    using R = real_of<S>;
+    using mask = mask_of<S>;
+    const error_norm<S> error = scaled_error<Model, Method>(args, s.data.y, s.h, trial);
+    const mask within = valid & error.within;
+    const mask accepted = s.active & within;
+    const S exponent = select(within, S(R(-1.0 / (Method::embedded_order + 1))), S(R(-1.0 / Method::embedded_order)));
+    S factor = S(R(0.9)) * fast_power(error.worst, exponent);
+    factor = min(max(factor, S(args.shrink_limit)), S(args.growth_limit));
+
+    s.last_not_finite = s.last_not_finite & !within;
+    const mask rejected = s.active & !within;
+    if (any(rejected)) {
+        const mask finite = valid & (error.worst > S(R(1))) & (error.worst <= S(std::numeric_limits<R>::max()));
+        factor = select(within | finite, factor, S(args.shrink_limit));
+        s.rejected = count_where(rejected, s.rejected);
+        s.last_not_finite = select(rejected, !finite, s.last_not_finite);
+        const mask smallest = rejected & (abs(s.h) <= S(args.minimum_step));
+        if (MYRIAD_UNLIKELY(any(smallest))) end_stuck_lanes(s, smallest);
+    }
+    S size = min(max(abs(s.h) * factor, S(args.minimum_step)), S(args.maximum_step));
+    // A step cut short by the end of the domain says little about the step size that goes on from there.
+    size = select(accepted & s.final_step, max(size, abs(s.data.h_next)), size);
+    s.data.h_next = select(s.active, copysign(size, s.h), s.data.h_next);
+    return accepted;
+}
+
+}  // namespace myriad::inline MYRIAD_TARGET

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// The execution-space macros: the only place outside backends/cuda that knows which compiler is at work.
+#pragma once
+
+#if defined(__CUDACC__)
+/// A function of the kernel body: device code under nvcc, inlined host code elsewhere. Required on a model's functions
+/// and on its own helpers, so that no copy of them is shared between files compiled for different instruction sets.
+#define MYRIAD_FUNCTION __host__ __device__ __forceinline__
+#define MYRIAD_LAMBDA
+#define MYRIAD_UNROLL _Pragma("unroll")
+#define MYRIAD_TARGET cuda_lane
+#define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
+#else
+#define MYRIAD_FUNCTION inline __attribute__((always_inline))
+/// The same for a lambda, between its parameters and its body.
+#define MYRIAD_LAMBDA __attribute__((always_inline))
+#if defined(__clang__)
+#define MYRIAD_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define MYRIAD_UNROLL _Pragma("GCC unroll 128")
+#endif
+#define MYRIAD_BACKEND_HEADER "myriad/openmp/run.hpp"
+#if defined(__AVX512F__)
+#define MYRIAD_TARGET openmp_avx512
+#elif defined(__AVX2__)
+#define MYRIAD_TARGET openmp_avx2
+#elif defined(__x86_64__)
+#define MYRIAD_TARGET openmp_sse2
+#else
+#define MYRIAD_TARGET openmp_generic
+#endif
+#endif
+
+// Code of the kernel body lives in `namespace myriad::inline MYRIAD_TARGET`, so that every mangled name carries the
+// backend and the instruction set. What host and backends exchange lives in `namespace myriad` itself.
+namespace myriad {
+inline namespace MYRIAD_TARGET {}
+}  // namespace myriad
+
+#if defined(__GNUC__)
+#define MYRIAD_UNLIKELY(condition) __builtin_expect(static_cast<bool>(condition), 0)
+#else
+#define MYRIAD_UNLIKELY(condition) (condition)
+#endif

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// The ensemble: states, parameters, accessories and time domains of all instances, set and read in bulk through Eigen
+// maps. Host code only.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include <Eigen/Core>
+
+#include "myriad/core/error.hpp"
+#include "myriad/core/status.hpp"
+#include "myriad/ensemble/layout.hpp"
+#include "myriad/ensemble/view.hpp"
+#include "myriad/integrator/options.hpp"
+#include "myriad/model/concepts.hpp"
+
+namespace myriad {
+
+/// `size` independent instances of a model, with real type R (double or float). Every accessor returns an Eigen map of
+/// one component over all instances, contiguous and writable; nothing is copied and nothing is checked per element.
+/// Values nobody set are NaN, so that `solve` can say which. Movable, not copyable.
+template <class Model, class R = double>
+class ensemble {
+    static_assert(check_model<Model>());
+    static_assert(std::is_same_v<R, double> || std::is_same_v<R, float>, "an ensemble's real type is double or float");
+
+public:
+    using model = Model;
+    using real = R;
+    template <class T>
+    using map = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
+    template <class T>
+    using const_map = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
+
+    /// Throws `error` if size is not positive.
+    explicit ensemble(std::int64_t size) : size_(checked(size)) {}
+
+    std::int64_t size() const { return size_; }
+
+    /// State component c: initial values before a call, end values after it.
+    template <class C>
+    map<R> state(C c) { return view(state_, state_index(c), "state"); }
+    template <class C>
+    const_map<R> state(C c) const { return view(state_, state_index(c), "state"); }
+    /// Control parameter c.
+    template <class C>
+    map<R> parameter(C c) { return view(parameter_, parameter_index(c), "parameter"); }
+    template <class C>
+    const_map<R> parameter(C c) const { return view(parameter_, parameter_index(c), "parameter"); }
+    /// The user's own real storage; NaN until set.
+    template <class C>
+    map<R> accessory(C c) { return view(accessory_, accessory_index(c), "accessory"); }
+    template <class C>
+    const_map<R> accessory(C c) const { return view(accessory_, accessory_index(c), "accessory"); }
+    /// The user's own integer storage; 0 until set.
+    template <class C>
+    map<std::int32_t> integer_accessory(C c) {
+        return view(integer_accessory_, integer_accessory_index(c), "integer accessory");
+    }
+    template <class C>
+    const_map<std::int32_t> integer_accessory(C c) const {
+        return view(integer_accessory_, integer_accessory_index(c), "integer accessory");
+    }
+
+    /// Time domain of each instance; t_end may be before t_begin, to integrate backwards.
+    map<R> t_begin() { return view(time_, 0, "time"); }
+    const_map<R> t_begin() const { return view(time_, 0, "time"); }
+    map<R> t_end() { return view(time_, 1, "time"); }
+    const_map<R> t_end() const { return view(time_, 1, "time"); }
+    /// The same domain for all instances.
+    void time_domain(R t_begin_of_all, R t_end_of_all) {
+        t_begin() = t_begin_of_all;
+        t_end() = t_end_of_all;
+    }
+
+    /// A parameter that all instances share; NaN until set. With an index beyond the model's: throws `error`.
+    R& shared(int c) { return shared_.component(checked_index(c, n_shared<Model>, "shared parameter"))[0]; }
+    R shared(int c) const { return shared_.component(checked_index(c, n_shared<Model>, "shared parameter"))[0]; }
+    std::int32_t& shared_integer(int c) {
+        return shared_integer_.component(checked_index(c, n_shared_integer<Model>, "shared integer"))[0];
+    }
+
+    /// Results: where the last phase ended, and how.
+    const_map<R> t() const { return view(time_, 2, "time"); }
+    myriad::status status(std::int64_t i) const {
+        require(i >= 0 && i < size_, "instance ", i, " does not exist: the ensemble has ", size_, " instances");
+        return status_.data()[i];
+    }
+    const myriad::status* statuses() const { return status_.data(); }
+    /// Phases completed since the start.
+    const_map<std::int32_t> phases_done() const { return view(phase_, 0, "phase"); }
+    /// Step size the instance would try next.
+    const_map<R> next_step() const { return view(h_next_, 0, "step"); }
+    /// Work since the start: accepted and rejected steps, steps redone to locate events, evaluations of rhs. Throws
+    /// `error` if no call has counted.
+    const_map<std::int64_t> accepted_steps() const { return counter(0); }
+    const_map<std::int64_t> rejected_steps() const { return counter(1); }
+    const_map<std::int64_t> located_steps() const { return counter(2); }
+    const_map<std::int64_t> rhs_evaluations() const { return counter(3); }
+    bool counted() const { return work_.components() > 0; }
+
+    /// Forgets all phases done: the next call starts every instance afresh, failed ones too, from the states, parameters
+    /// and accessories it then has.
+    void restart() {
+        h_next_.fill(R(0));
+        phase_.fill(0);
+        side_.fill(0);
+        ended_.fill(0);
+        status_.fill(status::not_started);
+        work_.fill(0);
+    }
+
+    /// Fills in the pointers of a kernel's arguments.
+    void describe(kernel_arguments<Model, R>& a, counting count) {
+        a.size = size_;
+        a.parameter = parameter_.data();
+        a.t_begin = time_.component(0);
+        a.t_end = time_.component(1);
+        a.t = time_.component(2);
+        a.state = state_.data();
+        a.accessory = accessory_.data();
+        a.integer_accessory = integer_accessory_.data();
+        a.h_next = h_next_.data();
+        a.phase = phase_.data();
+        a.side = side_.data();
+        a.ended = ended_.data();
+        a.status = status_.data();
+        if (count == counting::on) {
+            if (!counted()) work_ = component_array<std::int64_t>(4, size_, 0);
+            a.accepted = work_.component(0);
+            a.rejected = work_.component(1);
+            a.located = work_.component(2);
+            a.evaluations = work_.component(3);
+        }
+        a.shared = shared_.data();
+        a.shared_integer = shared_integer_.data();
+    }
+
+    /// Marks an instance as one that cannot be integrated.
+    void mark_invalid(std::int64_t i) {
+        ended_.data()[i] = 1;
+        status_.data()[i] = status::invalid_input;
+    }
+    /// True once an instance takes no further part.
+    bool ended(std::int64_t i) const { return ended_.data()[i] != 0; }
+
+private:
+    static constexpr R unset = std::numeric_limits<R>::quiet_NaN();
+
+    static std::int64_t checked(std::int64_t size) {
+        require(size > 0, "the ensemble has ", size, " instances (must be positive): there is nothing to integrate");
+        return size;
+    }
+    static int checked_index(int c, int count, const char* what) {
+        require(c >= 0 && c < count, what, " ", c, " does not exist: the model has ", count,
+                " (numbered from 0); use the model's enumerators");
+        return c;
+    }
+    // An integer, or an enumerator of the enumeration that names such components: any other is a mix-up.
+#define MYRIAD_COMPONENT_INDEX(kind)                                                                         \
+    template <class C>                                                                                       \
+    static int kind##_index(C c) {                                                                           \
+        static_assert(std::is_enum_v<C> || std::is_integral_v<C>, "give a number or an enumerator of the model"); \
+        if constexpr (std::is_enum_v<C> && requires { typename Model::kind; }) {                             \
+            static_assert(std::is_same_v<C, typename Model::kind>, "this enumerator is not a " #kind " of the model"); \
+        }                                                                                                    \
+        return static_cast<int>(c);                                                                          \
+    }
+    MYRIAD_COMPONENT_INDEX(state)
+    MYRIAD_COMPONENT_INDEX(parameter)
+    MYRIAD_COMPONENT_INDEX(accessory)
+    MYRIAD_COMPONENT_INDEX(integer_accessory)
+#undef MYRIAD_COMPONENT_INDEX
+
+    template <class Array>
+    static auto view(Array& array, int c, const char* what) {
+        using T = std::remove_pointer_t<decltype(array.data())>;
+        checked_index(c, array.components(), what);
+        if constexpr (std::is_const_v<T>) {
+            return const_map<std::remove_const_t<T>>(array.component(c), array.length());
+        } else {
+            return map<T>(array.component(c), array.length());
+        }
+    }
+
+    const_map<std::int64_t> counter(int c) const {
+        require(counted(), "no work was counted: integrate with counting = counting::on");
+        return view(work_, c, "counter");
+    }
+
+    std::int64_t size_;
+    component_array<R> state_{n_state<Model>, size_, unset};
+    component_array<R> parameter_{n_parameter<Model>, size_, unset};
+    component_array<R> accessory_{n_accessory<Model>, size_, unset};
+    component_array<std::int32_t> integer_accessory_{n_integer_accessory<Model>, size_, 0};
+    component_array<R> time_{3, size_, unset};  // t_begin, t_end, t
+    component_array<R> shared_{n_shared<Model>, 1, unset};
+    component_array<std::int32_t> shared_integer_{n_shared_integer<Model>, 1, 0};
+    component_array<R> h_next_{1, size_, R(0)};
+    component_array<std::int32_t> phase_{1, size_, 0};
+    component_array<std::int8_t> side_{n_event<Model>, size_, 0};
+    component_array<std::uint8_t> ended_{1, size_, 0};
+    component_array<myriad::status> status_{1, size_, status::not_started};
+    component_array<std::int64_t> work_;  // allocated by the first call that counts
+};
+
+}  // namespace myriad

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Storage of an ensemble: a structure of arrays, contiguous per component, on cache-line boundaries. The memory is the
+// library's own and not Eigen's, whose alignment depends on compiler flags.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <algorithm>
+#include <memory>
+#include <new>
+
+namespace myriad {
+
+/// `components` arrays of `size` values each, one after the other; component c of instance i is at `[c * size + i]`.
+template <class T>
+class component_array {
+public:
+    component_array() = default;
+    component_array(int components, std::int64_t size, T value)
+        : size_(size), data_(allocate(static_cast<std::size_t>(components) * static_cast<std::size_t>(size))) {
+        std::uninitialized_fill_n(data_.get(), static_cast<std::size_t>(components) * static_cast<std::size_t>(size), value);
+        components_ = components;
+    }
+    component_array(component_array&&) noexcept = default;
+    component_array& operator=(component_array&&) noexcept = default;
+
+    T* data() { return data_.get(); }
+    const T* data() const { return data_.get(); }
+    int components() const { return components_; }
+    std::int64_t length() const { return size_; }
+    T* component(int c) { return data_.get() + c * size_; }
+    const T* component(int c) const { return data_.get() + c * size_; }
+    /// Sets every value.
+    void fill(T value) {
+        std::fill_n(data_.get(), static_cast<std::size_t>(components_) * static_cast<std::size_t>(size_), value);
+    }
+
+private:
+    static constexpr std::align_val_t alignment{64};
+    struct release {
+        void operator()(T* p) const { ::operator delete(p, alignment); }
+    };
+    static T* allocate(std::size_t n) {
+        return n == 0 ? nullptr : static_cast<T*>(::operator new(n * sizeof(T), alignment));
+    }
+
+    int components_ = 0;
+    std::int64_t size_ = 0;
+    std::unique_ptr<T[], release> data_;
+};
+
+}  // namespace myriad

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// What a call to solve did: how the instances ended, the first that failed with its inputs, the work, the records.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "myriad/core/error.hpp"
+#include "myriad/core/status.hpp"
+#include "myriad/ensemble/layout.hpp"
+#include "myriad/ensemble/view.hpp"
+#include "myriad/integrator/options.hpp"
+#include "myriad/model/concepts.hpp"
+
+namespace myriad {
+
+/// The name of a status, as in the code.
+inline const char* name_of(status s) {
+    constexpr const char* names[status_count] = {
+        "not_started",    "success",      "stopped_by_event",   "stopped_by_user",   "max_steps",
+        "step_underflow", "not_finite",   "event_accumulation", "singular_jacobian", "invalid_input"};
+    return names[static_cast<int>(s)];
+}
+
+/// States and accessories kept at the end of every recorded phase. Each accessor returns a map with one row per instance
+/// and one column per recorded phase. An instance that ended before a phase did has NaN there (and 0 for integers).
+template <class Model, class R>
+class phase_records {
+public:
+    template <class T>
+    using map = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic>>;
+
+    phase_records() = default;
+    phase_records(const record_options& o, std::int64_t phases, std::int64_t size) : size_(size) {
+        if (o.empty()) return;
+        phases_ = phases - o.from_phase;
+        from_phase_ = o.from_phase;
+        for (const int c : o.states) state_[static_cast<std::size_t>(c)] = columns_++;
+        for (const int c : o.accessories) accessory_[static_cast<std::size_t>(c)] = columns_++;
+        if (o.time) time_ = columns_++;
+        for (const int c : o.integer_accessories) integer_accessory_[static_cast<std::size_t>(c)] = integer_columns_++;
+        values_ = component_array<R>(columns_, size * phases_, std::numeric_limits<R>::quiet_NaN());
+        integers_ = component_array<std::int32_t>(integer_columns_, size * phases_, 0);
+    }
+
+    /// Number of recorded phases.
+    std::int64_t phases() const { return phases_; }
+    map<R> state(int c) const { return column(state_, c, "state", values_); }
+    map<R> accessory(int c) const { return column(accessory_, c, "accessory", values_); }
+    map<std::int32_t> integer_accessory(int c) const {
+        return column(integer_accessory_, c, "integer accessory", integers_);
+    }
+    /// Time at the end of the phase.
+    map<R> time() const { return column(std::array<int, 1>{time_}, 0, "time", values_); }
+
+    void describe(record_arguments<Model, R>& a) {
+        a.values = values_.data();
+        a.integers = integers_.data();
+        a.from_phase = static_cast<std::int32_t>(from_phase_);
+        a.phases = static_cast<std::int32_t>(phases_);
+        a.time_column = static_cast<std::int16_t>(time_);
+        for (std::size_t c = 0; c < state_.size(); ++c) a.state_column[c] = static_cast<std::int16_t>(state_[c]);
+        for (std::size_t c = 0; c < accessory_.size(); ++c)
+            a.accessory_column[c] = static_cast<std::int16_t>(accessory_[c]);
+        for (std::size_t c = 0; c < integer_accessory_.size(); ++c)
+            a.integer_accessory_column[c] = static_cast<std::int16_t>(integer_accessory_[c]);
+    }
+
+private:
+    template <int n>
+    static constexpr std::array<int, static_cast<std::size_t>(n)> none() {
+        std::array<int, static_cast<std::size_t>(n)> columns{};
+        for (int& c : columns) c = -1;
+        return columns;
+    }
+    template <class Columns, class T>
+    map<T> column(const Columns& columns, int c, const char* what, const component_array<T>& from) const {
+        require(c >= 0 && static_cast<std::size_t>(c) < columns.size() && columns[static_cast<std::size_t>(c)] >= 0, what,
+                " ", c, " was not recorded: name it in options::record");
+        return map<T>(from.component(columns[static_cast<std::size_t>(c)]), size_, phases_);
+    }
+
+    std::int64_t size_ = 0, phases_ = 0, from_phase_ = 0;
+    int columns_ = 0, integer_columns_ = 0;
+    std::array<int, static_cast<std::size_t>(n_state<Model>)> state_ = none<n_state<Model>>();
+    std::array<int, static_cast<std::size_t>(n_accessory<Model>)> accessory_ = none<n_accessory<Model>>();
+    std::array<int, static_cast<std::size_t>(n_integer_accessory<Model>)> integer_accessory_ =
+        none<n_integer_accessory<Model>>();
+    int time_ = -1;
+    component_array<R> values_;
+    component_array<std::int32_t> integers_;
+};
+
+/// The outcome of one call to solve.
+template <class Model, class R>
+struct report {
+    std::int64_t instances = 0;
+    std::array<std::int64_t, status_count> by_status{};  ///< instances by the status they now have
+
+    std::int64_t first_failed = -1;            ///< index of the first instance with a failure status, or -1
+    myriad::status first_status = status::not_started;
+    R first_t = 0, first_t_begin = 0, first_t_end = 0;
+    std::vector<R> first_state;                ///< its last finite state
+    std::vector<R> first_parameter;
+
+    std::int64_t accepted_steps = 0;           ///< of all instances in this call; zero with `counting::off`
+    std::int64_t rejected_steps = 0;
+    std::int64_t located_steps = 0;            ///< trial steps redone to locate events
+    std::int64_t rhs_evaluations = 0;
+    std::int64_t lane_turns = 0;               ///< trial steps times lanes, idle lanes included
+    int lanes = 1;
+    int threads = 1;
+    double seconds = 0;                        ///< wall time of the integration
+    phase_records<Model, R> records;
+
+    std::int64_t count(status s) const { return by_status[static_cast<std::size_t>(s)]; }
+    /// Instances with a failure status.
+    std::int64_t failed() const {
+        std::int64_t sum = 0;
+        for (int s = 0; s < status_count; ++s)
+            if (is_failure(static_cast<status>(s))) sum += by_status[static_cast<std::size_t>(s)];
+        return sum;
+    }
+    /// Share of lane turns in which the lane had nothing to do, from 0 to 1; zero with `counting::off`.
+    double idle_share() const {
+        const std::int64_t used = accepted_steps + rejected_steps + located_steps;
+        return used == 0 || lane_turns == 0 ? 0 : 1 - static_cast<double>(used) / static_cast<double>(lane_turns);
+    }
+};
+
+/// Prints a report for people.
+template <class Model, class R>
+std::ostream& operator<<(std::ostream& out, const report<Model, R>& r) {
+    out << r.instances << " instances:";
+    const char* separator = " ";
+    for (int s = 0; s < status_count; ++s) {
+        const std::int64_t n = r.by_status[static_cast<std::size_t>(s)];
+        if (n == 0) continue;
+        out << separator << n << ' ' << name_of(static_cast<status>(s));
+        separator = ", ";
+    }
+    out << "; " << r.seconds << " s on " << r.threads << (r.threads == 1 ? " thread of " : " threads of ") << r.lanes
+        << (r.lanes == 1 ? " lane" : " lanes") << '\n';
+    if (r.accepted_steps + r.rejected_steps > 0) {
+        out << r.accepted_steps << " steps accepted, " << r.rejected_steps << " rejected, " << r.located_steps
+            << " redone to locate events; " << r.rhs_evaluations << " evaluations of the right-hand side\n";
+    }
+    if (r.first_failed >= 0) {
+        out << "first failure: instance " << r.first_failed << " ended as " << name_of(r.first_status) << " at t = " << r.first_t
+            << " of [" << r.first_t_begin << ", " << r.first_t_end << "]; state";
+        for (const R v : r.first_state) out << ' ' << v;
+        if (!r.first_parameter.empty()) out << "; parameters";
+        for (const R v : r.first_parameter) out << ' ' << v;
+        out << '\n';
+    }
+    return out;
+}
+
+}  // namespace myriad

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// What a kernel receives: pointers into the ensemble's arrays and the options as plain numbers. Trivially copyable, the
+// same for every backend, and free of Eigen, so that no type with flag-dependent alignment crosses over.
+#pragma once
+
+#include <cstdint>
+
+#include "myriad/core/status.hpp"
+#include "myriad/model/concepts.hpp"
+
+namespace myriad {
+
+/// Length of a member array that may hold nothing.
+constexpr int at_least_one(int n) { return n > 0 ? n : 1; }
+
+/// One event function's options (see `event_options`), as the kernel wants them.
+template <class R>
+struct event_arguments {
+    R direction;              // +1 rising, -1 falling, 0 either
+    R tolerance;              // unit of the event function
+    std::int32_t stop_after;  // detections that end the phase; 0: none
+};
+
+/// Where the records of the phases go: component c of a recorded phase r of instance i is at
+/// `values[(column[c] * phases + r) * size + i]`; a column of -1 is not recorded.
+template <class Model, class R>
+struct record_arguments {
+    R* values;
+    std::int32_t* integers;
+    std::int32_t from_phase;  // of this call
+    std::int32_t phases;      // recorded phases
+    std::int16_t time_column;
+    std::int16_t state_column[n_state<Model>];
+    std::int16_t accessory_column[at_least_one(n_accessory<Model>)];
+    std::int16_t integer_accessory_column[at_least_one(n_integer_accessory<Model>)];
+};
+
+/// The arguments of a kernel. Arrays are structures of arrays: component c of instance i is at `array[c * size + i]`.
+template <class Model, class R>
+struct kernel_arguments {
+    std::int64_t size;
+
+    // per instance, read; parameters and times are written only if the model declares it
+    R* parameter;
+    R* t_begin;
+    R* t_end;
+    // per instance, read and written
+    R* t;
+    R* state;
+    R* accessory;
+    std::int32_t* integer_accessory;
+    // what an instance needs to go on in a later call
+    R* h_next;                // step to try next
+    std::int32_t* phase;      // phases done
+    std::int8_t* side;        // per event: the side of zero its function was last seen on
+    std::uint8_t* ended;      // by action::end_instance or a failure
+    myriad::status* status;   // how the last phase ended
+    // work done in all calls, or null when counting is off
+    std::int64_t* accepted;
+    std::int64_t* rejected;
+    std::int64_t* located;      // steps redone to locate an event
+    std::int64_t* evaluations;  // of the right-hand side
+
+    // shared by all instances
+    const R* shared;
+    const std::int32_t* shared_integer;
+
+    // options
+    std::int32_t phases;
+    bool carry_time;  // a phase goes on from where the last one ended, instead of from t_begin
+    bool carry_step;  // and with its step size
+    std::int32_t max_steps;
+    R step;           // fixed step, or first step of an adaptive method
+    R minimum_step, maximum_step;
+    R growth_limit, shrink_limit;
+    R relative_tolerance[n_state<Model>];
+    R absolute_tolerance[n_state<Model>];
+    event_arguments<R> event[at_least_one(n_event<Model>)];
+    std::int32_t sub_samples;         // points of the interpolant looked at per step
+    std::int32_t accumulation_limit;  // actions of one event without leaving its tolerance
+    record_arguments<Model, R> record;
+};
+
+}  // namespace myriad

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// MYRIAD_INSTANTIATE, for the source file of a model: compiles its kernels for the backend at hand. Include it in that
+// file only, which is compiled with the instruction-set flags and includes no Eigen.
+#pragma once
+
+#include "myriad/core/macros.hpp"
+#include MYRIAD_BACKEND_HEADER
+#include "myriad/methods.hpp"
+
+/// Compiles the kernels of a model for the given methods in double precision (`_FLOAT`: in single precision):
+/// `MYRIAD_INSTANTIATE(duffing, myriad::cash_karp, myriad::tsitouras_5)`.
+#define MYRIAD_INSTANTIATE(Model, ...) MYRIAD_INSTANTIATE_EACH(Model, double, __VA_ARGS__)
+#define MYRIAD_INSTANTIATE_FLOAT(Model, ...) MYRIAD_INSTANTIATE_EACH(Model, float, __VA_ARGS__)
+
+#define MYRIAD_INSTANTIATE_EACH(Model, R, ...) \
+    __VA_OPT__(MYRIAD_EXPAND(MYRIAD_INSTANTIATE_NEXT(Model, R, __VA_ARGS__)))
+#define MYRIAD_INSTANTIATE_NEXT(Model, R, Method, ...) \
+    MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)       \
+    __VA_OPT__(MYRIAD_INSTANTIATE_AGAIN MYRIAD_PARENS(Model, R, __VA_ARGS__))
+#define MYRIAD_INSTANTIATE_AGAIN() MYRIAD_INSTANTIATE_NEXT
+#define MYRIAD_PARENS ()
+#define MYRIAD_EXPAND(...) MYRIAD_EXPAND_1(MYRIAD_EXPAND_1(MYRIAD_EXPAND_1(__VA_ARGS__)))
+#define MYRIAD_EXPAND_1(...) MYRIAD_EXPAND_2(MYRIAD_EXPAND_2(MYRIAD_EXPAND_2(__VA_ARGS__)))
+#define MYRIAD_EXPAND_2(...) __VA_ARGS__

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// What hooks do inside a phase: after_step on the accepted lanes, after_event on the lanes whose events fired, and what
+// follows from a hook having changed the state.
+#pragma once
+
+#include "myriad/event/locator.hpp"
+#include "myriad/integrator/state.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+template <class Model, class Method, class S>
+struct hook_driver {
+    using R = real_of<S>;
+    using mask = mask_of<S>;
+    static constexpr int n = n_state<Model>;
+    static constexpr int m = n_event<Model>;
+
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
+    event_state<Model, S>& e;
+
+    /// Calls after_step on the lanes whose step was accepted.
+    MYRIAD_FUNCTION void after_step(const mask& accepted) {
+        const lane_data<Model, S> before = s.data;
+        if constexpr (has_generic_after_step<Model, R>) {
+            lane_data<Model, S> after = s.data;
+            lane<Model, S> view(after);
+            if constexpr (std::is_void_v<decltype(Model::template after_step<S>(view))>) {
+                Model::template after_step<S>(view);
+            } else {
+                const mask stops = accepted & Model::template after_step<S>(view);
+                if (MYRIAD_UNLIKELY(any(stops))) s.end_lanes(stops, status::stopped_by_user);
+            }
+            adopt(accepted, after);
+        } else {
+            for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA {
+                obey(i, run_on_lane(s.data, i, [](auto& lane) MYRIAD_LAMBDA { return Model::after_step(lane); }));
+            });
+        }
+        if constexpr (Method::first_same_as_last || has_events<Model>) {
+            const mask changed = accepted & differs(before, s.data);
+            if (any(changed)) follow_up(changed, before.y);
+        } else {
+            check_finite(accepted, before.y);
+        }
+    }
+
+    /// Counts the events that fired and calls after_event for them, in order of their index.
+    MYRIAD_FUNCTION void act_on_events() {
+        const mask acting = any_event(e.firing);
+        if (!any(acting)) return;
+        const auto before = s.data.y;
+        for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
+        if constexpr (has_after_event<Model>) s.slope_valid = s.slope_valid & !acting;
+        follow_up(acting, before);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) e.firing[j] = mask(false);
+    }
+
+private:
+    MYRIAD_FUNCTION void act_on_lane(int i) {
+        static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
+            if (!get_lane(e.firing[j], i)) return;
+            const auto detections = static_cast<std::int32_t>(get_lane(s.data.event_count[j], i)) + 1;
+            set_lane(s.data.event_count[j], i, detections);
+            if constexpr (has_after_event<Model>) {
+                obey(i, run_on_lane(s.data, i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_event(j, lane); }));
+            }
+            if (args.event[j].stop_after > 0 && detections >= args.event[j].stop_after)
+                s.end_lane(i, status::stopped_by_event);
+            e.lingered[j][i] = get_lane(e.lingering[j], i) ? e.lingered[j][i] + 1 : 1;
+            if (e.lingered[j][i] >= args.accumulation_limit) s.end_lane(i, status::event_accumulation);
+        });
+    }
+
+    MYRIAD_FUNCTION void obey(int i, action wanted) {
+        if (wanted == action::proceed) return;
+        s.end_lane(i, status::stopped_by_user);
+        if (wanted == action::end_instance) s.instance_over[i] = true;
+    }
+
+    /// Takes over what a generic hook wrote, in the given lanes.
+    MYRIAD_FUNCTION void adopt(const mask& lanes, const lane_data<Model, S>& after) {
+        lane_data<Model, S>& d = s.data;
+        const auto blend_all = [&](auto& to, const auto& from, int size) MYRIAD_LAMBDA {
+            MYRIAD_UNROLL
+            for (int c = 0; c < size; ++c) to[c] = select(lanes, from[c], to[c]);
+        };
+        blend_all(d.y, after.y, n);
+        blend_all(d.accessory, after.accessory, n_accessory<Model>);
+        blend_all(d.integer_accessory, after.integer_accessory, n_integer_accessory<Model>);
+        d.h_next = select(lanes, after.h_next, d.h_next);
+        if constexpr (writes_parameters<Model>) blend_all(d.parameter, after.parameter, n_parameter<Model>);
+        if constexpr (writes_time_domain<Model>) {
+            d.t_begin = select(lanes, after.t_begin, d.t_begin);
+            d.t_end = select(lanes, after.t_end, d.t_end);
+        }
+    }
+
+    /// Lanes in which something that rhs or events may read has changed.
+    MYRIAD_FUNCTION mask differs(const lane_data<Model, S>& a, const lane_data<Model, S>& b) const {
+        mask different = mask(false);
+        const auto compare = [&](const auto& x, const auto& y, int size) MYRIAD_LAMBDA {
+            MYRIAD_UNROLL
+            for (int c = 0; c < size; ++c) different = different | (x[c] != y[c]);
+        };
+        compare(a.y, b.y, n);
+        compare(a.accessory, b.accessory, n_accessory<Model>);
+        compare(a.integer_accessory, b.integer_accessory, n_integer_accessory<Model>);
+        if constexpr (writes_parameters<Model>) compare(a.parameter, b.parameter, n_parameter<Model>);
+        return different;
+    }
+
+    /// After a hook has changed something: slopes and event values are taken anew, and a state that is not finite is
+    /// refused.
+    MYRIAD_FUNCTION void follow_up(const mask& changed, const vec<S, n>& before) {
+        s.slope_valid = s.slope_valid & !changed;
+        check_finite(changed, before);
+        if constexpr (has_events<Model>) event_locator<Model, Method, S>{args, s, e}.restart(changed);
+    }
+
+    MYRIAD_FUNCTION void check_finite(const mask& lanes, const vec<S, n>& before) {
+        const mask bad = lanes & !all_finite(s.data.y);
+        if (MYRIAD_UNLIKELY(any(bad))) {
+            MYRIAD_UNROLL
+            for (int c = 0; c < n; ++c) s.data.y[c] = select(bad, before[c], s.data.y[c]);
+            s.end_lanes(bad, status::not_finite);
+        }
+    }
+};
+
+}  // namespace myriad::inline MYRIAD_TARGET

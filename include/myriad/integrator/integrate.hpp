@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+// THE loop: takes every instance a source hands out through its phases, step by step, on one pack of lanes. A lane that
+// ends its instance takes the next one, so no lane waits for another. The same body is the CUDA kernel (one lane) and
+// the OpenMP backend's inner loop (a pack of lanes).
+#pragma once
+
+#include "myriad/controller/adaptive.hpp"
+#include "myriad/controller/fixed.hpp"
+#include "myriad/event/locator.hpp"
+#include "myriad/integrator/actions.hpp"
+#include "myriad/integrator/phase.hpp"
+#include "myriad/integrator/state.hpp"
+#include "myriad/stepper/dense_output.hpp"
+#include "myriad/stepper/explicit_rk.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+template <class Model, class Method, class S>
+struct integrator {
+    using R = real_of<S>;
+    using mask = mask_of<S>;
+    static constexpr int n = n_state<Model>;
+    static constexpr int m = n_event<Model>;
+    static constexpr bool adaptive = is_adaptive<Method>;
+    using trial_step = rk_trial<Method, S, n>;
+    using locator = event_locator<Model, Method, S>;
+
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S> s;
+    event_state<Model, S> e;
+
+    template <class Source>
+    MYRIAD_FUNCTION void run(Source& source) {
+        clear();
+        while (fill_lanes(source)) {
+            if constexpr (runs_freely) run_freely();
+            trial_step trial;
+            propose_step();
+            take_step(trial);
+            mask accepted = judge(trial);
+            commit(trial, accepted);
+            hook_driver<Model, Method, S> hooks{args, s, e};
+            if constexpr (has_after_step<Model>) hooks.after_step(accepted);
+            if constexpr (has_events<Model>) hooks.act_on_events();
+            end_long_phases();
+        }
+    }
+
+    /// An empty pack: every lane asks for an instance.
+    MYRIAD_FUNCTION void clear() {
+        s.data.shared = args.shared;
+        s.data.shared_integer = args.shared_integer;
+        s.active = mask(false);
+        s.ended = mask(true);
+        s.turn = 0;
+        MYRIAD_UNROLL
+        for (int i = 0; i < lanes_of<S>; ++i) s.instance[i] = -1;
+    }
+
+    /// Takes lanes whose phase has ended to their next phase or instance. Returns false when no lane is left running.
+    template <class Source>
+    MYRIAD_FUNCTION bool fill_lanes(Source& source) {
+        if (!any(s.ended)) return true;
+        mask begun = mask(false);
+        for_each_lane(s.ended, [&](int i) MYRIAD_LAMBDA {
+            set_lane(begun, i, phase_driver<Model, Method, S>{args, s, e}.advance(i, source));
+        });
+        s.ended = mask(false);
+        s.turn_limit = s.turn + args.max_steps;
+        for_each_lane(s.active, [&](int i) MYRIAD_LAMBDA {
+            if (s.phase_start[i] + args.max_steps < s.turn_limit) s.turn_limit = s.phase_start[i] + args.max_steps;
+        });
+        if constexpr (has_events<Model>) locator{args, s, e}.begin(begun);
+        return any(s.active);
+    }
+
+    /// Takes whole blocks of fixed steps that nobody looks at, up to the first lane's last step, in registers and with one
+    /// check per block. What is not finite once stays so; a block that ends with such a value is taken back, and the
+    /// ordinary steps find the one to blame.
+    MYRIAD_FUNCTION void run_freely() {
+        constexpr int block = 8;
+        std::int64_t run = s.turn_limit - s.turn;
+        for_each_lane(s.active, [&](int i) MYRIAD_LAMBDA {
+            const auto left = static_cast<std::int64_t>(get_lane(s.left, i)) - 1;
+            run = left < run ? left : run;
+        });
+        if (run < block) return;
+        const inputs<Model, S> p = s.data;
+        const S step = s.step, base = s.base;
+        vec<S, n> y = s.data.y;
+        count done = s.done;
+        std::int64_t taken = 0;
+        for (; run - taken >= block; taken += block) {
+            vec<S, n> now = y;
+            for (int i = 0; i < block; ++i) {
+                trial_step trial;
+                const S t = fma(S(done + count(static_cast<lane_of<count>>(i))), step, base);
+                trial.k[0] = evaluate_rhs<Model>(t, now, p);
+                explicit_rk_step<Method, Model>(t, step, now, p, trial);
+                now = trial.y;
+            }
+            if (MYRIAD_UNLIKELY(any(s.active & !all_finite(now)))) break;
+            y = now;
+            done = done + count(block);
+        }
+        s.data.y = y;
+        s.left = s.left - (done - s.done);
+        s.done = done;
+        s.turn += taken;
+    }
+
+    /// The length of the next trial and the slope at its start.
+    MYRIAD_FUNCTION void propose_step() {
+        if constexpr (adaptive) {
+            propose_adaptive_step(s);
+        } else {
+            propose_fixed_step(s);
+        }
+        if constexpr (has_events<Model>) {
+            s.h = select(e.locating, e.h_redo, s.h);
+            s.final_step = s.final_step & !e.locating;
+        }
+        if constexpr (keeps_slope) {
+            const mask needed = !s.slope_valid;
+            if (any(needed)) {
+                const auto slope = evaluate_rhs<Model>(s.now(), s.data.y, s.data);
+                MYRIAD_UNROLL
+                for (int c = 0; c < n; ++c) s.slope[c] = select(needed, slope[c], s.slope[c]);
+                s.extra_evaluations = count_where(needed, s.extra_evaluations);
+                s.slope_valid = mask(true);
+            }
+        }
+    }
+
+    MYRIAD_FUNCTION void take_step(trial_step& trial) {
+        ++s.turn;
+        if constexpr (keeps_slope) {
+            trial.k[0] = s.slope;
+        } else {
+            trial.k[0] = evaluate_rhs<Model>(s.now(), s.data.y, s.data);
+        }
+        explicit_rk_step<Method, Model>(s.now(), s.h, s.data.y, s.data, trial);
+    }
+
+    /// Accepts or rejects the trial: error, finiteness, and that it does not go beyond an event.
+    MYRIAD_FUNCTION mask judge(const trial_step& trial) {
+        mask accepted;
+        const S t1 = end_time();
+        if constexpr (has_events<Model>) {
+            const auto g1 = evaluate_events<Model>(t1, trial.y, s.data);
+            mask valid = mask(true);
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) valid = valid & (g1[j] == g1[j]);
+            accepted = control(trial, t1, valid);
+            locator locate{args, s, e};
+            locate.forget(!accepted);
+            s.slope_end_known = mask(false);
+            locate.locate(trial, t1, g1, accepted);
+        } else {
+            accepted = control(trial, t1, mask(true));
+        }
+        return accepted;
+    }
+
+    /// Makes the accepted lanes' new state the committed one.
+    MYRIAD_FUNCTION void commit(const trial_step& trial, const mask& accepted) {
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]);
+        s.data.h = select(accepted, s.h, s.data.h);
+        if constexpr (adaptive) {
+            const S t1 = end_time();
+            if constexpr (compensates_time)
+                s.time_low = select(accepted, (s.h + s.time_low) - (t1 - s.data.t), s.time_low);
+            s.data.t = select(accepted, t1, s.data.t);
+        } else {
+            s.done = count_where(accepted, s.done);
+            s.left = select(accepted, s.left - count(1), s.left);
+            if constexpr (has_events<Model>) {
+                for_each_lane(accepted & s.slope_end_known, [&](int i) MYRIAD_LAMBDA {
+                    const R t = get_lane(s.base, i);
+                    const R done = static_cast<R>(get_lane(s.done, i)) - R(1);
+                    const R start = fma(done, get_lane(s.step, i), t);
+                    lay_fixed_steps(s, i, start + get_lane(s.h, i), args.step);
+                });
+            }
+            if constexpr (shows_time) s.data.t = s.now();
+        }
+        if constexpr (keeps_slope) {
+            if constexpr (Method::first_same_as_last) {
+                MYRIAD_UNROLL
+                for (int c = 0; c < n; ++c)
+                    s.slope[c] = select(accepted, trial.k[Method::stages - 1][c], s.slope[c]);
+            } else {
+                s.slope_valid = s.slope_valid & !accepted;
+                if constexpr (has_events<Model>) {
+                    const mask known = accepted & s.slope_end_known;
+                    MYRIAD_UNROLL
+                    for (int c = 0; c < n; ++c) s.slope[c] = select(known, s.slope_end[c], s.slope[c]);
+                    s.slope_valid = s.slope_valid | known;
+                }
+            }
+        }
+        const mask finished = accepted & s.final_step;
+        if (MYRIAD_UNLIKELY(any(finished))) {
+            s.ended = s.ended | finished;
+            if constexpr (!adaptive) s.data.t = select(finished, s.data.t_end, s.data.t);
+        }
+    }
+
+    /// Ends phases that have taken as many trial steps as the options allow.
+    MYRIAD_FUNCTION void end_long_phases() {
+        if (MYRIAD_UNLIKELY(s.turn >= s.turn_limit)) {
+            for_each_lane(s.active & !s.ended, [&](int i) MYRIAD_LAMBDA {
+                if (s.turn - s.phase_start[i] < args.max_steps) return;
+                if constexpr (!adaptive) set_lane(s.data.t, i, get_lane(s.now(), i));
+                s.end_lane(i, status::max_steps);
+            });
+        }
+    }
+
+private:
+    using count = typename integration_state<Model, Method, S>::count;
+
+    static constexpr bool runs_freely =
+        !adaptive && !has_events<Model> && !has_after_step<Model> && !Method::first_same_as_last;
+    /// Slopes are worth keeping where a step may be repeated or its last slope is the next one's first.
+    static constexpr bool keeps_slope = stepper_keeps_slope<Model, Method>;
+    /// In single precision the rounding of t would cost steps and accuracy.
+    static constexpr bool compensates_time = std::is_same_v<R, float>;
+    /// Fixed steps count time; it is only written down where someone looks at it.
+    static constexpr bool shows_time = has_after_step<Model> || has_events<Model>;
+
+    /// Time at the end of the trial.
+    MYRIAD_FUNCTION S end_time() const {
+        S t1;
+        if constexpr (adaptive && compensates_time) {
+            t1 = s.data.t + (s.h + s.time_low);
+        } else {
+            t1 = s.now() + s.h;
+        }
+        return select(s.final_step, s.data.t_end, t1);
+    }
+
+    MYRIAD_FUNCTION mask control(const trial_step& trial, const S& t1, const mask& valid) {
+        if constexpr (adaptive) {
+            mask accepted = control_step(args, s, trial, valid);
+            const mask stuck = s.active & (t1 == s.data.t);
+            if (MYRIAD_UNLIKELY(any(stuck))) {
+                s.rejected = count_where(stuck & accepted, s.rejected);
+                accepted = accepted & !stuck;
+                end_stuck_lanes(s, stuck);
+            }
+            return accepted;
+        } else {
+            const mask finite = valid & all_finite(trial.y);
+            const mask failed = s.active & !finite;
+            if (MYRIAD_UNLIKELY(any(failed))) {
+                s.rejected = count_where(failed, s.rejected);
+                s.data.t = select(failed, s.now(), s.data.t);
+                s.end_lanes(failed, status::not_finite);
+            }
+            return s.active & finite;
+        }
+    }
+};
+
+/// Integrates all instances that `source.next()` hands out (indices, then -1) on one pack of lanes of kind S. Returns the turns the loop took, each a trial step in every lane.
+template <class Model, class Method, class S, class Source>
+MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args, Source& source) {
+    static_assert(check_hooks<Model, real_of<S>>());
+    integrator<Model, Method, S> loop{args, {}, {}};
+    loop.run(source);
+    return loop.s.turn;
+}
+
+}  // namespace myriad::inline MYRIAD_TARGET

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// What a user may choose about an integration, with its defaults, and the checks that every call makes once.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <vector>
+
+#include "myriad/core/error.hpp"
+
+namespace myriad {
+
+/// One value for all components, or one for each: `1e-9` or `{1e-9, 1e-6}`.
+class per_component {
+public:
+    per_component(double value) : values_{value} {}
+    per_component(std::initializer_list<double> values) : values_(values) {}
+    per_component(std::vector<double> values) : values_(std::move(values)) {}
+
+    std::size_t size() const { return values_.size(); }
+    /// The value of component i.
+    double operator[](std::size_t i) const { return values_.size() == 1 ? values_[0] : values_.at(i); }
+
+private:
+    std::vector<double> values_;
+};
+
+/// Which sign changes of an event function count, seen in the direction of integration.
+enum class direction { falling = -1, either = 0, rising = 1 };
+
+/// How one event function is watched.
+struct event_options {
+    myriad::direction direction = myriad::direction::either;
+    double tolerance = 1e-6;        ///< an event is located where |g| is at most this; unit of the event function
+    std::int64_t stop_after = 0;    ///< number of detections in a phase that ends it (`stopped_by_event`); 0: never
+};
+
+/// Where a phase starts: at the instance's t_begin, or where the last phase ended.
+enum class phase_time { restart, carry_on };
+/// The first step of a phase: `options::step` again, or what the last phase ended with.
+enum class phase_step { restart, carry_on };
+/// Whether work is counted per instance (32 bytes each).
+enum class counting { off, on };
+/// What to do with instances whose state, parameters or times are not finite: refuse the call, or mark them
+/// `invalid_input` and run the others.
+enum class invalid_instances { refuse, mark };
+
+/// States, accessories and times to keep at the end of every phase from `from_phase` on (counted from 0 in each call).
+/// Nothing is recorded, and no memory taken, unless something is chosen.
+struct record_options {
+    std::int64_t from_phase = 0;
+    std::vector<int> states = {};
+    std::vector<int> accessories = {};
+    std::vector<int> integer_accessories = {};
+    bool time = false;
+
+    bool empty() const { return states.empty() && accessories.empty() && integer_accessories.empty() && !time; }
+};
+
+/// How an ensemble is integrated. Times and steps are in the model's unit of time.
+struct options {
+    std::int64_t phases = 1;  ///< integration phases in this call, each from t_begin to t_end or until stopped
+
+    per_component relative_tolerance = 1e-8;  ///< error per step over max(|y|, |y1|), per component of the state
+    per_component absolute_tolerance = 1e-8;  ///< error per step, per component of the state, in its unit
+
+    double step = std::numeric_limits<double>::quiet_NaN();  ///< fixed step (must be given), or first step (default 1e-2)
+    double minimum_step = 0;                                         ///< 0: the resolution of t
+    double maximum_step = std::numeric_limits<double>::infinity();
+    double growth_limit = 5;    ///< largest factor from one step to the next
+    double shrink_limit = 0.1;  ///< smallest factor
+    std::int64_t max_steps = 10'000'000;  ///< trial steps per phase; more end the instance as `max_steps`
+
+    myriad::phase_time phase_time = myriad::phase_time::restart;
+    myriad::phase_step phase_step = myriad::phase_step::restart;
+
+    std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all
+    std::int64_t sub_samples = 1;            ///< points per step at which event functions are looked at (the last is the end)
+    std::int64_t accumulation_limit = 50;    ///< actions of one event, without its function leaving its tolerance in
+                                             ///< between, that end the instance as `event_accumulation`
+
+    record_options record = {};
+    myriad::counting counting = myriad::counting::on;
+    myriad::invalid_instances invalid_instances = myriad::invalid_instances::refuse;
+
+    /// Called now and then from the thread that called solve, with the number of instances begun and their total.
+    std::function<void(std::int64_t, std::int64_t)> progress = {};
+};
+
+namespace host {
+
+inline void check_positive(const char* name, double value, const char* advice) {
+    require(value > 0 && std::isfinite(value), name, " is ", value, " (must be positive and finite): ", advice);
+}
+inline void check_count(const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
+    require(value >= least && value <= most, name, " is ", value, " (must be from ", least, " to ", most, ")");
+}
+inline void check_tolerance(const char* name, const per_component& t, std::size_t components) {
+    require(t.size() == 1 || t.size() == components, name, " has ", t.size(), " values, but the model has ", components,
+            " state components: give one value for all, or one for each");
+    for (std::size_t i = 0; i < t.size(); ++i)
+        check_positive(name, t[i], "give the error you accept per step, such as 1e-9");
+}
+inline void check_components(const char* what, const std::vector<int>& chosen, int count) {
+    std::vector<bool> seen(static_cast<std::size_t>(count), false);
+    for (const int c : chosen) {
+        require(c >= 0 && c < count, "record.", what, " names component ", c, ", but the model has ", count,
+                " (numbered from 0): use the model's enumerators");
+        require(!seen[static_cast<std::size_t>(c)], "record.", what, " names component ", c,
+                " twice: name each component once");
+        seen[static_cast<std::size_t>(c)] = true;
+    }
+}
+
+}  // namespace host
+
+/// Checks everything about the options that does not need the ensemble's data; throws `error`.
+template <class Model, class Method, class R>
+void check_options(const options& o, int n_state, int n_event, int n_accessory, int n_integer_accessory) {
+    using namespace host;
+    constexpr bool adaptive = Method::embedded_order > 0;
+    check_count("phases", o.phases, 1, 1'000'000'000);
+    check_tolerance("relative_tolerance", o.relative_tolerance, static_cast<std::size_t>(n_state));
+    check_tolerance("absolute_tolerance", o.absolute_tolerance, static_cast<std::size_t>(n_state));
+    if (adaptive) {
+        require(std::isnan(o.step) || (o.step > 0 && std::isfinite(o.step)), "step is ", o.step,
+                " (must be positive and finite): give the length of the first step to try");
+    } else {
+        require(!std::isnan(o.step), "step is not set, but the method takes fixed steps: give options::step");
+        check_positive("step", o.step, "give the length of the fixed step; the direction follows from t_end");
+    }
+    require(o.minimum_step >= 0 && std::isfinite(o.minimum_step), "minimum_step is ", o.minimum_step,
+            " (must not be negative): give 0 for the resolution of t");
+    require(o.maximum_step > 0, "maximum_step is ", o.maximum_step, " (must be positive)");
+    require(o.minimum_step <= o.maximum_step, "minimum_step ", o.minimum_step, " is above maximum_step ", o.maximum_step,
+            ": no step size is left; exchange them");
+    require(o.growth_limit >= 1 && std::isfinite(o.growth_limit), "growth_limit is ", o.growth_limit,
+            " (must be at least 1): give the largest factor from one step to the next, such as 5");
+    require(o.shrink_limit > 0 && o.shrink_limit < 1, "shrink_limit is ", o.shrink_limit,
+            " (must be between 0 and 1): give the smallest factor from one step to the next, such as 0.1");
+    // Fixed steps are counted in the state's own kind of number, exact up to its mantissa.
+    check_count("max_steps", o.max_steps, 1, std::numeric_limits<R>::digits > 31 ? 2'000'000'000 : 16'000'000);
+    require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), "events has ", o.events.size(),
+            " entries, but the model has ", n_event, " event functions: give one entry for each, or none for defaults");
+    for (const event_options& e : o.events) {
+        check_positive("event tolerance", e.tolerance, "give the |g| at which an event counts as located, such as 1e-6");
+        check_count("stop_after", e.stop_after, 0, 2'000'000'000);
+        const int d = static_cast<int>(e.direction);
+        require(d >= -1 && d <= 1, "event direction is ", d, " (must be falling, either or rising)");
+    }
+    check_count("sub_samples", o.sub_samples, 1, 10'000);
+    check_count("accumulation_limit", o.accumulation_limit, 1, 1'000'000'000);
+    if (!o.record.empty()) {
+        require(o.record.from_phase >= 0 && o.record.from_phase < o.phases, "record.from_phase is ", o.record.from_phase,
+                ", but the call has ", o.phases, " phases (counted from 0): nothing would be recorded");
+        check_components("states", o.record.states, n_state);
+        check_components("accessories", o.record.accessories, n_accessory);
+        check_components("integer_accessories", o.record.integer_accessories, n_integer_accessory);
+    }
+}
+
+}  // namespace myriad

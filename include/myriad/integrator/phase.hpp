@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// The life of an instance in a lane: loaded, taken through its phases, recorded, stored, and the lane refilled.
+#pragma once
+
+#include "myriad/controller/fixed.hpp"
+#include "myriad/event/locator.hpp"
+#include "myriad/integrator/state.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+template <class Model, class Method, class S>
+struct phase_driver {
+    using R = real_of<S>;
+    using arguments = kernel_arguments<Model, R>;
+    static constexpr int n = n_state<Model>;
+    static constexpr int m = n_event<Model>;
+
+    const arguments& args;
+    integration_state<Model, Method, S>& s;
+    event_state<Model, S>& e;
+
+    /// Ends the phase of lane i, if it holds an instance, and takes it to its next phase or to the next instance that
+    /// needs work. Returns false when there is none: the lane stays empty.
+    template <class Source>
+    MYRIAD_FUNCTION bool advance(int i, Source& source) {
+        if (s.instance[i] >= 0) end_phase(i);
+        for (;;) {
+            while (s.instance[i] < 0 || instance_done(i)) {
+                if (s.instance[i] >= 0) store(i);
+                s.instance[i] = source.next();
+                if (s.instance[i] < 0) {
+                    set_lane(s.active, i, false);
+                    return false;
+                }
+                load(i);
+            }
+            begin_phase(i);
+            if (get_lane(s.data.t, i) != get_lane(s.data.t_end, i)) return true;
+            end_phase(i);  // an empty domain: the phase is over without a step
+        }
+    }
+
+private:
+    template <class T>
+    MYRIAD_FUNCTION T& at(T* array, int component, int i) const {
+        return array[static_cast<std::int64_t>(component) * args.size + s.instance[i]];
+    }
+
+    MYRIAD_FUNCTION bool instance_done(int i) const {
+        return s.instance_over[i] || static_cast<std::int32_t>(get_lane(s.data.phase, i)) == s.phase_end[i];
+    }
+
+    MYRIAD_FUNCTION void load(int i) {
+        const std::int64_t index = s.instance[i];
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) set_lane(s.data.y[c], i, at(args.state, c, i));
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_parameter<Model>; ++c) set_lane(s.data.parameter[c], i, at(args.parameter, c, i));
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_accessory<Model>; ++c) set_lane(s.data.accessory[c], i, at(args.accessory, c, i));
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+            set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
+        set_lane(s.data.t_begin, i, args.t_begin[index]);
+        set_lane(s.data.t_end, i, args.t_end[index]);
+        set_lane(s.data.t, i, args.t[index]);
+        set_lane(s.data.h, i, R(0));
+        set_lane(s.data.h_next, i, args.h_next[index]);
+        set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(index));
+        set_lane(s.data.phase, i, args.phase[index]);
+        if constexpr (m > 0) {
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) set_lane(e.side[j], i, static_cast<R>(at(args.side, j, i)));
+        }
+        s.phase_end[i] = args.phase[index] + args.phases;
+        s.instance_over[i] = args.ended[index] != 0;
+        s.ending[i] = args.status[index];
+        s.instance_start[i] = s.turn;
+        set_count(s.rejected, i, 0);
+        set_count(s.located, i, 0);
+        set_count(s.extra_evaluations, i, 0);
+    }
+
+    MYRIAD_FUNCTION void store(int i) const {
+        const std::int64_t index = s.instance[i];
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) at(args.state, c, i) = get_lane(s.data.y[c], i);
+        if constexpr (writes_parameters<Model>) {
+            MYRIAD_UNROLL
+            for (int c = 0; c < n_parameter<Model>; ++c) at(args.parameter, c, i) = get_lane(s.data.parameter[c], i);
+        }
+        if constexpr (writes_time_domain<Model>) {
+            args.t_begin[index] = get_lane(s.data.t_begin, i);
+            args.t_end[index] = get_lane(s.data.t_end, i);
+        }
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_accessory<Model>; ++c) at(args.accessory, c, i) = get_lane(s.data.accessory[c], i);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+            at(args.integer_accessory, c, i) = static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
+        args.t[index] = get_lane(s.data.t, i);
+        args.h_next[index] = get_lane(s.data.h_next, i);
+        args.phase[index] = static_cast<std::int32_t>(get_lane(s.data.phase, i));
+        if constexpr (m > 0) {
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) at(args.side, j, i) = static_cast<std::int8_t>(get_lane(e.side[j], i));
+        }
+        args.ended[index] = s.instance_over[i] ? 1 : 0;
+        args.status[index] = s.ending[i];
+        if (args.accepted != nullptr) {
+            const std::int64_t trials = s.turn - s.instance_start[i];
+            const auto rejected = static_cast<std::int64_t>(get_lane(s.rejected, i));
+            const auto located = static_cast<std::int64_t>(get_lane(s.located, i));
+            args.accepted[index] += trials - rejected - located;
+            args.rejected[index] += rejected;
+            args.located[index] += located;
+            args.evaluations[index] += trials * evaluations_per_trial<Model, Method> +
+                                       static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
+        }
+    }
+
+    /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on.
+    MYRIAD_FUNCTION void begin_phase(int i) {
+        const bool carry_on = args.carry_time && get_lane(s.data.phase, i) > 0;
+        if (!carry_on) set_lane(s.data.t, i, get_lane(s.data.t_begin, i));
+        set_lane(s.time_low, i, R(0));
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) set_lane(s.data.event_count[j], i, 0);
+        const bool restart_step = !args.carry_step || !(get_lane(s.data.phase, i) > 0);
+        if (restart_step) set_lane(s.data.h_next, i, args.step);
+        if constexpr (has_initialise<Model>) {
+            const auto before = get_lanes<R>(s.data.y, i);
+            run_on_lane(s.data, i, [](auto& lane) MYRIAD_LAMBDA { Model::initialise(lane); });
+            if constexpr (writes_time_domain<Model>) {
+                if (!carry_on) set_lane(s.data.t, i, get_lane(s.data.t_begin, i));
+            }
+            if (m > 0 && !same_values(before, get_lanes<R>(s.data.y, i))) forget_sides(i);
+        }
+        const R t = get_lane(s.data.t, i);
+        if constexpr (is_adaptive<Method>) {
+            set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), get_lane(s.data.t_end, i) - t));
+        } else {
+            lay_fixed_steps(s, i, t, args.step);
+        }
+        if constexpr (m > 0) {
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) e.lingered[j][i] = 0;
+            if (get_lane(s.data.phase, i) == 0) forget_sides(i);
+            set_lane(e.locating, i, false);
+        }
+        set_lane(s.active, i, true);
+        set_lane(s.slope_valid, i, false);
+        set_lane(s.last_not_finite, i, false);
+        s.ending[i] = status::success;
+        s.phase_start[i] = s.turn;
+    }
+
+    /// The state was placed, not integrated, where it is: functions within their tolerance come from no side.
+    MYRIAD_FUNCTION void forget_sides(int i) {
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) set_lane(e.side[j], i, R(0));
+    }
+
+    /// Ends the phase that lane i is in: `finalise`, record, count; a failed phase ends the instance instead.
+    MYRIAD_FUNCTION void end_phase(int i) {
+        if (is_failure(s.ending[i])) {
+            s.instance_over[i] = true;
+            return;
+        }
+        if constexpr (has_finalise<Model>)
+            run_on_lane(s.data, i, [](auto& lane) MYRIAD_LAMBDA { Model::finalise(lane); });
+        const auto phase = static_cast<std::int32_t>(get_lane(s.data.phase, i));
+        record(i, phase - (s.phase_end[i] - args.phases) - args.record.from_phase);
+        set_lane(s.data.phase, i, phase + 1);
+    }
+
+    MYRIAD_FUNCTION void record(int i, std::int32_t row) const {
+        const auto& r = args.record;
+        if (row < 0 || row >= r.phases) return;
+        const auto to = [&](auto* array, int column) MYRIAD_LAMBDA -> auto& {
+            return array[(static_cast<std::int64_t>(column) * r.phases + row) * args.size + s.instance[i]];
+        };
+        if (r.time_column >= 0) to(r.values, r.time_column) = get_lane(s.data.t, i);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c)
+            if (r.state_column[c] >= 0) to(r.values, r.state_column[c]) = get_lane(s.data.y[c], i);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_accessory<Model>; ++c)
+            if (r.accessory_column[c] >= 0) to(r.values, r.accessory_column[c]) = get_lane(s.data.accessory[c], i);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+            if (r.integer_accessory_column[c] >= 0)
+                to(r.integers, r.integer_accessory_column[c]) =
+                    static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
+    }
+};
+
+}  // namespace myriad::inline MYRIAD_TARGET

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// The state of one running pack of lanes, shared by the parts of the loop: the instances' data, and what the loop itself
+// keeps beside them.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "myriad/ensemble/view.hpp"
+#include "myriad/model/hooks.hpp"
+#include "myriad/scalar/math.hpp"
+#include "myriad/stepper/explicit_rk.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// True for methods with an error estimate, whose step size is controlled.
+template <class Method>
+inline constexpr bool is_adaptive = Method::embedded_order > 0;
+
+/// Slopes are kept where a step may be repeated or where its last slope is the first of the next.
+template <class Model, class Method>
+inline constexpr bool stepper_keeps_slope = is_adaptive<Method> || has_events<Model> || Method::first_same_as_last;
+
+/// Evaluations of the right-hand side in every trial step; others are counted where they happen.
+template <class Model, class Method>
+inline constexpr int evaluations_per_trial = stepper_keeps_slope<Model, Method> ? Method::stages - 1 : Method::stages;
+
+/// Counts steps of one lane: an integer for one instance, a real (exact up to its mantissa) beside the lanes of a pack.
+template <class S>
+using count_of = std::conditional_t<lanes_of<S> == 1, std::int32_t, S>;
+
+/// Whether every component is finite, lane by lane.
+template <class S, int n>
+MYRIAD_FUNCTION mask_of<S> all_finite(const vec<S, n>& y) {
+    mask_of<S> finite = is_finite(y[0]);
+    MYRIAD_UNROLL
+    for (int c = 1; c < n; ++c) finite = finite & is_finite(y[c]);
+    return finite;
+}
+
+/// a + 1 where the mask holds.
+template <class C, class M>
+MYRIAD_FUNCTION C count_where(const M& mask, const C& count) {
+    return select(mask, count + C(1), count);
+}
+
+/// The number that one lane of a count holds.
+template <class C>
+using lane_of = std::conditional_t<std::is_integral_v<C>, C, decltype(get_lane(std::declval<C>(), 0))>;
+
+/// Sets the count of lane i.
+template <class C, class R>
+MYRIAD_FUNCTION void set_count(C& count, int i, R value) {
+    if constexpr (std::is_integral_v<C>) {
+        count = static_cast<C>(value);
+    } else {
+        set_lane(count, i, static_cast<real_of<C>>(value));
+    }
+}
+
+/// Calls `visit(i)` for every lane of the mask.
+template <class M, class Visit>
+MYRIAD_FUNCTION void for_each_lane(const M& mask, Visit&& visit) {
+    if constexpr (std::is_same_v<M, bool>) {
+        if (mask) visit(0);
+    } else {
+        for (std::uint64_t rest = bits(mask); rest != 0; rest &= rest - 1) visit(__builtin_ctzll(rest));
+    }
+}
+
+template <class Model, class Method, class S>
+struct integration_state {
+    using R = real_of<S>;
+    using mask = mask_of<S>;
+    using count = count_of<S>;
+    static constexpr int lanes = lanes_of<S>;
+    static constexpr int n = n_state<Model>;
+
+    lane_data<Model, S> data;
+    mask active;       // lanes that hold a running instance
+    vec<S, n> slope;   // f at the committed state, where slope_valid holds
+    mask slope_valid;
+    vec<S, n> slope_end;   // f at the end of the trial, where slope_end_known holds
+    mask slope_end_known;
+    S time_low;        // what rounding took from t (float models)
+
+    // the trial step
+    S h;               // its length, signed
+    mask final_step;   // it ends at t_end
+    mask last_not_finite;  // the lane's last rejection was for a value that is not finite
+
+    // fixed steps: t = base + done * step, so that no rounding adds up and no step is added
+    S base, step, last_step;
+    count done, left;
+
+    // lanes whose phase ends in this turn of the loop, and how
+    mask ended;
+    myriad::status ending[lanes];
+    bool instance_over[lanes];
+
+    // work, per instance
+    std::int64_t turn;                     // turns of the loop; every active lane takes a trial step in each
+    std::int64_t phase_start[lanes];       // turn at which the lane's phase began
+    std::int64_t instance_start[lanes];
+    std::int64_t turn_limit;               // first turn at which some lane may have reached max_steps
+    count rejected, located, extra_evaluations;
+    std::int64_t instance[lanes];          // index, or -1: the lane is empty
+    std::int32_t phase_end[lanes];         // phases done when the instance's share of this call is complete
+
+    /// Time of the committed state.
+    MYRIAD_FUNCTION S now() const {
+        if constexpr (is_adaptive<Method>) {
+            return data.t;
+        } else {
+            return fma(S(done), step, base);
+        }
+    }
+
+    /// Ends the phase of lane i with the given status.
+    MYRIAD_FUNCTION void end_lane(int i, myriad::status why) {
+        ending[i] = why;
+        set_lane(ended, i, true);
+    }
+    /// Ends the phase of every lane of the mask.
+    MYRIAD_FUNCTION void end_lanes(const mask& which, myriad::status why) {
+        for_each_lane(which, [&](int i) MYRIAD_LAMBDA { end_lane(i, why); });
+    }
+};
+
+}  // namespace myriad::inline MYRIAD_TARGET

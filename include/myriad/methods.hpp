@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: MIT
+// All methods of integration.
+#pragma once
+
+#include "myriad/stepper/methods/cash_karp.hpp"
+#include "myriad/stepper/methods/runge_kutta_4.hpp"
+#include "myriad/stepper/methods/tsitouras_5.hpp"

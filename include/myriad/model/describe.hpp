@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Says what the library sees in a model, so that a misspelt hook shows.
+#pragma once
+
+#include <string>
+
+#include "myriad/core/error.hpp"
+#include "myriad/model/concepts.hpp"
+#include "myriad/model/hooks.hpp"
+
+namespace myriad {
+
+/// A few lines for people: the model's counts of components, its hooks, and its declarations.
+template <class Model>
+std::string describe() {
+    static_assert(check_hooks<Model, double>());
+    std::string hooks = "rhs", declares;
+    const auto add = [](std::string& to, bool present, const char* name) {
+        if (present) to += (to.empty() ? "" : ", ") + std::string(name);
+    };
+    add(hooks, has_events<Model>, "events");
+    add(hooks, has_initialise<Model>, "initialise");
+    add(hooks, has_after_step<Model>, has_generic_after_step<Model> ? "after_step (generic)" : "after_step (scalar)");
+    add(hooks, has_after_event<Model>, "after_event");
+    add(hooks, has_finalise<Model>, "finalise");
+    add(declares, writes_parameters<Model>, "writes_parameters");
+    add(declares, writes_time_domain<Model>, "writes_time_domain");
+    add(declares, scalar_only<Model>, "scalar_only");
+    return message("components: ", n_state<Model>, " state, ", n_parameter<Model>, " parameter, ", n_shared<Model>,
+                   " shared, ", n_shared_integer<Model>, " shared integer, ", n_accessory<Model>, " accessory, ",
+                   n_integer_accessory<Model>, " integer accessory, ", n_event<Model>, " event\nhooks: ", hooks,
+                   "\ndeclares: ", declares.empty() ? "nothing" : declares, '\n');
+}
+
+}  // namespace myriad

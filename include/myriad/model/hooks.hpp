@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Calls the optional functions of a model: checks their signatures with a readable message, tells scalar hooks from
+// generic ones, and runs a scalar hook on one lane of a pack.
+#pragma once
+
+#include <concepts>
+#include <type_traits>
+
+#include "myriad/core/status.hpp"
+#include "myriad/model/lane.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// `after_step` with an explicit scalar type runs on whole packs; without one, on one instance at a time.
+template <class Model, class R = double>
+inline constexpr bool has_generic_after_step = has_after_step<Model> &&
+    requires(lane<Model, R>& l) { Model::template after_step<R>(l); };
+
+template <class T>
+concept hook_result = std::is_void_v<T> || std::same_as<T, action>;
+
+/// Refuses hooks whose signature does not fit, each with the signature that would.
+template <class Model, class R>
+constexpr bool check_hooks() {
+    check_model<Model>();
+    using inputs_t = inputs<Model, R>;
+    using lane_t = lane<Model, R>;
+    static_assert(
+        requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {
+            { Model::template rhs<R>(R{}, y, p) } -> std::same_as<vec<R, n_state<Model>>>;
+        },
+        "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
+        "rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`");
+    if constexpr (has_events<Model>) {
+        static_assert(
+            requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {
+                { Model::template events<R>(R{}, y, p) } -> std::same_as<vec<R, n_event<Model>>>;
+            },
+            "events has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
+            "n_event> events(auto t, const myriad::vec<R, n_state>& y, const auto& p)`");
+    }
+    if constexpr (has_initialise<Model>) {
+        static_assert(
+            requires(lane_t& l) {
+                { Model::initialise(l) } -> std::same_as<void>;
+            },
+            "initialise has a wrong signature: it must be `MYRIAD_FUNCTION static void initialise(auto& lane)`");
+    }
+    if constexpr (has_after_step<Model> && !has_generic_after_step<Model, R>) {
+        static_assert(
+            requires(lane_t& l) {
+                { Model::after_step(l) } -> hook_result;
+            },
+            "after_step has a wrong signature: it must be `MYRIAD_FUNCTION static myriad::action after_step(auto& "
+            "lane)` (one instance at a time; may return void) or, to stay vectorised, `template <class R> "
+            "MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane)` (true ends the phase; may return void)");
+    }
+    if constexpr (has_after_event<Model>) {
+        static_assert(
+            requires(lane_t& l) {
+                { Model::after_event(int{}, l) } -> hook_result;
+            },
+            "after_event has a wrong signature: it must be `MYRIAD_FUNCTION static myriad::action after_event(int "
+            "event, auto& lane)`; it may return void");
+    }
+    if constexpr (has_finalise<Model>) {
+        static_assert(
+            requires(lane_t& l) {
+                { Model::finalise(l) } -> std::same_as<void>;
+            },
+            "finalise has a wrong signature: it must be `MYRIAD_FUNCTION static void finalise(auto& lane)`");
+    }
+    return true;
+}
+
+/// Calls a hook that returns an action or nothing.
+template <class Call>
+MYRIAD_FUNCTION action action_of(Call&& call) {
+    if constexpr (std::is_void_v<decltype(call())>) {
+        call();
+        return action::proceed;
+    } else {
+        return call();
+    }
+}
+
+/// Runs a scalar hook on lane i: directly on the data of one instance, on a copy of its lane for a pack.
+template <class Model, class S, class Hook>
+MYRIAD_FUNCTION action run_on_lane(lane_data<Model, S>& data, int i, Hook&& hook) {
+    if constexpr (lanes_of<S> == 1) {
+        lane<Model, S> view(data);
+        return action_of([&]() MYRIAD_LAMBDA { return hook(view); });
+    } else {
+        lane_data<Model, real_of<S>> one = extract_lane(data, i);
+        lane<Model, real_of<S>> view(one);
+        const action wanted = action_of([&]() MYRIAD_LAMBDA { return hook(view); });
+        insert_lane(data, i, one);
+        return wanted;
+    }
+}
+
+}  // namespace myriad::inline MYRIAD_TARGET

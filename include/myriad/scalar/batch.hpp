@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// What packs need of one SIMD batch and xsimd (8 to 13) lacks, does differently from version to version, or gets wrong.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+// g++ 12 takes the deliberately unset registers of its own AVX-512 intrinsics for a mistake (GCC bug 105593).
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+#include <xsimd/xsimd.hpp>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
+
+#include "myriad/core/macros.hpp"
+#include "myriad/scalar/math.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+namespace detail {
+
+template <class T>
+using real_of_width = std::conditional_t<sizeof(T) == sizeof(double), double, float>;
+template <class T>
+using integer_of_width = std::conditional_t<sizeof(T) == sizeof(double), std::int64_t, std::int32_t>;
+
+// AVX-512 keeps a mask in a register of bits, the other instruction sets in a vector whose lanes are all ones or zero.
+template <class Batch>
+inline constexpr bool has_bit_mask = std::is_integral_v<typename Batch::register_type>;
+
+/// The lanes of a batch_bool as bits, without the detour through memory where the hardware has one instruction for it.
+template <class T>
+MYRIAD_FUNCTION std::uint64_t bits_of(const xsimd::batch_bool<T>& mask) {
+    using batch_bool = xsimd::batch_bool<T>;
+    using register_type = typename batch_bool::register_type;
+    if constexpr (requires { mask.mask(); }) {
+        return static_cast<std::uint64_t>(mask.mask());
+    } else if constexpr (has_bit_mask<batch_bool>) {
+        return static_cast<std::uint64_t>(static_cast<register_type>(mask));
+    } else {
+#if defined(__AVX__)
+        if constexpr (sizeof(register_type) == sizeof(__m256d)) {
+            const register_type r = mask;
+            if constexpr (sizeof(T) == sizeof(double)) {
+                return static_cast<std::uint64_t>(_mm256_movemask_pd(r));
+            } else {
+                return static_cast<std::uint64_t>(_mm256_movemask_ps(r));
+            }
+        }
+#endif
+#if defined(__SSE2__)
+        if constexpr (sizeof(register_type) == sizeof(__m128d)) {
+            const register_type r = mask;
+            if constexpr (sizeof(T) == sizeof(double)) {
+                return static_cast<std::uint64_t>(_mm_movemask_pd(r));
+            } else {
+                return static_cast<std::uint64_t>(_mm_movemask_ps(r));
+            }
+        }
+#endif
+        bool lanes[batch_bool::size];
+        mask.store_unaligned(lanes);
+        std::uint64_t result = 0;
+        for (std::size_t i = 0; i < batch_bool::size; ++i) result |= static_cast<std::uint64_t>(lanes[i]) << i;
+        return result;
+    }
+}
+
+/// The same truth values for numbers of another type of the same width. xsimd renamed its own cast between versions.
+template <class To, class From>
+MYRIAD_FUNCTION xsimd::batch_bool<To> mask_cast(const xsimd::batch_bool<From>& mask) {
+    using from_register = typename xsimd::batch_bool<From>::register_type;
+    using to_register = typename xsimd::batch_bool<To>::register_type;
+    return xsimd::batch_bool<To>(__builtin_bit_cast(to_register, static_cast<from_register>(mask)));
+}
+
+/// The bits of a batch as numbers of another type of the same width.
+template <class To, class From>
+MYRIAD_FUNCTION xsimd::batch<To> bits_as(const xsimd::batch<From>& x) {
+    using from_register = typename xsimd::batch<From>::register_type;
+    using to_register = typename xsimd::batch<To>::register_type;
+    return xsimd::batch<To>(__builtin_bit_cast(to_register, static_cast<from_register>(x)));
+}
+
+// Adding this rounds to a whole number and leaves its last bits in the last bits of the sum.
+template <class T>
+inline constexpr T round_to_whole = sizeof(T) == sizeof(double) ? T(0x1.8p52) : T(0x1.8p23);
+
+/// a * b + c, a * b - c and c - a * b with one rounding where the target can (MYRIAD_FUSED). xsimd 8 has no such thing for
+/// AVX-512: it writes a * b + c and leaves the rest to the compiler.
+#if defined(__AVX512F__)
+#define MYRIAD_FUSED_OPERATION(name, xsimd_name, intrinsic)                                                   \
+    template <class T>                                                                                        \
+    MYRIAD_FUNCTION xsimd::batch<T> name(const xsimd::batch<T>& a, const xsimd::batch<T>& b,                  \
+                                         const xsimd::batch<T>& c) {                                          \
+        if constexpr (std::is_same_v<T, double>) {                                                            \
+            return xsimd::batch<T>(intrinsic##_pd(a, b, c));                                                  \
+        } else {                                                                                              \
+            return xsimd::batch<T>(intrinsic##_ps(a, b, c));                                                  \
+        }                                                                                                     \
+    }
+#else
+#define MYRIAD_FUSED_OPERATION(name, xsimd_name, intrinsic)                                                   \
+    template <class T>                                                                                        \
+    MYRIAD_FUNCTION xsimd::batch<T> name(const xsimd::batch<T>& a, const xsimd::batch<T>& b,                  \
+                                         const xsimd::batch<T>& c) {                                          \
+        return xsimd::xsimd_name(a, b, c);                                                                    \
+    }
+#endif
+MYRIAD_FUSED_OPERATION(multiply_add, fma, _mm512_fmadd)
+MYRIAD_FUSED_OPERATION(multiply_subtract, fms, _mm512_fmsub)
+MYRIAD_FUSED_OPERATION(subtract_product, fnma, _mm512_fnmadd)
+#undef MYRIAD_FUSED_OPERATION
+
+/// c0 + c1 x + c2 x^2 + ... by Horner's rule.
+template <class T>
+MYRIAD_FUNCTION xsimd::batch<T> polynomial(const xsimd::batch<T>&, T c0) {
+    return xsimd::batch<T>(c0);
+}
+template <class T, class... More>
+MYRIAD_FUNCTION xsimd::batch<T> polynomial(const xsimd::batch<T>& x, T c0, More... more) {
+    return multiply_add(x, polynomial(x, more...), xsimd::batch<T>(c0));
+}
+
+}  // namespace detail
+}  // namespace myriad::inline MYRIAD_TARGET

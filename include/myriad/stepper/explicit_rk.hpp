@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// One trial step of an explicit Runge-Kutta method, unrolled from its tableau: stages, new state, error estimate.
+#pragma once
+
+#include "myriad/core/static_for.hpp"
+#include "myriad/core/vec.hpp"
+#include "myriad/model/lane.hpp"
+#include "myriad/scalar/math.hpp"
+#include "myriad/scalar/select.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// Evaluates the model's right-hand side.
+template <class Model, class S>
+MYRIAD_FUNCTION vec<S, n_state<Model>> evaluate_rhs(const S& t, const vec<S, n_state<Model>>& y,
+                                                    const inputs<Model, S>& p) {
+    return Model::template rhs<S>(t, y, p);
+}
+
+/// What a trial step leaves behind: the slopes of its stages (the first is the slope at its start) and the new state.
+template <class Method, class S, int n>
+struct rk_trial {
+    vec<vec<S, n>, Method::stages> k;
+    vec<S, n> y;
+};
+
+/// First stage whose weight in `row` is not zero.
+template <class Method>
+constexpr int first_stage(int row) {
+    int j = 0;
+    while (Method::tableau().weight(row, j) == 0) ++j;
+    return j;
+}
+
+/// sum += weight * k, without the operations that a weight of zero or one does not need.
+template <auto weight, class S>
+MYRIAD_FUNCTION void add_weighted(S& sum, const S& k) {
+    if constexpr (weight == 1) {
+        sum = sum + k;
+    } else if constexpr (weight != 0) {
+        sum = fma(S(weight), k, sum);
+    }
+}
+
+/// sum_j w_j k_j / w_first for one component. Dividing the weights by the first non-zero one (the compiler does) saves
+/// an operation per component against h * sum: the caller multiplies once by h * w_first.
+template <class Method, int row, class S, int n>
+MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int component) {
+    using R = real_of<S>;
+    constexpr int first = first_stage<Method>(row);
+    constexpr int end = row < Method::stages ? row : Method::stages;
+    S sum = k[first][component];
+    static_for<first + 1, end>([&](auto j) MYRIAD_LAMBDA {
+        constexpr R weight = static_cast<R>(Method::tableau().weight(row, j) / Method::tableau().weight(row, first));
+        add_weighted<weight>(sum, k[j][component]);
+    });
+    return sum;
+}
+
+/// y + h * sum_j w_j k_j with the weights of `row`: a stage's argument or the new state.
+template <class Method, int row, class S, int n>
+MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<S, n>, Method::stages>& k) {
+    constexpr auto first = static_cast<real_of<S>>(Method::tableau().weight(row, first_stage<Method>(row)));
+    const S scale = h * S(first);
+    vec<S, n> out;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n; ++c) out[c] = fma(scale, scaled_sum<Method, row>(k, c), y[c]);
+    return out;
+}
+
+/// The error estimate h * sum_j e_j k_j of one component.
+template <class Method, class S, int n>
+MYRIAD_FUNCTION S error_estimate(const S& h, const vec<vec<S, n>, Method::stages>& k, int component) {
+    constexpr int row = Method::stages + 1;
+    constexpr auto first = static_cast<real_of<S>>(Method::tableau().weight(row, first_stage<Method>(row)));
+    return h * S(first) * scaled_sum<Method, row>(k, component);
+}
+
+/// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given. The new state is summed up stage by stage, so
+/// that slopes which no later stage needs can leave their registers.
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const vec<S, n_state<Model>>& y,
+                                      const inputs<Model, S>& p, rk_trial<Method, S, n_state<Model>>& trial) {
+    using R = real_of<S>;
+    constexpr int n = n_state<Model>;
+    constexpr int last = Method::stages;
+    constexpr int first = first_stage<Method>(last);
+    vec<S, n> sum;
+    const auto add_stage = [&](auto j) MYRIAD_LAMBDA {
+        constexpr R weight = static_cast<R>(Method::tableau().weight(last, j) / Method::tableau().weight(last, first));
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) {
+            if constexpr (j == first) {
+                sum[c] = trial.k[j][c];
+            } else if constexpr (j > first) {
+                add_weighted<weight>(sum[c], trial.k[j][c]);
+            }
+        }
+    };
+    if constexpr (!Method::first_same_as_last) add_stage(std::integral_constant<int, 0>{});
+    static_for<1, Method::stages>([&](auto i) MYRIAD_LAMBDA {
+        constexpr auto node = static_cast<R>(Method::tableau().c[static_cast<std::size_t>(i.value)]);
+        const auto argument = combine<Method, i>(y, h, trial.k);
+        if constexpr (Method::first_same_as_last && i == last - 1) trial.y = argument;
+        trial.k[i] = evaluate_rhs<Model>(fma(S(node), h, t), argument, p);
+        if constexpr (!Method::first_same_as_last) add_stage(i);
+    });
+    if constexpr (!Method::first_same_as_last) {
+        const S scale = h * S(static_cast<R>(Method::tableau().weight(last, first)));
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) trial.y[c] = fma(scale, sum[c], y[c]);
+    }
+}
+
+}  // namespace myriad::inline MYRIAD_TARGET
