@@ -2,8 +2,6 @@
 // Step-size control by the embedded error estimate: proposes a step, judges a trial, and says how long the next one is.
 #pragma once
 
-#include <limits>
-
 #include "myriad/controller/fast_power.hpp"
 #include "myriad/controller/norm.hpp"
 #include "myriad/integrator/state.hpp"
@@ -40,15 +38,15 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
     using mask = mask_of<S>;
     const error_norm<S> error = scaled_error<Model, Method>(args, s.data.y, s.h, trial);
     const mask within = valid & error.within;
-    const mask accepted = s.active & within;
+    const mask accepted = s.running() & within;
     const S exponent = select(within, S(R(-1.0 / (Method::embedded_order + 1))), S(R(-1.0 / Method::embedded_order)));
     S factor = S(R(0.9)) * fast_power(error.worst, exponent);
     factor = min(max(factor, S(args.shrink_limit)), S(args.growth_limit));
 
     s.last_not_finite = s.last_not_finite & !within;
-    const mask rejected = s.active & !within;
+    const mask rejected = s.running() & !within;
     if (any(rejected)) {
-        const mask finite = valid & (error.worst > S(R(1))) & (error.worst <= S(std::numeric_limits<R>::max()));
+        const mask finite = valid & (error.worst > S(R(1))) & (error.worst <= S(largest_of<R>));
         factor = select(within | finite, factor, S(args.shrink_limit));
         s.rejected = count_where(rejected, s.rejected);
         s.last_not_finite = select(rejected, !finite, s.last_not_finite);
@@ -58,7 +56,7 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
     S size = min(max(abs(s.h) * factor, S(args.minimum_step)), S(args.maximum_step));
     // A step cut short by the end of the domain says little about the step size that goes on from there.
     size = select(accepted & s.final_step, max(size, abs(s.data.h_next)), size);
-    s.data.h_next = select(s.active, copysign(size, s.h), s.data.h_next);
+    s.data.h_next = select(s.running(), copysign(size, s.h), s.data.h_next);
     return accepted;
 }
 

@@ -2,8 +2,6 @@
 // The size of an error estimate against the tolerances: the largest component, as in the MPGOS package.
 #pragma once
 
-#include <limits>
-
 #include "myriad/ensemble/view.hpp"
 #include "myriad/stepper/explicit_rk.hpp"
 
@@ -27,7 +25,7 @@ MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of
         const S size = abs(trial.y[c]);
         const S scale = max(S(args.absolute_tolerance[c]), S(args.relative_tolerance[c]) * max(abs(y[c]), size));
         const S ratio = abs(error_estimate<Method>(h, trial.k, c)) / scale;
-        norm.within = norm.within & (ratio <= S(R(1))) & (size <= S(std::numeric_limits<R>::max()));
+        norm.within = norm.within & (ratio <= S(R(1))) & (size <= S(largest_of<R>));
         norm.worst = select(ratio > norm.worst, ratio, norm.worst);
     }
     return norm;

@@ -7,6 +7,9 @@
 /// and on its own helpers, so that no copy of them is shared between files compiled for different instruction sets.
 #define MYRIAD_FUNCTION __host__ __device__ __forceinline__
 #define MYRIAD_LAMBDA
+/// Hides from the compiler that a pointer or index is the same as before, so that it computes addresses anew instead of
+/// keeping them in registers through the loop.
+#define MYRIAD_FORGET(value) asm volatile("" : "+l"(value))
 #define MYRIAD_UNROLL _Pragma("unroll")
 #define MYRIAD_TARGET cuda_lane
 #define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
@@ -14,6 +17,7 @@
 #define MYRIAD_FUNCTION inline __attribute__((always_inline))
 /// The same for a lambda, between its parameters and its body.
 #define MYRIAD_LAMBDA __attribute__((always_inline))
+#define MYRIAD_FORGET(value) static_cast<void>(value)
 #if defined(__clang__)
 #define MYRIAD_UNROLL _Pragma("clang loop unroll(full)")
 #else

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "myriad/core/macros.hpp"
+
 namespace myriad {
 
 /// How the last integration phase of an instance ended. From `max_steps` on it is a failure: the state is the last
@@ -23,7 +25,7 @@ enum class status : std::uint8_t {
 inline constexpr int status_count = 10;
 
 /// True for the statuses that end an instance for good.
-constexpr bool is_failure(status s) { return s >= status::max_steps; }
+MYRIAD_FUNCTION constexpr bool is_failure(status s) { return s >= status::max_steps; }
 
 /// What a scalar hook asks for by its return value; a hook that returns nothing asks to proceed.
 enum class action : std::uint8_t {

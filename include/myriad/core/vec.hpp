@@ -19,8 +19,11 @@ struct vec {
 /// Nothing: takes the place of parameters, accessories or events that a model does not have.
 template <class S>
 struct vec<S, 0> {
-    MYRIAD_FUNCTION constexpr S& operator[](int) { return *static_cast<S*>(nullptr); }
-    MYRIAD_FUNCTION constexpr const S& operator[](int) const { return *static_cast<const S*>(nullptr); }
+    // Named by loops over no components, never reached.
+    MYRIAD_FUNCTION S& operator[](int i) const {
+        S* nothing = nullptr;
+        return nothing[i];
+    }
 };
 
 }  // namespace myriad::inline MYRIAD_TARGET

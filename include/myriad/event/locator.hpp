@@ -329,7 +329,7 @@ private:
             for (int j = 0; j < m; ++j) tolerance[j] = S(args.event[j].tolerance);
             const S from = pick(e.target, side);
             const S gap = from * pick(e.target, g1);
-            const mask narrow = abs(e.h_beyond - step.h) <= S(R(4) * std::numeric_limits<R>::epsilon()) * abs(t1);
+            const mask narrow = abs(e.h_beyond - step.h) <= S(R(4) * epsilon_of<R>) * abs(t1);
             const mask short_of =
                 arrived & (gap > pick(e.target, tolerance)) & !narrow & (e.tries < S(R(10)));
             if (any(short_of)) {

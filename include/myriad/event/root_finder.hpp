@@ -2,8 +2,6 @@
 // Roots of a function of one variable in a bracket, for all lanes of a pack at once, each with its own bracket and end.
 #pragma once
 
-#include <limits>
-
 #include "myriad/scalar/math.hpp"
 #include "myriad/scalar/select.hpp"
 
@@ -34,7 +32,7 @@ MYRIAD_FUNCTION S find_root(bracket<S> b, const mask_of<S>& wanted, F&& f) {
         const S value = f(x, close);
         const mask found = open & close;
         const mask narrow =
-            open & !found & (b.high - b.low <= S(R(4) * std::numeric_limits<R>::epsilon()) * b.high);
+            open & !found & (b.high - b.low <= S(R(4) * epsilon_of<R>) * b.high);
         root = select(found, x, select(narrow, b.low, root));
         open = open & !(found | narrow);
         const mask before = value > S(R(0));

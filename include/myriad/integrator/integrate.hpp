@@ -22,6 +22,7 @@ struct integrator {
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
     static constexpr bool adaptive = is_adaptive<Method>;
+    using turn_number = typename integration_state<Model, Method, S>::turn_number;
     using trial_step = rk_trial<Method, S, n>;
     using locator = event_locator<Model, Method, S>;
 
@@ -53,6 +54,8 @@ struct integrator {
         s.active = mask(false);
         s.ended = mask(true);
         s.turn = 0;
+        s.first_start = 0;
+        s.all_turns = 0;
         MYRIAD_UNROLL
         for (int i = 0; i < lanes_of<S>; ++i) s.instance[i] = -1;
     }
@@ -63,13 +66,17 @@ struct integrator {
         if (!any(s.ended)) return true;
         mask begun = mask(false);
         for_each_lane(s.ended, [&](int i) MYRIAD_LAMBDA {
-            set_lane(begun, i, phase_driver<Model, Method, S>{args, s, e}.advance(i, source));
+            const auto* arguments = &args;
+            MYRIAD_FORGET(arguments);  // else what it points to waits in registers through the loop
+            set_lane(begun, i, phase_driver<Model, Method, S>{*arguments, s, e}.advance(i, source));
         });
         s.ended = mask(false);
-        s.turn_limit = s.turn + args.max_steps;
-        for_each_lane(s.active, [&](int i) MYRIAD_LAMBDA {
-            if (s.phase_start[i] + args.max_steps < s.turn_limit) s.turn_limit = s.phase_start[i] + args.max_steps;
-        });
+        if constexpr (lanes_of<S> > 1) {
+            s.first_start = s.turn;
+            for_each_lane(s.active, [&](int i) MYRIAD_LAMBDA {
+                s.first_start = s.phase_start[i] < s.first_start ? s.phase_start[i] : s.first_start;
+            });
+        }
         if constexpr (has_events<Model>) locator{args, s, e}.begin(begun);
         return any(s.active);
     }
@@ -79,9 +86,9 @@ struct integrator {
     /// ordinary steps find the one to blame.
     MYRIAD_FUNCTION void run_freely() {
         constexpr int block = 8;
-        std::int64_t run = s.turn_limit - s.turn;
-        for_each_lane(s.active, [&](int i) MYRIAD_LAMBDA {
-            const auto left = static_cast<std::int64_t>(get_lane(s.left, i)) - 1;
+        turn_number run = args.max_steps - (s.turn - s.first_start);
+        for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA {
+            const auto left = static_cast<turn_number>(get_lane(s.left, i)) - 1;
             run = left < run ? left : run;
         });
         if (run < block) return;
@@ -89,7 +96,7 @@ struct integrator {
         const S step = s.step, base = s.base;
         vec<S, n> y = s.data.y;
         count done = s.done;
-        std::int64_t taken = 0;
+        turn_number taken = 0;
         for (; run - taken >= block; taken += block) {
             vec<S, n> now = y;
             for (int i = 0; i < block; ++i) {
@@ -99,7 +106,7 @@ struct integrator {
                 explicit_rk_step<Method, Model>(t, step, now, p, trial);
                 now = trial.y;
             }
-            if (MYRIAD_UNLIKELY(any(s.active & !all_finite(now)))) break;
+            if (MYRIAD_UNLIKELY(any(s.running() & !all_finite(now)))) break;
             y = now;
             done = done + count(block);
         }
@@ -114,7 +121,7 @@ struct integrator {
         if constexpr (adaptive) {
             propose_adaptive_step(s);
         } else {
-            propose_fixed_step(s);
+            propose_fixed_step(args, s);
         }
         if constexpr (has_events<Model>) {
             s.h = select(e.locating, e.h_redo, s.h);
@@ -180,10 +187,14 @@ struct integrator {
                     const R t = get_lane(s.base, i);
                     const R done = static_cast<R>(get_lane(s.done, i)) - R(1);
                     const R start = fma(done, get_lane(s.step, i), t);
-                    lay_fixed_steps(s, i, start + get_lane(s.h, i), args.step);
+                    lay_fixed_steps(args, s, i, start + get_lane(s.h, i));
                 });
             }
-            if constexpr (shows_time) s.data.t = s.now();
+            if constexpr (shows_time) {
+                s.data.t = s.now();
+                for_each_lane(accepted & s.final_step,
+                              [&](int i) MYRIAD_LAMBDA { set_lane(s.data.t, i, domain_end(args, s, i)); });
+            }
         }
         if constexpr (keeps_slope) {
             if constexpr (Method::first_same_as_last) {
@@ -200,19 +211,14 @@ struct integrator {
                 }
             }
         }
-        const mask finished = accepted & s.final_step;
-        if (MYRIAD_UNLIKELY(any(finished))) {
-            s.ended = s.ended | finished;
-            if constexpr (!adaptive) s.data.t = select(finished, s.data.t_end, s.data.t);
-        }
+        s.ended = s.ended | (accepted & s.final_step);
     }
 
     /// Ends phases that have taken as many trial steps as the options allow.
     MYRIAD_FUNCTION void end_long_phases() {
-        if (MYRIAD_UNLIKELY(s.turn >= s.turn_limit)) {
-            for_each_lane(s.active & !s.ended, [&](int i) MYRIAD_LAMBDA {
+        if (MYRIAD_UNLIKELY(s.turn - s.first_start >= args.max_steps)) {
+            for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA {
                 if (s.turn - s.phase_start[i] < args.max_steps) return;
-                if constexpr (!adaptive) set_lane(s.data.t, i, get_lane(s.now(), i));
                 s.end_lane(i, status::max_steps);
             });
         }
@@ -221,8 +227,8 @@ struct integrator {
 private:
     using count = typename integration_state<Model, Method, S>::count;
 
-    static constexpr bool runs_freely =
-        !adaptive && !has_events<Model> && !has_after_step<Model> && !Method::first_same_as_last;
+    /// Only packs have per-lane book-keeping to save.
+    static constexpr bool runs_freely = lanes_of<S> > 1 && !adaptive && !has_events<Model> && !has_after_step<Model> && !Method::first_same_as_last;
     /// Slopes are worth keeping where a step may be repeated or its last slope is the next one's first.
     static constexpr bool keeps_slope = stepper_keeps_slope<Model, Method>;
     /// In single precision the rounding of t would cost steps and accuracy.
@@ -244,7 +250,7 @@ private:
     MYRIAD_FUNCTION mask control(const trial_step& trial, const S& t1, const mask& valid) {
         if constexpr (adaptive) {
             mask accepted = control_step(args, s, trial, valid);
-            const mask stuck = s.active & (t1 == s.data.t);
+            const mask stuck = s.running() & (t1 == s.data.t);
             if (MYRIAD_UNLIKELY(any(stuck))) {
                 s.rejected = count_where(stuck & accepted, s.rejected);
                 accepted = accepted & !stuck;
@@ -253,13 +259,12 @@ private:
             return accepted;
         } else {
             const mask finite = valid & all_finite(trial.y);
-            const mask failed = s.active & !finite;
+            const mask failed = s.running() & !finite;
             if (MYRIAD_UNLIKELY(any(failed))) {
                 s.rejected = count_where(failed, s.rejected);
-                s.data.t = select(failed, s.now(), s.data.t);
                 s.end_lanes(failed, status::not_finite);
             }
-            return s.active & finite;
+            return s.running() & finite;
         }
     }
 };
@@ -267,10 +272,10 @@ private:
 /// Integrates all instances that `source.next()` hands out (indices, then -1) on one pack of lanes of kind S. Returns the turns the loop took, each a trial step in every lane.
 template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args, Source& source) {
-    static_assert(check_hooks<Model, real_of<S>>());
+    static_assert(hooks_fit<Model, real_of<S>>);
     integrator<Model, Method, S> loop{args, {}, {}};
     loop.run(source);
-    return loop.s.turn;
+    return loop.s.all_turns + loop.s.turn;
 }
 
 }  // namespace myriad::inline MYRIAD_TARGET

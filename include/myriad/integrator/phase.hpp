@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The life of an instance in a lane: loaded, taken through its phases, recorded, stored, and the lane refilled.
+// The life of an instance in a lane: loaded, taken through its phases, recorded, stored, and the lane refilled. What the
+// steps do not need (counters, phases done, the time at which the phase began) is kept in the ensemble's arrays and not in
+// the lane, where it would cost a GPU thread registers.
 #pragma once
 
 #include "myriad/controller/fixed.hpp"
@@ -23,9 +25,10 @@ struct phase_driver {
     /// needs work. Returns false when there is none: the lane stays empty.
     template <class Source>
     MYRIAD_FUNCTION bool advance(int i, Source& source) {
+        MYRIAD_FORGET(s.instance[i]);
         if (s.instance[i] >= 0) end_phase(i);
         for (;;) {
-            while (s.instance[i] < 0 || instance_done(i)) {
+            while (s.instance[i] < 0 || s.phases_left[i] == 0) {
                 if (s.instance[i] >= 0) store(i);
                 s.instance[i] = source.next();
                 if (s.instance[i] < 0) {
@@ -46,10 +49,6 @@ private:
         return array[static_cast<std::int64_t>(component) * args.size + s.instance[i]];
     }
 
-    MYRIAD_FUNCTION bool instance_done(int i) const {
-        return s.instance_over[i] || static_cast<std::int32_t>(get_lane(s.data.phase, i)) == s.phase_end[i];
-    }
-
     MYRIAD_FUNCTION void load(int i) {
         const std::int64_t index = s.instance[i];
         MYRIAD_UNROLL
@@ -61,24 +60,20 @@ private:
         MYRIAD_UNROLL
         for (int c = 0; c < n_integer_accessory<Model>; ++c)
             set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
-        set_lane(s.data.t_begin, i, args.t_begin[index]);
-        set_lane(s.data.t_end, i, args.t_end[index]);
-        set_lane(s.data.t, i, args.t[index]);
+        if constexpr (writes_time_domain<Model>) load_time_domain(i);
         set_lane(s.data.h, i, R(0));
-        set_lane(s.data.h_next, i, args.h_next[index]);
+        if constexpr (is_adaptive<Method>) set_lane(s.data.h_next, i, args.h_next[index]);
         set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(index));
-        set_lane(s.data.phase, i, args.phase[index]);
         if constexpr (m > 0) {
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) set_lane(e.side[j], i, static_cast<R>(at(args.side, j, i)));
         }
-        s.phase_end[i] = args.phase[index] + args.phases;
-        s.instance_over[i] = args.ended[index] != 0;
-        s.ending[i] = args.status[index];
-        s.instance_start[i] = s.turn;
-        set_count(s.rejected, i, 0);
-        set_count(s.located, i, 0);
-        set_count(s.extra_evaluations, i, 0);
+        s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases;
+    }
+
+    MYRIAD_FUNCTION void load_time_domain(int i) {
+        set_lane(s.data.t_begin, i, args.t_begin[s.instance[i]]);
+        set_lane(s.data.t_end, i, args.t_end[s.instance[i]]);
     }
 
     MYRIAD_FUNCTION void store(int i) const {
@@ -98,36 +93,42 @@ private:
         MYRIAD_UNROLL
         for (int c = 0; c < n_integer_accessory<Model>; ++c)
             at(args.integer_accessory, c, i) = static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
-        args.t[index] = get_lane(s.data.t, i);
-        args.h_next[index] = get_lane(s.data.h_next, i);
-        args.phase[index] = static_cast<std::int32_t>(get_lane(s.data.phase, i));
+        if constexpr (is_adaptive<Method>) args.h_next[index] = get_lane(s.data.h_next, i);
         if constexpr (m > 0) {
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) at(args.side, j, i) = static_cast<std::int8_t>(get_lane(e.side[j], i));
         }
-        args.ended[index] = s.instance_over[i] ? 1 : 0;
-        args.status[index] = s.ending[i];
-        if (args.accepted != nullptr) {
-            const std::int64_t trials = s.turn - s.instance_start[i];
-            const auto rejected = static_cast<std::int64_t>(get_lane(s.rejected, i));
-            const auto located = static_cast<std::int64_t>(get_lane(s.located, i));
-            args.accepted[index] += trials - rejected - located;
-            args.rejected[index] += rejected;
-            args.located[index] += located;
-            args.evaluations[index] += trials * evaluations_per_trial<Model, Method> +
-                                       static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
-        }
+    }
+
+    /// Adds the work of the phase to the instance's counters.
+    MYRIAD_FUNCTION void count_work(int i) const {
+        const std::int64_t index = s.instance[i];
+        const auto trials = static_cast<std::int64_t>(s.turn - s.phase_start[i]);
+        const auto rejected = static_cast<std::int64_t>(get_lane(s.rejected, i));
+        const auto located = static_cast<std::int64_t>(get_lane(s.located, i));
+        args.accepted[index] += trials - rejected - located;
+        args.rejected[index] += rejected;
+        args.located[index] += located;
+        args.evaluations[index] += trials * evaluations_per_trial<Model, Method> +
+                                   static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
     }
 
     /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on.
     MYRIAD_FUNCTION void begin_phase(int i) {
-        const bool carry_on = args.carry_time && get_lane(s.data.phase, i) > 0;
-        if (!carry_on) set_lane(s.data.t, i, get_lane(s.data.t_begin, i));
+        // Read again for each phase, so that t_begin need not stay in a register.
+        if constexpr (!writes_time_domain<Model>) load_time_domain(i);
+        const std::int64_t index = s.instance[i];
+        const std::int32_t phase = args.phase[index];
+        const bool carry_on = args.carry_time && phase > 0;
+        set_lane(s.data.t, i, carry_on ? args.t[index] : get_lane(s.data.t_begin, i));
+        set_lane(s.data.phase, i, phase);
         set_lane(s.time_low, i, R(0));
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) set_lane(s.data.event_count[j], i, 0);
-        const bool restart_step = !args.carry_step || !(get_lane(s.data.phase, i) > 0);
-        if (restart_step) set_lane(s.data.h_next, i, args.step);
+        if constexpr (is_adaptive<Method>) {
+            const bool restart_step = !args.carry_step || phase == 0;
+            if (restart_step) set_lane(s.data.h_next, i, args.step);
+        }
         if constexpr (has_initialise<Model>) {
             const auto before = get_lanes<R>(s.data.y, i);
             run_on_lane(s.data, i, [](auto& lane) MYRIAD_LAMBDA { Model::initialise(lane); });
@@ -137,21 +138,30 @@ private:
             if (m > 0 && !same_values(before, get_lanes<R>(s.data.y, i))) forget_sides(i);
         }
         const R t = get_lane(s.data.t, i);
+        args.t[index] = t;
         if constexpr (is_adaptive<Method>) {
             set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), get_lane(s.data.t_end, i) - t));
         } else {
-            lay_fixed_steps(s, i, t, args.step);
+            lay_fixed_steps(args, s, i, t);
         }
         if constexpr (m > 0) {
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) e.lingered[j][i] = 0;
-            if (get_lane(s.data.phase, i) == 0) forget_sides(i);
+            if (phase == 0) forget_sides(i);
             set_lane(e.locating, i, false);
         }
         set_lane(s.active, i, true);
         set_lane(s.slope_valid, i, false);
         set_lane(s.last_not_finite, i, false);
         s.ending[i] = status::success;
+        s.instance_over[i] = false;
+        set_count(s.rejected, i, 0);
+        set_count(s.located, i, 0);
+        set_count(s.extra_evaluations, i, 0);
+        if constexpr (lanes_of<S> == 1) {
+            s.all_turns += s.turn;
+            s.turn = 0;
+        }
         s.phase_start[i] = s.turn;
     }
 
@@ -163,15 +173,23 @@ private:
 
     /// Ends the phase that lane i is in: `finalise`, record, count; a failed phase ends the instance instead.
     MYRIAD_FUNCTION void end_phase(int i) {
-        if (is_failure(s.ending[i])) {
-            s.instance_over[i] = true;
-            return;
+        const std::int64_t index = s.instance[i];
+        const bool failed = is_failure(s.ending[i]);
+        if (args.accepted != nullptr) count_work(i);
+        if constexpr (!is_adaptive<Method>) set_lane(s.data.t, i, fixed_step_time(args, s, i));
+        args.t[index] = get_lane(s.data.t, i);
+        args.status[index] = s.ending[i];
+        if (!failed) {
+            if constexpr (has_finalise<Model>)
+                run_on_lane(s.data, i, [](auto& lane) MYRIAD_LAMBDA { Model::finalise(lane); });
+            record(i, args.phases - s.phases_left[i] - args.record.from_phase);
+            args.phase[index] += 1;
         }
-        if constexpr (has_finalise<Model>)
-            run_on_lane(s.data, i, [](auto& lane) MYRIAD_LAMBDA { Model::finalise(lane); });
-        const auto phase = static_cast<std::int32_t>(get_lane(s.data.phase, i));
-        record(i, phase - (s.phase_end[i] - args.phases) - args.record.from_phase);
-        set_lane(s.data.phase, i, phase + 1);
+        --s.phases_left[i];
+        if (failed || s.instance_over[i]) {
+            args.ended[index] = 1;
+            s.phases_left[i] = 0;
+        }
     }
 
     MYRIAD_FUNCTION void record(int i, std::int32_t row) const {

@@ -62,7 +62,7 @@ MYRIAD_FUNCTION void set_count(C& count, int i, R value) {
 /// Calls `visit(i)` for every lane of the mask.
 template <class M, class Visit>
 MYRIAD_FUNCTION void for_each_lane(const M& mask, Visit&& visit) {
-    if constexpr (std::is_same_v<M, bool>) {
+    if constexpr (plain_number<M>) {
         if (mask) visit(0);
     } else {
         for (std::uint64_t rest = bits(mask); rest != 0; rest &= rest - 1) visit(__builtin_ctzll(rest));
@@ -75,10 +75,12 @@ struct integration_state {
     using mask = mask_of<S>;
     using count = count_of<S>;
     static constexpr int lanes = lanes_of<S>;
+    // One instance alone counts turns from each phase's start, in one register.
+    using turn_number = std::conditional_t<lanes == 1, std::int32_t, std::int64_t>;
     static constexpr int n = n_state<Model>;
 
     lane_data<Model, S> data;
-    mask active;       // lanes that hold a running instance
+    mask active;       // lanes that hold an instance
     vec<S, n> slope;   // f at the committed state, where slope_valid holds
     mask slope_valid;
     vec<S, n> slope_end;   // f at the end of the trial, where slope_end_known holds
@@ -91,7 +93,7 @@ struct integration_state {
     mask last_not_finite;  // the lane's last rejection was for a value that is not finite
 
     // fixed steps: t = base + done * step, so that no rounding adds up and no step is added
-    S base, step, last_step;
+    S base, step;
     count done, left;
 
     // lanes whose phase ends in this turn of the loop, and how
@@ -100,14 +102,22 @@ struct integration_state {
     bool instance_over[lanes];
 
     // work, per instance
-    std::int64_t turn;                     // turns of the loop; every active lane takes a trial step in each
-    std::int64_t phase_start[lanes];       // turn at which the lane's phase began
-    std::int64_t instance_start[lanes];
-    std::int64_t turn_limit;               // first turn at which some lane may have reached max_steps
+    turn_number turn;                 // turns of the loop; every active lane takes a trial step in each
+    turn_number first_start;          // turn at which the oldest running phase began
+    turn_number phase_start[lanes];   // turn at which the lane's phase began
+    std::int64_t all_turns;           // turns before `turn` was last set back
     count rejected, located, extra_evaluations;
     std::int64_t instance[lanes];          // index, or -1: the lane is empty
-    std::int32_t phase_end[lanes];         // phases done when the instance's share of this call is complete
+    std::int32_t phases_left[lanes];       // phases of this call that the instance has before it, this one included
 
+    /// Lanes that hold a running instance, inside the loop, which one lane alone only enters with one.
+    MYRIAD_FUNCTION mask running() const {
+        if constexpr (lanes == 1) {
+            return true;
+        } else {
+            return active;
+        }
+    }
     /// Time of the committed state.
     MYRIAD_FUNCTION S now() const {
         if constexpr (is_adaptive<Method>) {

@@ -13,7 +13,7 @@ namespace myriad {
 /// A few lines for people: the model's counts of components, its hooks, and its declarations.
 template <class Model>
 std::string describe() {
-    static_assert(check_hooks<Model, double>());
+    static_assert(hooks_fit<Model, double>);
     std::string hooks = "rhs", declares;
     const auto add = [](std::string& to, bool present, const char* name) {
         if (present) to += (to.empty() ? "" : ", ") + std::string(name);

@@ -73,6 +73,9 @@ constexpr bool check_hooks() {
     return true;
 }
 
+template <class Model, class R>
+inline constexpr bool hooks_fit = check_hooks<Model, R>();
+
 /// Calls a hook that returns an action or nothing.
 template <class Call>
 MYRIAD_FUNCTION action action_of(Call&& call) {

@@ -19,6 +19,28 @@
 #include "myriad/core/macros.hpp"
 #include "myriad/scalar/math.hpp"
 
+// Repeats a statement for i = 0, 1, ... of a pack's batches. Not a loop: g++ unrolls those after it has optimised all else,
+// and then fuses other products with other sums in packs of several batches than in those of one.
+#define MYRIAD_EACH_BATCH(...)       \
+    do {                             \
+        {                            \
+            constexpr int i = 0;     \
+            __VA_ARGS__;             \
+        }                            \
+        if constexpr (batches > 1) { \
+            constexpr int i = 1;     \
+            __VA_ARGS__;             \
+        }                            \
+        if constexpr (batches > 2) { \
+            constexpr int i = 2;     \
+            __VA_ARGS__;             \
+        }                            \
+        if constexpr (batches > 3) { \
+            constexpr int i = 3;     \
+            __VA_ARGS__;             \
+        }                            \
+    } while (false)
+
 namespace myriad::inline MYRIAD_TARGET {
 namespace detail {
 
@@ -92,22 +114,22 @@ inline constexpr T round_to_whole = sizeof(T) == sizeof(double) ? T(0x1.8p52) : 
 /// a * b + c, a * b - c and c - a * b with one rounding where the target can (MYRIAD_FUSED). xsimd 8 has no such thing for
 /// AVX-512: it writes a * b + c and leaves the rest to the compiler.
 #if defined(__AVX512F__)
-#define MYRIAD_FUSED_OPERATION(name, xsimd_name, intrinsic)                                                   \
-    template <class T>                                                                                        \
-    MYRIAD_FUNCTION xsimd::batch<T> name(const xsimd::batch<T>& a, const xsimd::batch<T>& b,                  \
-                                         const xsimd::batch<T>& c) {                                          \
-        if constexpr (std::is_same_v<T, double>) {                                                            \
-            return xsimd::batch<T>(intrinsic##_pd(a, b, c));                                                  \
-        } else {                                                                                              \
-            return xsimd::batch<T>(intrinsic##_ps(a, b, c));                                                  \
-        }                                                                                                     \
+#define MYRIAD_FUSED_OPERATION(name, xsimd_name, intrinsic)                                  \
+    template <class T>                                                                       \
+    MYRIAD_FUNCTION xsimd::batch<T> name(const xsimd::batch<T>& a, const xsimd::batch<T>& b, \
+                                         const xsimd::batch<T>& c) {                         \
+        if constexpr (std::is_same_v<T, double>) {                                           \
+            return xsimd::batch<T>(intrinsic##_pd(a, b, c));                                 \
+        } else {                                                                             \
+            return xsimd::batch<T>(intrinsic##_ps(a, b, c));                                 \
+        }                                                                                    \
     }
 #else
-#define MYRIAD_FUSED_OPERATION(name, xsimd_name, intrinsic)                                                   \
-    template <class T>                                                                                        \
-    MYRIAD_FUNCTION xsimd::batch<T> name(const xsimd::batch<T>& a, const xsimd::batch<T>& b,                  \
-                                         const xsimd::batch<T>& c) {                                          \
-        return xsimd::xsimd_name(a, b, c);                                                                    \
+#define MYRIAD_FUSED_OPERATION(name, xsimd_name, intrinsic)                                  \
+    template <class T>                                                                       \
+    MYRIAD_FUNCTION xsimd::batch<T> name(const xsimd::batch<T>& a, const xsimd::batch<T>& b, \
+                                         const xsimd::batch<T>& c) {                         \
+        return xsimd::xsimd_name(a, b, c);                                                   \
     }
 #endif
 MYRIAD_FUSED_OPERATION(multiply_add, fma, _mm512_fmadd)

@@ -23,8 +23,7 @@ struct dual {
     dual() = default;
     MYRIAD_FUNCTION constexpr dual(const S& value_, const S& derivative_) : value(value_), derivative(derivative_) {}
     MYRIAD_FUNCTION constexpr dual(const S& constant) : value(constant), derivative(S(value_type(0))) {}
-    MYRIAD_FUNCTION constexpr dual(value_type constant)
-        requires(!std::is_same_v<S, value_type>)
+    MYRIAD_FUNCTION constexpr dual(value_type constant) requires(!std::is_same_v<S, value_type>)
         : value(S(constant)), derivative(S(value_type(0))) {}
 
     friend MYRIAD_FUNCTION dual operator-(const dual& a) { return dual(-a.value, -a.derivative); }
@@ -76,7 +75,9 @@ template <class A>
 inline constexpr bool is_dual = kind_rank<A> == 2;
 
 template <class A, class B>
-concept with_dual = (is_dual<A> || is_dual<B>) && requires { typename common_kind<A, B>::type; };
+concept with_dual = (is_dual<A> || is_dual<B>)&&requires {
+    typename common_kind<A, B>::type;
+};
 
 template <class D>
 struct dual_part;
@@ -101,8 +102,8 @@ MYRIAD_FUNCTION S value_of(const A& a) {
 
 // Constants are told apart from dual numbers, as multiplying by a zero derivative is not free and turns infinities to NaN.
 template <class A, class B>
-    requires detail::with_dual<A, B>
-MYRIAD_FUNCTION common_kind<A, B> operator+(const A& a, const B& b) {
+requires detail::with_dual<A, B> MYRIAD_FUNCTION common_kind<A, B>
+operator+(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
     const S value = detail::value_of<S>(a) + detail::value_of<S>(b);
     if constexpr (!detail::is_dual<B>) {
@@ -115,8 +116,8 @@ MYRIAD_FUNCTION common_kind<A, B> operator+(const A& a, const B& b) {
 }
 
 template <class A, class B>
-    requires detail::with_dual<A, B>
-MYRIAD_FUNCTION common_kind<A, B> operator-(const A& a, const B& b) {
+requires detail::with_dual<A, B> MYRIAD_FUNCTION common_kind<A, B>
+operator-(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
     const S value = detail::value_of<S>(a) - detail::value_of<S>(b);
     if constexpr (!detail::is_dual<B>) {
@@ -129,8 +130,8 @@ MYRIAD_FUNCTION common_kind<A, B> operator-(const A& a, const B& b) {
 }
 
 template <class A, class B>
-    requires detail::with_dual<A, B>
-MYRIAD_FUNCTION common_kind<A, B> operator*(const A& a, const B& b) {
+requires detail::with_dual<A, B> MYRIAD_FUNCTION common_kind<A, B>
+operator*(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
     const S u = detail::value_of<S>(a);
     const S v = detail::value_of<S>(b);
@@ -144,8 +145,8 @@ MYRIAD_FUNCTION common_kind<A, B> operator*(const A& a, const B& b) {
 }
 
 template <class A, class B>
-    requires detail::with_dual<A, B>
-MYRIAD_FUNCTION common_kind<A, B> operator/(const A& a, const B& b) {
+requires detail::with_dual<A, B> MYRIAD_FUNCTION common_kind<A, B>
+operator/(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
     const S v = detail::value_of<S>(b);
     const S quotient = detail::value_of<S>(a) / v;
@@ -158,12 +159,11 @@ MYRIAD_FUNCTION common_kind<A, B> operator/(const A& a, const B& b) {
     }
 }
 
-#define MYRIAD_DUAL_COMPARISON(symbol)                                        \
-    template <class A, class B>                                               \
-        requires detail::with_dual<A, B>                                      \
-    MYRIAD_FUNCTION auto operator symbol(const A& a, const B& b) {            \
-        using S = detail::part_of<A, B>;                                      \
-        return detail::value_of<S>(a) symbol detail::value_of<S>(b);          \
+#define MYRIAD_DUAL_COMPARISON(symbol)                                                              \
+    template <class A, class B>                                                                     \
+    requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator symbol(const A& a, const B& b) { \
+        using S = detail::part_of<A, B>;                                                            \
+        return detail::value_of<S>(a) symbol detail::value_of<S>(b);                                \
     }
 MYRIAD_DUAL_COMPARISON(<)
 MYRIAD_DUAL_COMPARISON(<=)
@@ -191,7 +191,9 @@ struct functions<dual<S>> {
         const S root = f::cbrt(x.value);
         return D(root, x.derivative / (constant(real(3)) * root * root));
     }
-    static MYRIAD_FUNCTION D abs(const D& x) { return D(f::abs(x.value), select(x.value < real(0), -x.derivative, x.derivative)); }
+    static MYRIAD_FUNCTION D abs(const D& x) {
+        return D(f::abs(x.value), select(x.value < real(0), -x.derivative, x.derivative));
+    }
     static MYRIAD_FUNCTION D floor(const D& x) { return D(f::floor(x.value)); }
     static MYRIAD_FUNCTION D round(const D& x) { return D(f::round(x.value)); }
 
@@ -231,7 +233,9 @@ struct functions<dual<S>> {
     }
     static MYRIAD_FUNCTION D log(const D& x) { return D(f::log(x.value), x.derivative / x.value); }
     static MYRIAD_FUNCTION D log2(const D& x) { return D(f::log2(x.value), constant(log2_e) * x.derivative / x.value); }
-    static MYRIAD_FUNCTION D log10(const D& x) { return D(f::log10(x.value), constant(log10_e) * x.derivative / x.value); }
+    static MYRIAD_FUNCTION D log10(const D& x) {
+        return D(f::log10(x.value), constant(log10_e) * x.derivative / x.value);
+    }
 
     // y x^(y - 1) rather than y x^y / x, which is NaN at x = 0.
     template <class B>
@@ -270,7 +274,8 @@ struct functions<dual<S>> {
         return D(f::max(a.value, b.value), select(b.value != b.value || a.value > b.value, a.derivative, b.derivative));
     }
     static MYRIAD_FUNCTION D fma(const D& a, const D& b, const D& c) {
-        return D(f::fma(a.value, b.value, c.value), f::fma(a.derivative, b.value, f::fma(a.value, b.derivative, c.derivative)));
+        return D(f::fma(a.value, b.value, c.value),
+                 f::fma(a.derivative, b.value, f::fma(a.value, b.derivative, c.derivative)));
     }
     static MYRIAD_FUNCTION auto is_finite(const D& x) { return f::is_finite(x.value) && f::is_finite(x.derivative); }
 

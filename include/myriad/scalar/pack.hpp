@@ -23,7 +23,7 @@ class pack;
 template <class T, int batches>
 class pack_mask {
 public:
-    static_assert(std::is_floating_point_v<T> && batches >= 1);
+    static_assert(std::is_floating_point_v<T> && batches >= 1 && batches <= 4);
     using value_type = bool;
     using batch_type = xsimd::batch_bool<T>;
     using pack_type = pack<T, batches>;
@@ -35,27 +35,24 @@ public:
 
     pack_mask() = default;
     /// The same value in every lane.
-    MYRIAD_FUNCTION pack_mask(bool value) {
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) parts[i] = batch_type(value);
-    }
+    MYRIAD_FUNCTION pack_mask(bool value) { MYRIAD_EACH_BATCH(parts[i] = batch_type(value)); }
 
     /// A mask has no single truth value: this only exists to explain why `if (x < y)` does not compile.
     template <std::same_as<bool> B>
     explicit operator B() const {
-        static_assert(sizeof(B) == 0,
-                      "this model branches on its state: use myriad::select(condition, a, b), or declare `static constexpr "
-                      "bool scalar_only = true;` in the model");
+        static_assert(
+            sizeof(B) == 0,
+            "this model branches on its state: use myriad::select(condition, a, b), or declare `static constexpr "
+            "bool scalar_only = true;` in the model");
         return false;
     }
 
-#define MYRIAD_MASK_OPERATOR(symbol, expression)                                   \
-    friend MYRIAD_FUNCTION pack_mask operator symbol(const pack_mask& a, const pack_mask& b) { \
-        pack_mask result;                                                          \
-        MYRIAD_UNROLL                                                              \
-        for (int i = 0; i < batches; ++i) result.parts[i] = expression;            \
-        return result;                                                             \
-    }                                                                              \
+#define MYRIAD_MASK_OPERATOR(symbol, expression)                                                                   \
+    friend MYRIAD_FUNCTION pack_mask operator symbol(const pack_mask& a, const pack_mask& b) {                     \
+        pack_mask result;                                                                                          \
+        MYRIAD_EACH_BATCH(result.parts[i] = expression);                                                           \
+        return result;                                                                                             \
+    }                                                                                                              \
     friend MYRIAD_FUNCTION pack_mask operator symbol(const pack_mask& a, bool b) { return a symbol pack_mask(b); } \
     friend MYRIAD_FUNCTION pack_mask operator symbol(bool a, const pack_mask& b) { return pack_mask(a) symbol b; }
     MYRIAD_MASK_OPERATOR(&, a.parts[i] & b.parts[i])
@@ -70,8 +67,7 @@ public:
 
     friend MYRIAD_FUNCTION pack_mask operator!(const pack_mask& a) {
         pack_mask result;
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) result.parts[i] = ~a.parts[i];
+        MYRIAD_EACH_BATCH(result.parts[i] = ~a.parts[i]);
         return result;
     }
     MYRIAD_FUNCTION pack_mask& operator&=(const pack_mask& b) { return *this = *this & b; }
@@ -80,23 +76,20 @@ public:
 
     /// Whether some lane holds; the batches are joined first, so that there is one test and one jump per pack.
     friend MYRIAD_FUNCTION bool any(const pack_mask& a) {
-        batch_type joined = a.parts[0];
-        MYRIAD_UNROLL
-        for (int i = 1; i < batches; ++i) joined = joined | a.parts[i];
+        batch_type joined(false);
+        MYRIAD_EACH_BATCH(joined = joined | a.parts[i]);
         return xsimd::any(joined);
     }
     /// Whether every lane holds.
     friend MYRIAD_FUNCTION bool all(const pack_mask& a) {
-        batch_type joined = a.parts[0];
-        MYRIAD_UNROLL
-        for (int i = 1; i < batches; ++i) joined = joined & a.parts[i];
+        batch_type joined(true);
+        MYRIAD_EACH_BATCH(joined = joined & a.parts[i]);
         return xsimd::all(joined);
     }
     /// Lane i as bit i, to visit the lanes that hold.
     friend MYRIAD_FUNCTION std::uint64_t bits(const pack_mask& a) {
         std::uint64_t result = 0;
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) result |= detail::bits_of<T>(a.parts[i]) << (i * lanes_per_batch);
+        MYRIAD_EACH_BATCH(result |= detail::bits_of<T>(a.parts[i]) << (i * lanes_per_batch));
         return result;
     }
 
@@ -138,7 +131,7 @@ class pack {
 public:
     static_assert(std::is_same_v<T, double> || std::is_same_v<T, float> || std::is_same_v<T, std::int64_t> ||
                   std::is_same_v<T, std::int32_t>);
-    static_assert(batches >= 1);
+    static_assert(batches >= 1 && batches <= 4, "a pack has one to four batches");
     using value_type = T;
     using batch_type = xsimd::batch<T>;
     using real = detail::real_of_width<T>;
@@ -150,40 +143,30 @@ public:
     batch_type parts[batches];
 
     pack() = default;
-    MYRIAD_FUNCTION pack(T value) {
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) parts[i] = batch_type(value);
-    }
+    MYRIAD_FUNCTION pack(T value) { MYRIAD_EACH_BATCH(parts[i] = batch_type(value)); }
 
     /// Reads `lanes` contiguous values; the aligned form needs `xsimd::default_arch::alignment()` bytes.
     static MYRIAD_FUNCTION pack load(const T* from) {
         pack result;
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) result.parts[i] = batch_type::load_unaligned(from + i * lanes_per_batch);
+        MYRIAD_EACH_BATCH(result.parts[i] = batch_type::load_unaligned(from + i * lanes_per_batch));
         return result;
     }
     static MYRIAD_FUNCTION pack load_aligned(const T* from) {
         pack result;
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) result.parts[i] = batch_type::load_aligned(from + i * lanes_per_batch);
+        MYRIAD_EACH_BATCH(result.parts[i] = batch_type::load_aligned(from + i * lanes_per_batch));
         return result;
     }
-    MYRIAD_FUNCTION void store(T* to) const {
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) parts[i].store_unaligned(to + i * lanes_per_batch);
-    }
+    MYRIAD_FUNCTION void store(T* to) const { MYRIAD_EACH_BATCH(parts[i].store_unaligned(to + i * lanes_per_batch)); }
     MYRIAD_FUNCTION void store_aligned(T* to) const {
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) parts[i].store_aligned(to + i * lanes_per_batch);
+        MYRIAD_EACH_BATCH(parts[i].store_aligned(to + i * lanes_per_batch));
     }
 
-#define MYRIAD_PACK_OPERATOR(symbol, condition)                                        \
+#define MYRIAD_PACK_OPERATOR(symbol, condition)                                           \
     friend MYRIAD_FUNCTION pack operator symbol(const pack& a, const pack& b) condition { \
-        pack result;                                                                   \
-        MYRIAD_UNROLL                                                                  \
-        for (int i = 0; i < batches; ++i) result.parts[i] = a.parts[i] symbol b.parts[i]; \
-        return result;                                                                 \
-    }                                                                                  \
+        pack result;                                                                      \
+        MYRIAD_EACH_BATCH(result.parts[i] = a.parts[i] symbol b.parts[i]);                \
+        return result;                                                                    \
+    }                                                                                     \
     MYRIAD_FUNCTION pack& operator symbol##=(const pack& b) condition { return *this = *this symbol b; }
     MYRIAD_PACK_OPERATOR(+, )
     MYRIAD_PACK_OPERATOR(-, )
@@ -195,24 +178,21 @@ public:
         pack result;
         // The compiler's own vector negation: xsimd's is 0 - x on AVX-512, which loses the sign of zero, and a bitwise one
         // keeps the compiler from folding it into a fused multiply-add.
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) {
-            if constexpr (is_real) {
-                result.parts[i] = batch_type(-static_cast<typename batch_type::register_type>(a.parts[i]));
-            } else {
-                result.parts[i] = batch_type(T{0}) - a.parts[i];
-            }
+        if constexpr (is_real) {
+            MYRIAD_EACH_BATCH(result.parts[i] =
+                                  batch_type(-static_cast<typename batch_type::register_type>(a.parts[i])));
+        } else {
+            MYRIAD_EACH_BATCH(result.parts[i] = batch_type(T{0}) - a.parts[i]);
         }
         return result;
     }
     friend MYRIAD_FUNCTION pack operator+(const pack& a) { return a; }
 
-#define MYRIAD_PACK_COMPARISON(symbol, expression)                                        \
-    friend MYRIAD_FUNCTION mask_type operator symbol(const pack& a, const pack& b) {      \
-        mask_type result;                                                                 \
-        MYRIAD_UNROLL                                                                     \
-        for (int i = 0; i < batches; ++i) result.parts[i] = detail::mask_cast<real>(expression); \
-        return result;                                                                    \
+#define MYRIAD_PACK_COMPARISON(symbol, expression)                                   \
+    friend MYRIAD_FUNCTION mask_type operator symbol(const pack& a, const pack& b) { \
+        mask_type result;                                                            \
+        MYRIAD_EACH_BATCH(result.parts[i] = detail::mask_cast<real>(expression));    \
+        return result;                                                               \
     }
     MYRIAD_PACK_COMPARISON(<, a.parts[i] < b.parts[i])
     MYRIAD_PACK_COMPARISON(<=, a.parts[i] <= b.parts[i])
@@ -229,25 +209,24 @@ public:
         return value;
     }
     friend MYRIAD_FUNCTION void set_lane(pack& a, int lane, T value) {
-        std::memcpy(reinterpret_cast<char*>(a.parts) + static_cast<std::size_t>(lane) * sizeof value, &value, sizeof value);
+        std::memcpy(reinterpret_cast<char*>(a.parts) + static_cast<std::size_t>(lane) * sizeof value, &value,
+                    sizeof value);
     }
 
     friend MYRIAD_FUNCTION pack blend(const mask_type& mask, const pack& a, const pack& b) {
         pack result;
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) {
-            if constexpr (is_real) {
-                result.parts[i] = xsimd::select(mask.parts[i], a.parts[i], b.parts[i]);
-            } else {
-                result.parts[i] = xsimd::select(detail::mask_cast<T>(mask.parts[i]), a.parts[i], b.parts[i]);
-            }
+        if constexpr (is_real) {
+            MYRIAD_EACH_BATCH(result.parts[i] = xsimd::select(mask.parts[i], a.parts[i], b.parts[i]));
+        } else {
+            MYRIAD_EACH_BATCH(result.parts[i] =
+                                  xsimd::select(detail::mask_cast<T>(mask.parts[i]), a.parts[i], b.parts[i]));
         }
         return result;
     }
 };
 
 template <class T, int batches>
-    requires std::is_floating_point_v<T>
+requires std::is_floating_point_v<T>
 struct scalar_traits<pack<T, batches>> {
     using real = T;
     using mask = pack_mask<T, batches>;

@@ -186,12 +186,8 @@ struct exponential {
         return {head, rest + multiply_add(parts.exponent, batch(constants::ln_2_rest), tail)};
     }
 
-    struct result {
-        batch value;
-        mask unfinished;  // lanes that the caller has to compute by other means
-    };
-    /// x to the power y where |x| and the result are normal numbers; all else is marked unfinished.
-    static MYRIAD_FUNCTION result pow(const batch& x, const batch& y) {
+    /// x to the power y where |x| and the result are normal numbers; returns the lanes that are not, left to the caller.
+    static MYRIAD_FUNCTION mask pow(batch& result, const batch& x, const batch& y) {
         const batch base = xsimd::abs(x);
         const sum logarithm = precise_log(base);
         const batch product = y * logarithm.head;
@@ -204,10 +200,13 @@ struct exponential {
         const batch half_y = batch(T(0.5)) * y;
         const mask even = xsimd::floor(half_y) == half_y;
         const batch sign = xsimd::select(even, batch(T(0)), x & batch(-T(0)));
-        const mask usual = (base >= batch(std::numeric_limits<T>::min())) & (base <= batch(std::numeric_limits<T>::max()));
-        const mask in_range = (exponent >= batch(constants::exp_smallest)) & (exponent <= batch(constants::exp_largest));
+        const mask usual =
+            (base >= batch(std::numeric_limits<T>::min())) & (base <= batch(std::numeric_limits<T>::max()));
+        const mask in_range =
+            (exponent >= batch(constants::exp_smallest)) & (exponent <= batch(constants::exp_largest));
         const mask real = (xsimd::floor(y) == y) | (x > batch(T(0)));
-        return {magnitude ^ sign, ~(usual & in_range & real)};
+        result = magnitude ^ sign;
+        return ~(usual & in_range & real);
     }
 };
 

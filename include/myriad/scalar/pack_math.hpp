@@ -46,29 +46,27 @@ struct functions<pack<T, batches>> {
     using S = pack<T, batches>;
     using mask = typename S::mask_type;
 
-#define MYRIAD_SCALAR_UNARY(name)                                       \
-    struct scalar_##name {                                              \
-        static T of(T x) { return functions<T>::name(x); }              \
+#define MYRIAD_SCALAR_UNARY(name)                          \
+    struct scalar_##name {                                 \
+        static T of(T x) { return functions<T>::name(x); } \
     };
-#define MYRIAD_SCALAR_BINARY(name)                                      \
-    struct scalar_##name {                                              \
-        static T of(T x, T y) { return functions<T>::name(x, y); }      \
+#define MYRIAD_SCALAR_BINARY(name)                                 \
+    struct scalar_##name {                                         \
+        static T of(T x, T y) { return functions<T>::name(x, y); } \
     };
 
-#define MYRIAD_UNARY(name, expression)                                  \
-    static MYRIAD_FUNCTION S name(const S& x) {                         \
-        S result;                                                       \
-        MYRIAD_UNROLL                                                   \
-        for (int i = 0; i < batches; ++i) result.parts[i] = expression; \
-        return result;                                                  \
+#define MYRIAD_UNARY(name, expression)                   \
+    static MYRIAD_FUNCTION S name(const S& x) {          \
+        S result;                                        \
+        MYRIAD_EACH_BATCH(result.parts[i] = expression); \
+        return result;                                   \
     }
-#define MYRIAD_UNARY_WITH_REDO(name, expression, marked)                \
-    MYRIAD_SCALAR_UNARY(name)                                           \
-    static MYRIAD_FUNCTION S name(const S& x) {                         \
-        S result;                                                       \
-        MYRIAD_UNROLL                                                   \
-        for (int i = 0; i < batches; ++i) result.parts[i] = expression; \
-        return with_lanes_redone<scalar_##name>(result, marked, x);     \
+#define MYRIAD_UNARY_WITH_REDO(name, expression, marked)            \
+    MYRIAD_SCALAR_UNARY(name)                                       \
+    static MYRIAD_FUNCTION S name(const S& x) {                     \
+        S result;                                                   \
+        MYRIAD_EACH_BATCH(result.parts[i] = expression);            \
+        return with_lanes_redone<scalar_##name>(result, marked, x); \
     }
     MYRIAD_UNARY(sqrt, xsimd::sqrt(x.parts[i]))
     MYRIAD_UNARY(abs, xsimd::abs(x.parts[i]))
@@ -95,12 +93,11 @@ struct functions<pack<T, batches>> {
 #undef MYRIAD_UNARY_WITH_REDO
 #undef MYRIAD_UNARY
 
-#define MYRIAD_BINARY(name, expression)                                 \
-    static MYRIAD_FUNCTION S name(const S& a, const S& b) {             \
-        S result;                                                       \
-        MYRIAD_UNROLL                                                   \
-        for (int i = 0; i < batches; ++i) result.parts[i] = expression; \
-        return result;                                                  \
+#define MYRIAD_BINARY(name, expression)                     \
+    static MYRIAD_FUNCTION S name(const S& a, const S& b) { \
+        S result;                                           \
+        MYRIAD_EACH_BATCH(result.parts[i] = expression);    \
+        return result;                                      \
     }
     // x86 gives the second argument where either is NaN.
     MYRIAD_BINARY(min, xsimd::select(xsimd::isnan(b.parts[i]), a.parts[i], xsimd::min(a.parts[i], b.parts[i])))
@@ -125,12 +122,7 @@ struct functions<pack<T, batches>> {
     static MYRIAD_FUNCTION S pow(const S& x, const S& y) {
         S result;
         mask unfinished;
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) {
-            const auto part = exponential<T>::pow(x.parts[i], y.parts[i]);
-            result.parts[i] = part.value;
-            unfinished.parts[i] = part.unfinished;
-        }
+        MYRIAD_EACH_BATCH(unfinished.parts[i] = exponential<T>::pow(result.parts[i], x.parts[i], y.parts[i]));
         return with_lanes_redone<scalar_pow>(result, unfinished, x, y);
     }
 #undef MYRIAD_SCALAR_UNARY
@@ -138,8 +130,7 @@ struct functions<pack<T, batches>> {
 
     static MYRIAD_FUNCTION S fma(const S& a, const S& b, const S& c) {
         S result;
-        MYRIAD_UNROLL
-        for (int i = 0; i < batches; ++i) result.parts[i] = multiply_add(a.parts[i], b.parts[i], c.parts[i]);
+        MYRIAD_EACH_BATCH(result.parts[i] = multiply_add(a.parts[i], b.parts[i], c.parts[i]));
         return result;
     }
     static MYRIAD_FUNCTION mask is_finite(const S& x) { return abs(x) <= S(std::numeric_limits<T>::max()); }

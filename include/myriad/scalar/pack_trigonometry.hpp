@@ -36,8 +36,8 @@ struct trigonometry_constants<double> {
                           -0x1.ae5e6808411cbp-26, 0x1.5d9373ef3d5d0p-33);
     }
     static MYRIAD_FUNCTION auto cosine(const auto& z) {
-        return polynomial(z, 0x1.555555555554cp-5, -0x1.6c16c16c1521dp-10, 0x1.a01a019cbf0c9p-16, -0x1.27e4f8126412dp-22,
-                          0x1.1ee9f10f572c1p-29, -0x1.8fb1093a63d4cp-37);
+        return polynomial(z, 0x1.555555555554cp-5, -0x1.6c16c16c1521dp-10, 0x1.a01a019cbf0c9p-16,
+                          -0x1.27e4f8126412dp-22, 0x1.1ee9f10f572c1p-29, -0x1.8fb1093a63d4cp-37);
     }
 };
 
@@ -53,8 +53,12 @@ struct trigonometry_constants<float> {
     static constexpr float half_pi[] = {0x1.92p+0f, 0x1.fb4p-12f, 0x1.444p-24f, 0x1.68c234p-39f};
 #endif
     // The same on [-0.79, 0.79] (error 2^-28 and 2^-33).
-    static MYRIAD_FUNCTION auto sine(const auto& z) { return polynomial(z, -0x1.555546p-3f, 0x1.11076ap-7f, -0x1.994c24p-13f); }
-    static MYRIAD_FUNCTION auto cosine(const auto& z) { return polynomial(z, 0x1.55554ap-5f, -0x1.6c0c1ap-10f, 0x1.99e0ecp-16f); }
+    static MYRIAD_FUNCTION auto sine(const auto& z) {
+        return polynomial(z, -0x1.555546p-3f, 0x1.11076ap-7f, -0x1.994c24p-13f);
+    }
+    static MYRIAD_FUNCTION auto cosine(const auto& z) {
+        return polynomial(z, 0x1.55554ap-5f, -0x1.6c0c1ap-10f, 0x1.99e0ecp-16f);
+    }
 };
 
 template <class T>

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "myriad/core/macros.hpp"
@@ -28,6 +29,12 @@ template <class S>
 using integer_of = typename scalar_traits<S>::integer;
 template <class S>
 inline constexpr int lanes_of = scalar_traits<S>::lanes;
+
+/// Spacing of the numbers next to one, and the largest finite number.
+template <class R>
+inline constexpr R epsilon_of = std::numeric_limits<R>::epsilon();
+template <class R>
+inline constexpr R largest_of = std::numeric_limits<R>::max();
 
 template <class T>
 concept plain_number = std::is_arithmetic_v<T>;
@@ -56,8 +63,8 @@ struct selected {
     using type = typename common_kind<A, B>::type;
 };
 template <class Mask, plain_number A, plain_number B>
-    requires(!plain_number<Mask>)  // `a & b` of two bools is an int
-struct selected<Mask, A, B> {
+requires(!plain_number<Mask>)  // `a & b` of two bools is an int
+    struct selected<Mask, A, B> {
     using type = std::conditional_t<std::is_same_v<A, bool> && std::is_same_v<B, bool>, Mask, typename Mask::pack_type>;
 };
 

@@ -6,6 +6,10 @@
 
 namespace myriad::inline MYRIAD_TARGET {
 
+/// Coefficient of theta^(power + 1) in the weight of a stage.
+template <class Method, int stage, int power, class R>
+inline constexpr R interpolant_weight = static_cast<R>(Method::interpolant_weight(stage, power));
+
 template <class Method>
 inline constexpr bool has_own_interpolant = requires { Method::interpolant_degree; };
 
@@ -28,9 +32,10 @@ MYRIAD_FUNCTION vec<S, n> interpolate(const step_data<Method, S, n>& step, const
         vec<S, Method::stages> weight;
         static_for<0, Method::stages>([&](auto i) MYRIAD_LAMBDA {
             constexpr int degree = Method::interpolant_degree;
-            S b = S(static_cast<R>(Method::interpolant_weight(i, degree - 1)));
+            constexpr int stage = decltype(i)::value;
+            S b = S(interpolant_weight<Method, stage, degree - 1, R>);
             static_for<1, degree>([&](auto power) MYRIAD_LAMBDA {
-                b = fma(b, theta, S(static_cast<R>(Method::interpolant_weight(i, degree - 1 - power))));
+                b = fma(b, theta, S(interpolant_weight<Method, stage, degree - 1 - decltype(power)::value, R>));
             });
             weight[i] = b * theta * step.h;
         });

@@ -24,13 +24,25 @@ struct rk_trial {
     vec<S, n> y;
 };
 
+// The tableau's entries as constants, which device code may use where it may not call the functions behind them.
+
 /// First stage whose weight in `row` is not zero.
-template <class Method>
-constexpr int first_stage(int row) {
+template <class Method, int row>
+inline constexpr int first_stage = [] {
     int j = 0;
     while (Method::tableau().weight(row, j) == 0) ++j;
     return j;
-}
+}();
+/// Its weight.
+template <class Method, int row, class R>
+inline constexpr R first_weight = static_cast<R>(Method::tableau().weight(row, first_stage<Method, row>));
+/// The weight of stage j over the first one.
+template <class Method, int row, int j, class R>
+inline constexpr R relative_weight =
+    static_cast<R>(Method::tableau().weight(row, j) / Method::tableau().weight(row, first_stage<Method, row>));
+/// The node of stage i.
+template <class Method, int i, class R>
+inline constexpr R node = static_cast<R>(Method::tableau().c[static_cast<std::size_t>(i)]);
 
 /// sum += weight * k, without the operations that a weight of zero or one does not need.
 template <auto weight, class S>
@@ -47,12 +59,11 @@ MYRIAD_FUNCTION void add_weighted(S& sum, const S& k) {
 template <class Method, int row, class S, int n>
 MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int component) {
     using R = real_of<S>;
-    constexpr int first = first_stage<Method>(row);
+    constexpr int first = first_stage<Method, row>;
     constexpr int end = row < Method::stages ? row : Method::stages;
     S sum = k[first][component];
     static_for<first + 1, end>([&](auto j) MYRIAD_LAMBDA {
-        constexpr R weight = static_cast<R>(Method::tableau().weight(row, j) / Method::tableau().weight(row, first));
-        add_weighted<weight>(sum, k[j][component]);
+        add_weighted<relative_weight<Method, row, decltype(j)::value, R>>(sum, k[j][component]);
     });
     return sum;
 }
@@ -60,8 +71,7 @@ MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int compon
 /// y + h * sum_j w_j k_j with the weights of `row`: a stage's argument or the new state.
 template <class Method, int row, class S, int n>
 MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<S, n>, Method::stages>& k) {
-    constexpr auto first = static_cast<real_of<S>>(Method::tableau().weight(row, first_stage<Method>(row)));
-    const S scale = h * S(first);
+    const S scale = h * S(first_weight<Method, row, real_of<S>>);
     vec<S, n> out;
     MYRIAD_UNROLL
     for (int c = 0; c < n; ++c) out[c] = fma(scale, scaled_sum<Method, row>(k, c), y[c]);
@@ -72,8 +82,7 @@ MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<
 template <class Method, class S, int n>
 MYRIAD_FUNCTION S error_estimate(const S& h, const vec<vec<S, n>, Method::stages>& k, int component) {
     constexpr int row = Method::stages + 1;
-    constexpr auto first = static_cast<real_of<S>>(Method::tableau().weight(row, first_stage<Method>(row)));
-    return h * S(first) * scaled_sum<Method, row>(k, component);
+    return h * S(first_weight<Method, row, real_of<S>>) * scaled_sum<Method, row>(k, component);
 }
 
 /// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given. The new state is summed up stage by stage, so
@@ -84,29 +93,28 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const vec<S, n_sta
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
     constexpr int last = Method::stages;
-    constexpr int first = first_stage<Method>(last);
     vec<S, n> sum;
     const auto add_stage = [&](auto j) MYRIAD_LAMBDA {
-        constexpr R weight = static_cast<R>(Method::tableau().weight(last, j) / Method::tableau().weight(last, first));
+        constexpr int stage = decltype(j)::value, first = first_stage<Method, last>;
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) {
-            if constexpr (j == first) {
-                sum[c] = trial.k[j][c];
-            } else if constexpr (j > first) {
-                add_weighted<weight>(sum[c], trial.k[j][c]);
+            if constexpr (stage == first) {
+                sum[c] = trial.k[stage][c];
+            } else if constexpr (stage > first) {
+                add_weighted<relative_weight<Method, last, stage, R>>(sum[c], trial.k[stage][c]);
             }
         }
     };
-    if constexpr (!Method::first_same_as_last) add_stage(std::integral_constant<int, 0>{});
+    if constexpr (!Method::first_same_as_last) add_stage(constant_index<0>{});
     static_for<1, Method::stages>([&](auto i) MYRIAD_LAMBDA {
-        constexpr auto node = static_cast<R>(Method::tableau().c[static_cast<std::size_t>(i.value)]);
-        const auto argument = combine<Method, i>(y, h, trial.k);
-        if constexpr (Method::first_same_as_last && i == last - 1) trial.y = argument;
-        trial.k[i] = evaluate_rhs<Model>(fma(S(node), h, t), argument, p);
+        constexpr int stage = decltype(i)::value;
+        const auto argument = combine<Method, stage>(y, h, trial.k);
+        if constexpr (Method::first_same_as_last && stage == last - 1) trial.y = argument;
+        trial.k[stage] = evaluate_rhs<Model>(fma(S(node<Method, stage, R>), h, t), argument, p);
         if constexpr (!Method::first_same_as_last) add_stage(i);
     });
     if constexpr (!Method::first_same_as_last) {
-        const S scale = h * S(static_cast<R>(Method::tableau().weight(last, first)));
+        const S scale = h * S(first_weight<Method, last, R>);
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) trial.y[c] = fma(scale, sum[c], y[c]);
     }
