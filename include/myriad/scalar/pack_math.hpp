@@ -70,7 +70,8 @@ struct functions<pack<T, batches>> {
     }
     MYRIAD_UNARY(sqrt, xsimd::sqrt(x.parts[i]))
     MYRIAD_UNARY(abs, xsimd::abs(x.parts[i]))
-    MYRIAD_UNARY(floor, xsimd::floor(x.parts[i]))
+    // Without SSE4.1, xsimd's loses the sign of zero, which the bit puts back.
+    MYRIAD_UNARY(floor, xsimd::floor(x.parts[i]) | (x.parts[i] & xsimd::batch<T>(-T(0))))
     MYRIAD_UNARY(round, xsimd::round(x.parts[i]))
     MYRIAD_UNARY(asin, xsimd::asin(x.parts[i]))
     MYRIAD_UNARY(acos, xsimd::acos(x.parts[i]))

@@ -44,13 +44,15 @@ inline constexpr R relative_weight =
 template <class Method, int i, class R>
 inline constexpr R node = static_cast<R>(Method::tableau().c[static_cast<std::size_t>(i)]);
 
-/// sum += weight * k, without the operations that a weight of zero or one does not need.
-template <auto weight, class S>
+/// sum += weight * k with the relative weight of stage j, without the operations that a weight of zero or one does not
+/// need.
+template <class Method, int row, int j, class S>
 MYRIAD_FUNCTION void add_weighted(S& sum, const S& k) {
-    if constexpr (weight == 1) {
+    using R = real_of<S>;
+    if constexpr (relative_weight<Method, row, j, R> == R(1)) {
         sum = sum + k;
-    } else if constexpr (weight != 0) {
-        sum = fma(S(weight), k, sum);
+    } else if constexpr (relative_weight<Method, row, j, R> != R(0)) {
+        sum = fma(S(relative_weight<Method, row, j, R>), k, sum);
     }
 }
 
@@ -58,12 +60,11 @@ MYRIAD_FUNCTION void add_weighted(S& sum, const S& k) {
 /// an operation per component against h * sum: the caller multiplies once by h * w_first.
 template <class Method, int row, class S, int n>
 MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int component) {
-    using R = real_of<S>;
     constexpr int first = first_stage<Method, row>;
     constexpr int end = row < Method::stages ? row : Method::stages;
     S sum = k[first][component];
     static_for<first + 1, end>([&](auto j) MYRIAD_LAMBDA {
-        add_weighted<relative_weight<Method, row, decltype(j)::value, R>>(sum, k[j][component]);
+        add_weighted<Method, row, decltype(j)::value>(sum, k[j][component]);
     });
     return sum;
 }
@@ -101,7 +102,7 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const vec<S, n_sta
             if constexpr (stage == first) {
                 sum[c] = trial.k[stage][c];
             } else if constexpr (stage > first) {
-                add_weighted<relative_weight<Method, last, stage, R>>(sum[c], trial.k[stage][c]);
+                add_weighted<Method, last, stage>(sum[c], trial.k[stage][c]);
             }
         }
     };

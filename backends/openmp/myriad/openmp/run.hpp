@@ -57,7 +57,7 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
         chunked_instances instances(begun, arguments.size, chunk, options, omp_get_thread_num() == 0);
         turns += integrate<Model, Method, S>(arguments, instances);
     }
-    used.lane_turns = turns * used.lanes;
+    used.lane_turns = turns.load() * used.lanes;
     return used;
 }
 
