@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT
+# myriad_add_models(): compiles model source files with the flags that SIMD lanes need. Per file and not per target,
+# because the alignment of Eigen's objects depends on them, and main and its libraries must agree on that.
+include_guard(GLOBAL)
+include(CheckCXXCompilerFlag)
+
+set(MYRIAD_ARCH "" CACHE STRING "Instruction set of model files, as in -march=: native, x86-64-v4, ...; empty: the compiler's own")
+# Off by default: with contraction at the compiler's choice, results were measured to depend on the pack size. The library
+# writes its fused multiply-adds itself.
+set(MYRIAD_FP_CONTRACT off CACHE STRING "Contraction of a * b + c in model files: off, or fast, which gives up bit-identical results")
+set_property(CACHE MYRIAD_ARCH PROPERTY STRINGS native x86-64-v4 x86-64-v3 x86-64-v2)
+set_property(CACHE MYRIAD_FP_CONTRACT PROPERTY STRINGS fast off)
+
+# Sets the variable `result` to the flags of model files. -ffast-math is never among them: NaN must stay visible.
+function(myriad_model_flags result)
+    if(NOT MYRIAD_FP_CONTRACT MATCHES "^(fast|off)$")
+        message(FATAL_ERROR "MYRIAD_FP_CONTRACT is ${MYRIAD_FP_CONTRACT} (must be fast or off)")
+    endif()
+    set(flags)
+    if(MYRIAD_ARCH)
+        string(MAKE_C_IDENTIFIER "MYRIAD_HAS_ARCH_${MYRIAD_ARCH}" check)
+        set(CMAKE_REQUIRED_QUIET ON)
+        check_cxx_compiler_flag("-march=${MYRIAD_ARCH}" ${check})
+        if(NOT ${check})
+            message(FATAL_ERROR "MYRIAD_ARCH is ${MYRIAD_ARCH}, and ${CMAKE_CXX_COMPILER} does not know -march=${MYRIAD_ARCH}: "
+                                "give native, x86-64-v3, or nothing for the compiler's own instruction set")
+        endif()
+        list(APPEND flags "-march=${MYRIAD_ARCH}")
+    else()
+        get_property(told GLOBAL PROPERTY MYRIAD_ARCH_TOLD)
+        if(NOT told)
+            set_property(GLOBAL PROPERTY MYRIAD_ARCH_TOLD TRUE)
+            message(STATUS "Myriad: models use the compiler's own instruction set; -DMYRIAD_ARCH=native is several times as fast")
+        endif()
+    endif()
+    list(APPEND flags "-ffp-contract=${MYRIAD_FP_CONTRACT}" -fno-math-errno)
+    # Release as CMake has it; RelWithDebInfo gets more than CMake's -O2. Debug cannot go without: the AVX-512 part of
+    # xsimd 8.1 compiles with optimisation only, and lanes that are not inlined are useless at any speed.
+    list(APPEND flags "$<$<CONFIG:Release,RelWithDebInfo>:-O3>" "$<$<CONFIG:Debug>:-O1>")
+    set(${result} "${flags}" PARENT_SCOPE)
+endfunction()
+
+# myriad_add_models(<target> <file>...) adds model files, those with MYRIAD_INSTANTIATE, to a target of the same
+# directory. Such a file includes no Eigen. Links myriad::openmp.
+function(myriad_add_models target)
+    if(NOT TARGET ${target})
+        message(FATAL_ERROR "myriad_add_models(${target} ...): there is no target ${target}; call add_executable or add_library first")
+    endif()
+    myriad_model_flags(flags)
+    foreach(file IN LISTS ARGN)
+        cmake_path(ABSOLUTE_PATH file NORMALIZE)
+        target_sources(${target} PRIVATE "${file}")
+        get_property(known SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY MYRIAD_MODEL)
+        if(NOT known)
+            set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY MYRIAD_MODEL TRUE)
+            set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS ${flags})
+            # A unity file or a precompiled header would mix these flags with those of other files.
+            set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+            set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
+        endif()
+    endforeach()
+    target_link_libraries(${target} PRIVATE myriad::openmp)
+endfunction()

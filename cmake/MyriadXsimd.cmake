@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+# Defines myriad::xsimd, the include directory of xsimd 8.1 or newer. Not xsimd's own target, since the one of Debian 12
+# asks the linker for xtl, which is neither a library nor needed. Sets myriad_xsimd_FOUND, else also a message.
+
+find_path(MYRIAD_XSIMD_INCLUDE_DIR NAMES xsimd/xsimd.hpp DOC "Directory that holds xsimd/xsimd.hpp")
+mark_as_advanced(MYRIAD_XSIMD_INCLUDE_DIR)
+
+set(myriad_xsimd_FOUND FALSE)
+if(NOT MYRIAD_XSIMD_INCLUDE_DIR)
+    set(myriad_xsimd_NOT_FOUND_MESSAGE "xsimd/xsimd.hpp was not found")
+else()
+    set(myriad_xsimd_VERSION)
+    file(STRINGS "${MYRIAD_XSIMD_INCLUDE_DIR}/xsimd/config/xsimd_config.hpp" myriad_xsimd_lines
+         REGEX "define XSIMD_VERSION_(MAJOR|MINOR|PATCH) ")
+    foreach(line IN LISTS myriad_xsimd_lines)
+        if(line MATCHES " ([0-9]+)")
+            list(APPEND myriad_xsimd_VERSION ${CMAKE_MATCH_1})
+        endif()
+    endforeach()
+    unset(myriad_xsimd_lines)
+    list(JOIN myriad_xsimd_VERSION "." myriad_xsimd_VERSION)
+    if(myriad_xsimd_VERSION VERSION_LESS 8.1)
+        set(myriad_xsimd_NOT_FOUND_MESSAGE
+            "${MYRIAD_XSIMD_INCLUDE_DIR} holds xsimd ${myriad_xsimd_VERSION}, and 8.1 is the oldest that works")
+    else()
+        set(myriad_xsimd_FOUND TRUE)
+        if(NOT TARGET myriad::xsimd)
+            message(STATUS "xsimd ${myriad_xsimd_VERSION}: found")
+            add_library(myriad::xsimd INTERFACE IMPORTED GLOBAL)
+            target_include_directories(myriad::xsimd INTERFACE "${MYRIAD_XSIMD_INCLUDE_DIR}")
+        endif()
+    endif()
+endif()

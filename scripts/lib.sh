@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+# What the scripts share: messages, installing missing packages, running steps and counting tests. Sourced, not run.
+# shellcheck shell=bash
+
+say() { printf '%s\n' "== $*"; }
+
+# fail MESSAGE [STATUS]
+fail() {
+    printf '%s\n' "$1" >&2
+    exit "${2:-1}"
+}
+
+# usage_error MESSAGE: for wrong options.
+usage_error() {
+    printf '%s\nTry %s --help\n' "$1" "$0" >&2
+    exit 2
+}
+
+# A duration in seconds as people read it.
+duration() {
+    local seconds=$1
+    if ((seconds < 60)); then printf '%d s' "$seconds"; else printf '%d min %02d s' $((seconds / 60)) $((seconds % 60)); fi
+}
+
+# ----------------------------------------------------------------------------------------------------------------------
+# Packages
+# ----------------------------------------------------------------------------------------------------------------------
+
+has_command() { command -v "$1" >/dev/null 2>&1; }
+has_header() { local file; for file in /usr/include /usr/local/include; do [[ -e $file/$1 ]] && return; done; return 1; }
+
+# The sanitizers of clang++ come in a package of their own.
+has_clang_runtime() {
+    has_command clang++ && [[ -e $(clang++ -print-file-name=libclang_rt.tsan-x86_64.a) || -e $(clang++ --print-resource-dir)/lib/linux/libclang_rt.tsan-$(uname -m).a ]]
+}
+has_clang_openmp() { has_command clang++ && printf '#include <omp.h>\n' | clang++ -fopenmp=libomp -E -x c++ - >/dev/null 2>&1; }
+
+# A Python that has matplotlib: the first on the PATH may be another than the one that Debian's packages serve.
+plotting_python() {
+    local python
+    for python in python3 /usr/bin/python3; do
+        if "$python" -c 'import matplotlib' >/dev/null 2>&1; then
+            printf '%s' "$python"
+            return
+        fi
+    done
+    return 1
+}
+
+# has_package NAME: whether what the Debian package brings is there, from it or from elsewhere.
+has_package() {
+    case $1 in
+        g++ | cmake | clang | python3) has_command "${1/clang/clang++}" ;;
+        ninja-build) has_command ninja ;;
+        libeigen3-dev) has_header eigen3/Eigen/Core ;;
+        libxsimd-dev) has_header xsimd/xsimd.hpp ;;
+        libcli11-dev) has_header CLI/CLI.hpp ;;
+        libboost-dev) has_header boost/numeric/odeint.hpp ;;
+        libsundials-dev) has_header cvode/cvode.h ;;
+        catch2) has_header catch2/catch.hpp || has_header catch2/catch_test_macros.hpp ;;
+        libomp-dev) has_clang_openmp ;;
+        libclang-rt-dev) has_clang_runtime ;;
+        python3-matplotlib) plotting_python >/dev/null ;;
+        *) return 1 ;;
+    esac
+}
+
+# How this user becomes root for apt-get: nothing, sudo, or failure.
+root_prefix() {
+    if [[ $(id -u) == 0 ]]; then
+        return 0
+    elif has_command sudo && { sudo -n true 2>/dev/null || [[ -t 0 ]]; }; then # without a terminal no one can type a password
+        printf 'sudo'
+    else
+        return 1
+    fi
+}
+
+# apt_get ARGUMENT...: quiet, but for a failure.
+apt_get() {
+    local prefix log status=0
+    prefix=$(root_prefix)
+    log=$(mktemp)
+    # env, since sudo passes no variables on.
+    $prefix env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@" </dev/null >"$log" 2>&1 || status=$?
+    if ((status != 0)); then
+        cat "$log" >&2
+        printf 'apt-get %s failed.\n' "$*" >&2
+    fi
+    rm -f "$log"
+    return "$status"
+}
+
+# require_packages NAME...: installs what is missing. Ends the script if that cannot be done.
+require_packages() {
+    local package missing=()
+    for package in "$@"; do
+        has_package "$package" || missing+=("$package")
+    done
+    if ((${#missing[@]} == 0)); then
+        say "All packages needed are here."
+        return
+    fi
+    if ! has_command apt-get; then
+        fail "These are missing, under the names of Debian's packages: ${missing[*]}
+There is no apt-get to install them with. Install them in your system's way, then run this again."
+    fi
+    if ! root_prefix >/dev/null; then
+        fail "These packages are missing: ${missing[*]}
+Installing them needs root or sudo. As root run
+  apt-get update && apt-get install ${missing[*]}
+then run this again."
+    fi
+    say "Installing ${missing[*]}"
+    apt_get update || fail "The lists of packages could not be fetched: check the network, then run this again."
+    # The sanitizer runtime has a name without version only in newer releases; its versioned name follows clang's.
+    local plain=()
+    for package in "${missing[@]}"; do
+        [[ $package == libclang-rt-dev ]] || plain+=("$package")
+    done
+    if ((${#plain[@]})); then
+        apt_get install --yes --no-install-recommends "${plain[@]}" || fail "Could not install ${plain[*]}."
+    fi
+    if [[ " ${missing[*]} " == *" libclang-rt-dev "* ]] && ! has_clang_runtime; then
+        local version
+        version=$(clang++ -dumpversion)
+        apt_get install --yes --no-install-recommends "libclang-rt-${version%%.*}-dev" ||
+            fail "Could not install libclang-rt-${version%%.*}-dev, the sanitizers of clang++."
+    fi
+    for package in "${missing[@]}"; do
+        has_package "$package" || fail "$package was installed, and what it should bring is still not found. Is CXX or PATH set to something else?"
+    done
+}
+
+# ----------------------------------------------------------------------------------------------------------------------
+# Steps
+# ----------------------------------------------------------------------------------------------------------------------
+
+# quietly LOG COMMAND...: output goes to the file LOG, and its end is shown if the command fails.
+quietly() {
+    local log=$1 status=0
+    shift
+    mkdir -p "$(dirname "$log")"
+    "$@" </dev/null >"$log" 2>&1 || status=$?
+    if ((status != 0)); then
+        printf '%s\n' "failed: $*" "--- end of $log ---" >&2
+        tail -n 80 "$log" >&2
+        printf '%s\n' "--------------------" >&2
+    fi
+    return "$status"
+}
+
+# count_tests LOG STATUS: "passed failed skipped" from ctest's output and exit status. A run that failed without saying
+# how many tests did counts as one failure, so that nothing is lost.
+count_tests() {
+    local log=$1 status=$2 summary total=0 failed=0 skipped=0
+    summary=$(grep -E '^[0-9]+% tests passed, [0-9]+ tests? failed out of [0-9]+' "$log" | tail -n 1 || true)
+    if [[ $summary =~ passed,\ ([0-9]+)\ tests?\ failed\ out\ of\ ([0-9]+) ]]; then
+        failed=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]}
+    fi
+    skipped=$(grep -cE '^ *[0-9]+/[0-9]+ Test +#[0-9]+: .*\*\*\*(Skipped|Not Run \(Disabled\))' "$log" || true)
+    if ((status != 0 && failed == 0)); then failed=1 total=$((total + 1)); fi
+    printf '%d %d %d\n' $((total - failed - skipped)) "$failed" "$skipped"
+}

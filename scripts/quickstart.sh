@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# From a fresh checkout to a bifurcation diagram: installs what is missing, builds a release, runs the Duffing sweep, plots it.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=scripts/lib.sh
+source scripts/lib.sh
+
+usage() {
+    cat <<'END'
+Usage: scripts/quickstart.sh [--help]
+
+Installs the packages that are missing (as root or with sudo), builds the examples as a release in
+build/release, integrates the Duffing sweep to results/duffing.csv and draws its bifurcation diagram,
+results/duffing.png. Takes a few minutes on two cores.
+END
+}
+
+while (($#)); do
+    case $1 in
+        --help | -h) usage; exit 0 ;;
+        *) usage_error "Unknown option '$1'" ;;
+    esac
+done
+
+started=$SECONDS
+require_packages g++ cmake ninja-build libeigen3-dev libxsimd-dev libcli11-dev python3-matplotlib
+
+say "Building the examples in build/release"
+# The other parts need further packages; 'cmake --preset release' switches them on again.
+quietly build/release/configure.log cmake --preset release \
+    -DMYRIAD_BUILD_TESTS=OFF -DMYRIAD_BUILD_BENCHMARKS=OFF -DMYRIAD_BUILD_VALIDATION=OFF ||
+    fail "The configuration failed, see above."
+quietly build/release/build.log cmake --build --preset release --parallel "$(nproc)" || fail "The build failed, see above."
+
+say "Integrating the Duffing sweep to results/duffing.csv"
+mkdir -p results
+build/release/examples/duffing/duffing --output results/duffing.csv
+
+say "Drawing results/duffing.png"
+"$(plotting_python)" examples/duffing/plot.py results/duffing.csv results/duffing.png
+
+say "Done after $(duration $((SECONDS - started))): results/duffing.csv and results/duffing.png"

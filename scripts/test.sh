@@ -1,0 +1,149 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Installs what is missing, builds Myriad in every way that CI does, and runs the tests.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=scripts/lib.sh
+source scripts/lib.sh
+
+all_steps=(ci cuda strict clang asan tsan)
+
+usage() {
+    cat <<'END'
+Usage: scripts/test.sh [--quick] [--only STEP,...] [--jobs N] [--help]
+
+Installs the packages that are missing (as root or with sudo), builds and runs the tests.
+Its last line is "N passed, N failed"; the exit status is 0 if none failed.
+
+Steps, in this order:
+  ci      g++, release, warnings are errors: all tests, examples, benchmarks, validation
+  cuda    the kernels compile within their registers and stack (skipped without nvcc; no GPU needed)
+  strict  no contraction of a * b + c: scalar lanes and packs agree bit for bit
+  clang   clang++, release, warnings are errors
+  asan    address and undefined-behaviour sanitizer
+  tsan    thread sanitizer
+
+Options:
+  --quick          only ci
+  --only STEP,...  only these
+  --jobs N         processes at a time (default: number of cores)
+  --help           this text
+END
+}
+
+steps=("${all_steps[@]}")
+jobs=$(nproc)
+while (($#)); do
+    case $1 in
+        --help | -h) usage; exit 0 ;;
+        --quick) steps=(ci) ;;
+        --only)
+            (($# > 1)) || usage_error "--only needs steps: ${all_steps[*]}"
+            IFS=, read -r -a wanted <<<"$2"
+            ((${#wanted[@]})) || usage_error "--only needs steps: ${all_steps[*]}"
+            for step in "${wanted[@]}"; do
+                [[ " ${all_steps[*]} " == *" $step "* ]] || usage_error "There is no step '$step': choose from ${all_steps[*]}"
+            done
+            steps=()
+            for step in "${all_steps[@]}"; do
+                [[ " ${wanted[*]} " == *" $step "* ]] && steps+=("$step")
+            done
+            shift ;;
+        --jobs)
+            [[ ${2:-} =~ ^[1-9][0-9]*$ ]] || usage_error "--jobs needs a positive number"
+            jobs=$2
+            shift ;;
+        *) usage_error "Unknown option '$1'" ;;
+    esac
+    shift
+done
+wants() { [[ " ${steps[*]} " == *" $1 "* ]]; }
+
+packages=(g++ cmake ninja-build python3 libeigen3-dev libxsimd-dev catch2)
+if wants ci || wants cuda || wants clang; then
+    packages+=(libboost-dev libcli11-dev libsundials-dev python3-matplotlib)
+fi
+if wants clang || wants tsan; then packages+=(clang libomp-dev); fi
+if wants tsan; then packages+=(libclang-rt-dev); fi
+
+started=$SECONDS
+passed=0
+failed=0
+summary=()
+
+# build PRESET
+build() {
+    local preset=$1
+    quietly "build/$preset/configure.log" cmake --preset "$preset" &&
+        quietly "build/$preset/build.log" cmake --build --preset "$preset" --parallel "$jobs" -- -k 0
+}
+
+# The files that took longest to compile, as a budget to keep an eye on.
+slowest_files() {
+    local log=build/$1/.ninja_log
+    [[ -r $log ]] || return 0
+    awk -F'\t' '$4 ~ /\.o$/ { seconds = ($2 - $1) / 1000; if (seconds > most[$4]) most[$4] = seconds }
+                END { for (file in most) printf "%.0f s %s\n", most[file], file }' "$log" | sort -rn | head -n 3 |
+        sed -E 's|CMakeFiles/[^/]*\.dir/||; s|^|   slow to compile: |'
+}
+
+# run_tests STEP PRESET [CTEST ARGUMENT...]: sets `result` and adds to the counts.
+run_tests() {
+    local step=$1 preset=$2 log=build/$2/tests-$1.log status=0 counts
+    shift 2
+    ctest --preset "$preset" --parallel "$jobs" "$@" </dev/null 2>&1 | tee "$log" | sed -nE '/\*\*\*|^(Errors|The following)|^[[:space:]]+[0-9]+ - |tests passed,/p' || status=$?
+    read -r -a counts < <(count_tests "$log" "$status")
+    passed=$((passed + counts[0]))
+    failed=$((failed + counts[1]))
+    result="${counts[0]} passed, ${counts[1]} failed"
+    if ((counts[2])); then result+=", ${counts[2]} skipped"; fi
+    if ((counts[1])); then
+        printf '%s\n' "--- output of the tests that failed, from $log ---"
+        awk '/Test +#[0-9]+: .*(Passed|Skipped) +[0-9.]+ sec/ { shown = 0 } /Test +#[0-9]+: .*\*\*\*/ { shown = 1 } /tests passed,/ { shown = 0 }
+             shown && !/^ +Start +[0-9]+:/' "$log" | head -n 400
+    fi
+}
+
+run_step() {
+    local step=$1 begin=$SECONDS result=""
+    say "$step"
+    mkdir -p "build"
+    case $step in
+        cuda)
+            if ! has_command nvcc; then
+                say "cuda: skipped, nvcc is not on the PATH"
+                summary+=("cuda: skipped, nvcc is not on the PATH")
+                return
+            fi
+            if quietly build/ci/configure.log cmake --preset ci -DMYRIAD_CUDA_COMPILE_CHECK=ON; then
+                run_tests cuda ci --label-regex '^cuda$'
+            else
+                failed=$((failed + 1)) result="configuration failed"
+            fi ;;
+        *)
+            local built=yes
+            build "$step" || built=no
+            if [[ $built == yes || -e build/$step/build.ninja ]]; then
+                case $step in
+                    ci) slowest_files ci; run_tests ci ci --label-exclude '^cuda$' ;;
+                    *) run_tests "$step" "$step" ;;
+                esac
+            fi
+            if [[ $built == no ]]; then
+                failed=$((failed + 1))
+                result="build failed${result:+, $result}"
+            fi ;;
+    esac
+    summary+=("$step: $result ($(duration $((SECONDS - begin))))")
+    say "${summary[-1]}"
+}
+
+require_packages "${packages[@]}"
+for step in "${steps[@]}"; do
+    run_step "$step"
+done
+
+say "Summary, after $(duration $((SECONDS - started)))"
+printf '   %s\n' "${summary[@]}"
+printf '%d passed, %d failed\n' "$passed" "$failed"
+((failed == 0))

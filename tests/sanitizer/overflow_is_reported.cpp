@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+// Reads behind the end of an array: the address sanitizer must say so.
+#include <cstdio>
+#include <vector>
+
+int main(int argc, char*[]) {
+    std::vector<int> values(4, 1);
+    const int* data = values.data();
+    std::printf("%d\n", data[3 + argc]);
+}

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Checks the scripts: syntax, options, how tests are counted, and what is said when packages are missing.
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+
+# expect NAME STATUS REGULAR-EXPRESSION COMMAND...: the command's exit status and output.
+expect() {
+    local name=$1 status=$2 pattern=$3 output actual=0
+    shift 3
+    output=$("$@" 2>&1) || actual=$?
+    if ((actual != status)) || ! grep -qE -- "$pattern" <<<"$output"; then
+        printf 'FAILED %s: exit status %d (expected %d), output (expected %s):\n%s\n' "$name" "$actual" "$status" "$pattern" "$output"
+        failures=$((failures + 1))
+    else
+        printf 'ok     %s\n' "$name"
+    fi
+}
+
+# in_lib COMMANDS: evaluates them with lib.sh sourced.
+# shellcheck disable=SC2317 # called through expect
+in_lib() { bash -c "set -euo pipefail; source scripts/lib.sh; $1"; }
+
+scripts=(scripts/*.sh .ci/run tests/scripts/check.sh tests/must_not_compile/check.sh)
+for script in "${scripts[@]}"; do
+    expect "$script is valid bash" 0 '' bash -n "$script"
+done
+if command -v shellcheck >/dev/null; then
+    expect "shellcheck finds nothing" 0 '' shellcheck -x "${scripts[@]}"
+fi
+
+expect "test.sh --help" 0 'Usage: scripts/test.sh' scripts/test.sh --help
+expect "test.sh refuses an unknown option" 2 "Unknown option '--fast'" scripts/test.sh --fast
+expect "test.sh refuses an unknown step" 2 "no step 'gpu'" scripts/test.sh --only ci,gpu
+expect "test.sh refuses --only without steps" 2 '--only needs steps' scripts/test.sh --only
+expect "test.sh refuses a wrong number of jobs" 2 '--jobs needs' scripts/test.sh --jobs 0
+expect "quickstart.sh --help" 0 'Usage: scripts/quickstart.sh' scripts/quickstart.sh --help
+expect "quickstart.sh refuses an unknown option" 2 "Unknown option 'now'" scripts/quickstart.sh now
+
+printf '%s\n' '1/3 Test #1: a .......   Passed    0.01 sec' '100% tests passed, 0 tests failed out of 3' >"$work/good.log"
+printf '%s\n' '67% tests passed, 1 tests failed out of 3' >"$work/bad.log"
+printf '%s\n' '2/3 Test #2: b .......***Skipped   0.01 sec' '100% tests passed, 0 tests failed out of 3' >"$work/skipped.log"
+printf '%s\n' 'No tests were found!!!' >"$work/none.log"
+expect "tests that passed are counted" 0 '^3 0 0$' in_lib "count_tests '$work/good.log' 0"
+expect "tests that failed are counted" 0 '^2 1 0$' in_lib "count_tests '$work/bad.log' 8"
+expect "skipped tests have not passed" 0 '^2 0 1$' in_lib "count_tests '$work/skipped.log' 0"
+expect "a run without tests is a failure" 0 '^0 1 0$' in_lib "count_tests '$work/none.log' 8"
+
+missing='has_package() { return 1; }'
+expect "without root and sudo, packages and command are named" 1 'apt-get install libxsimd-dev catch2' \
+    in_lib "$missing; id() { echo 1000; }; has_command() { [[ \$1 == apt-get ]]; }; require_packages libxsimd-dev catch2"
+expect "without apt-get, packages are named" 1 'Debian.s packages: libxsimd-dev catch2' \
+    in_lib "$missing; has_command() { return 1; }; require_packages libxsimd-dev catch2"
+expect "nothing is installed if nothing is missing" 0 'All packages needed' \
+    in_lib "has_package() { return 0; }; apt_get() { exit 9; }; require_packages libxsimd-dev"
+expect "with sudo, apt-get runs through it" 0 'called with env DEBIAN_FRONTEND=noninteractive apt-get .*install --yes --no-install-recommends catch2' \
+    in_lib "has_package() { [[ -e '$work/done' ]]; }; id() { echo 1000; }; has_command() { return 0; }
+            sudo() { [[ \$1 == -n ]] && return; echo called with \"\$@\" >>'$work/sudo.log'; [[ \$* == *install* ]] && touch '$work/done'; return 0; }
+            require_packages catch2; cat '$work/sudo.log'"
+expect "output of apt-get is shown if it fails" 1 'no such thing' \
+    in_lib "$missing; root_prefix() { return 0; }; env() { echo no such thing; return 100; }; require_packages catch2"
+
+# Every file with code says its licence, and none knows where it was written.
+unlicensed=$(find . \( -name .git -o -name build -o -name results -o -name __pycache__ \) -prune -o -type f \
+    \( -name '*.hpp' -o -name '*.cuh' -o -name '*.cpp' -o -name '*.cu' -o -name '*.sh' -o -name '*.py' -o -name '*.cmake' -o -name CMakeLists.txt \) \
+    -exec grep -L 'SPDX-License-Identifier: MIT' {} +)
+expect "every file with code has its SPDX line" 0 '^$' echo "$unlicensed"
+
+exit $((failures > 0))
