@@ -4,10 +4,11 @@
 include_guard(GLOBAL)
 include(CheckCXXCompilerFlag)
 
-set(MYRIAD_ARCH "" CACHE STRING "Instruction set of model files, as in -march=: native, x86-64-v4, ...; empty: the compiler's own")
+set(MYRIAD_ARCH "" CACHE STRING "Instruction set of model files, as in -march=; empty: the compiler's own")
 # Off by default: with contraction at the compiler's choice, results were measured to depend on the pack size. The library
 # writes its fused multiply-adds itself.
-set(MYRIAD_FP_CONTRACT off CACHE STRING "Contraction of a * b + c in model files: off, or fast, which gives up bit-identical results")
+set(MYRIAD_FP_CONTRACT off CACHE STRING
+    "Contraction of a * b + c in model files: off, or fast, which gives up bit-identical results")
 set_property(CACHE MYRIAD_ARCH PROPERTY STRINGS native x86-64-v4 x86-64-v3 x86-64-v2)
 set_property(CACHE MYRIAD_FP_CONTRACT PROPERTY STRINGS fast off)
 
@@ -22,15 +23,16 @@ function(myriad_model_flags result)
         set(CMAKE_REQUIRED_QUIET ON)
         check_cxx_compiler_flag("-march=${MYRIAD_ARCH}" ${check})
         if(NOT ${check})
-            message(FATAL_ERROR "MYRIAD_ARCH is ${MYRIAD_ARCH}, and ${CMAKE_CXX_COMPILER} does not know -march=${MYRIAD_ARCH}: "
-                                "give native, x86-64-v3, or nothing for the compiler's own instruction set")
+            message(FATAL_ERROR "MYRIAD_ARCH is ${MYRIAD_ARCH}, and ${CMAKE_CXX_COMPILER} does not know "
+                                "-march=${MYRIAD_ARCH}: give native, x86-64-v3, or nothing for the compiler's own instruction set")
         endif()
         list(APPEND flags "-march=${MYRIAD_ARCH}")
     else()
         get_property(told GLOBAL PROPERTY MYRIAD_ARCH_TOLD)
         if(NOT told)
             set_property(GLOBAL PROPERTY MYRIAD_ARCH_TOLD TRUE)
-            message(STATUS "Myriad: models use the compiler's own instruction set; -DMYRIAD_ARCH=native is several times as fast")
+            message(STATUS "Myriad: models use the compiler's own instruction set; "
+                           "-DMYRIAD_ARCH=native is several times as fast")
         endif()
     endif()
     list(APPEND flags "-ffp-contract=${MYRIAD_FP_CONTRACT}" -fno-math-errno)
@@ -44,7 +46,8 @@ endfunction()
 # directory. Such a file includes no Eigen. Links myriad::openmp.
 function(myriad_add_models target)
     if(NOT TARGET ${target})
-        message(FATAL_ERROR "myriad_add_models(${target} ...): there is no target ${target}; call add_executable or add_library first")
+        message(FATAL_ERROR "myriad_add_models(${target} ...): there is no target ${target}; "
+                            "call add_executable or add_library first")
     endif()
     myriad_model_flags(flags)
     foreach(file IN LISTS ARGN)

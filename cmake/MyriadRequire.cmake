@@ -42,6 +42,7 @@ function(myriad_require_report)
     get_property(packages GLOBAL PROPERTY MYRIAD_MISSING_PACKAGES)
     if(text)
         list(JOIN packages " " packages)
-        message(FATAL_ERROR "Myriad needs what was not found:\n${text}On Debian and Ubuntu:\n  apt-get install ${packages}\n")
+        message(FATAL_ERROR "Myriad needs what was not found:\n${text}"
+                            "On Debian and Ubuntu:\n  apt-get install ${packages}\n")
     endif()
 endfunction()

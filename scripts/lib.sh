@@ -27,13 +27,15 @@ duration() {
 # ----------------------------------------------------------------------------------------------------------------------
 
 has_command() { command -v "$1" >/dev/null 2>&1; }
-has_header() { local file; for file in /usr/include /usr/local/include; do [[ -e $file/$1 ]] && return; done; return 1; }
+has_header() { [[ -e /usr/include/$1 || -e /usr/local/include/$1 ]]; }
 
 # The sanitizers of clang++ come in a package of their own.
 has_clang_runtime() {
-    has_command clang++ && [[ -e $(clang++ -print-file-name=libclang_rt.tsan-x86_64.a) || -e $(clang++ --print-resource-dir)/lib/linux/libclang_rt.tsan-$(uname -m).a ]]
+    has_command clang++ && [[ -e $(clang++ --print-resource-dir)/lib/linux/libclang_rt.tsan-$(uname -m).a ]]
 }
-has_clang_openmp() { has_command clang++ && printf '#include <omp.h>\n' | clang++ -fopenmp=libomp -E -x c++ - >/dev/null 2>&1; }
+has_clang_openmp() {
+    has_command clang++ && printf '#include <omp.h>\n' | clang++ -fopenmp=libomp -E -x c++ - >/dev/null 2>&1
+}
 
 # A Python that has matplotlib: the first on the PATH may be another than the one that Debian's packages serve.
 plotting_python() {
@@ -69,7 +71,7 @@ has_package() {
 root_prefix() {
     if [[ $(id -u) == 0 ]]; then
         return 0
-    elif has_command sudo && { sudo -n true 2>/dev/null || [[ -t 0 ]]; }; then # without a terminal no one can type a password
+    elif has_command sudo && { sudo -n true 2>/dev/null || [[ -t 0 ]]; }; then # a password needs a terminal
         printf 'sudo'
     else
         return 1
@@ -128,7 +130,8 @@ then run this again."
             fail "Could not install libclang-rt-${version%%.*}-dev, the sanitizers of clang++."
     fi
     for package in "${missing[@]}"; do
-        has_package "$package" || fail "$package was installed, and what it should bring is still not found. Is CXX or PATH set to something else?"
+        has_package "$package" ||
+            fail "$package was installed, and what it should bring is still not found. Does the PATH name other tools?"
     done
 }
 

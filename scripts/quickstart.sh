@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# From a fresh checkout to a bifurcation diagram: installs what is missing, builds a release, runs the Duffing sweep, plots it.
+# From a fresh checkout to a bifurcation diagram: installs what is missing, builds a release, runs the sweep, plots it.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
@@ -31,7 +31,8 @@ say "Building the examples in build/release"
 quietly build/release/configure.log cmake --preset release \
     -DMYRIAD_BUILD_TESTS=OFF -DMYRIAD_BUILD_BENCHMARKS=OFF -DMYRIAD_BUILD_VALIDATION=OFF ||
     fail "The configuration failed, see above."
-quietly build/release/build.log cmake --build --preset release --parallel "$(nproc)" || fail "The build failed, see above."
+quietly build/release/build.log cmake --build --preset release --parallel "$(nproc)" ||
+    fail "The build failed, see above."
 
 say "Integrating the Duffing sweep to results/duffing.csv"
 mkdir -p results

@@ -83,15 +83,16 @@ slowest_files() {
     local log=build/$1/.ninja_log
     [[ -r $log ]] || return 0
     awk -F'\t' '$4 ~ /\.o$/ { seconds = ($2 - $1) / 1000; if (seconds > most[$4]) most[$4] = seconds }
-                END { for (file in most) printf "%.0f s %s\n", most[file], file }' "$log" | sort -rn | head -n 3 |
-        sed -E 's|CMakeFiles/[^/]*\.dir/||; s|^|   slow to compile: |'
+                END { for (file in most) printf "%.0f s %s\n", most[file], file }' "$log" | sort -rn |
+        sed -nE 's|CMakeFiles/[^/]*\.dir/||; s|^|   slow to compile: |; 1,3p'
 }
 
 # run_tests STEP PRESET [CTEST ARGUMENT...]: sets `result` and adds to the counts.
 run_tests() {
     local step=$1 preset=$2 log=build/$2/tests-$1.log status=0 counts
     shift 2
-    ctest --preset "$preset" --parallel "$jobs" "$@" </dev/null 2>&1 | tee "$log" | sed -nE '/\*\*\*|^(Errors|The following)|^[[:space:]]+[0-9]+ - |tests passed,/p' || status=$?
+    ctest --preset "$preset" --parallel "$jobs" "$@" </dev/null 2>&1 | tee "$log" |
+        sed -nE '/\*\*\*|^(Errors|The following)|^[[:space:]]+[0-9]+ - |tests passed,/p' || status=$?
     read -r -a counts < <(count_tests "$log" "$status")
     passed=$((passed + counts[0]))
     failed=$((failed + counts[1]))
@@ -99,8 +100,9 @@ run_tests() {
     if ((counts[2])); then result+=", ${counts[2]} skipped"; fi
     if ((counts[1])); then
         printf '%s\n' "--- output of the tests that failed, from $log ---"
-        awk '/Test +#[0-9]+: .*(Passed|Skipped) +[0-9.]+ sec/ { shown = 0 } /Test +#[0-9]+: .*\*\*\*/ { shown = 1 } /tests passed,/ { shown = 0 }
-             shown && !/^ +Start +[0-9]+:/' "$log" | head -n 400
+        awk '/Test +#[0-9]+: .*(Passed|Skipped) +[0-9.]+ sec/ || /tests passed,/ { shown = 0 }
+             /Test +#[0-9]+: .*\*\*\*/ { shown = 1 }
+             shown && !/^ +Start +[0-9]+:/ && ++lines <= 400' "$log"
     fi
 }
 

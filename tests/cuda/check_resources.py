@@ -145,7 +145,8 @@ def check(kernels, limits):
     for limit in limits:
         names = matching(kernels, limit.kernel)
         if not names:
-            complaints.append(f"{limit.kernel}: has a limit, but there is no such kernel (there are: {', '.join(kernels) or 'none'})")
+            complaints.append(f"{limit.kernel}: has a limit, but there is no such kernel "
+                              f"(there are: {', '.join(kernels) or 'none'})")
         for name in names:
             used = kernels[name]
             for what, bound in limit.bounds.items():
@@ -182,7 +183,8 @@ def main():
     parser.add_argument("--nvcc", default="nvcc", help="the compiler (default: nvcc)")
     parser.add_argument("--arch", default="sm_90", help="real architecture, its PTX is made too (default: sm_90)")
     parser.add_argument("--include", action="append", default=[], metavar="DIR", help="include directory")
-    parser.add_argument("--system-include", action="append", default=[], metavar="DIR", help="include directory without warnings")
+    parser.add_argument("--system-include", action="append", default=[], metavar="DIR",
+                        help="include directory without warnings")
     parser.add_argument("--flag", action="append", default=[], help="further compiler flag, as in --flag=-DX=1")
     arguments = parser.parse_args()
 

@@ -26,6 +26,7 @@ endforeach()
 
 run_step("configure" "${CMAKE_COMMAND}" -S "${CONSUMER_SOURCE_DIR}" -B "${WORK_DIR}/build" -G "${GENERATOR}"
          "-DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix" "-DCMAKE_CXX_COMPILER=${CXX_COMPILER}" -DCMAKE_BUILD_TYPE=Release
-         "-DMYRIAD_ARCH=${ARCH}" "-DMYRIAD_XSIMD_INCLUDE_DIR=${XSIMD_INCLUDE_DIR}" "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wconversion -Werror")
+         "-DMYRIAD_ARCH=${ARCH}" "-DMYRIAD_XSIMD_INCLUDE_DIR=${XSIMD_INCLUDE_DIR}"
+         "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wconversion -Werror")
 run_step("build" "${CMAKE_COMMAND}" --build "${WORK_DIR}/build")
 run_step("run" "${WORK_DIR}/build/decay")

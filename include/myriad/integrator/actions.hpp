@@ -3,6 +3,7 @@
 // follows from a hook having changed the state.
 #pragma once
 
+#include "myriad/controller/fixed.hpp"
 #include "myriad/event/locator.hpp"
 #include "myriad/integrator/state.hpp"
 
@@ -32,9 +33,12 @@ struct hook_driver {
                 if (MYRIAD_UNLIKELY(any(stops))) s.end_lanes(stops, status::stopped_by_user);
             }
             adopt(accepted, after);
+            if constexpr (writes_time_domain<Model>) {
+                for_each_lane(accepted & (before.t_end != s.data.t_end), [&](int i) MYRIAD_LAMBDA { retarget(i); });
+            }
         } else {
             for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA {
-                obey(i, run_on_lane(s.data, i, [](auto& lane) MYRIAD_LAMBDA { return Model::after_step(lane); }));
+                run_hook(i, [](auto& lane) MYRIAD_LAMBDA { return Model::after_step(lane); });
             });
         }
         if constexpr (Method::first_same_as_last || has_events<Model>) {
@@ -64,7 +68,7 @@ private:
             const auto detections = static_cast<std::int32_t>(get_lane(s.data.event_count[j], i)) + 1;
             set_lane(s.data.event_count[j], i, detections);
             if constexpr (has_after_event<Model>) {
-                obey(i, run_on_lane(s.data, i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_event(j, lane); }));
+                run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_event(j, lane); });
             }
             if (args.event[j].stop_after > 0 && detections >= args.event[j].stop_after)
                 s.end_lane(i, status::stopped_by_event);
@@ -73,10 +77,31 @@ private:
         });
     }
 
-    MYRIAD_FUNCTION void obey(int i, action wanted) {
+    /// Calls a scalar hook and does what it asks for.
+    template <class Hook>
+    MYRIAD_FUNCTION void run_hook(int i, Hook&& hook) {
+        const R t_end = get_lane(s.data.t_end, i);
+        const action wanted = run_on_lane(s.data, i, hook);
+        if constexpr (writes_time_domain<Model>) {
+            if (get_lane(s.data.t_end, i) != t_end) retarget(i);
+        }
         if (wanted == action::proceed) return;
         s.end_lane(i, status::stopped_by_user);
         if (wanted == action::end_instance) s.instance_over[i] = true;
+    }
+
+    /// A hook moved the end of the phase: it goes on to there, backwards if need be, or is over if it is there.
+    MYRIAD_FUNCTION void retarget(int i) {
+        const R t = get_lane(s.data.t, i);
+        const R t_end = get_lane(s.data.t_end, i);
+        const bool there = t == t_end;
+        if (s.ending[i] == status::success) set_lane(s.ended, i, there);  // other endings stand
+        if (there) return;
+        if constexpr (is_adaptive<Method>) {
+            set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), t_end - t));
+        } else {
+            lay_fixed_steps(args, s, i, t);
+        }
     }
 
     /// Takes over what a generic hook wrote, in the given lanes.

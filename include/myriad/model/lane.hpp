@@ -58,7 +58,7 @@ struct lane_data : inputs<Model, S> {
 /// Times and steps are in the model's unit of time; `h` is negative when integrating backwards. `index` is the number
 /// of the instance, `phase` counts from zero at the ensemble's start, `event_count[i]` the detections of event i in
 /// this phase. Parameters are writable if the model declares `writes_parameters`, the time domain if it declares
-/// `writes_time_domain` (a change takes effect from the next phase on).
+/// `writes_time_domain`: a phase goes on to a new t_end, backwards if need be; a new t_begin counts from the next phase on.
 template <class Model, class S>
 struct lane {
     template <class T, bool writable>

@@ -215,12 +215,10 @@ public:
 
     friend MYRIAD_FUNCTION pack blend(const mask_type& mask, const pack& a, const pack& b) {
         pack result;
-        if constexpr (is_real) {
-            MYRIAD_EACH_BATCH(result.parts[i] = xsimd::select(mask.parts[i], a.parts[i], b.parts[i]));
-        } else {
-            MYRIAD_EACH_BATCH(result.parts[i] =
-                                  xsimd::select(detail::mask_cast<T>(mask.parts[i]), a.parts[i], b.parts[i]));
-        }
+        // Integers too as reals, since xsimd 8 cannot select them for AVX-512 in builds without optimisation.
+        using detail::bits_as;
+        MYRIAD_EACH_BATCH(result.parts[i] = bits_as<T>(
+                              xsimd::select(mask.parts[i], bits_as<real>(a.parts[i]), bits_as<real>(b.parts[i]))));
         return result;
     }
 };

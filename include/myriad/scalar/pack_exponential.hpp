@@ -147,6 +147,13 @@ struct exponential {
         return finite_or_same(multiply_add(parts.exponent, batch(constants::log10_2_head), small), x);
     }
 
+    /// The cube root of a positive normal number: one Newton step on a first value good to a few hundred ulps.
+    static MYRIAD_FUNCTION batch cbrt(const batch& x) {
+        const batch third = batch(T(1) / T(3));
+        const batch first = exp(log(x) * third);
+        return subtract_product(first - x / (first * first), third, first);
+    }
+
     /// a * b - product without rounding error, for product = the rounded a * b (Dekker 1971 where nothing is fused).
     static MYRIAD_FUNCTION batch product_error(const batch& a, const batch& b, const batch& product) {
 #if MYRIAD_FUSED

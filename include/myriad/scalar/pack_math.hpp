@@ -86,8 +86,8 @@ struct functions<pack<T, batches>> {
     MYRIAD_UNARY_WITH_REDO(tan, trigonometry<T>::tan(x.parts[i]), !(abs(x) <= S(trigonometry_constants<T>::limit)))
     MYRIAD_UNARY_WITH_REDO(sinpi, trigonometry<T>::sinpi(x.parts[i]), !(abs(x) <= S(largest_half_turns)))
     MYRIAD_UNARY_WITH_REDO(cospi, trigonometry<T>::cospi(x.parts[i]), !(abs(x) <= S(largest_half_turns)))
-    // xsimd 8 is wrong on subnormal numbers here.
-    MYRIAD_UNARY_WITH_REDO(cbrt, xsimd::cbrt(x.parts[i]), abs(x) < S(smallest_normal))
+    MYRIAD_UNARY_WITH_REDO(cbrt, xsimd::copysign(exponential<T>::cbrt(xsimd::abs(x.parts[i])), x.parts[i]),
+                           !(abs(x) >= S(smallest_normal)) | !is_finite(x))
     MYRIAD_UNARY_WITH_REDO(log, exponential<T>::log(x.parts[i]), x < S(smallest_normal))
     MYRIAD_UNARY_WITH_REDO(log2, exponential<T>::log2(x.parts[i]), x < S(smallest_normal))
     MYRIAD_UNARY_WITH_REDO(log10, exponential<T>::log10(x.parts[i]), x < S(smallest_normal))
