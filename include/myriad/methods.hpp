@@ -3,5 +3,6 @@
 #pragma once
 
 #include "myriad/stepper/methods/cash_karp.hpp"
+#include "myriad/stepper/methods/dense.hpp"
 #include "myriad/stepper/methods/runge_kutta_4.hpp"
 #include "myriad/stepper/methods/tsitouras_5.hpp"

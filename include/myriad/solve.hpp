@@ -96,6 +96,20 @@ kernel_arguments<Model, R> arguments_of(const options& o) {
     return a;
 }
 
+/// Sample times must lie in every instance's domain, in the direction in which it is passed.
+template <class Model, class R>
+void check_sample_times(const ensemble<Model, R>& e, const std::vector<double>& times) {
+    if (times.empty()) return;
+    const double from = times.front(), to = times.back();
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+        if (e.ended(i)) continue;
+        const auto begin = static_cast<double>(e.t_begin()[i]), end = static_cast<double>(e.t_end()[i]);
+        const bool inside = end >= begin ? begin <= from && from <= to && to <= end : begin >= from && from >= to && to >= end;
+        require(inside, "samples.times go from ", from, " to ", to, ", but instance ", i, " is integrated from ", begin, " to ",
+                end, ": give times within the domain, in the order in which the integration reaches them");
+    }
+}
+
 /// Forwards progress from a backend, which must not see exceptions, to the user's function, which may throw.
 struct progress_relay {
     const std::function<void(std::int64_t, std::int64_t)>& function;
@@ -161,6 +175,17 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     kernel_arguments<Model, R> arguments = host::arguments_of<Model, R>(options);
     instances.describe(arguments, options.counting);
     result.records.describe(arguments.record);
+    std::vector<R> sample_times(options.samples.times.begin(), options.samples.times.end());
+    if (!options.samples.empty()) {
+        host::check_sample_times(instances, options.samples.times);
+        instances.describe_samples(arguments.sample, options.samples);
+        arguments.sample.times = sample_times.empty() ? nullptr : sample_times.data();
+        arguments.sample.count = static_cast<std::int32_t>(sample_times.empty() ? static_cast<std::size_t>(options.samples.evenly)
+                                                                                : sample_times.size());
+        arguments.sample.every = static_cast<std::int32_t>(options.samples.every);
+        arguments.sample.from_phase = static_cast<std::int32_t>(options.samples.from_phase);
+        arguments.sample.minimum_spacing = static_cast<R>(options.samples.minimum_spacing);
+    }
     if (options.counting == counting::on) host::total_work(instances, result, -1);
 
     host::progress_relay relay{options.progress, instances.size(), nullptr};

@@ -15,6 +15,7 @@
 #include "myriad/ensemble/view.hpp"
 #include "myriad/integrator/options.hpp"
 #include "myriad/model/concepts.hpp"
+#include "myriad/output/samples.hpp"
 
 namespace myriad {
 
@@ -101,6 +102,9 @@ public:
     const_map<std::int64_t> rhs_evaluations() const { return counter(3); }
     bool counted() const { return work_.components() > 0; }
 
+    /// Dense output, if options::samples asked for any.
+    const trajectory_samples<Model, R>& samples() const { return samples_; }
+
     /// Forgets all phases done: the next call starts every instance afresh, failed ones too, from the states, parameters
     /// and accessories it then has.
     void restart() {
@@ -109,7 +113,8 @@ public:
         side_.fill(0);
         ended_.fill(0);
         status_.fill(status::not_started);
-        work_.fill(0);
+        if (counted()) work_.fill(0);
+        samples_.clear();
     }
 
     /// Fills in the pointers of a kernel's arguments.
@@ -136,6 +141,15 @@ public:
         }
         a.shared = shared_.data();
         a.shared_integer = shared_integer_.data();
+    }
+
+    /// Makes room for the samples that are asked for, or checks that they can be added to those there are.
+    void describe_samples(sample_arguments<Model, R>& a, const sample_options& o) {
+        if (o.empty()) return;
+        if (samples_.empty()) samples_ = trajectory_samples<Model, R>(o, size_);
+        require(samples_.fits(o), "samples asks for other states or another capacity (", o.capacity, ") than the samples there "
+                "are (", samples_.capacity(), "): use the same in all calls, or a new ensemble");
+        samples_.describe(a);
     }
 
     /// Marks an instance as one that cannot be integrated.
@@ -203,6 +217,7 @@ private:
     component_array<std::int8_t> side_{n_event<Model>, size_, 0};
     component_array<std::uint8_t> ended_{1, size_, 0};
     component_array<myriad::status> status_{1, size_, status::not_started};
+    trajectory_samples<Model, R> samples_;
     component_array<std::int64_t> work_;  // allocated by the first call that counts
 };
 

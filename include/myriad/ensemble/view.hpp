@@ -35,6 +35,22 @@ struct record_arguments {
     std::int16_t integer_accessory_column[at_least_one(n_integer_accessory<Model>)];
 };
 
+/// Where samples go: sample k of instance i is at `time[k * size + i]` and, for state c, at
+/// `values[(column[c] * capacity + k) * size + i]`; a column of -1 is not sampled. Sampling is off if `stored` is null.
+template <class Model, class R>
+struct sample_arguments {
+    R* time;
+    R* values;
+    std::int32_t* stored;      // per instance: samples there are
+    const R* times;            // given times, or null: evenly spaced ones
+    std::int32_t count;        // number of times per phase
+    std::int32_t every;        // accepted steps per sample; 0: by time
+    std::int32_t capacity;
+    std::int32_t from_phase;   // of this call
+    R minimum_spacing;         // of samples by steps
+    std::int16_t column[n_state<Model>];
+};
+
 /// The arguments of a kernel. Arrays are structures of arrays: component c of instance i is at `array[c * size + i]`.
 template <class Model, class R>
 struct kernel_arguments {
@@ -79,6 +95,7 @@ struct kernel_arguments {
     std::int32_t sub_samples;         // points of the interpolant looked at per step
     std::int32_t accumulation_limit;  // actions of one event without leaving its tolerance
     record_arguments<Model, R> record;
+    sample_arguments<Model, R> sample;
 };
 
 }  // namespace myriad

@@ -22,6 +22,7 @@ struct integrator {
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
     static constexpr bool adaptive = is_adaptive<Method>;
+    static constexpr bool samples = samples_trajectory<Method>;
     using turn_number = typename integration_state<Model, Method, S>::turn_number;
     using trial_step = rk_trial<Method, S, n>;
     using locator = event_locator<Model, Method, S>;
@@ -29,6 +30,7 @@ struct integrator {
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S> s;
     event_state<Model, S> e;
+    sample_state<Method, S> o;
 
     template <class Source>
     MYRIAD_FUNCTION void run(Source& source) {
@@ -39,6 +41,7 @@ struct integrator {
             propose_step();
             take_step(trial);
             mask accepted = judge(trial);
+            if constexpr (samples) sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted);
             commit(trial, accepted);
             hook_driver<Model, Method, S> hooks{args, s, e};
             if constexpr (has_after_step<Model>) hooks.after_step(accepted);
@@ -68,7 +71,7 @@ struct integrator {
         for_each_lane(s.ended, [&](int i) MYRIAD_LAMBDA {
             const auto* arguments = &args;
             MYRIAD_FORGET(arguments);  // else what it points to waits in registers through the loop
-            set_lane(begun, i, phase_driver<Model, Method, S>{*arguments, s, e}.advance(i, source));
+            set_lane(begun, i, phase_driver<Model, Method, S>{*arguments, s, e, o}.advance(i, source));
         });
         s.ended = mask(false);
         if constexpr (lanes_of<S> > 1) {
@@ -153,6 +156,7 @@ struct integrator {
     MYRIAD_FUNCTION mask judge(const trial_step& trial) {
         mask accepted;
         const S t1 = end_time();
+        if constexpr (knows_slope_end) s.slope_end_known = mask(false);
         if constexpr (has_events<Model>) {
             const auto g1 = evaluate_events<Model>(t1, trial.y, s.data);
             mask valid = mask(true);
@@ -161,7 +165,6 @@ struct integrator {
             accepted = control(trial, t1, valid);
             locator locate{args, s, e};
             locate.forget(!accepted);
-            s.slope_end_known = mask(false);
             locate.locate(trial, t1, g1, accepted);
         } else {
             accepted = control(trial, t1, mask(true));
@@ -183,7 +186,7 @@ struct integrator {
             s.done = count_where(accepted, s.done);
             s.left = select(accepted, s.left - count(1), s.left);
             if constexpr (has_events<Model>) {
-                for_each_lane(accepted & s.slope_end_known, [&](int i) MYRIAD_LAMBDA {
+                for_each_lane(accepted & any_event(e.firing) & !s.final_step, [&](int i) MYRIAD_LAMBDA {
                     const R t = get_lane(s.base, i);
                     const R done = static_cast<R>(get_lane(s.done, i)) - R(1);
                     const R start = fma(done, get_lane(s.step, i), t);
@@ -203,7 +206,7 @@ struct integrator {
                     s.slope[c] = select(accepted, trial.k[Method::stages - 1][c], s.slope[c]);
             } else {
                 s.slope_valid = s.slope_valid & !accepted;
-                if constexpr (has_events<Model>) {
+                if constexpr (knows_slope_end) {
                     const mask known = accepted & s.slope_end_known;
                     MYRIAD_UNROLL
                     for (int c = 0; c < n; ++c) s.slope[c] = select(known, s.slope_end[c], s.slope[c]);
@@ -228,9 +231,12 @@ private:
     using count = typename integration_state<Model, Method, S>::count;
 
     /// Only packs have per-lane book-keeping to save.
-    static constexpr bool runs_freely = lanes_of<S> > 1 && !adaptive && !has_events<Model> && !has_after_step<Model> && !Method::first_same_as_last;
+    static constexpr bool runs_freely = lanes_of<S> > 1 && !adaptive && !has_events<Model> && !has_after_step<Model> && !samples &&
+                                        !Method::first_same_as_last;
     /// Slopes are worth keeping where a step may be repeated or its last slope is the next one's first.
     static constexpr bool keeps_slope = stepper_keeps_slope<Model, Method>;
+    /// Events and samples may need the slope at the end of a step, which is then the first of the next.
+    static constexpr bool knows_slope_end = has_events<Model> || samples;
     /// In single precision the rounding of t would cost steps and accuracy.
     static constexpr bool compensates_time = std::is_same_v<R, float>;
     /// Fixed steps count time; it is only written down where someone looks at it.
@@ -273,7 +279,7 @@ private:
 template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args, Source& source) {
     static_assert(hooks_fit<Model, real_of<S>>);
-    integrator<Model, Method, S> loop{args, {}, {}};
+    integrator<Model, Method, S> loop{args, {}, {}, {}};
     loop.run(source);
     return loop.s.all_turns + loop.s.turn;
 }

@@ -7,9 +7,11 @@
 #include <functional>
 #include <initializer_list>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "myriad/core/error.hpp"
+#include "myriad/stepper/methods/dense.hpp"
 
 namespace myriad {
 
@@ -60,6 +62,20 @@ struct record_options {
     bool empty() const { return states.empty() && accessories.empty() && integer_accessories.empty() && !time; }
 };
 
+/// Dense output, for a method `dense<Method>`: states along every trajectory, by exactly one of `evenly`, `times` and
+/// `every`. Samples are appended phase by phase and call by call until the capacity is reached.
+struct sample_options {
+    std::vector<int> states = {};      ///< components to sample; empty: no samples
+    std::int64_t capacity = 0;         ///< samples kept per instance, over all phases and calls
+    std::int64_t evenly = 0;           ///< number of evenly spaced times over [t_begin, t_end] in every phase, ends included
+    std::vector<double> times = {};    ///< or these times in every phase, in the order in which they are reached
+    std::int64_t every = 0;            ///< or the start of the phase and the end of every n-th accepted step
+    double minimum_spacing = 0;        ///< least time between samples by steps
+    std::int64_t from_phase = 0;       ///< first phase of the call that is sampled
+
+    bool empty() const { return states.empty(); }
+};
+
 /// How an ensemble is integrated. Times and steps are in the model's unit of time.
 struct options {
     std::int64_t phases = 1;  ///< integration phases in this call, each from t_begin to t_end or until stopped
@@ -83,6 +99,7 @@ struct options {
                                              ///< between, that end the instance as `event_accumulation`
 
     record_options record = {};
+    sample_options samples = {};
     myriad::counting counting = myriad::counting::on;
     myriad::invalid_instances invalid_instances = myriad::invalid_instances::refuse;
 
@@ -104,15 +121,49 @@ inline void check_tolerance(const char* name, const per_component& t, std::size_
     for (std::size_t i = 0; i < t.size(); ++i)
         check_positive(name, t[i], "give the error you accept per step, such as 1e-9");
 }
-inline void check_components(const char* what, const std::vector<int>& chosen, int count) {
+inline void check_components(const std::string& what, const std::vector<int>& chosen, int count) {
     std::vector<bool> seen(static_cast<std::size_t>(count), false);
     for (const int c : chosen) {
-        require(c >= 0 && c < count, "record.", what, " names component ", c, ", but the model has ", count,
+        require(c >= 0 && c < count, what, " names component ", c, ", but the model has ", count,
                 " (numbered from 0): use the model's enumerators");
-        require(!seen[static_cast<std::size_t>(c)], "record.", what, " names component ", c,
+        require(!seen[static_cast<std::size_t>(c)], what, " names component ", c,
                 " twice: name each component once");
         seen[static_cast<std::size_t>(c)] = true;
     }
+}
+
+}  // namespace host
+
+namespace host {
+
+inline void check_samples(const sample_options& s, const options& o, int n_state) {
+    check_components("samples.states", s.states, n_state);
+    const int ways = (s.evenly != 0) + !s.times.empty() + (s.every != 0);
+    require(ways == 1, "samples names ", ways, " of evenly, times and every: choose exactly one");
+    require(s.capacity > 0 && s.capacity < 2'000'000'000, "samples.capacity is ", s.capacity,
+            " (must be positive): give the number of samples to keep per instance");
+    require(s.from_phase >= 0 && s.from_phase < o.phases, "samples.from_phase is ", s.from_phase, ", but the call has ",
+            o.phases, " phases (counted from 0): nothing would be sampled");
+    require(s.minimum_spacing >= 0 && std::isfinite(s.minimum_spacing), "samples.minimum_spacing is ", s.minimum_spacing,
+            " (must not be negative)");
+    if (s.every != 0) {
+        check_count("samples.every", s.every, 1, 2'000'000'000);
+        return;
+    }
+    if (s.evenly != 0) check_count("samples.evenly", s.evenly, 2, 2'000'000'000);
+    bool rising = true, falling = true;
+    for (std::size_t k = 0; k < s.times.size(); ++k) {
+        require(std::isfinite(s.times[k]), "samples.times[", k, "] is ", s.times[k], " (must be finite)");
+        if (k == 0) continue;
+        rising = rising && s.times[k] > s.times[k - 1];
+        falling = falling && s.times[k] < s.times[k - 1];
+        require(rising || falling, "samples.times are not in order at number ", k, " (", s.times[k], " after ", s.times[k - 1],
+                "): give each time once, in the order in which the integration reaches them");
+    }
+    const std::int64_t wanted =
+        (s.evenly != 0 ? s.evenly : static_cast<std::int64_t>(s.times.size())) * (o.phases - s.from_phase);
+    require(s.capacity >= wanted, "samples.capacity is ", s.capacity, ", but the chosen times give ", wanted,
+            " samples per instance in this call: raise the capacity");
 }
 
 }  // namespace host
@@ -153,12 +204,18 @@ void check_options(const options& o, int n_state, int n_event, int n_accessory, 
     }
     check_count("sub_samples", o.sub_samples, 1, 10'000);
     check_count("accumulation_limit", o.accumulation_limit, 1, 1'000'000'000);
+    if (!o.samples.empty()) {
+        require(samples_trajectory<Method>,
+                "samples are asked for, but the method has no dense output: use dense<Method>, in solve and in "
+                "MYRIAD_INSTANTIATE");
+        check_samples(o.samples, o, n_state);
+    }
     if (!o.record.empty()) {
         require(o.record.from_phase >= 0 && o.record.from_phase < o.phases, "record.from_phase is ", o.record.from_phase,
                 ", but the call has ", o.phases, " phases (counted from 0): nothing would be recorded");
-        check_components("states", o.record.states, n_state);
-        check_components("accessories", o.record.accessories, n_accessory);
-        check_components("integer_accessories", o.record.integer_accessories, n_integer_accessory);
+        check_components("record.states", o.record.states, n_state);
+        check_components("record.accessories", o.record.accessories, n_accessory);
+        check_components("record.integer_accessories", o.record.integer_accessories, n_integer_accessory);
     }
 }
 

@@ -7,6 +7,7 @@
 #include "myriad/controller/fixed.hpp"
 #include "myriad/event/locator.hpp"
 #include "myriad/integrator/state.hpp"
+#include "myriad/output/save_at.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -20,6 +21,7 @@ struct phase_driver {
     const arguments& args;
     integration_state<Model, Method, S>& s;
     event_state<Model, S>& e;
+    sample_state<Method, S>& o;
 
     /// Ends the phase of lane i, if it holds an instance, and takes it to its next phase or to the next instance that
     /// needs work. Returns false when there is none: the lane stays empty.
@@ -150,6 +152,8 @@ private:
             if (phase == 0) forget_sides(i);
             set_lane(e.locating, i, false);
         }
+        if constexpr (samples_trajectory<Method>)
+            sampler<Model, Method, S>{args, s, o}.begin(i, args.phases - s.phases_left[i]);
         set_lane(s.active, i, true);
         set_lane(s.slope_valid, i, false);
         set_lane(s.last_not_finite, i, false);

@@ -11,6 +11,7 @@
 #include "myriad/model/hooks.hpp"
 #include "myriad/scalar/math.hpp"
 #include "myriad/stepper/explicit_rk.hpp"
+#include "myriad/stepper/methods/dense.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -20,7 +21,8 @@ inline constexpr bool is_adaptive = Method::embedded_order > 0;
 
 /// Slopes are kept where a step may be repeated or where its last slope is the first of the next.
 template <class Model, class Method>
-inline constexpr bool stepper_keeps_slope = is_adaptive<Method> || has_events<Model> || Method::first_same_as_last;
+inline constexpr bool stepper_keeps_slope =
+    is_adaptive<Method> || has_events<Model> || samples_trajectory<Method> || Method::first_same_as_last;
 
 /// Evaluations of the right-hand side in every trial step; others are counted where they happen.
 template <class Model, class Method>

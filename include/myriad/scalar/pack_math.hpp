@@ -3,7 +3,17 @@
 // otherwise. Lanes outside a function's vector range (huge angles, subnormal or special values) are redone one by one with
 // the standard library, so that a lane's result never depends on its neighbours. Part of pack.hpp, which includes it.
 //
-// Largest errors measured, in ulp (double / float):  TABLE
+// Largest errors measured with g++ 12 and xsimd 8.1, in ulp, double / float; 3 million arguments per range, against the
+// next wider type, on AVX-512, on AVX2 with FMA and on SSE2:
+//   sqrt 0.5 / 0.5      cbrt 0.8 / 0.9      hypot 1.2 / 1.2     min, max, abs, floor, round, copysign exact
+//   sin, cos 1.5 / 1.5 (2.5 / 2.4 without FMA)   tan 2.9 / 2.8 (3.4 / 3.5)   sinpi, cospi 1.8 / 2.0
+//   asin 1.2 / 2.4      acos 1.3 / 1.3      atan 2.0 / 2.3      atan2 2.3 / 2.6
+//   sinh 1.6 / 2.1      cosh 1.3 / 2.0      tanh 1.3 / 1.4
+//   exp 1.0 / 1.0       exp2 1.1 / 1.0      log 0.9 / 0.9       log2 1.8 / 1.9      log10 1.8 / 2.0
+//   pow 1.2 / 1.2 up to |y| = 7, 1.5 / 1.5 at 30, 2.3 / 2.3 at 100, then growing with |y|
+// Results of exp and exp2 below the smallest normal number are 0. What is redone one by one: |x| > 2^30 in sin, cos, tan
+// (float 2^16; without FMA 2^20 and 2^13), NaN and infinities there, arguments of log* below the smallest normal number,
+// zeros and subnormal or non-finite numbers in cbrt and pow, results of pow out of range, zero or extreme hypot.
 #pragma once
 
 #include <bit>
@@ -87,7 +97,7 @@ struct functions<pack<T, batches>> {
     MYRIAD_UNARY_WITH_REDO(sinpi, trigonometry<T>::sinpi(x.parts[i]), !(abs(x) <= S(largest_half_turns)))
     MYRIAD_UNARY_WITH_REDO(cospi, trigonometry<T>::cospi(x.parts[i]), !(abs(x) <= S(largest_half_turns)))
     MYRIAD_UNARY_WITH_REDO(cbrt, xsimd::copysign(exponential<T>::cbrt(xsimd::abs(x.parts[i])), x.parts[i]),
-                           !(abs(x) >= S(smallest_normal)) | !is_finite(x))
+                           !(abs(x) >= S(smallest_normal) && is_finite(x)))
     MYRIAD_UNARY_WITH_REDO(log, exponential<T>::log(x.parts[i]), x < S(smallest_normal))
     MYRIAD_UNARY_WITH_REDO(log2, exponential<T>::log2(x.parts[i]), x < S(smallest_normal))
     MYRIAD_UNARY_WITH_REDO(log10, exponential<T>::log10(x.parts[i]), x < S(smallest_normal))

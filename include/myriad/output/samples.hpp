@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Host storage of dense output: samples of chosen states along every trajectory, with a fixed capacity per instance.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "myriad/core/error.hpp"
+#include "myriad/ensemble/layout.hpp"
+#include "myriad/ensemble/view.hpp"
+#include "myriad/integrator/options.hpp"
+#include "myriad/model/concepts.hpp"
+
+namespace myriad {
+
+/// Samples of all instances, kept over phases and calls until `ensemble::restart`. The accessors return maps with one
+/// row per instance and one column per sample; columns from `stored()(i)` on are NaN in row i.
+template <class Model, class R>
+class trajectory_samples {
+public:
+    using map = Eigen::Map<const Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic>>;
+
+    trajectory_samples() = default;
+    trajectory_samples(const sample_options& o, std::int64_t size)
+        : size_(size), capacity_(o.capacity), chosen_(o.states), stored_(1, size, 0) {
+        for (const int c : o.states) column_[static_cast<std::size_t>(c)] = static_cast<int>(columns_++);
+        const std::int64_t cells = size * capacity_;
+        time_ = component_array<R>(1, cells, std::numeric_limits<R>::quiet_NaN());
+        values_ = component_array<R>(static_cast<int>(columns_), cells, std::numeric_limits<R>::quiet_NaN());
+    }
+
+    /// Samples there is room for, per instance.
+    std::int64_t capacity() const { return capacity_; }
+    /// Samples stored, per instance; `capacity()` where there was no room for more.
+    Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const { return {stored_.data(), size_}; }
+    map time() const { return map(time_.data(), size_, capacity_); }
+    map state(int c) const {
+        require(c >= 0 && static_cast<std::size_t>(c) < column_.size() && column_[static_cast<std::size_t>(c)] >= 0, "state ",
+                c, " was not sampled: name it in options::samples.states");
+        return map(values_.component(column_[static_cast<std::size_t>(c)]), size_, capacity_);
+    }
+
+    bool empty() const { return capacity_ == 0; }
+    /// Whether samples asked for like this can be added to those there are.
+    bool fits(const sample_options& o) const { return o.capacity == capacity_ && o.states == chosen_; }
+    void clear() {
+        if (empty()) return;
+        stored_.fill(0);
+        time_.fill(std::numeric_limits<R>::quiet_NaN());
+        values_.fill(std::numeric_limits<R>::quiet_NaN());
+    }
+    void describe(sample_arguments<Model, R>& a) {
+        a.time = time_.data();
+        a.values = values_.data();
+        a.stored = stored_.data();
+        a.capacity = static_cast<std::int32_t>(capacity_);
+        for (std::size_t c = 0; c < column_.size(); ++c) a.column[c] = static_cast<std::int16_t>(column_[c]);
+    }
+
+private:
+    static constexpr auto no_columns() {
+        std::array<int, static_cast<std::size_t>(n_state<Model>)> columns{};
+        for (int& c : columns) c = -1;
+        return columns;
+    }
+
+    std::int64_t size_ = 0, capacity_ = 0, columns_ = 0;
+    std::vector<int> chosen_;
+    std::array<int, static_cast<std::size_t>(n_state<Model>)> column_ = no_columns();
+    component_array<std::int32_t> stored_;
+    component_array<R> time_, values_;
+};
+
+}  // namespace myriad

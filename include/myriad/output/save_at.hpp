@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// Dense output inside the loop: stores chosen states at given times, from the interpolant of each committed step, or at
+// every n-th step. Only in kernels of a method `dense<Method>`; others have none of it.
+#pragma once
+
+#include <limits>
+
+#include "myriad/integrator/state.hpp"
+#include "myriad/stepper/dense_output.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// What is remembered between steps. Nothing for a method that does not sample.
+template <class Method, class S, bool samples = samples_trajectory<Method>>
+struct sample_state {};
+template <class Method, class S>
+struct sample_state<Method, S, true> {
+    S next;                                // time of the next sample; infinitely far ahead: none
+    S last;                                // time of the last one
+    std::int32_t index[lanes_of<S>];       // number of the next given time in this phase
+    std::int32_t steps[lanes_of<S>];       // accepted steps since the last sample; -1: this phase is not sampled
+};
+
+template <class Model, class Method, class S>
+struct sampler {
+    using R = real_of<S>;
+    using mask = mask_of<S>;
+    static constexpr int n = n_state<Model>;
+
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
+    sample_state<Method, S>& o;
+
+    /// Starts lane i's phase, number `phase` of this call, at its time and state.
+    MYRIAD_FUNCTION void begin(int i, std::int32_t phase) {
+        const R t = get_lane(s.data.t, i);
+        o.index[i] = 0;
+        o.steps[i] = -1;
+        set_lane(o.next, i, never(i));
+        if (args.sample.stored == nullptr || phase < args.sample.from_phase) return;
+        if (args.sample.every > 0) {
+            o.steps[i] = 0;
+            store(i, t, get_lanes<R>(s.data.y, i));
+            set_lane(o.last, i, t);
+            return;
+        }
+        const R ahead = get_lane(s.data.t_end, i) - t;
+        while (o.index[i] < args.sample.count && (sample_time(i) - t) * ahead < R(0)) ++o.index[i];
+        set_next(i);
+        if (get_lane(o.next, i) == t) {
+            store(i, t, get_lanes<R>(s.data.y, i));
+            ++o.index[i];
+            set_next(i);
+        }
+    }
+
+    /// Stores what falls into the accepted trial steps, which end at t1; called before they are committed.
+    MYRIAD_FUNCTION void save(const rk_trial<Method, S, n>& trial, const S& t1, const mask& accepted) {
+        if (args.sample.stored == nullptr) return;
+        if (args.sample.every > 0) {
+            save_steps(trial, t1, accepted);
+        } else {
+            save_times(trial, t1, accepted);
+        }
+    }
+
+private:
+    MYRIAD_FUNCTION void save_steps(const rk_trial<Method, S, n>& trial, const S& t1, const mask& accepted) {
+        for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA {
+            if (o.steps[i] < 0 || ++o.steps[i] < args.sample.every) return;
+            const R t = get_lane(t1, i);
+            if (abs(t - get_lane(o.last, i)) < args.sample.minimum_spacing) return;
+            store(i, t, get_lanes<R>(trial.y, i));
+            set_lane(o.last, i, t);
+            o.steps[i] = 0;
+        });
+    }
+
+    MYRIAD_FUNCTION void save_times(const rk_trial<Method, S, n>& trial, const S& t1, const mask& accepted) {
+        mask due = accepted & ((t1 - o.next) * s.h >= S(R(0)));
+        if (!any(due)) return;
+        step_data<Method, S, n> step{s.now(), s.h, s.data.y, trial, s.slope_end};
+        if constexpr (Method::first_same_as_last) {
+            step.slope_end = trial.k[Method::stages - 1];
+        } else if constexpr (!has_own_interpolant<Method>) {
+            // The slope at the end is the first of the next step, unless a hook changes the state; locating an event may
+            // have it already.
+            const mask needed = due & !s.slope_end_known;
+            if (any(needed)) {
+                const auto slope = evaluate_rhs<Model>(t1, trial.y, s.data);
+                MYRIAD_UNROLL
+                for (int c = 0; c < n; ++c) step.slope_end[c] = select(needed, slope[c], step.slope_end[c]);
+                s.extra_evaluations = count_where(needed, s.extra_evaluations);
+                s.slope_end_known = s.slope_end_known | needed;
+                s.slope_end = step.slope_end;
+            }
+        }
+        while (any(due)) {
+            const S theta = (o.next - step.t) / step.h;
+            const auto inside = interpolate(step, theta);
+            vec<S, n> y;
+            MYRIAD_UNROLL
+            for (int c = 0; c < n; ++c) y[c] = select(o.next == t1, trial.y[c], inside[c]);
+            for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
+                store(i, get_lane(o.next, i), get_lanes<R>(y, i));
+                ++o.index[i];
+                set_next(i);
+            });
+            due = accepted & ((t1 - o.next) * s.h >= S(R(0)));
+        }
+    }
+
+    MYRIAD_FUNCTION R never(int i) const {
+        return copysign(std::numeric_limits<R>::infinity(), get_lane(s.data.t_end, i) - get_lane(s.data.t, i));
+    }
+    MYRIAD_FUNCTION void set_next(int i) {
+        set_lane(o.next, i, o.index[i] < args.sample.count ? sample_time(i) : never(i));
+    }
+    /// Given times, or evenly spaced ones over the instance's domain, both ends included.
+    MYRIAD_FUNCTION R sample_time(int i) const {
+        const std::int32_t k = o.index[i];
+        if (args.sample.times != nullptr) return args.sample.times[k];
+        const R begin = get_lane(s.data.t_begin, i), end = get_lane(s.data.t_end, i);
+        if (k == args.sample.count - 1) return end;
+        return fma(static_cast<R>(k) / static_cast<R>(args.sample.count - 1), end - begin, begin);
+    }
+
+    MYRIAD_FUNCTION void store(int i, R t, const vec<R, n>& y) const {
+        std::int32_t& stored = args.sample.stored[s.instance[i]];
+        if (stored >= args.sample.capacity) return;
+        const std::int64_t cell = static_cast<std::int64_t>(stored) * args.size + s.instance[i];
+        args.sample.time[cell] = t;
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) {
+            if (args.sample.column[c] >= 0)
+                args.sample.values[args.sample.column[c] * (args.size * args.sample.capacity) + cell] = y[c];
+        }
+        ++stored;
+    }
+};
+
+}  // namespace myriad::inline MYRIAD_TARGET

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// A method with dense output. A type of its own, because kernels without dense output hold no instruction of it.
+#pragma once
+
+namespace myriad {
+
+/// `Method` with samples along the trajectory, chosen by `options::samples`. Instantiate it where it is wanted:
+/// `MYRIAD_INSTANTIATE(duffing, myriad::dense<myriad::cash_karp>)`.
+template <class Method>
+struct dense : Method {
+    static constexpr bool samples = true;
+};
+
+/// Whether a method's kernels can sample.
+template <class Method>
+inline constexpr bool samples_trajectory = requires { Method::samples; };
+
+}  // namespace myriad
