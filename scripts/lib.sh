@@ -146,8 +146,11 @@ quietly() {
     mkdir -p "$(dirname "$log")"
     "$@" </dev/null >"$log" 2>&1 || status=$?
     if ((status != 0)); then
-        printf '%s\n' "failed: $*" "--- end of $log ---" >&2
-        tail -n 80 "$log" >&2
+        printf '%s\n' "failed: $*" >&2
+        # The first errors, since a compiler that goes on buries them.
+        awk '/(^|[ :])(fatal )?error:|^FAILED:|^CMake Error/ && !seen[$0]++ && ++lines <= 20' "$log" >&2
+        printf '%s\n' "--- end of $log ---" >&2
+        tail -n 40 "$log" >&2
         printf '%s\n' "--------------------" >&2
     fi
     return "$status"

@@ -403,8 +403,8 @@ TEST_CASE("packs are accurate to the documented ulps") {
         check(atan_function{}, 2.5, -4, 4);
         check(atan_function{}, 2.5, 1 / big, big, spacing::logarithmic);
         for (const double range : {1.0, exponent}) {
-            check(sinh_function{}, 2, -range, range);
-            check(cosh_function{}, 2, -range, range);
+            check(sinh_function{}, 2.5, -range, range);
+            check(cosh_function{}, 2.1, -range, range);
             check(tanh_function{}, 1.5, -range / 20, range / 20);
             check(exp_function{}, 1.1, -range, range);
             check(exp2_function{}, 1.2, -range, range);
@@ -416,7 +416,7 @@ TEST_CASE("packs are accurate to the documented ulps") {
         check(log10_function{}, 2, 0.5, 2);
         check(log10_function{}, 2, 1 / big, big, spacing::logarithmic);
         check(sqrt_function{}, 0.5, 1 / big, big, spacing::logarithmic);
-        check(cbrt_function{}, 1.5, 1 / big, big, spacing::logarithmic);
+        check(cbrt_function{}, 1, 1 / big, big, spacing::logarithmic);
         check(abs_function{}, 0, -big, big);
         check(floor_function{}, 0, -100, 100);
         check(round_function{}, 0, -100, 100);
@@ -537,7 +537,8 @@ TEST_CASE("min, max, rounding, signs, sqrt and fma agree bit for bit between pac
             pack<T, 3> result;
             evaluate<F>(result, pack<T, 3>(x)...);
             if (!same_bits(get_lane(result, 5 % pack<T, 3>::lanes), plain)) {
-                CAPTURE(F::text, sizeof(T), x..., get_lane(result, 0), plain);
+                const std::vector<T> given{x...};
+                CAPTURE(F::text, sizeof(T), given, get_lane(result, 0), plain);
                 FAIL_CHECK();
             }
         };

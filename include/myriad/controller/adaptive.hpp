@@ -15,7 +15,7 @@ MYRIAD_FUNCTION void propose_adaptive_step(integration_state<Model, Method, S>& 
     using R = real_of<S>;
     const S remaining = s.data.t_end - s.data.t;
     s.final_step = abs(remaining) <= abs(s.data.h_next) * S(R(1.001));
-    s.h = select(s.final_step, remaining, s.data.h_next);
+    s.h = select(s.final_step, remaining, copysign(s.data.h_next, remaining));
 }
 
 /// Ends lanes that can make no step: not_finite where that was why their last trial failed.

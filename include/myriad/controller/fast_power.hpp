@@ -33,14 +33,11 @@ struct float_format<float> {
     static constexpr float magic = 8388608.0f, round_magic = 12582912.0f, bias = 127;
 };
 
-/// x^exponent for one real or one SIMD batch (`B`, with integers `I`) of positive normal numbers.
-template <class R, class B, class I>
-MYRIAD_FUNCTION B fast_power(const B& x, const B& exponent) {
+/// x^exponent for one real or one SIMD batch (`B`, with integers `I`) of positive normal numbers, with the fused
+/// multiply-add of that kind of number.
+template <class R, class B, class I, class MultiplyAdd>
+MYRIAD_FUNCTION B fast_power(const B& x, const B& exponent, MultiplyAdd&& multiply_add) {
     using format = float_format<R>;
-    const auto multiply_add = [](const B& a, const B& b, const B& c) MYRIAD_LAMBDA {
-        using myriad::fma;  // the scalar one; for batches xsimd's is found
-        return fma(a, b, c);
-    };
     const I bits = std::bit_cast<I>(x);
     const B e = std::bit_cast<B>((bits >> format::mantissa) | I(format::magic_bits)) - B(format::magic + format::bias);
     const B m = std::bit_cast<B>((bits & I(format::mantissa_mask)) | I(format::one));  // in [1, 2)
@@ -68,13 +65,16 @@ MYRIAD_FUNCTION S fast_power(const S& x, const S& exponent) {
 #else
     using I = typename detail::float_format<R>::bits;
     if constexpr (lanes_of<S> == 1) {
-        return detail::fast_power<R, R, I>(x, exponent);
+        return detail::fast_power<R, R, I>(
+            x, exponent, [](const R& a, const R& b, const R& c) MYRIAD_LAMBDA { return fma(a, b, c); });
     } else {
         S result;
         using B = typename S::batch_type;
         MYRIAD_UNROLL
         for (std::size_t i = 0; i < sizeof(result.parts) / sizeof(B); ++i)
-            result.parts[i] = detail::fast_power<R, B, typename integer_of<S>::batch_type>(x.parts[i], exponent.parts[i]);
+            result.parts[i] = detail::fast_power<R, B, typename integer_of<S>::batch_type>(
+                x.parts[i], exponent.parts[i],
+                [](const B& a, const B& b, const B& c) MYRIAD_LAMBDA { return S::batch_fma(a, b, c); });
         return result;
     }
 #endif

@@ -239,9 +239,10 @@ private:
         return crossed;
     }
 
-    /// The earliest crossing of each lane of `crossing`, as a fraction of the step; sets the target.
+    /// The earliest crossing of each lane of `crossing`, as a fraction of the step; sets the target. `flight`: lanes that
+    /// start on the surface of their target, leave it, and come back.
     MYRIAD_FUNCTION S earliest(const step_data<Method, S, n>& step, const values& side, masks crossed,
-                               const mask& crossing, window w) {
+                               const mask& crossing, window w, mask& flight) {
         const values slope = event_slopes<Model>(step.t, step.y, step.trial.k[0], s.data);
         values tolerance;
         MYRIAD_UNROLL
@@ -260,6 +261,7 @@ private:
             const mask on_surface = abs(g_low) <= near;
             const mask leaves = at_start & on_surface & (heading > S(R(0)));
             const mask already = on_surface & !leaves & (at_start | (g_low <= S(R(0))));
+            flight = select(open, leaves, flight);
             const bracket<S> b{w.low, w.high, select(leaves, heading, g_low),
                                select(leaves, (g_high - g_low) / w.high, g_high)};
             const S small = S(R(0.1)) * near;
@@ -292,7 +294,8 @@ private:
                                        const mask& crossing, const window& w, mask& accepted) {
         accepted = accepted & !crossing;
         s.located = count_where(crossing, s.located);
-        S length = earliest(step, side, crossed, crossing, w) * step.h;
+        mask flight = mask(false);
+        S length = earliest(step, side, crossed, crossing, w, flight) * step.h;
         const mask again = crossing & e.locating;
         e.h_resume = select(crossing & !again, s.data.h_next, e.h_resume);
         e.h_before = select(crossing & !again, S(R(0)), e.h_before);
@@ -303,9 +306,12 @@ private:
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j)
             e.crossed[j] = select(crossing, crossed[j] | (again & e.crossed[j]), e.crossed[j]);
-        const mask here = crossing & (step.t + length == step.t);
+        mask here = crossing & (step.t + length == step.t);
         redo(crossing & !here, length);
         forget(here);
+        // A flight too short for the resolution of t: an action at its start would turn the state into the surface.
+        s.end_lanes(here & flight, status::event_accumulation);
+        here = here & !flight;
         if (any(here)) {
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {

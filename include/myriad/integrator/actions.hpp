@@ -97,11 +97,7 @@ private:
         const bool there = t == t_end;
         if (s.ending[i] == status::success) set_lane(s.ended, i, there);  // other endings stand
         if (there) return;
-        if constexpr (is_adaptive<Method>) {
-            set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), t_end - t));
-        } else {
-            lay_fixed_steps(args, s, i, t);
-        }
+        if constexpr (!is_adaptive<Method>) lay_fixed_steps(args, s, i, t);
     }
 
     /// Takes over what a generic hook wrote, in the given lanes.

@@ -39,9 +39,8 @@ struct phase_driver {
                 }
                 load(i);
             }
-            begin_phase(i);
-            if (get_lane(s.data.t, i) != get_lane(s.data.t_end, i)) return true;
-            end_phase(i);  // an empty domain: the phase is over without a step
+            if (begin_phase(i)) return true;
+            end_phase(i);
         }
     }
 
@@ -115,8 +114,10 @@ private:
                                    static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
     }
 
-    /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on.
-    MYRIAD_FUNCTION void begin_phase(int i) {
+    /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on. Returns false if it is over
+    /// without a step: its domain is empty, or `initialise` left something that is not finite.
+    MYRIAD_FUNCTION bool begin_phase(int i) {
+        s.ending[i] = status::success;
         // Read again for each phase, so that t_begin need not stay in a register.
         if constexpr (!writes_time_domain<Model>) load_time_domain(i);
         const std::int64_t index = s.instance[i];
@@ -132,12 +133,10 @@ private:
             if (restart_step) set_lane(s.data.h_next, i, args.step);
         }
         if constexpr (has_initialise<Model>) {
-            const auto before = get_lanes<R>(s.data.y, i);
-            run_on_lane(s.data, i, [](auto& lane) MYRIAD_LAMBDA { Model::initialise(lane); });
+            place(i, [](auto& lane) MYRIAD_LAMBDA { Model::initialise(lane); });
             if constexpr (writes_time_domain<Model>) {
                 if (!carry_on) set_lane(s.data.t, i, get_lane(s.data.t_begin, i));
             }
-            if (m > 0 && !same_values(before, get_lanes<R>(s.data.y, i))) forget_sides(i);
         }
         const R t = get_lane(s.data.t, i);
         args.t[index] = t;
@@ -157,7 +156,6 @@ private:
         set_lane(s.active, i, true);
         set_lane(s.slope_valid, i, false);
         set_lane(s.last_not_finite, i, false);
-        s.ending[i] = status::success;
         s.instance_over[i] = false;
         set_count(s.rejected, i, 0);
         set_count(s.located, i, 0);
@@ -167,9 +165,28 @@ private:
             s.turn = 0;
         }
         s.phase_start[i] = s.turn;
+        return s.ending[i] == status::success && t != get_lane(s.data.t_end, i);
     }
 
-    /// The state was placed, not integrated, where it is: functions within their tolerance come from no side.
+    /// Runs `initialise` or `finalise`. A state that is not finite is refused; one that was moved was placed, not
+    /// integrated, where it is, so functions within their tolerance come from no side.
+    template <class Hook>
+    MYRIAD_FUNCTION void place(int i, Hook&& hook) {
+        const auto before = get_lanes<R>(s.data.y, i);
+        run_on_lane(s.data, i, hook);
+        const auto after = get_lanes<R>(s.data.y, i);
+        bool finite = all_finite(after);
+        if constexpr (writes_time_domain<Model>)
+            finite = finite && get_lane(s.data.t_begin, i) == get_lane(s.data.t_begin, i) &&
+                     get_lane(s.data.t_end, i) == get_lane(s.data.t_end, i);
+        if (!finite) {
+            set_lanes(s.data.y, i, before);
+            s.ending[i] = status::not_finite;
+        } else if (!same_values(before, after)) {
+            forget_sides(i);
+        }
+    }
+
     MYRIAD_FUNCTION void forget_sides(int i) {
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) set_lane(e.side[j], i, R(0));
@@ -178,14 +195,15 @@ private:
     /// Ends the phase that lane i is in: `finalise`, record, count; a failed phase ends the instance instead.
     MYRIAD_FUNCTION void end_phase(int i) {
         const std::int64_t index = s.instance[i];
-        const bool failed = is_failure(s.ending[i]);
         if (args.accepted != nullptr) count_work(i);
         if constexpr (!is_adaptive<Method>) set_lane(s.data.t, i, fixed_step_time(args, s, i));
         args.t[index] = get_lane(s.data.t, i);
+        if constexpr (has_finalise<Model>) {
+            if (!is_failure(s.ending[i])) place(i, [](auto& lane) MYRIAD_LAMBDA { Model::finalise(lane); });
+        }
+        const bool failed = is_failure(s.ending[i]);
         args.status[index] = s.ending[i];
         if (!failed) {
-            if constexpr (has_finalise<Model>)
-                run_on_lane(s.data, i, [](auto& lane) MYRIAD_LAMBDA { Model::finalise(lane); });
             record(i, args.phases - s.phases_left[i] - args.record.from_phase);
             args.phase[index] += 1;
         }

@@ -23,7 +23,7 @@ namespace myriad::inline MYRIAD_TARGET {
 
 /// A kind of number the elementary functions take.
 template <class S>
-concept real_kind = std::floating_point<S> ||(kind_rank<S> > 0);
+concept real_kind = (kind_rank<S> > 0) || std::floating_point<S>;
 
 namespace detail {
 

@@ -145,6 +145,11 @@ public:
     pack() = default;
     MYRIAD_FUNCTION pack(T value) { MYRIAD_EACH_BATCH(parts[i] = batch_type(value)); }
 
+    /// a * b + c of one batch, with one rounding where the target has the instruction.
+    static MYRIAD_FUNCTION batch_type batch_fma(const batch_type& a, const batch_type& b, const batch_type& c) {
+        return detail::multiply_add(a, b, c);
+    }
+
     /// Reads `lanes` contiguous values; the aligned form needs `xsimd::default_arch::alignment()` bytes.
     static MYRIAD_FUNCTION pack load(const T* from) {
         pack result;

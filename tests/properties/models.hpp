@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// The models whose results must not depend on anything but the instance: one with events and an impact law of + - * / and
+// sqrt only, one with events, hooks and elementary functions, and one without any hook.
+#pragma once
+
+#include <myriad/model.hpp>
+
+namespace properties {
+
+/// A ball in a quadratic potential that bounces off a wall, with drag; + - * / and sqrt only.
+struct bouncer {
+    enum state { x, v, n_state };
+    enum parameter { k, x0, n_parameter };
+    enum shared { drag, n_shared };
+    enum accessory { v_max, path, n_accessory };
+    enum integer_accessory { bounces, n_integer_accessory };
+    enum event { wall, turning, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        using myriad::sqrt;
+        return {y[v], -p[k] * (y[x] - p[x0]) - p.shared[drag] * y[v] / sqrt(R(1) + y[v] * y[v])};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return {y[x], y[v]};
+    }
+    MYRIAD_FUNCTION static void initialise(auto& lane) { lane.accessory[v_max] = lane.y[v]; }
+    template <class R>
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        using myriad::abs;
+        lane.accessory[v_max] = myriad::max(lane.accessory[v_max], lane.y[v]);
+        lane.accessory[path] = lane.accessory[path] + abs(lane.h * lane.y[v]);
+    }
+    MYRIAD_FUNCTION static void after_event(int event, auto& lane) {
+        if (event != wall) return;
+        lane.y[v] = -lane.y[v] * lane.parameter[k] / (lane.parameter[k] + lane.shared[drag]);
+        lane.integer_accessory[bounces] += 1;
+    }
+};
+
+/// A forced pendulum with a stop, and functions of all kinds; also shaped like a bubble: a power of the state.
+struct mixed {
+    enum state { q, w, n_state };
+    enum parameter { f, n_parameter };
+    enum accessory { q_max, n_accessory };
+    enum event { section, stop, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
+        using myriad::cos, myriad::exp, myriad::pow, myriad::sin;
+        return {y[w], R(0.3) * cos(p[f] * t) - sin(y[q]) - R(0.1) * y[w] + R(0.01) * pow(R(2) + sin(y[q]), R(-1.7)) -
+                          R(0.01) * exp(-y[w] * y[w])};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return {y[w], y[q] - R(1)};
+    }
+    MYRIAD_FUNCTION static void after_event(int event, auto& lane) {
+        if (event == stop) lane.y[w] = -lane.y[w] * real(0.7, lane.y[w]);
+    }
+    template <class R>
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        lane.accessory[q_max] = myriad::max(lane.accessory[q_max], lane.y[q]);
+    }
+
+private:
+    template <class R>
+    MYRIAD_FUNCTION static R real(double value, R) {
+        return static_cast<R>(value);
+    }
+};
+
+/// Lorenz' equations.
+struct lorenz {
+    enum state { x, y, z, n_state };
+    enum parameter { rho, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
+        return {R(10) * (s[y] - s[x]), p[rho] * s[x] - s[y] - s[x] * s[z], s[x] * s[y] - R(8) / R(3) * s[z]};
+    }
+};
+
+}  // namespace properties
