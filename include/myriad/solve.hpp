@@ -28,11 +28,13 @@ public:
                     ": set it with ensemble.shared(...) before solving");
         for (int c = 0; c < n_state<Model>; ++c) check("state", c, ensemble_.state(c).data(), false);
         for (int c = 0; c < n_parameter<Model>; ++c) check("parameter", c, ensemble_.parameter(c).data(), false);
-        check("t_begin", -1, ensemble_.t_begin().data(), false);
-        check("t_end", -1, ensemble_.t_end().data(), may_be_endless());
+        check("t_begin", no_component, ensemble_.t_begin().data(), false);
+        check("t_end", endless, ensemble_.t_end().data(), may_be_endless());
     }
 
 private:
+    static constexpr int no_component = -1, endless = -2;
+
     /// An infinite t_end is fine where something else can end a phase.
     bool may_be_endless() const {
         if constexpr (has_after_step<Model> || has_after_event<Model> || writes_time_domain<Model>) return true;
@@ -58,7 +60,7 @@ private:
             throw error(message(name, " is NaN in all ", bad, " instances: it was never set; set it with ensemble.",
                                 component < 0 ? message(what, "()") : message(what, "(", component, ")"),
                                 " = ... before solving"));
-        const char* advice = std::isinf(values[first]) && component < 0
+        const char* advice = std::isinf(values[first]) && component == endless
                                  ? ": an infinite time needs an event with stop_after, or a hook, that ends the phase"
                                  : ": correct the inputs, or set invalid_instances = invalid_instances::mark to run the others";
         throw error(message(name, " is not finite in ", bad, " of ", ensemble_.size(), " instances, first in instance ",
@@ -96,14 +98,21 @@ kernel_arguments<Model, R> arguments_of(const options& o) {
     return a;
 }
 
-/// Sample times must lie in every instance's domain, in the direction in which it is passed.
+/// Sample times must lie in every instance's domain, in the direction in which it is passed, and a domain on which they
+/// are spaced evenly must be finite. Domains that are not numbers are left to the check of the inputs.
 template <class Model, class R>
-void check_sample_times(const ensemble<Model, R>& e, const std::vector<double>& times) {
-    if (times.empty()) return;
-    const double from = times.front(), to = times.back();
+void check_sample_times(const ensemble<Model, R>& e, const sample_options& samples) {
+    if (samples.every != 0) return;
+    const std::vector<double>& times = samples.times;
     for (std::int64_t i = 0; i < e.size(); ++i) {
-        if (e.ended(i)) continue;
         const auto begin = static_cast<double>(e.t_begin()[i]), end = static_cast<double>(e.t_end()[i]);
+        if (e.ended(i) || std::isnan(begin) || std::isnan(end)) continue;
+        if (times.empty()) {
+            require(std::isfinite(end - begin), "samples.evenly divides the domain, but instance ", i, " is integrated from ",
+                    begin, " to ", end, ": give samples.times, or a finite t_end");
+            continue;
+        }
+        const double from = times.front(), to = times.back();
         const bool inside = end >= begin ? begin <= from && from <= to && to <= end : begin >= from && from >= to && to >= end;
         require(inside, "samples.times go from ", from, " to ", to, ", but instance ", i, " is integrated from ", begin, " to ",
                 end, ": give times within the domain, in the order in which the integration reaches them");
@@ -163,11 +172,13 @@ template <class Method, class Model, class R>
 report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
     check_options<Model, Method, R>(options, n_state<Model>, n_event<Model>, n_accessory<Model>,
                                     n_integer_accessory<Model>);
-    auto* const kernel = &openmp::run<Model, Method, R>;
+    auto* kernel = &openmp::run<Model, Method, R>;
+    asm("" : "+r"(kernel));  // else g++ takes the address of any template for not null, a weak one too
     require(kernel != nullptr,
             "this model was not instantiated for this method and real type, or its source file was not linked: write "
             "MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for float) in the model's source file, and name "
             "that file in myriad_add_models");
+    if (!options.samples.empty()) host::check_sample_times(instances, options.samples);
     host::input_check<Model, R>(instances, options).run();
 
     report<Model, R> result;
@@ -177,7 +188,6 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     result.records.describe(arguments.record);
     std::vector<R> sample_times(options.samples.times.begin(), options.samples.times.end());
     if (!options.samples.empty()) {
-        host::check_sample_times(instances, options.samples.times);
         instances.describe_samples(arguments.sample, options.samples);
         arguments.sample.times = sample_times.empty() ? nullptr : sample_times.data();
         arguments.sample.count = static_cast<std::int32_t>(sample_times.empty() ? static_cast<std::size_t>(options.samples.evenly)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The kernels of the impact model.
-#include "properties/pack_sizes_body.hpp"
+#include "tests/properties/pack_sizes_body.hpp"
 
 RUN_WITH_PACKS(properties::bouncer, myriad::cash_karp, double)
 #if defined(MYRIAD_NIGHTLY)

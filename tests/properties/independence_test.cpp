@@ -10,9 +10,9 @@
 
 #include <myriad/myriad.hpp>
 
-#include "catch.hpp"
-#include "properties/models.hpp"
-#include "properties/pack_sizes.hpp"
+#include "tests/catch.hpp"
+#include "tests/properties/models.hpp"
+#include "tests/properties/pack_sizes.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The kernels of the model with elementary functions.
-#include "properties/pack_sizes_body.hpp"
+#include "tests/properties/pack_sizes_body.hpp"
 
 RUN_WITH_PACKS(properties::mixed, myriad::tsitouras_5, double)
 #if defined(MYRIAD_NIGHTLY)

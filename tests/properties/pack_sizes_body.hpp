@@ -2,11 +2,11 @@
 // The body of run_with_packs, for the files that instantiate it, one per model so that they compile side by side.
 #pragma once
 
-#include "properties/pack_sizes.hpp"
+#include "tests/properties/pack_sizes.hpp"
 
 #include <myriad/instantiate.hpp>
 
-#include "properties/models.hpp"
+#include "tests/properties/models.hpp"
 
 namespace properties {
 

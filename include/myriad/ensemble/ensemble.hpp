@@ -77,10 +77,16 @@ public:
     }
 
     /// A parameter that all instances share; NaN until set. With an index beyond the model's: throws `error`.
-    R& shared(int c) { return shared_.component(checked_index(c, n_shared<Model>, "shared parameter"))[0]; }
-    R shared(int c) const { return shared_.component(checked_index(c, n_shared<Model>, "shared parameter"))[0]; }
-    std::int32_t& shared_integer(int c) {
-        return shared_integer_.component(checked_index(c, n_shared_integer<Model>, "shared integer"))[0];
+    template <class C>
+    R& shared(C c) { return shared_.component(checked_index(shared_index(c), n_shared<Model>, "shared parameter"))[0]; }
+    template <class C>
+    R shared(C c) const {
+        return shared_.component(checked_index(shared_index(c), n_shared<Model>, "shared parameter"))[0];
+    }
+    /// An integer that all instances share; 0 until set.
+    template <class C>
+    std::int32_t& shared_integer(C c) {
+        return shared_integer_.component(checked_index(shared_integer_index(c), n_shared_integer<Model>, "shared integer"))[0];
     }
 
     /// Results: where the last phase ended, and how.
@@ -167,31 +173,33 @@ private:
         require(size > 0, "the ensemble has ", size, " instances (must be positive): there is nothing to integrate");
         return size;
     }
-    static int checked_index(int c, int count, const char* what) {
+    static int checked_index(std::int64_t c, int count, const char* what) {
         require(c >= 0 && c < count, what, " ", c, " does not exist: the model has ", count,
                 " (numbered from 0); use the model's enumerators");
-        return c;
+        return static_cast<int>(c);
     }
     // An integer, or an enumerator of the enumeration that names such components: any other is a mix-up.
 #define MYRIAD_COMPONENT_INDEX(kind)                                                                         \
     template <class C>                                                                                       \
-    static int kind##_index(C c) {                                                                           \
+    static std::int64_t kind##_index(C c) {                                                                  \
         static_assert(std::is_enum_v<C> || std::is_integral_v<C>, "give a number or an enumerator of the model"); \
         if constexpr (std::is_enum_v<C> && requires { typename Model::kind; }) {                             \
             static_assert(std::is_same_v<C, typename Model::kind>, "this enumerator is not a " #kind " of the model"); \
         }                                                                                                    \
-        return static_cast<int>(c);                                                                          \
+        return static_cast<std::int64_t>(c);                                                                 \
     }
     MYRIAD_COMPONENT_INDEX(state)
     MYRIAD_COMPONENT_INDEX(parameter)
     MYRIAD_COMPONENT_INDEX(accessory)
     MYRIAD_COMPONENT_INDEX(integer_accessory)
+    MYRIAD_COMPONENT_INDEX(shared)
+    MYRIAD_COMPONENT_INDEX(shared_integer)
 #undef MYRIAD_COMPONENT_INDEX
 
     template <class Array>
-    static auto view(Array& array, int c, const char* what) {
+    static auto view(Array& array, std::int64_t index, const char* what) {
         using T = std::remove_pointer_t<decltype(array.data())>;
-        checked_index(c, array.components(), what);
+        const int c = checked_index(index, array.components(), what);
         if constexpr (std::is_const_v<T>) {
             return const_map<std::remove_const_t<T>>(array.component(c), array.length());
         } else {

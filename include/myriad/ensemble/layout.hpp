@@ -9,6 +9,8 @@
 #include <memory>
 #include <new>
 
+#include "myriad/core/error.hpp"
+
 namespace myriad {
 
 /// `components` arrays of `size` values each, one after the other; component c of instance i is at `[c * size + i]`.
@@ -17,7 +19,7 @@ class component_array {
 public:
     component_array() = default;
     component_array(int components, std::int64_t size, T value)
-        : size_(size), data_(allocate(static_cast<std::size_t>(components) * static_cast<std::size_t>(size))) {
+        : size_(size), data_(allocate(static_cast<std::size_t>(components), static_cast<std::size_t>(size))) {
         std::uninitialized_fill_n(data_.get(), static_cast<std::size_t>(components) * static_cast<std::size_t>(size), value);
         components_ = components;
     }
@@ -40,8 +42,14 @@ private:
     struct release {
         void operator()(T* p) const { ::operator delete(p, alignment); }
     };
-    static T* allocate(std::size_t n) {
-        return n == 0 ? nullptr : static_cast<T*>(::operator new(n * sizeof(T), alignment));
+    static T* allocate(std::size_t components, std::size_t size) {
+        if (components == 0 || size == 0) return nullptr;
+        const double wanted = static_cast<double>(components) * static_cast<double>(size) * sizeof(T);
+        void* const memory = wanted > 9e18 ? nullptr
+                                           : ::operator new(components * size * sizeof(T), alignment, std::nothrow);
+        require(memory != nullptr, "out of memory: ", wanted / 1e9, " GB are wanted for ", components, " components of ", size,
+                " values: integrate the ensemble in smaller parts");
+        return static_cast<T*>(memory);
     }
 
     int components_ = 0;

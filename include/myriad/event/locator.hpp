@@ -22,10 +22,11 @@ struct event_state {
     using mask = mask_of<S>;
     vec<S, m> value;     // event functions at the committed state
     vec<S, m> side;      // -1, +1: the side last seen; 0: on the surface, not yet known
+    vec<S, m> heading;   // slope of a firing function along the solution, before the actions
     vec<mask, m> target;   // the event a lane is being stepped to
     vec<mask, m> crossed;  // events that crossed in the trial in which the target was found
     vec<mask, m> firing;   // events that have happened at the committed state
-    vec<mask, m> lingering;  // firing, and the function has not left its tolerance since it last fired
+    vec<mask, m> left;     // the function has been beyond its tolerance since the event last fired
     mask locating;       // lanes whose next trial is a step redone to the time of an event
     S h_redo;            // its length
     S h_resume;          // the step size to go on with afterwards
@@ -113,16 +114,54 @@ struct event_locator {
     MYRIAD_FUNCTION void begin(const mask& lanes) {
         const values g = evaluate_events<Model>(s.now(), s.data.y, s.data);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) adopt(lanes, j, g[j], mask(false));
+        for (int j = 0; j < m; ++j) {
+            adopt(lanes, j, g[j], abs(e.side[j]) > S(R(1)));
+            e.left[j] = e.left[j] | lanes;
+        }
     }
 
     /// Takes the event values after hooks changed what they depend on. A function within its tolerance keeps its side,
-    /// unless it has just fired or the hook moved it there: then the slope at the next step decides.
+    /// unless the hook moved it there: then the slope at the next step decides.
     MYRIAD_FUNCTION void restart(const mask& lanes) {
         const values g = evaluate_events<Model>(s.now(), s.data.y, s.data);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
-            adopt(lanes, j, g[j], e.firing[j] | (abs(e.value[j]) > S(args.event[j].tolerance)));
+        for (int j = 0; j < m; ++j) adopt(lanes & !e.firing[j], j, g[j], abs(e.value[j]) > S(args.event[j].tolerance));
+    }
+
+    /// The same after the actions of firing events, with the slopes of the state they left (`s.slope`). A function that
+    /// fired is on the side it is heading for. Where its slope is zero, it rests on the side it came from if an action
+    /// changed it, and passed if none did (it jumped). Where it was still moving away when it fired, as in a flight too
+    /// short for the resolution of the state, an action that turned it round must not send it through the surface.
+    MYRIAD_FUNCTION void settle(const mask& lanes) {
+        const values g = evaluate_events<Model>(s.now(), s.data.y, s.data);
+        const values slope = event_slopes<Model>(s.now(), s.data.y, s.slope, s.data);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const mask fired = lanes & e.firing[j];
+            const S from = e.side[j];
+            const mask moved = g[j] != e.value[j];
+            const mask jumped = moved & (abs(g[j]) > S(args.event[j].tolerance));
+            const mask acted = moved | (slope[j] != e.heading[j]);
+            const S ahead = sign_of(slope[j]) * sign_of(s.h);
+            const mask unresolved = from * sign_of(e.heading[j]) * sign_of(s.h) > S(R(0));
+            const mask rests = (ahead == S(R(0))) & !e.left[j];
+            S side = select(unresolved | (ahead == S(R(0))), select(acted | rests, from, -from), ahead);
+            side = select(jumped, sign_of(g[j]), side);
+            e.side[j] = select(fired, side, e.side[j]);
+            e.value[j] = select(fired, g[j], e.value[j]);
+            e.left[j] = (e.left[j] & !fired) | (lanes & jumped);
+        }
+    }
+
+    /// f at the committed state, where it is not known; the next step takes it from there.
+    MYRIAD_FUNCTION void renew_slope(const mask& lanes) {
+        const mask needed = lanes & !s.slope_valid;
+        if (!any(needed)) return;
+        const auto slope = evaluate_rhs<Model>(s.now(), s.data.y, s.data);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) s.slope[c] = select(needed, slope[c], s.slope[c]);
+        s.extra_evaluations = count_where(needed, s.extra_evaluations);
+        s.slope_valid = s.slope_valid | needed;
     }
 
     /// Events of which a crossing from the given sides is asked for.
@@ -150,7 +189,10 @@ struct event_locator {
         mask crossing = any_event(crossed);
         if (MYRIAD_UNLIKELY(look_inside || any(crossing | e.locating | (accepted & s.final_step)))) {
             step_data<Method, S, n> step{s.now(), s.h, s.data.y, trial, s.slope};
-            const mask wanted = look_inside ? accepted : crossing | (accepted & e.locating);
+            mask wanted = look_inside ? accepted : crossing | (accepted & e.locating);
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j)
+                wanted = wanted | (accepted & s.final_step & (abs(g1[j]) <= S(args.event[j].tolerance)));
             if (any(wanted)) set_slope_end(step, t1, wanted);
             window w{S(R(0)), S(R(1)), e.value, g1};
             if (look_inside) {
@@ -164,6 +206,7 @@ struct event_locator {
         for (int j = 0; j < m; ++j) {
             const S seen = select(abs(g1[j]) > S(args.event[j].tolerance), sign_of(g1[j]), side[j]);
             e.side[j] = select(accepted, seen, e.side[j]);
+            e.left[j] = e.left[j] | (accepted & (abs(g1[j]) > S(args.event[j].tolerance)));
             e.value[j] = select(accepted, g1[j], e.value[j]);
         }
     }
@@ -239,10 +282,9 @@ private:
         return crossed;
     }
 
-    /// The earliest crossing of each lane of `crossing`, as a fraction of the step; sets the target. `flight`: lanes that
-    /// start on the surface of their target, leave it, and come back.
+    /// The earliest crossing of each lane of `crossing`, as a fraction of the step; sets the target.
     MYRIAD_FUNCTION S earliest(const step_data<Method, S, n>& step, const values& side, masks crossed,
-                               const mask& crossing, window w, mask& flight) {
+                               const mask& crossing, window w) {
         const values slope = event_slopes<Model>(step.t, step.y, step.trial.k[0], s.data);
         values tolerance;
         MYRIAD_UNROLL
@@ -261,7 +303,6 @@ private:
             const mask on_surface = abs(g_low) <= near;
             const mask leaves = at_start & on_surface & (heading > S(R(0)));
             const mask already = on_surface & !leaves & (at_start | (g_low <= S(R(0))));
-            flight = select(open, leaves, flight);
             const bracket<S> b{w.low, w.high, select(leaves, heading, g_low),
                                select(leaves, (g_high - g_low) / w.high, g_high)};
             const S small = S(R(0.1)) * near;
@@ -294,8 +335,7 @@ private:
                                        const mask& crossing, const window& w, mask& accepted) {
         accepted = accepted & !crossing;
         s.located = count_where(crossing, s.located);
-        mask flight = mask(false);
-        S length = earliest(step, side, crossed, crossing, w, flight) * step.h;
+        S length = earliest(step, side, crossed, crossing, w) * step.h;
         const mask again = crossing & e.locating;
         e.h_resume = select(crossing & !again, s.data.h_next, e.h_resume);
         e.h_before = select(crossing & !again, S(R(0)), e.h_before);
@@ -306,18 +346,16 @@ private:
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j)
             e.crossed[j] = select(crossing, crossed[j] | (again & e.crossed[j]), e.crossed[j]);
-        mask here = crossing & (step.t + length == step.t);
+        const mask here = crossing & (length == S(R(0)));
         redo(crossing & !here, length);
         forget(here);
-        // A flight too short for the resolution of t: an action at its start would turn the state into the surface.
-        s.end_lanes(here & flight, status::event_accumulation);
-        here = here & !flight;
         if (any(here)) {
+            const values slope = event_slopes<Model>(step.t, step.y, step.trial.k[0], s.data);
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {
                 const mask fires = here & (e.target[j] | (e.crossed[j] & (abs(e.value[j]) <= S(args.event[j].tolerance))));
                 e.firing[j] = e.firing[j] | fires;
-                e.lingering[j] = select(here, fires, e.lingering[j]);
+                e.heading[j] = select(here, slope[j], e.heading[j]);
             }
             if constexpr (is_adaptive<Method>) s.data.h_next = select(here, e.h_resume, s.data.h_next);
         }
@@ -354,7 +392,8 @@ private:
                 const S near = tolerance[j];
                 const mask together = e.crossed[j] & (abs(g1[j]) <= near) & (side[j] * slope[j] * step.h < S(R(0)));
                 e.firing[j] = arrived & (e.target[j] | together);
-                e.lingering[j] = arrived & (abs(e.value[j]) <= near) & (abs(g_middle[j]) <= near);
+                e.heading[j] = slope[j];
+                e.left[j] = e.left[j] | (arrived & (abs(g_middle[j]) > near));
             }
             forget(arrived);
             if constexpr (is_adaptive<Method>) s.data.h_next = select(arrived, e.h_resume, s.data.h_next);
@@ -362,13 +401,15 @@ private:
             s.slope_end_known = arrived;
         }
         if (any(domain_end)) {
+            const values slope = event_slopes<Model>(t1, step.trial.y, step.slope_end, s.data);
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {
                 const S g = side[j] * g1[j];
                 const mask fires = domain_end & (S(args.event[j].direction) * side[j] <= S(R(0))) &
-                                   (side[j] != S(R(0))) & (g <= S(R(0))) & (g >= S(-args.event[j].tolerance));
+                                   (side[j] != S(R(0))) & (abs(g) <= S(args.event[j].tolerance)) &
+                                   ((g <= S(R(0))) | (side[j] * slope[j] * step.h < S(R(0))));
+                e.heading[j] = select(fires, slope[j], e.heading[j]);
                 e.firing[j] = e.firing[j] | fires;
-                e.lingering[j] = e.lingering[j] & !fires;
             }
         }
     }

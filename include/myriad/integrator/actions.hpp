@@ -57,6 +57,9 @@ struct hook_driver {
         for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
         if constexpr (has_after_event<Model>) s.slope_valid = s.slope_valid & !acting;
         follow_up(acting, before);
+        event_locator<Model, Method, S> locate{args, s, e};
+        locate.renew_slope(acting);
+        locate.settle(acting);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) e.firing[j] = mask(false);
     }
@@ -72,7 +75,7 @@ private:
             }
             if (args.event[j].stop_after > 0 && detections >= args.event[j].stop_after)
                 s.end_lane(i, status::stopped_by_event);
-            e.lingered[j][i] = get_lane(e.lingering[j], i) ? e.lingered[j][i] + 1 : 1;
+            e.lingered[j][i] = get_lane(e.left[j], i) ? 1 : e.lingered[j][i] + 1;
             if (e.lingered[j][i] >= args.accumulation_limit) s.end_lane(i, status::event_accumulation);
         });
     }

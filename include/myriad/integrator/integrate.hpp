@@ -161,7 +161,7 @@ struct integrator {
             const auto g1 = evaluate_events<Model>(t1, trial.y, s.data);
             mask valid = mask(true);
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) valid = valid & (g1[j] == g1[j]);
+            for (int j = 0; j < m; ++j) valid = valid & (g1[j] == g1[j]) & (e.value[j] == e.value[j]);
             accepted = control(trial, t1, valid);
             locator locate{args, s, e};
             locate.forget(!accepted);
@@ -215,6 +215,7 @@ struct integrator {
             }
         }
         s.ended = s.ended | (accepted & s.final_step);
+        if constexpr (has_events<Model>) s.ended = s.ended | (accepted & s.slope_end_known & (s.data.t == s.data.t_end));
     }
 
     /// Ends phases that have taken as many trial steps as the options allow.
@@ -255,11 +256,15 @@ private:
 
     MYRIAD_FUNCTION mask control(const trial_step& trial, const S& t1, const mask& valid) {
         if constexpr (adaptive) {
+            const mask not_finite_before = s.last_not_finite;
             mask accepted = control_step(args, s, trial, valid);
-            const mask stuck = s.running() & (t1 == s.data.t);
+            mask stuck = s.running() & (t1 == s.data.t);
+            if constexpr (has_events<Model>) stuck = stuck & !e.locating;  // a flight shorter than the resolution of t
             if (MYRIAD_UNLIKELY(any(stuck))) {
                 s.rejected = count_where(stuck & accepted, s.rejected);
                 accepted = accepted & !stuck;
+                // a step that did not get anywhere says nothing about why the one before it failed
+                s.last_not_finite = s.last_not_finite | (stuck & not_finite_before);
                 end_stuck_lanes(s, stuck);
             }
             return accepted;

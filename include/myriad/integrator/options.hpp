@@ -168,6 +168,17 @@ inline void check_samples(const sample_options& s, const options& o, int n_state
 
 }  // namespace host
 
+namespace host {
+
+/// Refuses numbers that turn into zero in the ensemble's real type.
+template <class R>
+void check_kept(const char* name, double value) {
+    require(value == 0 || static_cast<R>(value) != R(0), name, " is ", value,
+            ", which is zero in single precision: give a larger value or use an ensemble of doubles");
+}
+
+}  // namespace host
+
 /// Checks everything about the options that does not need the ensemble's data; throws `error`.
 template <class Model, class Method, class R>
 void check_options(const options& o, int n_state, int n_event, int n_accessory, int n_integer_accessory) {
@@ -183,6 +194,9 @@ void check_options(const options& o, int n_state, int n_event, int n_accessory, 
         require(!std::isnan(o.step), "step is not set, but the method takes fixed steps: give options::step");
         check_positive("step", o.step, "give the length of the fixed step; the direction follows from t_end");
     }
+    if (!std::isnan(o.step)) check_kept<R>("step", o.step);
+    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) check_kept<R>("relative_tolerance", o.relative_tolerance[c]);
+    for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c) check_kept<R>("absolute_tolerance", o.absolute_tolerance[c]);
     require(o.minimum_step >= 0 && std::isfinite(o.minimum_step), "minimum_step is ", o.minimum_step,
             " (must not be negative): give 0 for the resolution of t");
     require(o.maximum_step > 0, "maximum_step is ", o.maximum_step, " (must be positive)");
@@ -198,6 +212,7 @@ void check_options(const options& o, int n_state, int n_event, int n_accessory, 
             " entries, but the model has ", n_event, " event functions: give one entry for each, or none for defaults");
     for (const event_options& e : o.events) {
         check_positive("event tolerance", e.tolerance, "give the |g| at which an event counts as located, such as 1e-6");
+        check_kept<R>("event tolerance", e.tolerance);
         check_count("stop_after", e.stop_after, 0, 2'000'000'000);
         const int d = static_cast<int>(e.direction);
         require(d >= -1 && d <= 1, "event direction is ", d, " (must be falling, either or rising)");

@@ -16,6 +16,9 @@ template <class Model, class R = double>
 inline constexpr bool has_generic_after_step = has_after_step<Model> &&
     requires(lane<Model, R>& l) { Model::template after_step<R>(l); };
 
+template <class T, class R>
+concept generic_hook_result = std::is_void_v<T> || std::same_as<T, mask_of<R>>;
+
 template <class T>
 concept hook_result = std::is_void_v<T> || std::same_as<T, action>;
 
@@ -26,12 +29,12 @@ constexpr bool check_hooks() {
     using inputs_t = inputs<Model, R>;
     using lane_t = lane<Model, R>;
     static_assert(
-        requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {
+        !has_rhs<Model> || n_state<Model> == 0 || requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {
             { Model::template rhs<R>(R{}, y, p) } -> std::same_as<vec<R, n_state<Model>>>;
         },
         "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
         "rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`");
-    if constexpr (has_events<Model>) {
+    if constexpr (has_events<Model> && n_event<Model> > 0) {
         static_assert(
             requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {
                 { Model::template events<R>(R{}, y, p) } -> std::same_as<vec<R, n_event<Model>>>;
@@ -45,6 +48,15 @@ constexpr bool check_hooks() {
                 { Model::initialise(l) } -> std::same_as<void>;
             },
             "initialise has a wrong signature: it must be `MYRIAD_FUNCTION static void initialise(auto& lane)`");
+    }
+    if constexpr (has_generic_after_step<Model, R>) {
+        static_assert(
+            requires(lane_t& l) {
+                { Model::template after_step<R>(l) } -> generic_hook_result<R>;
+            },
+            "the generic after_step has a wrong result: it must be `template <class R> MYRIAD_FUNCTION static "
+            "myriad::mask_of<R> after_step(auto& lane)` (true ends the phase) or return void; to return an action, leave "
+            "out the template parameter");
     }
     if constexpr (has_after_step<Model> && !has_generic_after_step<Model, R>) {
         static_assert(

@@ -28,6 +28,8 @@ public:
     trajectory_samples(const sample_options& o, std::int64_t size)
         : size_(size), capacity_(o.capacity), chosen_(o.states), stored_(1, size, 0) {
         for (const int c : o.states) column_[static_cast<std::size_t>(c)] = static_cast<int>(columns_++);
+        require(capacity_ <= std::numeric_limits<std::int64_t>::max() / size, "samples.capacity ", capacity_, " times ", size,
+                " instances is beyond any memory: sample less");
         const std::int64_t cells = size * capacity_;
         time_ = component_array<R>(1, cells, std::numeric_limits<R>::quiet_NaN());
         values_ = component_array<R>(static_cast<int>(columns_), cells, std::numeric_limits<R>::quiet_NaN());

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// Runs the small models of docs/writing_a_model.md and compares them with what is known of them; exit status 1 if one is
+// wrong.
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+#include <numbers>
+
+#include <myriad/myriad.hpp>
+
+#include "models.hpp"
+
+namespace {
+
+constexpr double endless = std::numeric_limits<double>::infinity();
+bool all_right = true;
+
+// Written so that NaN is wrong.
+void compare(const char* what, double value, double exact, double tolerance) {
+    const bool right = std::abs(value - exact) <= tolerance;
+    all_right = all_right && right;
+    std::cout << (right ? "right: " : "WRONG: ") << what << ' ' << value << ", expected " << exact << " within "
+              << tolerance << '\n';
+}
+
+template <class Method, class R>
+void bounce(double tolerance) {
+    myriad::ensemble<bouncing_ball, R> balls(10);
+    balls.parameter(bouncing_ball::r).setLinSpaced(R(0.5), R(0.9));
+    balls.shared(bouncing_ball::g) = R(9.81);
+    balls.state(bouncing_ball::x) = R(1);
+    balls.state(bouncing_ball::v) = R(0);
+    balls.time_domain(0, static_cast<R>(endless));  // the hook ends the phase
+    myriad::solve<Method>(myriad::device::best(), balls,
+                          {.relative_tolerance = tolerance,
+                           .absolute_tolerance = tolerance,
+                           .events = {{.direction = myriad::direction::falling, .tolerance = tolerance}}});
+    const double r = static_cast<double>(balls.parameter(bouncing_ball::r)[9]);
+    const double fall = std::sqrt(2 / 9.81);
+    compare("time of the fifth impact", static_cast<double>(balls.accessory(bouncing_ball::t_impact)[9]),
+            fall * (1 + 2 * (r + r * r + r * r * r + r * r * r * r)), 20 * tolerance);
+}
+
+void lyapunov() {
+    myriad::ensemble<tangent_duffing> sweep(2);
+    sweep.parameter(tangent_duffing::k) << 0.22, 0.24;
+    sweep.shared(tangent_duffing::B) = 0.3;
+    sweep.state(tangent_duffing::x) = -0.5;
+    sweep.state(tangent_duffing::v) = -0.1;
+    sweep.state(tangent_duffing::a) = 1;
+    sweep.state(tangent_duffing::b) = 0;
+    sweep.accessory(tangent_duffing::growth) = 0;
+    sweep.time_domain(0, 2 * std::numbers::pi);
+    const auto run = [&sweep](int phases) {
+        myriad::solve<myriad::tsitouras_5>(myriad::device::best(), sweep, {.phases = phases});
+    };
+    run(300);
+    sweep.accessory(tangent_duffing::growth) = 0;  // the transient does not count
+    run(1000);
+    const Eigen::ArrayXd exponent = sweep.accessory(tangent_duffing::growth) / (1000 * 2 * std::numbers::pi);
+    std::cout << "largest Lyapunov exponents " << exponent.transpose()
+              << " for k = 0.22 (period three), 0.24 (chaos)\n";
+    compare("signs differ by", (exponent > 0).cast<double>().matrix().dot(Eigen::Vector2d(-1, 1)), 1, 0);
+}
+
+template <class Method, class R>
+void settle(const myriad::options& options, double tolerance) {
+    myriad::ensemble<settling, R> decays(100);
+    decays.parameter(settling::k).setLinSpaced(R(0.5), R(2));
+    decays.shared(settling::limit) = R(0.01);
+    decays.state(settling::x) = R(1);
+    decays.accessory(settling::integral) = R(0);
+    decays.accessory(settling::x_before) = R(0);
+    decays.time_domain(0, R(1000));
+    const auto report = myriad::solve<Method>(myriad::device::best(), decays, options);
+    compare("decays stopped", static_cast<double>(report.count(myriad::status::stopped_by_user)), 100, 0);
+    compare("integral of the first", static_cast<double>(decays.accessory(settling::integral)[0]),
+            (1 - static_cast<double>(decays.state(settling::x)[0])) / 0.5, tolerance);
+}
+
+void follow() {
+    myriad::ensemble<continuation> paths(3);
+    paths.parameter(continuation::mu) << 0, 1, 2;
+    paths.shared(continuation::increment) = 0.1;
+    paths.state(continuation::x) = 0.5;
+    paths.time_domain(0, 5);
+    myriad::solve<myriad::tsitouras_5>(myriad::device::best(), paths, {.phases = 10});
+    compare("parameter after ten phases", paths.parameter(continuation::mu)[1], 2, 1e-12);
+    compare("end of the time domain", paths.t_end()[1], 15, 0);
+    compare("equilibrium", paths.state(continuation::x)[1], std::cbrt(1.9), 1e-6);
+}
+
+// Exact: 2 cos t while it does not reach the stop.
+void sample() {
+    myriad::ensemble<stop_by_select> masses(3);
+    masses.parameter(stop_by_select::gap) = 10;
+    masses.shared(stop_by_select::K) = 10;
+    masses.state(stop_by_select::x) = 2;
+    masses.state(stop_by_select::v) = 0;
+    masses.time_domain(0, 10);
+    // snippet: samples
+    myriad::solve<myriad::dense<myriad::tsitouras_5>>(
+        myriad::device::best(), masses, {.samples = {.states = {stop_by_select::x}, .capacity = 101, .evenly = 101}});
+    const auto t = masses.samples().time();  // one row per instance, one column per sample
+    const auto x = masses.samples().state(stop_by_select::x);
+    // end of snippet
+    compare("samples differ from 2 cos t by", (x - 2 * t.cos()).abs().maxCoeff(), 0, 1e-6);
+}
+
+template <class Model>
+Eigen::ArrayXd swing() {
+    myriad::ensemble<Model> masses(100);
+    masses.parameter(Model::gap).setLinSpaced(0.1, 0.9);
+    masses.shared(Model::K) = 10;
+    masses.state(Model::x) = -1;
+    masses.state(Model::v) = 0;
+    masses.time_domain(0, 20);
+    myriad::solve<myriad::tsitouras_5>(myriad::device::best(), masses, {.relative_tolerance = 1e-10});
+    return masses.state(Model::x);
+}
+
+}  // namespace
+
+int main() {
+    std::cout << myriad::describe<bouncing_ball>();
+    bounce<myriad::cash_karp, double>(1e-9);
+    bounce<myriad::tsitouras_5, double>(1e-9);
+    bounce<myriad::tsitouras_5, float>(1e-5);
+    lyapunov();
+    settle<myriad::tsitouras_5, double>({.maximum_step = 0.01}, 1e-4);
+    settle<myriad::runge_kutta_4, float>({.step = 0.01}, 1e-4);
+    follow();
+    sample();
+    // A last bit may decide whether a step over the kink is accepted, so the results agree to its error only.
+    compare("difference of select and branch", (swing<stop_by_select>() - swing<stop_by_branch>()).abs().maxCoeff(), 0,
+            1e-4);
+    return all_right ? EXIT_SUCCESS : EXIT_FAILURE;
+}

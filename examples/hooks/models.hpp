@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Small models, one for each thing a model can do beside its right-hand side; docs/writing_a_model.md shows them.
+#pragma once
+
+#include <myriad/model.hpp>
+
+// snippet: impact
+/// A ball that bounces on the ground: x'' = -g, and v becomes -r v where x falls to zero.
+struct bouncing_ball {
+    enum state { x, v, n_state };
+    enum parameter { r, n_parameter };
+    enum shared { g, n_shared };
+    enum accessory { t_impact, n_accessory };
+    enum event { impact, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {y[v], R(-p.shared[g])};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_event>{y[x]};
+    }
+    MYRIAD_FUNCTION static myriad::action after_event(int, auto& lane) {
+        lane.y[x] = 0;
+        lane.y[v] = -lane.parameter[r] * lane.y[v];
+        lane.accessory[t_impact] = lane.t;
+        return lane.event_count[impact] == 5 ? myriad::action::end_phase : myriad::action::proceed;
+    }
+};
+// end of snippet
+
+// snippet: lyapunov
+/// The Duffing oscillator with its tangent (a, b); each phase adds the growth of the tangent to `growth`.
+struct tangent_duffing {
+    enum state { x, v, a, b, n_state };
+    enum parameter { k, n_parameter };
+    enum shared { B, n_shared };
+    enum accessory { growth, n_accessory };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {y[v], y[x] - y[x] * y[x] * y[x] - p[k] * y[v] + p.shared[B] * myriad::cos(t), y[b],
+                (R(1) - R(3) * y[x] * y[x]) * y[a] - p[k] * y[b]};
+    }
+    MYRIAD_FUNCTION static void finalise(auto& lane) {
+        const auto length = myriad::hypot(lane.y[a], lane.y[b]);
+        lane.y[a] /= length;
+        lane.y[b] /= length;
+        lane.accessory[growth] += myriad::log(length);
+    }
+};
+// end of snippet
+
+// snippet: after_step
+/// x' = -k x, its integral by the trapezoidal rule, and an end where x has fallen below a limit.
+struct settling {
+    enum state { x, n_state };
+    enum parameter { k, n_parameter };
+    enum shared { limit, n_shared };
+    enum accessory { integral, x_before, n_accessory };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return myriad::vec<R, n_state>{-p[k] * y[x]};
+    }
+    MYRIAD_FUNCTION static void initialise(auto& lane) {
+        lane.accessory[integral] = 0;
+        lane.accessory[x_before] = lane.y[x];
+    }
+    template <class R>  // generic: runs on a whole pack
+    MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane) {
+        lane.accessory[integral] += R(0.5) * lane.h * (lane.accessory[x_before] + lane.y[x]);
+        lane.accessory[x_before] = lane.y[x];
+        return lane.y[x] < lane.shared[limit];  // a mask: true ends the phase of that lane
+    }
+};
+// end of snippet
+
+// snippet: continuation
+/// Follows an equilibrium of x' = mu - x^3 while mu grows from phase to phase and the phases get longer.
+struct continuation {
+    static constexpr bool writes_parameters = true;
+    static constexpr bool writes_time_domain = true;
+    enum state { x, n_state };
+    enum parameter { mu, n_parameter };
+    enum shared { increment, n_shared };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return myriad::vec<R, n_state>{p[mu] - y[x] * y[x] * y[x]};
+    }
+    MYRIAD_FUNCTION static void finalise(auto& lane) {
+        lane.parameter[mu] += lane.shared[increment];
+        lane.t_end += 1;  // of the next phase
+    }
+};
+// end of snippet
+
+// snippet: select
+/// A mass on a spring with a stop at x = gap: x'' = -x - K max(x - gap, 0).
+struct stop_by_select {
+    enum state { x, v, n_state };
+    enum parameter { gap, n_parameter };
+    enum shared { K, n_shared };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        const R contact = myriad::select(y[x] > p[gap], p.shared[K] * (y[x] - p[gap]), R(0));
+        return {y[v], -y[x] - contact};
+    }
+};
+// end of snippet
+
+// snippet: scalar_only
+/// The same with a branch: one instance at a time.
+struct stop_by_branch {
+    static constexpr bool scalar_only = true;
+    enum state { x, v, n_state };
+    enum parameter { gap, n_parameter };
+    enum shared { K, n_shared };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        if (y[x] > p[gap]) return {y[v], -y[x] - p.shared[K] * (y[x] - p[gap])};
+        return {y[v], -y[x]};
+    }
+};
+// end of snippet

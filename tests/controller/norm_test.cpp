@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// The size of an error estimate: the scale max(atol, rtol max(|y|, |y1|)) of each component, and what is not finite. A model
+// file: it builds trials by hand.
+#include "myriad/controller/norm.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "myriad/methods.hpp"
+#include "tests/catch.hpp"
+#include "tests/support/problems.hpp"
+
+namespace {
+
+using model = problems::log_circle;  // two components; its right-hand side is not called
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct pair {
+    double first, second;
+};
+
+/// A trial of cash_karp from `y` to `y1` whose error estimates are the given ones, against the given tolerances.
+myriad::error_norm<double> norm_of(pair y, pair y1, pair error, pair atol, pair rtol) {
+    myriad::kernel_arguments<model, double> args{};
+    args.absolute_tolerance[0] = atol.first;
+    args.absolute_tolerance[1] = atol.second;
+    args.relative_tolerance[0] = rtol.first;
+    args.relative_tolerance[1] = rtol.second;
+    const double h = 0.25;
+    myriad::rk_trial<myriad::cash_karp, double, 2> trial{};
+    trial.k[0] = {error.first / (h * myriad::cash_karp::tableau().e[0]), error.second / (h * myriad::cash_karp::tableau().e[0])};
+    trial.y = {y1.first, y1.second};
+    return myriad::scaled_error<model, myriad::cash_karp>(args, myriad::vec<double, 2>{y.first, y.second}, h, trial);
+}
+
+// products and quotients of a few rounded numbers
+constexpr double tolerance = 8 * std::numeric_limits<double>::epsilon();
+
+void check_worst(const myriad::error_norm<double>& norm, double expected) {
+    CHECK(std::abs(norm.worst / expected - 1) <= tolerance);
+    CHECK(norm.within == (expected <= 1));
+}
+
+}  // namespace
+
+TEST_CASE("an error is measured against the absolute tolerance where that is the larger") {
+    check_worst(norm_of({1, 0}, {1, 0}, {3e-6, 0}, {1e-5, 1e-5}, {1e-9, 1e-9}), 0.3);
+    check_worst(norm_of({1, 0}, {1, 0}, {3e-5, 0}, {1e-5, 1e-5}, {1e-9, 1e-9}), 3.0);
+}
+TEST_CASE("an error is measured against the relative tolerance times the state before the step where that is the larger") {
+    check_worst(norm_of({-40, 0}, {20, 0}, {3e-6, 0}, {1e-9, 1e-9}, {1e-6, 1e-6}), 3e-6 / 40e-6);
+}
+TEST_CASE("an error is measured against the relative tolerance times the state after the step where that is the larger") {
+    check_worst(norm_of({20, 0}, {-40, 0}, {3e-6, 0}, {1e-9, 1e-9}, {1e-6, 1e-6}), 3e-6 / 40e-6);
+}
+TEST_CASE("the two tolerances are not added") {
+    check_worst(norm_of({1, 0}, {1, 0}, {1.5e-6, 0}, {1e-6, 1e-6}, {1e-6, 1e-6}), 1.5);
+}
+TEST_CASE("the largest ratio of the components counts, whichever it is and whatever its sign") {
+    check_worst(norm_of({1, 1}, {1, 1}, {2e-7, -5e-7}, {1e-6, 1e-6}, {1e-9, 1e-9}), 0.5);
+    check_worst(norm_of({1, 1}, {1, 1}, {-6e-7, 5e-7}, {1e-6, 1e-6}, {1e-9, 1e-9}), 0.6);
+}
+TEST_CASE("every component has its own tolerances") {
+    check_worst(norm_of({1, 1}, {1, 1}, {2e-7, 2e-7}, {1e-6, 1e-8}, {1e-9, 1e-9}), 20);
+    check_worst(norm_of({1, 1}, {1, 1}, {2e-7, 2e-7}, {1e-8, 1e-6}, {1e-9, 1e-9}), 20);
+    check_worst(norm_of({1, 1}, {1, 1}, {2e-7, 2e-7}, {1e-12, 1e-12}, {1e-6, 1e-8}), 20);
+}
+TEST_CASE("a step without any error is accepted") {
+    const auto norm = norm_of({1, 1}, {1, 1}, {0, 0}, {1e-6, 1e-6}, {1e-6, 1e-6});
+    CHECK(norm.worst == 0.0);
+    CHECK(norm.within);
+}
+TEST_CASE("a step whose error is NaN in one component is not accepted") {
+    CHECK_FALSE(norm_of({1, 1}, {1, 1}, {not_a_number, 0}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+    CHECK_FALSE(norm_of({1, 1}, {1, 1}, {0, not_a_number}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+}
+TEST_CASE("a step to a state that is not finite is not accepted") {
+    for (const double bad : {not_a_number, infinity, -infinity}) {
+        CHECK_FALSE(norm_of({1, 1}, {bad, 1}, {0, 0}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+        CHECK_FALSE(norm_of({1, 1}, {1, bad}, {0, 0}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+        // an infinite error over an infinite scale is no number, and a finite one over it would be zero
+        CHECK_FALSE(norm_of({1, 1}, {1, bad}, {0, 1}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+    }
+}
+TEST_CASE("an infinite error is not accepted") {
+    CHECK_FALSE(norm_of({1, 1}, {1, 1}, {infinity, 0}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+}

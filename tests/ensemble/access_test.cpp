@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// The ensemble's Eigen maps: whole components read and written in place, wrong components refused, and restart.
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "tests/ensemble/refusal.hpp"
+
+namespace {
+
+using ensemble_models::bare;
+using ensemble_models::complete;
+using ensemble_models::watched;
+using myriad::cash_karp;
+using myriad::device;
+using myriad::ensemble;
+using myriad::options;
+using myriad::solve;
+using myriad::status;
+
+const device one_thread = device::cpu(1);
+
+TEST_CASE("an ensemble begins with nothing set and nothing started", "[ensemble]") {
+    const ensemble<complete> e(7);
+    CHECK(e.size() == 7);
+    for (const int c : {0, 1}) {
+        CHECK(e.state(c).isNaN().all());
+        CHECK(e.parameter(c).isNaN().all());
+        CHECK(e.accessory(c).isNaN().all());
+    }
+    for (const int c : {0, 1, 2}) CHECK((e.integer_accessory(c) == 0).all());
+    CHECK(e.t_begin().isNaN().all());
+    CHECK(e.t_end().isNaN().all());
+    CHECK(std::isnan(e.shared(complete::scale)));
+    CHECK((e.phases_done() == 0).all());
+    for (std::int64_t i = 0; i < 7; ++i) {
+        CHECK(e.status(i) == status::not_started);
+        CHECK_FALSE(e.ended(i));
+    }
+    CHECK_FALSE(e.counted());
+}
+
+TEST_CASE("components are Eigen maps over all instances, written in bulk", "[ensemble]") {
+    ensemble<complete> e(46);
+    e.parameter(complete::rate) = Eigen::ArrayXd::LinSpaced(e.size(), 0.0, 4.5);
+    e.state(complete::x) = 2 * e.parameter(complete::rate) + 1;
+    e.state(complete::v).head(10) = 3.0;
+    e.state(complete::v).tail(36).setConstant(-1);
+    e.accessory(complete::peak) = e.state(complete::x).max(e.state(complete::v));
+    e.integer_accessory(complete::steps) = Eigen::ArrayXi::LinSpaced(46, 0, 45);
+    e.t_begin() = 1.0;
+    e.t_end().setLinSpaced(2.0, 6.5);
+    CHECK(e.parameter(complete::rate).size() == 46);
+    for (std::int64_t i = 0; i < 46; ++i) {
+        const auto n = static_cast<double>(i);
+        CHECK(e.parameter(complete::rate)[i] == Approx(0.1 * n).margin(1e-14));  // rounding of LinSpaced
+        CHECK(e.state(complete::x)[i] == 2 * e.parameter(complete::rate)[i] + 1);
+        CHECK(e.state(complete::v)[i] == (i < 10 ? 3 : -1));
+        CHECK(e.accessory(complete::peak)[i] == std::max(e.state(complete::x)[i], e.state(complete::v)[i]));
+        CHECK(e.integer_accessory(complete::steps)[i] == i);
+    }
+    CHECK(e.accessory(complete::entered).isNaN().all());  // its neighbours are untouched
+    CHECK(e.parameter(complete::force).isNaN().all());
+    CHECK((e.integer_accessory(complete::turns) == 0).all());
+    CHECK(e.t_end()[45] == 6.5);
+}
+
+TEST_CASE("a component is contiguous, begins on a cache line, and is the same memory at every access", "[ensemble]") {
+    ensemble<complete> e(64);
+    double* const data = e.state(complete::v).data();
+    CHECK(data == e.state(1).data());
+    CHECK(data == std::as_const(e).state(complete::v).data());
+    CHECK(data == e.state(complete::x).data() + 64);
+    CHECK(reinterpret_cast<std::uintptr_t>(e.state(complete::x).data()) % 64 == 0);
+    CHECK(e.state(complete::v).innerStride() == 1);
+    data[5] = 0.25;
+    CHECK(e.state(complete::v)[5] == 0.25);
+}
+
+TEST_CASE("a constant ensemble is read only, and results always are", "[ensemble]") {
+    using e = ensemble<complete>;
+    CHECK(std::is_same_v<decltype(std::declval<e&>().state(0)), e::map<double>>);
+    CHECK(std::is_same_v<decltype(std::declval<const e&>().state(0)), e::const_map<double>>);
+    CHECK(std::is_same_v<decltype(std::declval<const e&>().t_end()), e::const_map<double>>);
+    CHECK(std::is_same_v<decltype(std::declval<e&>().t()), e::const_map<double>>);
+    CHECK(std::is_same_v<decltype(std::declval<e&>().rhs_evaluations()), e::const_map<std::int64_t>>);
+    CHECK(std::is_same_v<decltype(std::declval<ensemble<bare, float>&>().state(0)), ensemble<bare, float>::map<float>>);
+    CHECK_FALSE(std::is_copy_constructible_v<e>);
+    CHECK(std::is_nothrow_move_constructible_v<e>);
+}
+
+TEST_CASE("an ensemble that was moved keeps its memory", "[ensemble]") {
+    auto a = good_decays(9);
+    const double* const data = a.state(bare::x).data();
+    auto b = std::move(a);
+    CHECK(b.size() == 9);
+    CHECK(b.state(bare::x).data() == data);
+    CHECK(solve<cash_karp>(one_thread, b).count(status::success) == 9);
+}
+
+TEST_CASE("component indices out of range are refused", "[ensemble]") {
+    ensemble<complete> e(3);
+    refused([&] { e.state(2); }, {"state 2 does not exist", "the model has 2", "enumerators"});
+    refused([&] { e.state(-1); }, {"state -1 does not exist"});
+    refused([&] { std::as_const(e).state(2); }, {"state 2 does not exist"});
+    refused([&] { e.parameter(2); }, {"parameter 2 does not exist", "the model has 2"});
+    refused([&] { e.accessory(2); }, {"accessory 2 does not exist"});
+    refused([&] { e.integer_accessory(3); }, {"integer accessory 3 does not exist", "the model has 3"});
+    refused([&] { e.shared(1); }, {"shared parameter 1 does not exist", "the model has 1"});
+    refused([&] { e.shared_integer(1); }, {"shared integer 1 does not exist"});
+    refused([&] { e.status(3); }, {"instance 3 does not exist", "has 3 instances"});
+    refused([&] { e.status(-1); }, {"instance -1 does not exist"});
+    refused([&] { e.state(std::int64_t{1} << 32); }, {"does not exist"});  // its lower half is 0
+    ensemble<watched> w(3);
+    refused([&] { w.accessory(0); }, {"accessory 0 does not exist", "the model has 0"});
+    refused([&] { w.shared(0); }, {"shared parameter 0 does not exist", "the model has 0"});
+}
+
+TEST_CASE("records and samples that were not chosen are refused", "[ensemble]") {
+    auto e = good_decays();
+    options o;
+    o.phases = 2;
+    o.record.states = {bare::w};
+    const auto report = solve<cash_karp>(one_thread, e, o);
+    CHECK(report.records.phases() == 2);
+    CHECK(report.records.state(bare::w).rows() == 5);
+    CHECK(report.records.state(bare::w).cols() == 2);
+    CHECK(report.records.state(bare::w)(3, 1) == e.state(bare::w)[3]);
+    refused([&] { report.records.state(bare::x); }, {"state 0 was not recorded", "options::record"});
+    refused([&] { report.records.state(2); }, {"state 2 was not recorded"});
+    refused([&] { report.records.accessory(0); }, {"accessory 0 was not recorded"});
+    refused([&] { report.records.time(); }, {"time", "was not recorded"});
+    refused([&] { e.samples().state(bare::x); }, {"state 0 was not sampled", "options::samples.states"});
+}
+
+TEST_CASE("restart lets every instance begin again, failed ones too", "[ensemble]") {
+    auto e = good_decays(20);
+    e.parameter(bare::rate)[4] = 1e308;
+    e.state(bare::x)[4] = 1e10;
+    solve<cash_karp>(one_thread, e);
+    REQUIRE(e.status(4) == status::not_finite);
+    CHECK(e.ended(4));
+    CHECK(e.phases_done()[4] == 0);
+    CHECK(e.phases_done()[5] == 1);
+
+    const auto again = good_decays(20);
+    e.parameter(bare::rate) = again.parameter(bare::rate);
+    e.state(bare::x) = again.state(bare::x);
+    e.state(bare::w) = again.state(bare::w);
+    e.restart();
+    for (std::int64_t i = 0; i < 20; ++i) {
+        CHECK(e.status(i) == status::not_started);
+        CHECK_FALSE(e.ended(i));
+    }
+    CHECK((e.phases_done() == 0).all());
+    CHECK((e.accepted_steps() == 0).all());
+
+    auto fresh = good_decays(20);
+    solve<cash_karp>(one_thread, e);
+    const auto report = solve<cash_karp>(one_thread, fresh);
+    CHECK(report.count(status::success) == 20);
+    CHECK((e.state(bare::x) == fresh.state(bare::x)).all());
+    CHECK((e.state(bare::w) == fresh.state(bare::w)).all());
+    CHECK((e.accepted_steps() == fresh.accepted_steps()).all());
+    CHECK((e.rhs_evaluations() == fresh.rhs_evaluations()).all());
+}
+
+TEST_CASE("restart keeps states, parameters and accessories, and forgets the step and the side of events",
+          "[ensemble]") {
+    auto e = good_oscillators(10), fresh = good_oscillators(10);
+    options o;
+    o.phase_step = myriad::phase_step::carry_on;
+    solve<cash_karp>(one_thread, e, o);
+    CHECK((e.integer_accessory(complete::finished) == 1).all());
+    CHECK((e.integer_accessory(complete::turns) > 0).all());
+    e.restart();
+    CHECK((e.integer_accessory(complete::finished) == 1).all());
+    e.state(complete::x) = fresh.state(complete::x);
+    e.state(complete::v) = fresh.state(complete::v);
+    solve<cash_karp>(one_thread, e, o);
+    solve<cash_karp>(one_thread, fresh, o);
+    CHECK((e.state(complete::x) == fresh.state(complete::x)).all());
+    CHECK((e.accessory(complete::peak) == fresh.accessory(complete::peak)).all());
+    CHECK((e.integer_accessory(complete::turns) == fresh.integer_accessory(complete::turns)).all());
+    CHECK((e.integer_accessory(complete::finished) == 2).all());
+    CHECK((e.accepted_steps() == fresh.accepted_steps()).all());
+}
+
+}  // namespace

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// describe(): the library says what it sees in a model, so that what it does not see shows.
+#include "myriad/model/describe.hpp"
+
+#include <string>
+
+#include "myriad/model.hpp"
+#include "tests/catch.hpp"
+#include "tests/ensemble/models.hpp"
+
+namespace {
+
+using ensemble_models::bare;
+using ensemble_models::complete;
+using ensemble_models::watched;
+using myriad::describe;
+
+bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+
+/// A bare model with one hook and declaration more.
+struct with_generic_after_step : bare {
+    template <class R>
+    MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane) {
+        return lane.y[x] < R(0.5);
+    }
+};
+struct with_generic_after_step_without_result : bare {
+    template <class R>
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        lane.y[x] = myriad::max(lane.y[x], R(0));
+    }
+};
+struct with_scalar_after_step : bare {
+    MYRIAD_FUNCTION static myriad::action after_step(auto&) { return myriad::action::end_phase; }
+};
+struct with_misspelt_hooks : bare {
+    MYRIAD_FUNCTION static void initialize(auto&) {}
+    MYRIAD_FUNCTION static void after_steps(auto&) {}
+    MYRIAD_FUNCTION static void finalise(auto&) {}
+};
+struct with_declarations : bare {
+    static constexpr bool writes_parameters = true;
+    static constexpr bool writes_time_domain = true;
+    static constexpr bool scalar_only = true;
+};
+struct with_declarations_denied : bare {
+    static constexpr bool writes_parameters = false;
+    static constexpr bool scalar_only = false;
+};
+struct branching : bare {
+    static constexpr bool scalar_only = true;
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        if (y[x] > R(1)) return {R(0), R(0)};
+        return {R(1), y[x]};
+    }
+};
+/// Counts without names are counts as well.
+struct unnamed {
+    enum { n_state = 3, n_parameter = 2 };
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 3> rhs(auto, const myriad::vec<R, 3>& y, const auto&) {
+        return y;
+    }
+};
+
+TEST_CASE("a complete model is described with every component and hook", "[describe]") {
+    CHECK(describe<complete>() ==
+          "components: 2 state, 2 parameter, 1 shared, 1 shared integer, 2 accessory, 3 integer accessory, 1 event\n"
+          "hooks: rhs, events, initialise, after_step (scalar), after_event, finalise\n"
+          "declares: nothing\n");
+}
+
+TEST_CASE("a bare model is described with its right-hand side alone", "[describe]") {
+    CHECK(describe<bare>() ==
+          "components: 2 state, 1 parameter, 0 shared, 0 shared integer, 0 accessory, 0 integer accessory, 0 event\n"
+          "hooks: rhs\n"
+          "declares: nothing\n");
+    CHECK(has(describe<unnamed>(), "components: 3 state, 2 parameter, 0 shared"));
+}
+
+TEST_CASE("a model with events alone is described with them", "[describe]") {
+    CHECK(has(describe<watched>(), "1 event\nhooks: rhs, events\n"));
+}
+
+TEST_CASE("a misspelt hook does not show", "[describe]") {
+    CHECK(has(describe<with_misspelt_hooks>(), "hooks: rhs, finalise\n"));
+}
+
+TEST_CASE("scalar and generic forms of after_step are told apart", "[describe]") {
+    CHECK(has(describe<with_scalar_after_step>(), "hooks: rhs, after_step (scalar)\n"));
+    CHECK(has(describe<with_generic_after_step>(), "hooks: rhs, after_step (generic)\n"));
+    CHECK(has(describe<with_generic_after_step_without_result>(), "hooks: rhs, after_step (generic)\n"));
+}
+
+TEST_CASE("declarations show, but not those that are denied", "[describe]") {
+    CHECK(has(describe<with_declarations>(), "declares: writes_parameters, writes_time_domain, scalar_only\n"));
+    CHECK(has(describe<with_declarations_denied>(), "declares: nothing\n"));
+    CHECK(has(describe<branching>(), "declares: scalar_only\n"));
+}
+
+TEST_CASE("counts and declarations can be asked for by name", "[describe]") {
+    CHECK(myriad::n_state<complete> == 2);
+    CHECK(myriad::n_parameter<complete> == 2);
+    CHECK(myriad::n_shared<complete> == 1);
+    CHECK(myriad::n_shared_integer<complete> == 1);
+    CHECK(myriad::n_accessory<complete> == 2);
+    CHECK(myriad::n_integer_accessory<complete> == 3);
+    CHECK(myriad::n_event<complete> == 1);
+    CHECK(myriad::n_event<bare> == 0);
+    CHECK(myriad::has_after_event<complete>);
+    CHECK_FALSE(myriad::has_after_event<watched>);
+    CHECK(myriad::writes_parameters<with_declarations>);
+    CHECK_FALSE(myriad::writes_parameters<with_declarations_denied>);
+    CHECK_FALSE(myriad::writes_time_domain<bare>);
+}
+
+}  // namespace

@@ -1,0 +1,18 @@
+// expect: the model has after_event but no events: give it
+// SPDX-License-Identifier: MIT
+// Nothing would ever call it.
+#include "myriad/instantiate.hpp"
+#include "myriad/model.hpp"
+
+struct decay {
+    enum state { x, n_state };
+    enum parameter { k, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return myriad::vec<R, n_state>{-(p[k] * y[x])};
+    }
+    MYRIAD_FUNCTION static void after_event(int, auto&) {}
+};
+
+MYRIAD_INSTANTIATE(decay, myriad::runge_kutta_4)

@@ -1,0 +1,17 @@
+// expect: rhs has a wrong signature: it must be
+// SPDX-License-Identifier: MIT
+// The functions of a model are static.
+#include "myriad/instantiate.hpp"
+#include "myriad/model.hpp"
+
+struct decay {
+    enum state { x, n_state };
+    enum parameter { k, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return myriad::vec<R, n_state>{-(p[k] * y[x])};
+    }
+};
+
+MYRIAD_INSTANTIATE(decay, myriad::runge_kutta_4)

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// A log of hook calls: what each saw, in the order of the calls. For runs on one thread. The hooks are in files compiled
+// for an instruction set, the log is not: only plain numbers go from one to the other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <myriad/model.hpp>
+
+namespace recorder {
+
+enum class hook { initialise, after_step, after_event, finalise };
+
+struct call {
+    recorder::hook which;
+    int event;  // index of the event, or -1
+    std::int64_t index;
+    int phase;
+    double t, t_begin, t_end, h, h_next;
+    double first, last;  // components of the state
+    int event_count;     // of that event
+};
+
+/// Adds a call to the log.
+void add(const call& c);
+/// The log; it is empty afterwards.
+std::vector<call> take();
+
+/// Logs what a scalar hook sees. `n`: components of the state.
+template <int n>
+MYRIAD_FUNCTION void log(hook which, const auto& lane, int event = -1) {
+    call c;
+    c.which = which;
+    c.event = event;
+    c.index = lane.index;
+    c.phase = lane.phase;
+    c.t = lane.t;
+    c.t_begin = lane.t_begin;
+    c.t_end = lane.t_end;
+    c.h = lane.h;
+    c.h_next = lane.h_next;
+    c.first = lane.y[0];
+    c.last = lane.y[n - 1];
+    c.event_count = event < 0 ? 0 : lane.event_count[event];
+    add(c);
+}
+
+/// Any model, with its accepted steps logged.
+template <class Model>
+struct recorded : Model {
+    MYRIAD_FUNCTION static void after_step(auto& lane) { recorder::log<Model::n_state>(hook::after_step, lane); }
+};
+
+}  // namespace recorder
