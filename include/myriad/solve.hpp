@@ -2,6 +2,7 @@
 // The one-shot call: checks everything once, hands the ensemble to the device's backend, reports.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <type_traits>
@@ -184,6 +185,8 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     report<Model, R> result;
     result.records = phase_records<Model, R>(options.record, options.phases, instances.size());
     kernel_arguments<Model, R> arguments = host::arguments_of<Model, R>(options);
+    if constexpr (Method::embedded_order > 0)
+        arguments.step = std::clamp(arguments.step, arguments.minimum_step, arguments.maximum_step);
     instances.describe(arguments, options.counting);
     result.records.describe(arguments.record);
     std::vector<R> sample_times(options.samples.times.begin(), options.samples.times.end());

@@ -89,7 +89,7 @@ struct integrator {
     /// ordinary steps find the one to blame.
     MYRIAD_FUNCTION void run_freely() {
         constexpr int block = 8;
-        turn_number run = args.max_steps - (s.turn - s.first_start);
+        turn_number run = args.max_steps - (s.turn - s.first_start) - 1;  // the last one is looked at
         for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA {
             const auto left = static_cast<turn_number>(get_lane(s.left, i)) - 1;
             run = left < run ? left : run;

@@ -62,7 +62,6 @@ private:
         for (int c = 0; c < n_integer_accessory<Model>; ++c)
             set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
-        set_lane(s.data.h, i, R(0));
         if constexpr (is_adaptive<Method>) set_lane(s.data.h_next, i, args.h_next[index]);
         set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(index));
         if constexpr (m > 0) {
@@ -126,6 +125,7 @@ private:
         set_lane(s.data.t, i, carry_on ? args.t[index] : get_lane(s.data.t_begin, i));
         set_lane(s.data.phase, i, phase);
         set_lane(s.time_low, i, R(0));
+        set_lane(s.data.h, i, R(0));
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) set_lane(s.data.event_count[j], i, 0);
         if constexpr (is_adaptive<Method>) {
