@@ -20,7 +20,6 @@ using myriad::tsitouras_5;
 using problems::log_circle;
 using problems::oscillator;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
 // fast_power is accurate to 2e-5; a ratio of error to tolerance that is itself off by a rounding adds nothing to that.
 constexpr double power_error = 2.1e-5;
 

@@ -54,7 +54,7 @@ constexpr bool check_hooks() {
             requires(lane_t& l) {
                 { Model::template after_step<R>(l) } -> generic_hook_result<R>;
             },
-            "the generic after_step has a wrong result: it must be `template <class R> MYRIAD_FUNCTION static "
+            "after_step has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static "
             "myriad::mask_of<R> after_step(auto& lane)` (true ends the phase) or return void; to return an action, leave "
             "out the template parameter");
     }
