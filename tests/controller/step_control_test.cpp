@@ -3,7 +3,6 @@
 // integrations through a log of their steps.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "myriad/myriad.hpp"

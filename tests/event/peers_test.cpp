@@ -126,7 +126,7 @@ TEMPLATE_TEST_CASE("peers: event options are counted against the events and not 
     o.events[2].direction = myriad::direction::falling;
     solve<TestType>(e, o);
     CHECK(agree(times_of(e, 2), {pi}, 1e-9));
-    for (const std::size_t count : {1, 2, 4}) {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{4}}) {
         o.events.resize(count);
         std::string what;
         try {

@@ -9,6 +9,12 @@
 
 #include "myriad/core/macros.hpp"
 
+// Masks are joined by `&` and `|`, here and in models, since packs have no other; for a mask of one lane clang would
+// have `&&` and `||` instead.
+#if defined(__clang__) && __clang_major__ >= 14
+#pragma clang diagnostic ignored "-Wbitwise-instead-of-logical"
+#endif
+
 namespace myriad::inline MYRIAD_TARGET {
 
 /// Traits of a scalar kind: its real type, the type of its comparisons, its integers and its number of lanes.
