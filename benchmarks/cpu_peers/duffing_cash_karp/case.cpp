@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// The case duffing_cash_karp: what it integrates, and Myriad's call.
+#include "../cases.hpp"
+#include "../myriad_run.hpp"
+#include "equations.hpp"
+#include "model.hpp"
+
+namespace cpu_peers {
+namespace {
+
+outcome run(const sweep& work) {
+    return run_myriad<myriad::cash_karp, duffing_model>(work,
+                                                        {.phases = work.phases,
+                                                         .relative_tolerance = duffing::tolerance,
+                                                         .absolute_tolerance = duffing::tolerance,
+                                                         .step = duffing::first_step,
+                                                         .minimum_step = 1e-12,
+                                                         .maximum_step = 1e6},
+                                                        [](auto& instances) {
+                                                            instances.shared(duffing_model::B) = duffing::B;
+                                                            instances.time_domain(0, duffing::period);
+                                                        });
+}
+
+void fill(std::int64_t instances, double* parameters, double* states) {
+    using column = Eigen::Map<Eigen::ArrayXd>;
+    column(parameters, instances) = Eigen::ArrayXd::LinSpaced(instances, 0.2, 0.3);
+    column(states, instances) = -0.5;
+    column(states + instances, instances) = -0.1;
+}
+
+}  // namespace
+
+benchmark_case duffing_cash_karp() {
+    return {
+        .name = "duffing_cash_karp",
+        .work =
+            "64 periods of the forcing, t and step restarted in each, tolerances 1e-9, "
+            "k = linspace(0.2, 0.3, N), B = 0.3, start (-0.5, -0.1)",
+        .difference = "state after 2 periods (many instances are chaotic), against order 8 in long double at 1e-16",
+        .components = 2,
+        .parameters = 1,
+        .instances = 1024,
+        .phases = 64,
+        .compared_phases = 2,
+        .fill = fill,
+        .reference = duffing::run_reference,
+        .implementations = {
+            {"odeint", "odeint", duffing::run_odeint}, {"loop", "loop", duffing::run_loop}, {"myriad", "myriad", run}}};
+}
+
+}  // namespace cpu_peers

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// The case lorenz_rk4: what it integrates, and Myriad's call.
+#include "../cases.hpp"
+#include "../myriad_run.hpp"
+#include "equations.hpp"
+#include "model.hpp"
+
+namespace cpu_peers {
+namespace {
+
+outcome run(const sweep& work) {
+    return run_myriad<myriad::runge_kutta_4, lorenz_model>(
+        work, {.step = lorenz::h}, [](auto& instances) { instances.time_domain(0, lorenz::h * lorenz::steps); });
+}
+
+void fill(std::int64_t instances, double* parameters, double* states) {
+    Eigen::Map<Eigen::ArrayXd>(parameters, instances) = Eigen::ArrayXd::LinSpaced(instances, 0, 21);
+    Eigen::Map<Eigen::ArrayXd>(states, 3 * instances) = 10.0;
+}
+
+}  // namespace
+
+benchmark_case lorenz_rk4() {
+    return {.name = "lorenz_rk4",
+            .work = "1000 steps of 1e-3, p = linspace(0, 21, N), start (10, 10, 10)",
+            .difference = "end state, against the same steps in long double: rounding alone",
+            .components = 3,
+            .parameters = 1,
+            .instances = 16384,
+            .phases = 1,
+            .compared_phases = 1,
+            .fill = fill,
+            .reference = lorenz::run_reference,
+            .implementations = {{"odeint", "odeint", lorenz::run_odeint},
+                                {"loop", "loop", lorenz::run_loop},
+                                {"packs_1", "packs", lorenz::run_packs_1},
+                                {"packs_2", "packs", lorenz::run_packs_2},
+                                {"packs_3", "packs", lorenz::run_packs_3},
+                                {"packs_4", "packs", lorenz::run_packs_4},
+                                {"packs_as_models", "packs", lorenz::run_packs_as_models},
+                                {"myriad", "myriad", run}}};
+}
+
+}  // namespace cpu_peers

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The Lorenz system as the peers integrate it, for one number of any kind.
+#pragma once
+
+#include "../cash_karp.hpp"
+#include "../sweep.hpp"
+
+namespace cpu_peers::lorenz {
+
+inline constexpr int n = 3, steps = 1000;
+inline constexpr double h = 1e-3;
+
+/// x' = 10 (y - x), y' = p x - y - x z, z' = x y - 8/3 z.
+template <class T>
+CPU_PEERS_INLINE void slopes(const T& x, const T& y, const T& z, const T& p, T& dx, T& dy, T& dz) {
+    dx = T(10) * (y - x);
+    dy = p * x - y - x * z;
+    dz = x * y - T(8) / T(3) * z;
+}
+
+outcome run_odeint(const sweep&);
+outcome run_loop(const sweep&);
+outcome run_reference(const sweep&);
+outcome run_packs_1(const sweep&);
+outcome run_packs_2(const sweep&);
+outcome run_packs_3(const sweep&);
+outcome run_packs_4(const sweep&);
+/// With the flags of models, and with as many batches as Myriad takes.
+outcome run_packs_as_models(const sweep&);
+/// Lanes of one batch, and the instruction set that models are compiled for.
+int lanes_per_batch();
+const char* instruction_set();
+
+}  // namespace cpu_peers::lorenz

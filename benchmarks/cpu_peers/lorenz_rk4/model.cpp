@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Compiles the kernel of the Lorenz system, and says for which instruction set.
+#include "model.hpp"
+
+#include <myriad/instantiate.hpp>
+
+#include "equations.hpp"
+
+MYRIAD_INSTANTIATE(cpu_peers::lorenz_model, myriad::runge_kutta_4)
+
+#define CPU_PEERS_TEXT_OF(name) #name
+#define CPU_PEERS_TEXT(name) CPU_PEERS_TEXT_OF(name)
+
+namespace cpu_peers::lorenz {
+
+const char* instruction_set() { return CPU_PEERS_TEXT(MYRIAD_TARGET); }
+int lanes_per_batch() { return myriad::pack<double, 1>::lanes; }
+
+}  // namespace cpu_peers::lorenz

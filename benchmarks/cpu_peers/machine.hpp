@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// What the header of the output says of the machine and the build: figures without it cannot be compared with anything.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace cpu_peers {
+
+/// The compiler as one CSV field, such as "GNU 12.2.0".
+std::string compiler();
+/// Lines for the header: compiler, flags, CPU, instruction set, commit.
+std::vector<std::string> describe_machine();
+
+}  // namespace cpu_peers

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// How the peers go through a sweep: an OpenMP loop over instances, one at a time, handed out dynamically because their
+// costs differ.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+
+#include "sweep.hpp"
+
+namespace cpu_peers {
+
+/// Integrates every instance by `integrate(y, parameter_of, accepted)`: y is the state, changed in place;
+/// `parameter_of(c)` is the instance's parameter c; `accepted` counts its steps. It returns the instance's ending.
+template <int n, class Integrate>
+outcome run_instances(const sweep& work, Integrate&& integrate) {
+    return timed([&] {
+#pragma omp parallel for schedule(dynamic, 4) num_threads(work.threads)
+        for (std::int64_t i = 0; i < work.instances; ++i) {
+            double y[n];
+            for (int c = 0; c < n; ++c) y[c] = work.states[c * work.instances + i];
+            const auto parameter_of = [&](int c) { return work.parameters[c * work.instances + i]; };
+            std::int64_t accepted = 0;
+            ending how = ending::failed;
+            try {
+                how = integrate(y, parameter_of, accepted);
+            } catch (const std::exception&) {  // odeint's, of a step that cannot be made small enough
+            }
+            for (int c = 0; c < n; ++c) work.states[c * work.instances + i] = y[c];
+            work.accepted[i] = accepted;
+            work.endings[i] = how;
+        }
+    });
+}
+
+}  // namespace cpu_peers
