@@ -63,10 +63,17 @@ fi
 output=results/bench_$name.csv
 mkdir -p results
 say "Running the benchmark to $output"
-"$build/benchmarks/cpu_peers/cpu_peers" --output "$output" "${arguments[@]}" >/dev/null
+status=0
+"$build/benchmarks/cpu_peers/cpu_peers" "${arguments[@]}" >"$output.part" || status=$?
+if ((status > 1)); then
+    rm -f "$output.part"
+    fail "The benchmark failed." "$status"
+fi
+mv "$output.part" "$output"
 
-grep '^#' "$output"
+grep '^#' "$output" || true
 awk -F, '!/^#/ { printf "%-24s %-16s %9s %10s %8s %8s %9s %13s %7s\n", $1, $2, $4, $5 == "milliseconds" ? "ms" : $5,
                  $6 == "nanoseconds_per_step" ? "ns/step" : $6, $7 == "ratio_to_odeint" ? "ratio" : $7,
                  $8 == "max_difference" ? "max_diff" : $8, $9, $10 == "idle_lanes" ? "idle" : $10 }' "$output"
+if ((status)); then fail "Instances failed or results are wrong, see above."; fi
 say "Done after $(duration $((SECONDS - started))): $output"

@@ -20,6 +20,7 @@ struct benchmark_case {
     std::string name;
     std::string work;        ///< what is integrated, for the header
     std::string difference;  ///< what max_difference compares
+    double allowed_difference;
     int components, parameters;
     std::int64_t instances;
     int phases;

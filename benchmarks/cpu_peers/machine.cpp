@@ -32,6 +32,7 @@ std::string tidy(const std::string& text) {
     std::string result;
     for (const char c : text)
         if (c != ' ' || (!result.empty() && result.back() != ' ')) result += c;
+    if (!result.empty() && result.back() == ' ') result.pop_back();
     return result;
 }
 

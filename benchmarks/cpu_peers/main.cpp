@@ -1,24 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Command line and output of the benchmark: one CSV row per case and implementation, below a header that says what was
-// measured, how and where. Exit status 0, 1 if a promise of --check is broken or instances failed, 2 for an error.
+// measured, how and where. Exit status 0; 1 if a promise is broken, instances failed or results differ; 2 for an error.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <iostream>
-#include <sstream>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "cases.hpp"
-#include "lorenz_rk4/equations.hpp"
 #include "machine.hpp"
 #include "measure.hpp"
+#include "promises.hpp"
 
 namespace {
 
@@ -27,29 +24,10 @@ using namespace cpu_peers;
 struct settings {
     std::vector<std::string> cases;
     measure_options measure;
-    std::string output;
     bool quick = false, check = false;
 };
 
-/// Standard output, and a file if one is wanted.
-class table {
-public:
-    explicit table(const std::string& path) {
-        if (path.empty()) return;
-        file_.open(path);
-        if (!file_) throw std::runtime_error(path + " cannot be written; choose another file with --output");
-    }
-    void line(const std::string& text) {
-        std::cout << text << '\n' << std::flush;
-        if (file_.is_open()) file_ << text << '\n' << std::flush;
-    }
-    void finish() {
-        if (!std::cout || (file_.is_open() && !file_)) throw std::runtime_error("the output cannot be written");
-    }
-
-private:
-    std::ofstream file_;
-};
+void write(const std::string& line) { std::cout << line << std::endl; }
 
 std::string number(double value, const char* format) {
     char text[64];
@@ -57,74 +35,63 @@ std::string number(double value, const char* format) {
     return text;
 }
 
-void write_header(table& out, const settings& chosen) {
-    out.line("# Myriad beside its peers on the CPU; times are comparable within this run only");
-    for (const std::string& line : describe_machine()) out.line("# " + line);
-    out.line("# threads: " + std::to_string(chosen.measure.threads));
-    out.line(
-        "# milliseconds: CPU time of all threads over their number, which is the wall time where nothing else runs; "
-        "shortest of " +
-        std::to_string(chosen.measure.repetitions) + " repetitions in turns, after one to warm up");
-    out.line(
-        "# nanoseconds_per_step: milliseconds * threads / accepted_steps, time of one core per step of one instance");
-    out.line("# ratio_to_odeint: odeint's milliseconds over these; larger is faster");
-    out.line(
+void write_header(const measure_options& chosen) {
+    write("# Myriad beside its peers on the CPU; times are comparable within this run only");
+    for (const std::string& line : describe_machine()) write("# " + line);
+    write("# threads: " + std::to_string(chosen.threads));
+    write("# milliseconds: CPU time of all threads over their number; median of " + std::to_string(chosen.repetitions) +
+          " repetitions in turns, after one to warm up");
+    write("# nanoseconds_per_step: milliseconds * threads / accepted_steps, time of a core per step of one instance");
+    write("# ratio_to_odeint: odeint's time over this one's in the same repetition, median; larger is faster");
+    write(
         "# max_difference: largest over components and 64 instances spread over the range, |difference| / max(1, "
-        "|value|); for each case see below");
-    out.line("# idle_lanes: share of lane steps without work");
-    out.line(
-        "# odeint's error norm is not Myriad's and cannot be made so: its accepted steps differ at the same "
-        "tolerances");
+        "|value|)");
+    write(
+        "# accepted_steps: of all instances; odeint's error norm is another and cannot be changed, so its steps "
+        "differ");
+    write("# idle_lanes: share of lane steps without work");
+    write(
+        "case,implementation,compiler,instances,milliseconds,nanoseconds_per_step,ratio_to_odeint,max_difference,"
+        "accepted_steps,idle_lanes");
 }
 
-bool run_case(table& out, const benchmark_case& what, const measure_options& options) {
-    out.line("# " + what.name + ": " + what.work);
-    out.line("# " + what.name + ": max_difference of the " + what.difference);
-    const std::vector<measurement> results = measure(what, options);
-    double odeint = 0;
+/// Returns whether all instances of all implementations were integrated, and to the same results.
+bool run_case(const benchmark_case& what, const measure_options& options) {
+    write("# " + what.name + ": " + what.work);
+    write("# " + what.name + ": max_difference of the " + what.difference);
     bool all_well = true;
-    for (const measurement& m : results) {
-        if (m.implementation == "odeint") odeint = m.milliseconds;
-        const std::int64_t accumulated = m.by_ending[static_cast<int>(ending::accumulated)],
+    for (const measurement& m : measure(what, options)) {
+        const std::int64_t completed = m.by_ending[static_cast<int>(ending::completed)],
+                           accumulated = m.by_ending[static_cast<int>(ending::accumulated)],
                            failed = m.by_ending[static_cast<int>(ending::failed)];
-        if (accumulated + failed == 0) continue;
-        std::ostringstream text;
-        text << "# " << what.name << ' ' << m.implementation << ": " << m.by_ending[static_cast<int>(ending::completed)]
-             << " instances completed, " << accumulated << " ended as event_accumulation, " << failed
-             << " failed; compared: " << m.compared;
-        out.line(text.str());
-        all_well = all_well && failed == 0;
-    }
-    for (const measurement& m : results) {
-        std::ostringstream row;
-        row << what.name << ',' << m.implementation << ',' << compiler() << ',' << m.instances << ','
-            << number(m.milliseconds, "%.3f") << ','
-            << number(1e6 * m.milliseconds * options.threads / static_cast<double>(m.accepted_steps), "%.4f") << ','
-            << (odeint > 0 ? number(odeint / m.milliseconds, "%.3f") : "") << ',' << number(m.difference, "%.2e") << ','
-            << m.accepted_steps << ',' << number(m.idle_share, "%.4f");
-        out.line(row.str());
+        const std::string title = "# " + what.name + ' ' + m.implementation + ": ";
+        if (accumulated + failed > 0)
+            write(title + std::to_string(completed) + " instances completed, " + std::to_string(accumulated) +
+                  " ended as event_accumulation, " + std::to_string(failed) + " failed");
+        const bool right = m.compared > 0 && m.difference <= what.allowed_difference;
+        if (!right) write(title + "WRONG, max_difference must be within " + number(what.allowed_difference, "%g"));
+        all_well = all_well && failed == 0 && right;
+        write(what.name + ',' + m.implementation + ',' + compiler() + ',' + std::to_string(m.instances) + ',' +
+              number(m.milliseconds, "%.3f") + ',' +
+              number(1e6 * m.milliseconds * options.threads / static_cast<double>(m.accepted_steps), "%.4f") + ',' +
+              (m.ratio_to_odeint > 0 ? number(m.ratio_to_odeint, "%.3f") : "") + ',' + number(m.difference, "%.2e") +
+              ',' + std::to_string(m.accepted_steps) + ',' + number(m.idle_share, "%.4f"));
     }
     return all_well;
 }
 
 int run(const settings& chosen) {
     if (chosen.check) {
-        const bool odeint_counts = compiler().rfind("GNU", 0) == 0 &&
-                                   std::string_view(lorenz::instruction_set()).find("avx512") != std::string_view::npos;
-        for (const std::string& line : describe_machine()) std::printf("# %s\n", line.c_str());
-        return check_promises(odeint_counts) ? 0 : 1;
+        for (const std::string& line : describe_machine()) write("# " + line);
+        return check_promises() ? 0 : 1;
     }
-    table out(chosen.output);
-    write_header(out, chosen);
-    out.line(
-        "case,implementation,compiler,instances,milliseconds,nanoseconds_per_step,ratio_to_odeint,max_difference,"
-        "accepted_steps,idle_lanes");
+    write_header(chosen.measure);
     bool all_well = true;
     for (const benchmark_case& what : {lorenz_rk4(), duffing_cash_karp(), keller_miksis_cash_karp(), relief_valve()})
         if (chosen.cases.empty() ||
             std::find(chosen.cases.begin(), chosen.cases.end(), what.name) != chosen.cases.end())
-            all_well = run_case(out, what, chosen.measure) && all_well;
-    out.finish();
+            all_well = run_case(what, chosen.measure) && all_well;
+    if (!std::cout) throw std::runtime_error("the output cannot be written");
     return all_well ? 0 : 1;
 }
 
@@ -149,7 +116,6 @@ int main(int argc, char** argv) {
     app.add_option("--threads", chosen.measure.threads, "OpenMP threads")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
-    app.add_option("--output", chosen.output, "File to write the table to, beside standard output")->type_name("FILE");
     app.add_flag("--quick", chosen.quick, "A quarter of the instances and, if not said otherwise, three repetitions");
     app.add_flag("--check", chosen.check,
                  "Only check what is promised of Myriad's speed, on one thread; exit status 1 if broken");

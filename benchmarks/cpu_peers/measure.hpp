@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Times the implementations of a case in turns, compares their results, and checks what Myriad promises of its speed.
+// Times the implementations of a case in turns and compares their results.
 #pragma once
 
 #include <string>
@@ -22,7 +22,9 @@ struct measurement {
     std::string implementation;
     std::int64_t instances = 0, accepted_steps = 0;
     std::int64_t by_ending[ending_count] = {};
-    double milliseconds = 0;  ///< CPU time over threads, shortest of all repetitions
+    double milliseconds = 0;  ///< CPU time over threads, median of the repetitions
+    /// Median of odeint's time over this one's in the same repetition; 0 if odeint did not run.
+    double ratio_to_odeint = 0;
     double idle_share = 0;
     double difference = 0;      ///< largest, see benchmark_case::difference
     std::int64_t compared = 0;  ///< instances of which it is
@@ -30,7 +32,9 @@ struct measurement {
 
 std::vector<measurement> measure(const benchmark_case& what, const measure_options& options);
 
-/// Prints one line for each promise; returns whether all are kept.
-bool check_promises(bool against_odeint);
+/// Ratio of the CPU time of `one` to that of `other` on one thread: the median over pairs of runs, one right after the
+/// other, so that what slows the core down meets both.
+double ratio_of_times(const benchmark_case& what, std::int64_t instances, implementation_function one,
+                      implementation_function other, int pairs);
 
 }  // namespace cpu_peers

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Checks the promises so that a busy machine does not break them: ratios of CPU times of runs one right after the other on
+// one thread, the median of many, and another try before a promise counts as broken. Code that became slower stays so.
+#include "promises.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include "lorenz_rk4/equations.hpp"
+#include "machine.hpp"
+#include "measure.hpp"
+
+namespace cpu_peers {
+namespace {
+
+implementation_function find(const benchmark_case& what, std::string_view name) {
+    return std::find_if(what.implementations.begin(), what.implementations.end(),
+                        [&](const implementation& i) { return i.name == name; })
+        ->run;
+}
+
+/// A ratio of times within [least, most].
+struct promise {
+    const char* text;
+    implementation_function one, other;
+    double least, most;
+};
+
+bool keeps(const benchmark_case& what, const promise& p) {
+    constexpr int tries = 5, pairs = 15;
+    constexpr std::int64_t instances = 12288;  // whole packs of one to four batches of 2, 4 and 8 lanes
+    for (int i = 1; i <= tries; ++i) {
+        const double ratio = ratio_of_times(what, instances, p.one, p.other, pairs);
+        const bool kept = ratio >= p.least && ratio <= p.most;
+        std::printf("%s: %s: %s is %.3f (promised: %s %.3g)\n",
+                    kept        ? "kept"
+                    : i < tries ? "again"
+                                : "BROKEN",
+                    what.name.c_str(), p.text, ratio, p.least > 0 ? "at least" : "at most",
+                    p.least > 0 ? p.least : p.most);
+        if (kept) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+bool check_promises() {
+    constexpr double any = 1e300;
+    const benchmark_case lorenz_case = lorenz_rk4();
+    const implementation_function myriad = find(lorenz_case, "myriad");
+    bool kept = keeps(lorenz_case, {"Myriad's time over that of the plain loop over the same packs with the same flags",
+                                    myriad, find(lorenz_case, "packs_as_models"), 0, 1.10});
+    if (compiler().rfind("GNU", 0) == 0 &&
+        std::string_view(lorenz::instruction_set()).find("avx512") != std::string_view::npos) {
+        kept = keeps(lorenz_case, {"Boost.odeint's time over Myriad's", find(lorenz_case, "odeint"), myriad, 8, any}) &&
+               kept;
+    } else {
+        std::printf("skipped: lorenz_rk4: Boost.odeint's time over Myriad's is promised for g++ and AVX-512\n");
+    }
+    return kept;
+}
+
+}  // namespace cpu_peers
