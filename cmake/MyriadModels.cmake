@@ -42,15 +42,17 @@ function(myriad_model_flags result)
     set(${result} "${flags}" PARENT_SCOPE)
 endfunction()
 
-# myriad_add_models(<target> <file>...) adds model files, those with MYRIAD_INSTANTIATE, to a target of the same
-# directory. Such a file includes no Eigen. Links myriad::openmp.
+# myriad_add_models(<target> [CPU_ONLY] <file>...) adds model files, those with MYRIAD_INSTANTIATE, to a target of the same
+# directory. Such a file includes no Eigen. Links myriad::openmp and, if the CUDA backend is on, compiles each file for GPUs
+# too, unless CPU_ONLY is given, and links myriad::cuda.
 function(myriad_add_models target)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "CPU_ONLY" "" "")
     if(NOT TARGET ${target})
         message(FATAL_ERROR "myriad_add_models(${target} ...): there is no target ${target}; "
                             "call add_executable or add_library first")
     endif()
     myriad_model_flags(flags)
-    foreach(file IN LISTS ARGN)
+    foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
         cmake_path(ABSOLUTE_PATH file NORMALIZE)
         target_sources(${target} PRIVATE "${file}")
         get_property(known SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY MYRIAD_MODEL)
@@ -61,6 +63,19 @@ function(myriad_add_models target)
             set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
             set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
         endif()
+        if(TARGET myriad::cuda AND NOT arg_CPU_ONLY)
+            # The same file once more, under a name that nvcc takes for CUDA.
+            string(SHA256 unique "${file}")
+            string(SUBSTRING "${unique}" 0 8 unique)
+            cmake_path(GET file STEM stem)
+            set(twin "${CMAKE_CURRENT_BINARY_DIR}/cuda/${stem}_${unique}.cu")
+            file(CONFIGURE OUTPUT "${twin}" CONTENT "#include \"${file}\"\n")
+            target_sources(${target} PRIVATE "${twin}")
+            set_property(SOURCE "${twin}" TARGET_DIRECTORY ${target} PROPERTY OBJECT_DEPENDS "${file}")
+        endif()
     endforeach()
     target_link_libraries(${target} PRIVATE myriad::openmp)
+    if(TARGET myriad::cuda AND NOT arg_CPU_ONLY)
+        target_link_libraries(${target} PRIVATE myriad::cuda)
+    endif()
 endfunction()

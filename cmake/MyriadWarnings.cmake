@@ -3,11 +3,15 @@
 
 add_library(myriad_warnings INTERFACE)
 # A double constant in a float model costs a GPU dearly, so narrowing is an error in every preset.
-target_compile_options(myriad_warnings INTERFACE -Wall -Wextra -Wconversion -Werror=float-conversion)
-if(MYRIAD_WERROR)
-    target_compile_options(myriad_warnings INTERFACE -Werror)
-endif()
+set(cxx_warnings -Wall -Wextra -Wconversion -Werror=float-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # "note: the ABI for passing parameters with 64-byte alignment has changed in GCC 4.6" concerns no one today.
-    target_compile_options(myriad_warnings INTERFACE -Wno-psabi)
+    list(APPEND cxx_warnings -Wno-psabi)
 endif()
+set(cuda_warnings -Xcompiler=-Wall,-Wextra,-Wconversion)
+if(MYRIAD_WERROR)
+    list(APPEND cxx_warnings -Werror)
+    list(APPEND cuda_warnings --Werror=all-warnings)
+endif()
+target_compile_options(myriad_warnings INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${cxx_warnings}>"
+                                                 "$<$<COMPILE_LANGUAGE:CUDA>:${cuda_warnings}>")

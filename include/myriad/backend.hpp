@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The seam between host code and backends: the one function a backend provides for a model, a method and a real type,
-// declared here and defined where the model is instantiated.
+// The seam between host code and backends: the few functions that a backend provides for a model, a method and a real
+// type, declared here and defined where the model is instantiated. Host programs include no backend.
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
 
+#include "myriad/ensemble/arrays.hpp"
 #include "myriad/ensemble/view.hpp"
+#include "myriad/integrator/options.hpp"
 
 namespace myriad {
 
@@ -15,19 +20,111 @@ struct run_options {
     /// Called from the calling thread with the number of instances begun; may be null.
     void (*progress)(void* context, std::int64_t begun) = nullptr;
     void* context = nullptr;
+    std::int64_t count = 0;  ///< instances to integrate, the first ones; 0: all
 };
 
 /// How a run used its lanes.
 struct run_statistics {
-    std::int64_t lane_turns = 0;  ///< trial steps times lanes, those of idle lanes included
-    int lanes = 1;                ///< instances side by side in one pack
+    std::int64_t lane_turns = 0;  ///< trial steps times lanes, those of idle lanes included; 0: not counted
+    int lanes = 1;                ///< instances side by side in one pack, or CUDA threads in a block
     int threads = 1;
 };
 
+// Everything below is weak, so that a program that names a method nobody instantiated, or a backend it was built without,
+// gets a readable error instead of one by the linker.
 namespace openmp {
-// Weak, so that a program that names a method nobody instantiated gets a readable error instead of one by the linker.
 template <class Model, class Method, class R>
 __attribute__((weak)) run_statistics run(const kernel_arguments<Model, R>& arguments, const run_options& options);
 }  // namespace openmp
 
+namespace cuda {
+
+/// A CUDA kernel and how it is launched.
+struct kernel_facts {
+    int block_size = 0;
+    int registers = 0;              ///< per thread
+    std::int64_t local_bytes = 0;   ///< per thread: stack frame and spilled registers
+    std::int64_t shared_bytes = 0;  ///< of shared memory per block
+    myriad::shared_placement shared_placement = myriad::shared_placement::constant_bank;
+    int blocks_per_multiprocessor = 0;  ///< that run at the same time
+};
+
+struct engine_options {
+    int device = 0;
+    std::int64_t block_size = 0;
+    myriad::shared_placement shared_placement = myriad::shared_placement::automatic;
+};
+
+/// Work on a device that other work may wait for.
+class work {
+public:
+    virtual ~work() = default;
+    /// A mark, as the backend has them, that is reached when all that was asked for so far is done.
+    virtual void* mark() = 0;
+
+protected:
+    work() = default;
+    work(const work&) = delete;
+    work& operator=(const work&) = delete;
+};
+
+/// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and copies
+/// from or to host memory that is not pinned, return before the work is done; work is done in the order in which it was asked for.
+/// Arguments are the host's, for the whole ensemble; `first` and `count` say which of its instances are meant. Errors of
+/// the device, those of earlier work too, are thrown as `error`.
+template <class Model, class R>
+class engine : public work {
+public:
+    /// Takes device memory for chunks of `count` instances; larger ones take more when they come.
+    virtual void reserve(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
+    /// Copies the chunk to the device.
+    virtual void upload(const kernel_arguments<Model, R>& host, std::int64_t first, std::int64_t count) = 0;
+    /// Integrates the chunk that was uploaded last, with the options of `host`, which must have asked for the same arrays.
+    virtual void integrate(const kernel_arguments<Model, R>& host) = 0;
+    /// Copies what kernels write back to where it was uploaded from, and the records of the last call to `host.record`.
+    /// Components for which `wanted(kind, component)` is false are left out.
+    virtual void download(const kernel_arguments<Model, R>& host,
+                          bool (*wanted)(void*, array_kind, std::int64_t) = nullptr, void* context = nullptr) = 0;
+    virtual void wait() = 0;
+    /// Work asked of this engine from now on begins when all that was asked of the other before is done.
+    virtual void wait_for(work& other) = 0;
+    /// Whether everything is done.
+    virtual bool idle() = 0;
+    /// Seconds that the device took for the last `integrate`; waits for it.
+    virtual double kernel_seconds() = 0;
+    virtual kernel_facts facts() const = 0;
+    /// Instances of an ensemble for which the device has memory left, when it holds `bytes` for each.
+    virtual std::int64_t affordable(std::int64_t bytes) const = 0;
+
+    /// Keeps host memory in place, so that it is copied at full speed and while the host does other things. Pinned until
+    /// the engine is destroyed, which must happen before the memory is released.
+    virtual void pin(void* memory, std::size_t bytes) = 0;
+};
+
+/// The engine for a model, method and real type. Throws `error` if the device does not exist or cannot run the kernel.
+template <class Model, class Method, class R>
+__attribute__((weak)) std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options);
+
+/// A device of this machine.
+struct device_facts {
+    std::string name;
+    std::int64_t memory = 0;  ///< bytes
+    int multiprocessors = 0;
+    int capability = 0;  ///< 90 for 9.0
+};
+/// The CUDA devices there are; none: `why_none` says why.
+__attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_none);
+
+}  // namespace cuda
+
+namespace host {
+
+/// A weak function's address, which is null if nobody has defined it. (g++ takes the address of any function for not null.)
+template <class F>
+F* if_defined(F* function) {
+    asm("" : "+r"(function));
+    return function;
+}
+
+}  // namespace host
 }  // namespace myriad

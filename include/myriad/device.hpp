@@ -7,52 +7,101 @@
 #include <string_view>
 #include <vector>
 
+#include "myriad/backend.hpp"
 #include "myriad/core/error.hpp"
 
 namespace myriad {
 
-/// A device. The CPU takes a number of threads; 0 stands for OMP_NUM_THREADS or all cores.
+/// A device: the CPU with a number of threads (0 stands for OMP_NUM_THREADS or all cores), or a CUDA GPU by its number.
 class device {
 public:
-    enum class kind { cpu };
+    enum class kind { cpu, cuda };
 
     static device cpu(int threads = 0) {
         require(threads >= 0 && threads <= 4096, "the device has ", threads,
                 " threads (must be from 1 to 4096, or 0 for all cores)");
         return device(kind::cpu, threads);
     }
-    /// The fastest device of this machine that the program was built for.
-    static device best() { return cpu(); }
-    /// "auto", "cpu" or "cpu:4" (threads). Throws `error` for anything else.
+    /// Throws `error` if there is no such GPU, or if the program was built without the CUDA backend.
+    static device cuda(int number = 0) { return found_gpu(number, message("cuda:", number)); }
+    /// The first GPU, if the program was built for it and one is there, else the CPU.
+    static device best() { return no_gpu().empty() ? cuda(0) : cpu(); }
+    /// Why there is no GPU to compute on, or an empty text if there is one.
+    static std::string no_gpu() {
+        std::string why_none;
+        return gpus(why_none).empty() ? why_none : std::string();
+    }
+    /// "auto", "cpu", "cpu:4" (threads), "cuda" or "cuda:1" (number). Throws `error` for anything else, and for a device
+    /// that is not there.
     static device parse(std::string_view name) {
         if (name == "auto") return best();
         if (name == "cpu") return cpu();
+        if (name == "cuda") return found_gpu(0, name);
         if (name.substr(0, 4) == "cpu:") {
-            int threads = 0;
-            const char* const end = name.data() + name.size();
-            const auto [parsed, failure] = std::from_chars(name.data() + 4, end, threads);
-            require(failure == std::errc() && parsed == end && threads > 0, "device \"", name,
-                    "\" has no valid number of threads: write cpu:4 for four");
+            const int threads = number_after(name, 4);
+            require(threads > 0, "device \"", name, "\" has no valid number of threads: write cpu:4 for four");
             return cpu(threads);
         }
-        require(name.substr(0, 4) != "cuda", "device \"", name,
-                "\" is not available: this program was built without the CUDA backend; use \"cpu\" or \"auto\"");
-        throw error(message("device \"", name, "\" is unknown: use auto, cpu or cpu:THREADS"));
+        if (name.substr(0, 5) == "cuda:") {
+            const int number = number_after(name, 5);
+            require(number >= 0, "device \"", name, "\" has no valid number: write cuda:0 for the first GPU");
+            return found_gpu(number, name);
+        }
+        throw error(message("device \"", name, "\" is unknown: use auto, cpu, cpu:THREADS, cuda or cuda:NUMBER"));
     }
 
     device::kind which() const { return kind_; }
-    int threads() const { return threads_; }
+    int threads() const { return kind_ == kind::cpu ? number_ : 0; }
+    int number() const { return kind_ == kind::cuda ? number_ : 0; }
     /// The name that `parse` understands.
-    std::string name() const { return threads_ == 0 ? "cpu" : message("cpu:", threads_); }
+    std::string name() const {
+        if (kind_ == kind::cuda) return message("cuda:", number_);
+        return number_ == 0 ? "cpu" : message("cpu:", number_);
+    }
+    /// For people: a GPU's name, as its driver gives it.
+    std::string description() const {
+        if (kind_ == kind::cpu) return "CPU";
+        std::string why_none;
+        return gpus(why_none)[static_cast<std::size_t>(number_)].name;
+    }
 
 private:
-    device(device::kind k, int threads) : kind_(k), threads_(threads) {}
+    device(device::kind k, int number) : kind_(k), number_(number) {}
+
+    static std::vector<myriad::cuda::device_facts> gpus(std::string& why_none) {
+        auto* const list = host::if_defined(&myriad::cuda::list_devices);
+        if (list != nullptr) return list(why_none);
+        why_none = "this program was built without the CUDA backend";
+        return {};
+    }
+    static device found_gpu(int number, std::string_view name) {
+        std::string why_none;
+        const auto count = static_cast<int>(gpus(why_none).size());
+        require(count > 0, "device \"", name, "\" is not available: ", why_none, "; use \"cpu\" or \"auto\"");
+        require(number >= 0 && number < count, "device \"", name, "\" does not exist: this machine has ", count,
+                count == 1 ? " GPU" : " GPUs", ", numbered from 0");
+        return device(kind::cuda, number);
+    }
+    /// A number that fills the rest of the name, or -1.
+    static int number_after(std::string_view name, std::size_t from) {
+        int number = 0;
+        const char* const end = name.data() + name.size();
+        const auto [parsed, failure] = std::from_chars(name.data() + from, end, number);
+        return failure == std::errc() && parsed == end ? number : -1;
+    }
 
     device::kind kind_;
-    int threads_;
+    int number_;
 };
 
 /// All devices that the program can use, the best first.
-inline std::vector<device> devices() { return {device::cpu()}; }
+inline std::vector<device> devices() {
+    std::vector<device> found;
+    std::string why_none;
+    if (auto* const list = host::if_defined(&cuda::list_devices))
+        for (int i = 0; i < static_cast<int>(list(why_none).size()); ++i) found.push_back(device::cuda(i));
+    found.push_back(device::cpu());
+    return found;
+}
 
 }  // namespace myriad

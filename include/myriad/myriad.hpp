@@ -10,3 +10,4 @@
 #include "myriad/model.hpp"
 #include "myriad/model/describe.hpp"
 #include "myriad/solve.hpp"
+#include "myriad/solver.hpp"

@@ -9,7 +9,7 @@ A limit is a comment line
 and every kernel named must be within it: stack frame, spill stores plus spill loads, registers, registers compared
 with another kernel of the same file (a hand-written one). <kernel> is the function's name without namespace, template
 arguments and parameters; with the template arguments, it means that instance only (as in `run<lorenz, rk4>`, their
-namespaces left out or not). Kernels without a limit are listed and pass. Exit status: 0 all within, 1 a limit broken or
+namespaces and last ones left out or not). Kernels without a limit are listed and pass. Exit status: 0 all within, 1 a limit broken or
 the compiler failed, 2 a wrong limit line or option.
 """
 import argparse
@@ -134,9 +134,10 @@ def plain(name):
 
 
 def matching(kernels, name):
-    """Names of the kernels that `name` means: itself, or all instances of the template."""
+    """Names of the kernels that `name` means: itself, or all instances of the template that begin with its arguments."""
     return [kernel for kernel in kernels
-            if plain(kernel) == plain(name) or ("<" not in name and kernel.split("<")[0] == name)]
+            if plain(kernel) == plain(name) or ("<" not in name and kernel.split("<")[0] == name)
+            or (name.endswith(">") and plain(kernel).startswith(plain(name)[:-1] + ","))]
 
 
 def check(kernels, limits):

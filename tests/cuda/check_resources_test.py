@@ -69,6 +69,11 @@ class CheckResources(unittest.TestCase):
         self.assertEqual(checker.matching(kernels, "run<lorenz, rk4, double>"), kernels[:1])
         self.assertEqual(checker.matching(kernels, "run<lorenz,myriad::rk4,double>"), kernels[:1])
 
+    def test_last_template_arguments_may_be_left_out(self):
+        kernels = ["run<lorenz, myriad::rk4, (place)1>", "run<lorenz_2, myriad::rk4, (place)1>"]
+        self.assertEqual(checker.matching(kernels, "run<lorenz, rk4>"), kernels[:1])
+        self.assertEqual(checker.matching(kernels, "run<lorenz>"), kernels[:1])
+
     def test_wrong_limit_line_is_refused(self):
         for line in ("// limit: lorenz stak 0", "// limit: lorenz", "// limit: lorenz registers many",
                      "// limit: lorenz registers_within 1.1 lorenz_by_hand"):

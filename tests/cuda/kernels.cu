@@ -2,9 +2,9 @@
 // The kernel body as CUDA kernels, beside kernels written by hand that do the same duties: a time domain per instance, a
 // status, counters, a step limit, and no state that is not finite.
 //
-// limit: integrate_ensemble<lorenz, runge_kutta_4, double> stack 0 spill 0 registers_within 1.10 of lorenz_by_hand
-// limit: integrate_ensemble<duffing_plain, cash_karp, double> stack 0 spill 0 registers_within 1.10 of duffing_by_hand
-// limit: integrate_ensemble<duffing, cash_karp, double> spill 0
+// limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers_within 1.10 of lorenz_by_hand
+// limit: integrate_ensemble<duffing_plain, cash_karp> stack 0 spill 0 registers_within 1.10 of duffing_by_hand
+// limit: integrate_ensemble<duffing, cash_karp> spill 0
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
@@ -36,15 +36,17 @@ struct duffing_plain {
 
 template <class Model>
 using arguments = myriad::kernel_arguments<Model, double>;
+constexpr auto constant = myriad::shared_placement::constant_bank;
+template <class Model>
+using launched = myriad::launch_arguments<Model, double, constant>;
 
-template __global__ void myriad::integrate_ensemble<lorenz, myriad::runge_kutta_4, double>(
-    const __grid_constant__ arguments<lorenz>);
-template __global__ void myriad::integrate_ensemble<duffing_plain, myriad::cash_karp, double>(
-    const __grid_constant__ arguments<duffing_plain>);
-template __global__ void myriad::integrate_ensemble<duffing, myriad::cash_karp, double>(
-    const __grid_constant__ arguments<duffing>);
-template __global__ void myriad::integrate_ensemble<duffing, myriad::tsitouras_5, double>(
-    const __grid_constant__ arguments<duffing>);
+#define INSTANTIATE(Model, Method)                                                                \
+    template __global__ void myriad::integrate_ensemble<Model, myriad::Method, double, constant>( \
+        const __grid_constant__ launched<Model>);
+INSTANTIATE(lorenz, runge_kutta_4)
+INSTANTIATE(duffing_plain, cash_karp)
+INSTANTIATE(duffing, cash_karp)
+INSTANTIATE(duffing, tsitouras_5)
 
 namespace {
 
@@ -108,7 +110,7 @@ __global__ void duffing_by_hand(const __grid_constant__ arguments<duffing_plain>
     const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
     if (i >= a.size) return;
     double x = a.state[i], v = a.state[a.size + i];
-    const double k = a.parameter[i], B = a.shared[0];
+    const double k = a.parameter[i], B = a.shared.real[0];
     for (int phase = 0; phase < a.phases; ++phase) {
         double t = a.t_begin[i];
         const double end = a.t_end[i];

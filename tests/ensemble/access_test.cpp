@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tests/ensemble/refusal.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -19,7 +20,7 @@ using myriad::options;
 using myriad::solve;
 using myriad::status;
 
-const device one_thread = device::cpu(1);
+const device one_thread = tests::test_device(1);
 
 TEST_CASE("an ensemble begins with nothing set and nothing started", "[ensemble]") {
     const ensemble<complete> e(7);

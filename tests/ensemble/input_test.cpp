@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/ensemble/refusal.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -25,7 +26,7 @@ using myriad::tsitouras_5;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-const device one_thread = device::cpu(1);
+const device one_thread = tests::test_device();
 
 /// Checks that good decays are refused with these options, by a message with all the words, and stay untouched.
 template <class Method = cash_karp>
@@ -575,9 +576,15 @@ TEST_CASE("evenly spaced samples over an infinite domain are refused", "[input]"
 // --------------------------------------------------------------------------------------------------------------------
 
 TEST_CASE("unknown devices are refused by name, with those there are", "[input]") {
-    refused([] { device::parse("cuda"); },
-            {"\"cuda\"", "not available", "without the CUDA backend", "\"cpu\" or \"auto\""});
-    refused([] { device::parse("cuda:0"); }, {"\"cuda:0\"", "not available", "\"cpu\" or \"auto\""});
+    if (device::no_gpu().empty()) {
+        refused([] { device::parse("cuda:99"); }, {"\"cuda:99\"", "does not exist", "numbered from 0"});
+    } else {
+        for (const char* name : {"cuda", "cuda:0", "cuda:1"})
+            refused([&] { device::parse(name); },
+                    {name, "not available", device::no_gpu().c_str(), "\"cpu\" or \"auto\""});
+    }
+    for (const char* name : {"cuda:", "cuda:x", "cuda:-1", "cuda:1x"})
+        refused([&] { device::parse(name); }, {name, "no valid number", "cuda:0"});
     for (const char* name : {"cpu:0", "cpu:x", "cpu:", "cpu:-2", "cpu:2x", "cpu: 2", "cpu:99999999999"}) {
         INFO(name);
         refused([&] { device::parse(name); }, {name, "no valid number of threads", "cpu:4"});
@@ -585,14 +592,14 @@ TEST_CASE("unknown devices are refused by name, with those there are", "[input]"
     for (const char* name : {"gpu", "", "CPU", "cpus", "auto:2", " cpu"}) {
         INFO(name);
         refused([&] { device::parse(name); },
-                {("\"" + std::string(name) + "\"").c_str(), "unknown", "auto, cpu or cpu:THREADS"});
+                {("\"" + std::string(name) + "\"").c_str(), "unknown", "auto, cpu, cpu:THREADS, cuda or cuda:NUMBER"});
     }
     refused([] { device::parse("cpu:5000"); }, {"5000 threads", "must be from 1 to 4096"});
     refused([] { device::cpu(-1); }, {"-1 threads", "must be from 1 to 4096", "0 for all cores"});
 }
 
 TEST_CASE("devices have the names by which they are found", "[input]") {
-    CHECK(device::parse("auto").which() == device::kind::cpu);
+    CHECK((device::parse("auto").which() == device::kind::cuda) == device::no_gpu().empty());
     CHECK(device::parse("cpu").threads() == 0);
     CHECK(device::parse("cpu").name() == "cpu");
     CHECK(device::parse("cpu:4").threads() == 4);

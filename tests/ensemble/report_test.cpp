@@ -11,6 +11,7 @@
 #include <omp.h>
 
 #include "tests/ensemble/refusal.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -25,7 +26,7 @@ using myriad::runge_kutta_4;
 using myriad::solve;
 using myriad::status;
 
-const device one_thread = device::cpu(1);
+const device one_thread = tests::test_device(1);
 
 /// Decays of which numbers 6 and 8 turn not finite at once.
 myriad::ensemble<bare> two_failures() {
@@ -79,7 +80,7 @@ TEST_CASE("every status has a name, and no two the same", "[report]") {
 
 TEST_CASE("the report names the first failing instance with its inputs", "[report]") {
     auto e = two_failures();
-    const auto report = solve<cash_karp>(device::cpu(2), e);
+    const auto report = solve<cash_karp>(tests::test_device(2), e);
     CHECK(report.count(status::not_finite) == 2);
     CHECK(report.count(status::success) == 8);
     CHECK(report.failed() == 2);
@@ -110,7 +111,7 @@ TEST_CASE("a printed report without failures or counts has no line about them", 
     auto e = good_decays();
     options o;
     o.counting = counting::off;
-    const std::string text = printed(solve<cash_karp>(device::cpu(2), e, o));
+    const std::string text = printed(solve<cash_karp>(tests::test_device(2), e, o));
     INFO(text);
     CHECK(has(text, "5 instances: 5 success; "));
     CHECK(has(text, "on 2 threads of "));
@@ -210,7 +211,7 @@ TEST_CASE("the progress function is called from the calling thread, with counts 
             total = all;
             elsewhere = elsewhere || std::this_thread::get_id() != caller;
         };
-        solve<cash_karp>(device::cpu(threads), e, o);
+        solve<cash_karp>(tests::test_device(threads), e, o);
         REQUIRE(begun.size() >= 2);
         CHECK(total == 5000);
         CHECK_FALSE(elsewhere);
@@ -224,8 +225,8 @@ TEST_CASE("the progress function changes no result", "[report]") {
     auto e = good_decays(300), silent = good_decays(300);
     options o;
     o.progress = [](std::int64_t, std::int64_t) {};
-    solve<cash_karp>(device::cpu(2), e, o);
-    solve<cash_karp>(device::cpu(2), silent);
+    solve<cash_karp>(tests::test_device(2), e, o);
+    solve<cash_karp>(tests::test_device(2), silent);
     CHECK((e.state(bare::x) == silent.state(bare::x)).all());
     CHECK((e.accepted_steps() == silent.accepted_steps()).all());
 }
@@ -245,7 +246,7 @@ TEST_CASE("an exception of the progress function reaches the caller of solve, on
         };
         std::string said;
         try {
-            solve<cash_karp>(device::cpu(threads), e, o);
+            solve<cash_karp>(tests::test_device(threads), e, o);
         } catch (const cancelled& c) {
             said = c.what();
         }
@@ -256,8 +257,8 @@ TEST_CASE("an exception of the progress function reaches the caller of solve, on
         e.state(bare::x) = fresh.state(bare::x);
         e.state(bare::w) = fresh.state(bare::w);
         e.restart();
-        solve<cash_karp>(device::cpu(threads), e);
-        solve<cash_karp>(device::cpu(threads), fresh);
+        solve<cash_karp>(tests::test_device(threads), e);
+        solve<cash_karp>(tests::test_device(threads), fresh);
         CHECK((e.state(bare::x) == fresh.state(bare::x)).all());
     }
 }

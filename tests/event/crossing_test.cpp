@@ -6,6 +6,7 @@
 #include "tests/event/watching.hpp"
 
 #include <random>
+#include "tests/support/device.hpp"
 
 using namespace watching;
 using myriad::direction;
@@ -40,7 +41,7 @@ std::vector<double> zeros_of_wave(double amplitude, double c, double t_begin, do
     e.parameter(wave::amplitude) = amplitude;
     e.parameter(wave::c) = c;
     e.time_domain(t_begin, t_end);
-    const auto report = myriad::solve<Method>(myriad::device::cpu(1), e, o);
+    const auto report = myriad::solve<Method>(tests::test_device(1), e, o);
     CHECK(report.failed() == 0);
     return logged(e);
 }
@@ -294,7 +295,7 @@ TEMPLATE_TEST_CASE("a discontinuous event function is located to the rounding of
         for (const double t_begin : {0.0, -0.3}) {
             CAPTURE(g.before, g.at, g.after, t_begin);
             auto e = gate_of(g.before, g.at, g.after, 0.5, t_begin, 1);
-            const auto report = myriad::solve<TestType>(myriad::device::cpu(1), e, one_event(1e-6, 0.07));
+            const auto report = myriad::solve<TestType>(tests::test_device(1), e, one_event(1e-6, 0.07));
             CHECK(report.count(myriad::status::success) == 1);
             CHECK(agree(logged(e), {0.5}, 4 * std::numeric_limits<double>::epsilon()));
         }
@@ -303,7 +304,7 @@ TEMPLATE_TEST_CASE("a discontinuous event function is located to the rounding of
 
 TEMPLATE_TEST_CASE("a discontinuity at t_end fires once", "", ALL_METHODS) {
     auto e = gate_of(-1, 1, 1, 0.5, 0, 0.5);
-    const auto report = myriad::solve<TestType>(myriad::device::cpu(1), e, one_event(1e-6, 0.07));
+    const auto report = myriad::solve<TestType>(tests::test_device(1), e, one_event(1e-6, 0.07));
     CHECK(report.count(myriad::status::success) == 1);
     CHECK(e.t()[0] == 0.5);
     CHECK(agree(logged(e), {0.5}, 4 * std::numeric_limits<double>::epsilon()));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <myriad/myriad.hpp>
+#include "tests/support/device.hpp"
 
 #define ALL_METHODS myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4
 
@@ -28,7 +29,7 @@ template <class Method>
 auto run(myriad::ensemble<gate>& e) {
     myriad::options o;
     o.step = 0.03;
-    return myriad::solve<Method>(myriad::device::cpu(1), e, o);
+    return myriad::solve<Method>(tests::test_device(1), e, o);
 }
 
 }  // namespace

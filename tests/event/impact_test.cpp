@@ -3,6 +3,7 @@
 #include "tests/catch.hpp"
 #include "tests/event/time_models.hpp"
 #include "tests/event/watching.hpp"
+#include "tests/support/device.hpp"
 
 using namespace watching;
 
@@ -155,7 +156,7 @@ TEMPLATE_TEST_CASE("the period of a pendulum is right to 1e-10", "", ALL_METHODS
     o.step = 1e-3;  // RK4: (omega h)^4 / 120 over 2 pi is 5e-12 of the period
     // v passes zero with a slope of 0.49: 1e-12 in v are 2e-12 in t
     o.events = {{.direction = myriad::direction::falling, .tolerance = 1e-12}};
-    myriad::solve<TestType>(myriad::device::cpu(1), e, o);
+    myriad::solve<TestType>(tests::test_device(1), e, o);
     REQUIRE(e.integer_accessory(pendulum::fired)[0] == 1);  // and not at the start, which is a turning point too
     CHECK(std::abs(e.accessory(0)[0] - 2.0074035758801301205) <= 1e-10);
 }

@@ -4,6 +4,7 @@
 #include "tests/catch.hpp"
 #include "tests/event/time_models.hpp"
 #include "tests/event/watching.hpp"
+#include "tests/support/device.hpp"
 
 using namespace watching;
 
@@ -171,7 +172,7 @@ TEMPLATE_TEST_CASE("a function of time that starts on its surface again in every
     o.maximum_step = 0.05;
     o.events = {{.tolerance = 1e-9}};
     o.phases = 3;
-    myriad::solve<TestType>(myriad::device::cpu(1), e, o);
+    myriad::solve<TestType>(tests::test_device(1), e, o);
     REQUIRE(e.integer_accessory(wave::fired)[0] == 3);
     for (int k = 0; k < 3; ++k) CHECK(std::abs(e.accessory(k)[0] - pi / 2) <= 1e-9);
 }

@@ -13,6 +13,7 @@
 #include <myriad/myriad.hpp>
 
 #include "tests/event/watch.hpp"
+#include "tests/support/device.hpp"
 
 namespace watching {
 
@@ -122,7 +123,7 @@ inline myriad::options options_for(double event_tolerance, double step, myriad::
 
 template <class Method, class R>
 auto solve(myriad::ensemble<watch, R>& e, const myriad::options& o) {
-    return myriad::solve<Method>(myriad::device::cpu(1), e, o);
+    return myriad::solve<Method>(tests::test_device(1), e, o);
 }
 
 }  // namespace watching

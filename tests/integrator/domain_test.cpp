@@ -11,6 +11,7 @@
 #include "tests/support/hooked.hpp"
 #include "tests/support/problems.hpp"
 #include "tests/support/recorder.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -38,7 +39,7 @@ ensemble<uniform, R> run(R t_begin, R t_end, const options& o) {
     e.state(0) = t_begin;
     e.time_domain(t_begin, t_end);
     recorder::take();
-    solve<Method>(device::cpu(1), e, o);
+    solve<Method>(tests::test_device(1), e, o);
     REQUIRE(e.status(0) == status::success);
     return e;
 }
@@ -96,7 +97,7 @@ TEST_CASE("a domain of n steps up to rounding has n steps, for every n") {
             e.t_end()[i] = n * 0.1;
             e.t_end()[i + 1] = sum;
         }
-        solve<Method>(device::cpu(1), e, fixed_step(0.1));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.1));
         for (std::int64_t i = 0; i < e.size(); ++i) {
             CAPTURE(i);
             CHECK(e.accepted_steps()[i] == i / 2 + 1);
@@ -142,7 +143,7 @@ TEST_CASE("t ends at t_end, bit for bit") {
             e.t_begin()[i] = std::sin(static_cast<double>(i)) * 3;
             e.t_end()[i] = std::cos(static_cast<double>(i)) * 10;  // before t_begin in half of them
         }
-        solve<Method>(device::cpu(1), e, with_tolerance(1e-8));
+        solve<Method>(tests::test_device(1), e, with_tolerance(1e-8));
         for (std::int64_t i = 0; i < e.size(); ++i) {
             CHECK(e.status(i) == status::success);
             CHECK(compare::same_bits(e.t()[i], e.t_end()[i]));
@@ -158,7 +159,7 @@ TEST_CASE("t ends at t_end, bit for bit, in single precision") {
             e.t_begin()[i] = std::sin(static_cast<float>(i)) * 3;
             e.t_end()[i] = std::cos(static_cast<float>(i)) * 10;
         }
-        solve<Method>(device::cpu(1), e, with_tolerance(1e-4));
+        solve<Method>(tests::test_device(1), e, with_tolerance(1e-4));
         for (std::int64_t i = 0; i < e.size(); ++i) {
             CHECK(e.status(i) == status::success);
             CHECK(compare::same_bits(e.t()[i], e.t_end()[i]));
@@ -189,11 +190,11 @@ TEST_CASE("an integration back to its start returns to where it began") {
         }
         const Eigen::ArrayXd u = e.state(0), w = e.state(1);
         e.time_domain(0, 3);
-        const auto there = solve<Method>(device::cpu(1), e, with_tolerance(1e-9));
+        const auto there = solve<Method>(tests::test_device(1), e, with_tolerance(1e-9));
         CHECK((e.state(0) - u).abs().maxCoeff() > 0.5);
         e.time_domain(3, 0);
         e.restart();
-        const auto back = solve<Method>(device::cpu(1), e, with_tolerance(1e-9));
+        const auto back = solve<Method>(tests::test_device(1), e, with_tolerance(1e-9));
         // Every step adds an error below the tolerance of 1e-9 times |y| <= e. The flow along the circle magnifies it by the
         // ratio of the coordinates, e^2, at most. RK4 with h = 1/64: error per step h^5 / 120 times derivatives of ten.
         const double steps = static_cast<double>(there.accepted_steps + back.accepted_steps) / 8;
@@ -210,7 +211,7 @@ TEST_CASE("an integration backwards follows the solution backwards") {
         e.state(0) = start[0];
         e.state(1) = start[1];
         e.time_domain(2, 0.5);
-        const auto r = solve<Method>(device::cpu(1), e, with_tolerance(1e-9, 1.0 / 256));
+        const auto r = solve<Method>(tests::test_device(1), e, with_tolerance(1e-9, 1.0 / 256));
         const double bound = std::exp(2.0) * static_cast<double>(r.accepted_steps) * std::exp(1.0) * 1e-9;
         CHECK(std::abs(e.state(0)[0] - end[0]) < bound);
         CHECK(std::abs(e.state(1)[0] - end[1]) < bound);
@@ -236,7 +237,7 @@ TEST_CASE("an empty domain is a success without a step that leaves the state alo
         e.state(1) = -0.7;
         e.t_begin() = 2.5;
         e.t_end() = 2.5;
-        const auto r = solve<Method>(device::cpu(1), e, with_tolerance(1e-6));
+        const auto r = solve<Method>(tests::test_device(1), e, with_tolerance(1e-6));
         CHECK(r.count(status::success) == 3);
         CHECK(r.accepted_steps + r.rejected_steps + r.rhs_evaluations == 0);
         CHECK((e.state(0) == 0.1).all());
@@ -254,8 +255,8 @@ TEST_CASE("empty domains among others disturb none") {
             e->time_domain(0, 3);
         }
         for (std::int64_t i = 0; i < 50; i += 3) mixed.t_end()[i] = 0;
-        solve<Method>(device::cpu(1), mixed, with_tolerance(1e-8));
-        solve<Method>(device::cpu(1), full, with_tolerance(1e-8));
+        solve<Method>(tests::test_device(1), mixed, with_tolerance(1e-8));
+        solve<Method>(tests::test_device(1), full, with_tolerance(1e-8));
         for (std::int64_t i = 0; i < 50; ++i)
             if (i % 3 != 0) CHECK(compare::difference(mixed, i, full, i) == "");
     });
@@ -269,7 +270,7 @@ TEST_CASE("an empty domain calls initialise and finalise once in every phase") {
         e.time_domain(1, 1);
         options o = with_tolerance(1e-6);
         o.phases = 3;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK((e.integer_accessory(hooked::stopper::begun) == 3).all());
         CHECK((e.integer_accessory(hooked::stopper::finished) == 3).all());
         CHECK((e.phases_done() == 3).all());
@@ -285,7 +286,7 @@ TEST_CASE("an endless domain goes on until a hook ends the phase") {
             e.parameter(hooked::stopper::phase_stop) = sign > 0 ? 20.0 : 1e9;
             e.parameter(hooked::stopper::instance_stop) = sign > 0 ? 1e9 : -1e9;
             e.time_domain(0, sign * std::numeric_limits<double>::infinity());
-            const auto r = solve<Method>(device::cpu(1), e, with_tolerance(1e-6, 0.125));
+            const auto r = solve<Method>(tests::test_device(1), e, with_tolerance(1e-6, 0.125));
             CHECK(r.count(status::stopped_by_user) == 1);
             CHECK(std::abs(e.state(0)[0] - e.t()[0]) <= 1e-12 * std::abs(e.t()[0]));  // y' = 1: roundings only
             CHECK(sign * e.t()[0] > 0);

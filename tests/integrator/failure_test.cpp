@@ -12,6 +12,7 @@
 #include "tests/support/compare.hpp"
 #include "tests/support/faulty.hpp"
 #include "tests/support/problems.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -46,7 +47,7 @@ template <class Method, class R>
 void check_neighbours(const options& o) {
     constexpr std::int64_t size = 67;
     auto good = healthy<R>(size, R(4));
-    solve<Method>(device::cpu(1), good, o);
+    solve<Method>(tests::test_device(1), good, o);
     for (const int threads : {1, 2}) {
         auto mixed = healthy<R>(size, R(4));
         std::int64_t failing = 0;
@@ -56,7 +57,7 @@ void check_neighbours(const options& o) {
             mixed.parameter(clock_fault::kind)[i] = static_cast<R>(i % 2);
             ++failing;
         }
-        const auto report = solve<Method>(device::cpu(threads), mixed, o);
+        const auto report = solve<Method>(tests::test_device(threads), mixed, o);
         CHECK(report.count(status::not_finite) == failing);
         CHECK(report.count(status::success) == size - failing);
         CHECK(report.first_failed == 0);
@@ -86,8 +87,8 @@ TEST_CASE("with fixed steps, a right-hand side that turns NaN or infinite ends t
             bad.parameter(clock_fault::last_good) = 1.0;
             bad.parameter(clock_fault::kind) = kind;
             // adaptive methods must not shrink the step further: it is the minimum
-            solve<Method>(device::cpu(1), bad, fixed_step(0.125));
-            solve<Method>(device::cpu(1), until, fixed_step(0.125));
+            solve<Method>(tests::test_device(1), bad, fixed_step(0.125));
+            solve<Method>(tests::test_device(1), until, fixed_step(0.125));
             CHECK(bad.status(0) == status::not_finite);
             CHECK(bad.t()[0] == 1.0);
             CHECK(bad.accepted_steps()[0] == 8);
@@ -101,8 +102,8 @@ TEST_CASE("with fixed steps, single precision fails as double precision does") {
     each_method([]<class Method> {
         auto bad = healthy<float>(1, 4.0f), until = healthy<float>(1, 1.0f);
         bad.parameter(clock_fault::last_good) = 1.0f;
-        solve<Method>(device::cpu(1), bad, fixed_step(0.125));
-        solve<Method>(device::cpu(1), until, fixed_step(0.125));
+        solve<Method>(tests::test_device(1), bad, fixed_step(0.125));
+        solve<Method>(tests::test_device(1), until, fixed_step(0.125));
         CHECK(bad.status(0) == status::not_finite);
         CHECK(bad.t()[0] == 1.0f);
         CHECK(compare::same_bits(bad.state(0)[0], until.state(0)[0]));
@@ -114,7 +115,7 @@ TEST_CASE("with step-size control, a right-hand side that turns NaN or infinite 
             auto bad = healthy(1, 4.0);
             bad.parameter(clock_fault::last_good) = 1.0;
             bad.parameter(clock_fault::kind) = kind;
-            solve<Method>(device::cpu(1), bad, with_tolerance(1e-9));
+            solve<Method>(tests::test_device(1), bad, with_tolerance(1e-9));
             CAPTURE(kind);
             CHECK(bad.status(0) == status::not_finite);
             // the step shrinks to the resolution of t
@@ -133,7 +134,7 @@ TEST_CASE("with a minimum step, a right-hand side that turns NaN ends the instan
         bad.parameter(clock_fault::last_good) = 1.0;
         options o = with_tolerance(1e-6);
         o.minimum_step = 1e-3;
-        solve<Method>(device::cpu(1), bad, o);
+        solve<Method>(tests::test_device(1), bad, o);
         CHECK(bad.status(0) == status::not_finite);
         CHECK(bad.t()[0] <= 1.0);
         CHECK(bad.t()[0] >= 1.0 - 1e-3);
@@ -145,7 +146,7 @@ TEST_CASE("a right-hand side that depends on the state alone and leaves its doma
         e.state(0) = 0.0;
         e.parameter(0) = 1.0;  // y' = 1 while y <= 1
         e.time_domain(0, 4);
-        solve<Method>(device::cpu(1), e, with_tolerance(1e-9, 0.125));
+        solve<Method>(tests::test_device(1), e, with_tolerance(1e-9, 0.125));
         CHECK(e.status(0) == status::not_finite);
         CHECK(e.state(0)[0] <= 1.0);
         CHECK(e.state(0)[0] >= 1.0 - 1e-12);  // RK4: at the end of the eighth step exactly
@@ -155,7 +156,7 @@ TEST_CASE("an instance that is not finite from the start keeps its state") {
     each_method([]<class Method> {
         auto bad = healthy(1, 4.0);
         bad.parameter(clock_fault::last_good) = -1.0;
-        solve<Method>(device::cpu(1), bad, with_tolerance(1e-6));
+        solve<Method>(tests::test_device(1), bad, with_tolerance(1e-6));
         CHECK(bad.status(0) == status::not_finite);
         CHECK(bad.t()[0] == 0.0);
         CHECK(bad.state(0)[0] == 1.0);
@@ -180,15 +181,15 @@ TEST_CASE("a failed instance takes no part in further calls, until the ensemble 
         auto e = healthy(2, 4.0), copy = healthy(2, 4.0);
         for (auto* x : {&e, &copy}) {
             x->parameter(clock_fault::last_good)[0] = 1.0;
-            solve<Method>(device::cpu(1), *x, fixed_step(0.125));
+            solve<Method>(tests::test_device(1), *x, fixed_step(0.125));
         }
-        solve<Method>(device::cpu(1), e, fixed_step(0.125));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.125));
         CHECK(compare::difference(e, 0, copy, 0) == "");
         CHECK(e.phases_done()[0] == 0);
         CHECK(e.phases_done()[1] == 2);
         e.restart();
         e.parameter(clock_fault::last_good)[0] = never;
-        solve<Method>(device::cpu(1), e, fixed_step(0.125));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.125));
         CHECK(e.status(0) == status::success);
     });
 }
@@ -198,7 +199,7 @@ TEST_CASE("with step-size control, a finite trial after one that was not is judg
         auto e = healthy(1, 1.0);
         e.parameter(clock_fault::last_good) = 1.0;
         options o = with_tolerance(1e-6);
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK(e.status(0) == status::success);
         CHECK(e.t()[0] == 1.0);
     });
@@ -212,7 +213,7 @@ TEST_CASE("an after_step that writes NaN ends the instance with the state before
         e.integer_accessory(faulty::hook_fault::which) = faulty::hook_fault::in_after_step;
         e.integer_accessory(faulty::hook_fault::finished) = 0;
         e.time_domain(0, 1);
-        solve<Method>(device::cpu(1), e, fixed_step(0.125));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.125));
         CHECK(e.status(0) == status::not_finite);
         CHECK(e.t()[0] == 0.5);
         CHECK(std::abs(e.state(0)[0] - 0.5) <= 1e-15);  // four steps of y' = 1
@@ -226,7 +227,7 @@ TEST_CASE("an initialise that writes NaN ends the instance with the state before
         e.parameter(0) = 0.0;
         e.integer_accessory(faulty::hook_fault::which) = faulty::hook_fault::in_initialise;
         e.time_domain(0, 1);
-        solve<Method>(device::cpu(1), e, fixed_step(0.125));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.125));
         CHECK(e.status(0) == status::not_finite);
         CHECK(e.t()[0] == 0.0);
         CHECK(e.state(0)[0] == 0.25);
@@ -239,7 +240,7 @@ TEST_CASE("a finalise that writes NaN ends the instance with the state before it
         e.parameter(0) = 0.0;
         e.integer_accessory(faulty::hook_fault::which) = faulty::hook_fault::in_finalise;
         e.time_domain(0, 1);
-        solve<Method>(device::cpu(1), e, fixed_step(0.125));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.125));
         CHECK(e.status(0) == status::not_finite);
         CHECK(std::abs(e.state(0)[0] - 1.25) <= 1e-15);  // eight steps of y' = 1
     });
@@ -253,7 +254,7 @@ TEST_CASE("with step-size control, a solution that blows up ends as step_underfl
             ensemble<faulty::blow_up> e(1);
             e.state(0) = sign;
             e.time_domain(0, 2 * sign);
-            solve<Method>(device::cpu(1), e, with_tolerance(1e-9));
+            solve<Method>(tests::test_device(1), e, with_tolerance(1e-9));
             CHECK(e.status(0) == status::step_underflow);
             // The pole of the numerical solution: each step with relative error 1e-9 shifts it by 1e-9 of what is left.
             CHECK(std::abs(sign * e.t()[0] - 1) < 1e-8);
@@ -267,7 +268,7 @@ TEST_CASE("with step-size control, a solution that blows up ends as step_underfl
         ensemble<faulty::blow_up, float> e(1);
         e.state(0) = 1.0f;
         e.time_domain(0, 2);
-        solve<Method>(device::cpu(1), e, with_tolerance(1e-4));
+        solve<Method>(tests::test_device(1), e, with_tolerance(1e-4));
         CHECK(e.status(0) == status::step_underflow);
         CHECK(std::abs(e.t()[0] - 1) < 1e-3f);
         CHECK(std::isfinite(e.state(0)[0]));
@@ -277,7 +278,7 @@ TEST_CASE("with fixed steps, a solution that blows up ends as not_finite with a 
     ensemble<faulty::blow_up> e(1);
     e.state(0) = 1.0;
     e.time_domain(0, 2);
-    solve<runge_kutta_4>(device::cpu(1), e, fixed_step(1.0 / 64));
+    solve<runge_kutta_4>(tests::test_device(1), e, fixed_step(1.0 / 64));
     CHECK(e.status(0) == status::not_finite);
     CHECK(std::isfinite(e.state(0)[0]));
     CHECK(e.t()[0] < 2.0);
@@ -289,7 +290,7 @@ TEST_CASE("an error test that fails at the minimum step ends the instance as ste
         e.time_domain(0, 2);
         options o = with_tolerance(1e-9);
         o.minimum_step = 1e-3;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK(e.status(0) == status::step_underflow);
         CHECK(e.t()[0] < 1.0);
         CHECK(e.t()[0] > 0.5);  // h = 1e-3 has an error of 1e-9 only near the pole
@@ -305,7 +306,7 @@ TEST_CASE("a slope that jumps is passed with small steps, or ends the instance w
         e.parameter(0) = 1.0 / 3;
         e.time_domain(0, 1);
         options o = with_tolerance(1e-9);
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK(e.status(0) == status::success);
         // Only the step across the jump has an error. The stages on one side of it leave an estimate of h times a sum of some
         // first error weights, at least 0.0017 in size for both methods, so h < 1e-9 / 0.0017.
@@ -317,7 +318,7 @@ TEST_CASE("a slope that jumps is passed with small steps, or ends the instance w
         f.parameter(0) = 1.0 / 3;
         f.time_domain(0, 1);
         o.minimum_step = 1e-2;
-        solve<Method>(device::cpu(1), f, o);
+        solve<Method>(tests::test_device(1), f, o);
         CHECK(f.status(0) == status::step_underflow);
         CHECK(f.t()[0] <= 1.0 / 3);
         CHECK(f.t()[0] >= 1.0 / 3 - 1e-2);
@@ -332,9 +333,9 @@ TEST_CASE("with fixed steps, max_steps ends the instance after just so many step
         for (const std::int64_t most : {1, 2, 7, 8, 9, 15, 16, 17, 24, 64, 99}) {
             auto e = healthy(1, 100.0 / 16), until = healthy(1, static_cast<double>(most) / 16);
             options o = fixed_step(1.0 / 16);
-            solve<Method>(device::cpu(1), until, o);
+            solve<Method>(tests::test_device(1), until, o);
             o.max_steps = most;
-            solve<Method>(device::cpu(1), e, o);
+            solve<Method>(tests::test_device(1), e, o);
             CAPTURE(most);
             CHECK(e.status(0) == status::max_steps);
             CHECK(e.accepted_steps()[0] == most);
@@ -350,11 +351,11 @@ TEST_CASE("where max_steps ends an instance does not depend on its neighbours") 
             o.max_steps = most;
             auto together = healthy(50, 100.0 / 16);
             for (std::int64_t i = 0; i < together.size(); ++i) together.t_end()[i] = static_cast<double>(1 + 7 * (i % 6)) / 16;
-            solve<Method>(device::cpu(1), together, o);
+            solve<Method>(tests::test_device(1), together, o);
             for (std::int64_t i = 0; i < together.size(); ++i) {
                 auto alone = healthy(1, together.t_end()[i]);
                 alone.parameter(clock_fault::rate) = together.parameter(clock_fault::rate)[i];
-                solve<Method>(device::cpu(1), alone, o);
+                solve<Method>(tests::test_device(1), alone, o);
                 CAPTURE(most, i);
                 CHECK(compare::difference(together, i, alone, 0) == "");
                 CHECK(together.accepted_steps()[i] == std::min<std::int64_t>(most, 1 + 7 * (i % 6)));
@@ -368,7 +369,7 @@ TEST_CASE("as many steps as max_steps are enough") {
             auto e = healthy(1, static_cast<double>(steps) / 16);
             options o = fixed_step(1.0 / 16);
             o.max_steps = steps;
-            solve<Method>(device::cpu(1), e, o);
+            solve<Method>(tests::test_device(1), e, o);
             CHECK(e.status(0) == status::success);
             CHECK(e.accepted_steps()[0] == steps);
         }
@@ -385,7 +386,7 @@ TEST_CASE("with step-size control, max_steps counts rejected trials too") {
             o.maximum_step = 0.01;
             o.step = 0.01;
             o.max_steps = most;
-            solve<Method>(device::cpu(1), e, o);
+            solve<Method>(tests::test_device(1), e, o);
             CHECK(e.status(0) == status::max_steps);
             CHECK(e.accepted_steps()[0] + e.rejected_steps()[0] == most);
             CHECK(e.t()[0] < 1000);
@@ -399,7 +400,7 @@ TEST_CASE("max_steps counts anew in every phase") {
         options o = fixed_step(1.0 / 16);
         o.max_steps = 16;
         o.phases = 4;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK(e.status(0) == status::success);
         CHECK((e.accepted_steps() == 64).all());
     });
@@ -408,7 +409,7 @@ TEST_CASE("a report names the first instance that failed, with its inputs") {
     auto e = healthy(10, 4.0);
     e.parameter(clock_fault::last_good)[7] = 2.0;
     e.parameter(clock_fault::last_good)[4] = 1.0;
-    const auto r = solve<runge_kutta_4>(device::cpu(1), e, fixed_step(0.125));
+    const auto r = solve<runge_kutta_4>(tests::test_device(1), e, fixed_step(0.125));
     CHECK(r.failed() == 2);
     CHECK(r.first_failed == 4);
     CHECK(r.first_status == status::not_finite);

@@ -10,6 +10,7 @@
 #include "tests/catch.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/hooked.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -44,7 +45,7 @@ std::vector<std::vector<call>> watch(std::int64_t size) {
     o.events.resize(3);
     for (auto& event : o.events) event.tolerance = 1e-9;
     recorder::take();
-    solve<Method>(device::cpu(1), e, o);
+    solve<Method>(tests::test_device(1), e, o);
     std::vector<std::vector<call>> calls(static_cast<std::size_t>(size));
     for (const call& c : recorder::take()) calls.at(static_cast<std::size_t>(c.index)).push_back(c);
     for (std::size_t i = 0; i < calls.size(); ++i) {
@@ -219,8 +220,8 @@ TEST_CASE("a scalar and a generic after_step that say the same do the same") {
         prepare(generic);
         options o = with_tolerance(1e-8, 1.0 / 32);
         o.phases = 2;
-        const auto r = solve<Method>(device::cpu(1), scalar, o);
-        solve<Method>(device::cpu(1), generic, o);
+        const auto r = solve<Method>(tests::test_device(1), scalar, o);
+        solve<Method>(tests::test_device(1), generic, o);
         CHECK(r.count(status::stopped_by_user) > 5);
         CHECK(r.count(status::success) > 5);
         for (std::int64_t i = 0; i < scalar.size(); ++i) {
@@ -253,7 +254,7 @@ TEST_CASE("a running sum and maximum over the steps are those of the trajectory"
         e.time_domain(0, 6);
         options o = with_tolerance(1e-8, 1.0 / 64);
         o.maximum_step = 1.0 / 64;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK(e.status(0) == status::stopped_by_user);
         // ends with the first step beyond 7 pi / 6
         CHECK(e.t()[0] >= 7 * pi / 6 - 1e-9);
@@ -275,7 +276,7 @@ TEST_CASE("a parameter written by finalise is stored and counts from the next ph
         e.parameter(parameter_writer::untouched) = 0.7;
         options o = fixed_step(0.25);
         o.phases = 3;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK(e.parameter(parameter_writer::rate)[0] == 24.0);
         CHECK(e.parameter(parameter_writer::untouched)[0] == 0.7);
         CHECK(std::abs(e.state(0)[0] - (3.0 + 6.0 + 12.0)) < 1e-13);  // twelve steps of y' = const
@@ -288,7 +289,7 @@ TEST_CASE("a parameter written by initialise counts in its own phase") {
         e.parameter(parameter_writer::untouched) = 0.7;
         options o = fixed_step(0.25);
         o.phases = 3;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK(e.parameter(parameter_writer::rate)[0] == 24.0);
         CHECK(std::abs(e.state(0)[0] - (6.0 + 12.0 + 24.0)) < 1e-13);
     });
@@ -298,7 +299,7 @@ TEST_CASE("a parameter written by after_step counts from the next step on") {
         auto e = one<parameter_writer>(0.0, 1.0, parameter_writer::in_after_step);
         e.parameter(parameter_writer::rate) = 3.0;
         e.parameter(parameter_writer::untouched) = 0.7;
-        solve<Method>(device::cpu(1), e, fixed_step(0.25));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.25));
         CHECK(e.parameter(parameter_writer::rate)[0] == 48.0);
         CHECK(std::abs(e.state(0)[0] - 0.25 * (3.0 + 6.0 + 12.0 + 24.0)) < 1e-13);
     });
@@ -312,7 +313,7 @@ TEST_CASE("instances that write parameters do not write those of others") {
         e.time_domain(0, 1);
         for (std::int64_t i = 0; i < 50; ++i) e.integer_accessory(parameter_writer::mode)[i] = static_cast<int>(i % 4);
         const Eigen::ArrayXd rate = e.parameter(parameter_writer::rate), untouched = e.parameter(parameter_writer::untouched);
-        solve<Method>(device::cpu(2), e, fixed_step(0.25));
+        solve<Method>(tests::test_device(2), e, fixed_step(0.25));
         for (std::int64_t i = 0; i < 50; ++i) {
             const double factor[] = {1, 2, 16, 2};
             CHECK(e.parameter(parameter_writer::rate)[i] == factor[i % 4] * rate[i]);
@@ -330,7 +331,7 @@ TEST_CASE("a model that does not declare it leaves its parameters and time domai
     const Eigen::ArrayXd p0 = e.parameter(0), p1 = e.parameter(1), t0 = e.t_begin(), t1 = e.t_end();
     options o = with_tolerance(1e-6);
     o.phases = 3;
-    solve<cash_karp>(device::cpu(1), e, o);
+    solve<cash_karp>(tests::test_device(1), e, o);
     CHECK(compare::same_bits_everywhere(e.parameter(0), p0));
     CHECK(compare::same_bits_everywhere(e.parameter(1), p1));
     CHECK(compare::same_bits_everywhere(e.t_begin(), t0));
@@ -343,7 +344,7 @@ TEST_CASE("a time domain written by finalise is that of the next phase") {
         options o = fixed_step(0.25);
         o.phases = 3;
         o.record.accessories = {domain_writer::t_at_end};
-        const auto r = solve<Method>(device::cpu(1), e, o);
+        const auto r = solve<Method>(tests::test_device(1), e, o);
         // [0, 1], [1, 3], [3, 7], and then [7, 15]
         CHECK(r.records.accessory(domain_writer::t_at_end)(0, 0) == 1.0);
         CHECK(r.records.accessory(domain_writer::t_at_end)(0, 1) == 3.0);
@@ -356,7 +357,7 @@ TEST_CASE("a time domain written by finalise is that of the next phase") {
 TEST_CASE("a time domain written by initialise is that of its own phase") {
     each_method([]<class Method> {
         auto e = one<domain_writer>(0.0, 1.0, domain_writer::set_in_initialise);
-        solve<Method>(device::cpu(1), e, fixed_step(0.25));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.25));
         CHECK(e.t()[0] == 5.0);
         CHECK(e.t_begin()[0] == 2.0);
         CHECK(e.t_end()[0] == 5.0);
@@ -366,7 +367,7 @@ TEST_CASE("a time domain written by initialise is that of its own phase") {
 TEST_CASE("a phase goes on to a later t_end written by after_step") {
     each_method([]<class Method> {
         auto e = one<domain_writer>(0.0, 1.0, domain_writer::extend);
-        solve<Method>(device::cpu(1), e, fixed_step(0.25));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.25));
         CHECK(e.status(0) == status::success);
         CHECK(e.t()[0] == 3.0);
         CHECK(e.accepted_steps()[0] == 12);
@@ -377,7 +378,7 @@ TEST_CASE("a phase goes on to a later t_end written by after_step") {
 TEST_CASE("a phase ends at an earlier t_end written by after_step") {
     each_method([]<class Method> {
         auto e = one<domain_writer>(0.0, 1.0, domain_writer::cut);
-        solve<Method>(device::cpu(1), e, fixed_step(0.125));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.125));
         CHECK(e.status(0) == status::success);
         CHECK(e.t()[0] == 0.25);
         CHECK(e.accepted_steps()[0] == 2);
@@ -390,7 +391,7 @@ TEST_CASE("a phase goes back to a t_end that after_step wrote too late") {
         options o = fixed_step(0.375);
         o.max_steps = 100;
         o.minimum_step = 0;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK(e.status(0) == status::success);
         CHECK(e.t()[0] == 0.25);
         CHECK(e.accepted_steps()[0] == 2);
@@ -400,7 +401,7 @@ TEST_CASE("a phase goes back to a t_end that after_step wrote too late") {
 TEST_CASE("a phase is over where after_step makes the present its t_end") {
     each_method([]<class Method> {
         auto e = one<domain_writer>(0.0, 1.0, domain_writer::stop_here);
-        solve<Method>(device::cpu(1), e, fixed_step(0.125));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.125));
         CHECK(e.status(0) == status::success);
         CHECK(e.t()[0] == 0.5);
         CHECK(e.accepted_steps()[0] == 4);
@@ -410,11 +411,11 @@ TEST_CASE("a t_begin written by after_step takes effect from the next phase on")
     each_method([]<class Method> {
         auto e = one<domain_writer>(0.0, 1.0, domain_writer::begin_later);
         options o = fixed_step(0.125);
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK(e.t()[0] == 1.0);
         CHECK(std::abs(e.state(0)[0] - 1) < 1e-14);
         CHECK(e.t_begin()[0] == 0.5);
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK(e.t()[0] == 1.0);
         CHECK(std::abs(e.state(0)[0] - 1.5) < 1e-14);
     });
@@ -425,7 +426,7 @@ TEST_CASE("a step written by after_step is the next to be tried") {
     e.parameter(0) = 0.375;
     e.time_domain(0, 3);
     recorder::take();
-    solve<cash_karp>(device::cpu(1), e, with_tolerance(1e-6, 0.125));
+    solve<cash_karp>(tests::test_device(1), e, with_tolerance(1e-6, 0.125));
     const auto steps = recorder::take();
     REQUIRE(steps.size() == 9);  // 1/8, seven times 3/8, and what is left
     CHECK(steps[0].h == 0.125);
@@ -454,7 +455,7 @@ void check_reader() {
             e.integer_accessory(model::k1)[i] = static_cast<int>(i % 5);
         }
         e.time_domain(0, 2);
-        solve<Method>(device::cpu(1), e, fixed_step(0.25));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.25));
         for (std::int64_t i = 0; i < 40; ++i) {
             const double rate = static_cast<double>(i) + 0.75 + 30 - 7 +
                                 (i % 5 > i % 7 ? 2000 + 100 * static_cast<double>(i) : 1000);
@@ -488,11 +489,11 @@ void check_kick(double in_push) {
     const options o = fixed_step(0.125);
     hooked_kick.parameter(kicked_base::time) = 1.0;
     hooked_kick.time_domain(0, 3);
-    solve<Method>(device::cpu(1), hooked_kick, o);
+    solve<Method>(tests::test_device(1), hooked_kick, o);
 
     by_hand.parameter(kicked_base::time) = 1e9;
     by_hand.time_domain(0, 1);
-    solve<Method>(device::cpu(1), by_hand, o);
+    solve<Method>(tests::test_device(1), by_hand, o);
     if (in_push == 0.0) {
         by_hand.state(kicked_base::v) += 0.75;
     } else {
@@ -500,7 +501,7 @@ void check_kick(double in_push) {
     }
     by_hand.restart();
     by_hand.time_domain(1, 3);
-    solve<Method>(device::cpu(1), by_hand, o);
+    solve<Method>(tests::test_device(1), by_hand, o);
     CHECK(compare::same_bits_everywhere(hooked_kick.state(kicked_base::x), by_hand.state(kicked_base::x)));
     CHECK(compare::same_bits_everywhere(hooked_kick.state(kicked_base::v), by_hand.state(kicked_base::v)));
     // and it did matter

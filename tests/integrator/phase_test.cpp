@@ -9,6 +9,7 @@
 #include "tests/support/compare.hpp"
 #include "tests/support/faulty.hpp"
 #include "tests/support/hooked.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -48,14 +49,14 @@ void check_splits(options o, R t_end) {
     constexpr std::int64_t phases = 6;
     auto whole = forced<Model, R>(t_end);
     o.phases = phases;
-    solve<Method>(device::cpu(1), whole, o);
+    solve<Method>(tests::test_device(1), whole, o);
     REQUIRE(whole.phases_done()[0] == phases);
     REQUIRE(whole.accepted_steps()[0] > phases);
     for (const auto& split : std::vector<std::vector<std::int64_t>>{{1, 1, 1, 1, 1, 1}, {2, 4}, {5, 1}}) {
         auto parts = forced<Model, R>(t_end);
         for (const std::int64_t part : split) {
             o.phases = part;
-            solve<Method>(device::cpu(1), parts, o);
+            solve<Method>(tests::test_device(1), parts, o);
         }
         CAPTURE(split);
         CHECK(compare::difference(whole, parts) == "");
@@ -137,9 +138,9 @@ TEST_CASE("initialise sees the same times and steps in one call as in many") {
             }
             options o = with_tolerance(1e-8, 1.0 / 32);
             o.phase_step = step;
-            for (int phase = 0; phase < 3; ++phase) solve<Method>(device::cpu(1), parts, o);
+            for (int phase = 0; phase < 3; ++phase) solve<Method>(tests::test_device(1), parts, o);
             o.phases = 3;
-            solve<Method>(device::cpu(1), whole, o);
+            solve<Method>(tests::test_device(1), whole, o);
             CHECK(compare::difference(whole, parts) == "");
         }
     });
@@ -155,7 +156,7 @@ TEST_CASE("a phase starts at t_begin again") {
         e.time_domain(0, 1);
         options o = with_tolerance(1e-6, 0.125);
         o.phases = 7;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK((e.state(0) - 3.5).abs().maxCoeff() < 1e-13);
         CHECK((e.t() == 1).all());
     });
@@ -167,9 +168,9 @@ TEST_CASE("phases of a forcing's period continue one another") {
             for (std::int64_t i = 0; i < e->size(); ++i) e->parameter(phased::w)[i] = static_cast<double>(i % 4);
         one.t_end() = 6 * pi;
         options o = with_tolerance(1e-10, pi / 256);
-        solve<Method>(device::cpu(1), one, o);
+        solve<Method>(tests::test_device(1), one, o);
         o.phases = 3;
-        solve<Method>(device::cpu(1), many, o);
+        solve<Method>(tests::test_device(1), many, o);
         // Some hundred steps with errors below 1e-10 |y|, |y| < 10 (RK4: (pi / 256)^5 / 120 = 2e-12), none of them amplified
         // by the oscillator; resonance at w = 1 adds them up.
         CHECK((one.state(0) - many.state(0)).abs().maxCoeff() < 1e-6);
@@ -184,10 +185,10 @@ TEST_CASE("a phase may carry time on") {
         e.parameter(stopper::phase_stop) = 0.5;
         options o = fixed_step(0.125);
         o.phase_time = phase_time::carry_on;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK((e.t() == 0.5).all());
         o.phases = 3;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK((e.t() == 0.875).all());
         CHECK((e.state(0) - 0.875).abs().maxCoeff() < 1e-15);
 
@@ -195,7 +196,7 @@ TEST_CASE("a phase may carry time on") {
         first.state(0) = 1.0;
         first.state(1) = 0.0;
         first.time_domain(2, 3);
-        solve<Method>(device::cpu(1), first, o);
+        solve<Method>(tests::test_device(1), first, o);
         CHECK(first.accessory(model::t_seen)[0] == 3.0);  // the second and third phase are empty
         CHECK(first.phases_done()[0] == 3);
         CHECK(first.status(0) == status::success);
@@ -210,7 +211,7 @@ TEST_CASE("a phase starts with the first step of the options again") {
         e.time_domain(0, 3);
         options o = with_tolerance(1e-8, 1.0 / 128);
         o.phases = 2;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK((e.accessory(model::h_next_seen) == 1.0 / 128).all());
     });
 }
@@ -223,11 +224,11 @@ TEST_CASE("a phase may start with the step that the last one ended with") {
         e.time_domain(0, 3);
         options o = with_tolerance(1e-8, 1.0 / 128);
         o.phase_step = phase_step::carry_on;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK((e.accessory(model::h_next_seen) == 1.0 / 128).all());
         const double carried = e.next_step()[0];
         REQUIRE(carried > 2.0 / 128);
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK((e.accessory(model::h_next_seen) == carried).all());
     });
 }
@@ -241,7 +242,7 @@ TEST_CASE("a step cut short by the end of the domain does not shorten the one ca
         o.growth_limit = 1;  // no growth hides it
         o.phase_step = phase_step::carry_on;
         e.t_end() = 0.21;  // one step of 0.2, one of 0.01
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         REQUIRE(e.accepted_steps()[0] == 2);
         CHECK(e.next_step()[0] > 0.9 * 0.2);
     });
@@ -254,15 +255,15 @@ TEST_CASE("hooks see phases counted from the ensemble's start, over all calls") 
         e.state(1) = 0.0;
         e.time_domain(0, 0.5);
         options o = with_tolerance(1e-6, 0.25);
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK((e.integer_accessory(model::phase_seen) == 0).all());
         for (std::int64_t i = 0; i < e.size(); ++i) CHECK(e.integer_accessory(model::index_seen)[i] == i);
         o.phases = 3;
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK((e.integer_accessory(model::phase_seen) == 3).all());
         CHECK((e.phases_done() == 4).all());
         e.restart();
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         CHECK((e.integer_accessory(model::phase_seen) == 2).all());
     });
 }
@@ -274,7 +275,7 @@ TEST_CASE("a phase goes on from the state that finalise and initialise leave") {
         e.time_domain(0, 2);
         options o = with_tolerance(1e-9);
         o.phases = 10;
-        const auto r = solve<Method>(device::cpu(1), e, o);
+        const auto r = solve<Method>(tests::test_device(1), e, o);
         CHECK((e.accessory(model::started_at) == 2).all());
         CHECK((e.state(0) == 1).all());
         // growth rate one: every step adds a relative error below 1e-9 (RK4: (1/64)^5 / 120 = 1e-11)
@@ -285,9 +286,9 @@ TEST_CASE("the work of phases adds up") {
     each_method([]<class Method> {
         auto e = forced<phased>(2 * pi);
         options o = with_tolerance(1e-8);
-        const auto first = solve<Method>(device::cpu(1), e, o);
+        const auto first = solve<Method>(tests::test_device(1), e, o);
         o.phases = 2;
-        const auto more = solve<Method>(device::cpu(1), e, o);
+        const auto more = solve<Method>(tests::test_device(1), e, o);
         CHECK(first.accepted_steps > 0);
         CHECK(more.accepted_steps > first.accepted_steps);
         CHECK(first.accepted_steps + more.accepted_steps == e.accepted_steps().sum());
@@ -306,10 +307,10 @@ TEST_CASE("records hold what single-phase calls give, bit for bit") {
         options all = o;
         all.phases = 5;
         record_everything<phased>(all);
-        const auto r = solve<Method>(device::cpu(1), whole, all);
+        const auto r = solve<Method>(tests::test_device(1), whole, all);
         REQUIRE(r.records.phases() == 5);
         for (std::int64_t row = 0; row < 5; ++row) {
-            solve<Method>(device::cpu(1), parts, o);
+            solve<Method>(tests::test_device(1), parts, o);
             check_row(r.records, row, parts);
         }
     });
@@ -325,10 +326,10 @@ TEST_CASE("records of phases that events end hold what single-phase calls give")
     options all = o;
     all.phases = 4;
     record_everything<phased_by_events>(all);
-    const auto r = solve<cash_karp>(device::cpu(2), whole, all);
+    const auto r = solve<cash_karp>(tests::test_device(2), whole, all);
     CHECK(r.count(status::stopped_by_event) == whole.size());
     for (std::int64_t row = 0; row < 4; ++row) {
-        solve<cash_karp>(device::cpu(1), parts, o);
+        solve<cash_karp>(tests::test_device(1), parts, o);
         check_row(r.records, row, parts);
     }
     // time went on, at different paces
@@ -342,10 +343,10 @@ TEST_CASE("records begin with the phase asked for, counted in each call") {
         some.phases = 5;
         some.record.from_phase = 3;
         record_everything<phased>(some);
-        const auto r = solve<cash_karp>(device::cpu(1), whole, some);
+        const auto r = solve<cash_karp>(tests::test_device(1), whole, some);
         REQUIRE(r.records.phases() == 2);
         for (int phase = 0; phase < 5; ++phase) {
-            solve<cash_karp>(device::cpu(1), parts, o);
+            solve<cash_karp>(tests::test_device(1), parts, o);
             if (phase >= 3) check_row(r.records, phase - 3, parts);
         }
     }
@@ -357,7 +358,7 @@ TEST_CASE("records hold the components asked for, in any order") {
     o.record.accessories = {phased::sum_of_max, phased::x_start};
     o.record.integer_accessories = {phased::phases_begun};
     auto e = forced<phased>(2 * pi);
-    const auto r = solve<cash_karp>(device::cpu(1), e, o);
+    const auto r = solve<cash_karp>(tests::test_device(1), e, o);
     CHECK(compare::same_bits_everywhere(r.records.state(phased::v).col(1), e.state(phased::v)));
     CHECK(compare::same_bits_everywhere(r.records.accessory(phased::x_start).col(1), e.accessory(phased::x_start)));
     CHECK(compare::same_bits_everywhere(r.records.accessory(phased::sum_of_max).col(1), e.accessory(phased::sum_of_max)));
@@ -370,7 +371,7 @@ TEST_CASE("records hold the components asked for, in any order") {
 }
 TEST_CASE("nothing is recorded unless asked for") {
     auto e = forced<phased>(1.0);
-    const auto r = solve<cash_karp>(device::cpu(1), e, with_tolerance(1e-8));
+    const auto r = solve<cash_karp>(tests::test_device(1), e, with_tolerance(1e-8));
     CHECK(r.records.phases() == 0);
     CHECK_THROWS_AS(r.records.state(phased::x), myriad::error);
 }
@@ -381,7 +382,7 @@ TEST_CASE("an instance that ended itself has NaN and zero in the records of late
         options o = fixed_step(0.125);
         o.phases = 4;
         record_everything<stopper>(o);
-        const auto r = solve<Method>(device::cpu(1), e, o);
+        const auto r = solve<Method>(tests::test_device(1), e, o);
         for (std::int64_t i = 0; i < e.size(); ++i) {
             for (std::int64_t row = 0; row < 4; ++row) {
                 CAPTURE(i, row);
@@ -404,7 +405,7 @@ TEST_CASE("the phase in which an instance fails is not recorded") {
         o.phases = 4;
         o.record.states = {0};
         o.record.time = true;
-        const auto r = solve<Method>(device::cpu(1), e, o);
+        const auto r = solve<Method>(tests::test_device(1), e, o);
         CHECK(r.count(status::not_finite) == 6);
         for (std::int64_t i = 0; i < e.size(); ++i) {
             CHECK(e.phases_done()[i] == (i % 2 == 0 ? 2 : 4));
@@ -421,7 +422,7 @@ TEST_CASE("phases over empty domains are recorded too") {
     options o = fixed_step(0.125);
     o.phases = 3;
     record_everything<stopper>(o);
-    const auto r = solve<cash_karp>(device::cpu(1), e, o);
+    const auto r = solve<cash_karp>(tests::test_device(1), e, o);
     for (std::int64_t row = 0; row < 3; ++row) {
         CHECK((r.records.state(0).col(row) == 0).all());
         CHECK((r.records.time().col(row) == 0).all());
@@ -437,7 +438,7 @@ TEST_CASE("end_phase ends the phase and not the instance") {
         for (std::int64_t i = 0; i < e.size(); i += 2) e.parameter(stopper::phase_stop)[i] = 0.5;
         options o = fixed_step(0.125);
         o.phases = 3;
-        const auto r = solve<Method>(device::cpu(1), e, o);
+        const auto r = solve<Method>(tests::test_device(1), e, o);
         CHECK(r.count(status::stopped_by_user) == 5);
         CHECK(r.count(status::success) == 5);
         CHECK(r.failed() == 0);
@@ -457,7 +458,7 @@ TEST_CASE("end_instance ends the instance, with finalise, and later calls leave 
         options o = fixed_step(0.125);
         o.phases = 3;
         for (int call = 0; call < 2; ++call) {
-            const auto r = solve<Method>(device::cpu(1), e, o);
+            const auto r = solve<Method>(tests::test_device(1), e, o);
             CHECK(r.count(status::stopped_by_user) == 5);
             for (std::int64_t i = 0; i < e.size(); i += 2) {
                 CHECK(e.phases_done()[i] == 2);
@@ -475,7 +476,7 @@ TEST_CASE("a hook that ends the phase at t_end counts as the one who ended it") 
     each_method([]<class Method> {
         auto e = stoppers(1, 1.0);
         e.parameter(stopper::phase_stop) = 1.0;
-        solve<Method>(device::cpu(1), e, fixed_step(0.125));
+        solve<Method>(tests::test_device(1), e, fixed_step(0.125));
         CHECK(e.status(0) == status::stopped_by_user);
         CHECK(e.t()[0] == 1.0);
     });

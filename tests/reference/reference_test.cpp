@@ -11,6 +11,7 @@
 #include "tests/catch.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/problems.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -45,7 +46,7 @@ struct result {
         ensemble<Model> e(1);
         for (std::size_t c = 0; c < r.start.size(); ++c) e.state(static_cast<int>(c)) = r.start[c];
         e.time_domain(0, r.t_end);
-        solve<Method>(device::cpu(1), e, o);
+        solve<Method>(tests::test_device(1), e, o);
         REQUIRE(e.status(0) == status::success);
         for (std::size_t c = 0; c < r.end.size(); ++c) {
             end[c] = e.state(static_cast<int>(c))[0];
@@ -118,7 +119,7 @@ double turning_time(direction wanted, std::int64_t count, const options& how, do
     o.events[0].direction = wanted;
     o.events[0].tolerance = 1e-13;
     o.events[0].stop_after = count;
-    const auto r = solve<Method>(device::cpu(1), e, o);
+    const auto r = solve<Method>(tests::test_device(1), e, o);
     REQUIRE(r.count(status::stopped_by_event) == 1);
     steps = static_cast<double>(e.accepted_steps()[0]);
     return e.t()[0];

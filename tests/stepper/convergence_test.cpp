@@ -7,6 +7,7 @@
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/problems.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -33,7 +34,7 @@ double end_error(double h, double span) {
         const auto start = Model::exact(e.t_begin()[i]);
         for (int c = 0; c < n; ++c) e.state(c)[i] = start[c];
     }
-    const auto report = myriad::solve<Method>(myriad::device::cpu(1), e, fixed_step(h));
+    const auto report = myriad::solve<Method>(tests::test_device(1), e, fixed_step(h));
     REQUIRE(report.count(myriad::status::success) == e.size());
     // the step must be the one asked for, or the order measured is not the method's
     REQUIRE(report.accepted_steps == e.size() * static_cast<std::int64_t>(std::lround(std::abs(span) / h)));

@@ -10,7 +10,12 @@
 /// Hides from the compiler that a pointer or index is the same as before, so that it computes addresses anew instead of
 /// keeping them in registers through the loop.
 #define MYRIAD_FORGET(value) asm volatile("" : "+l"(value))
-#define MYRIAD_UNROLL _Pragma("unroll")
+#if defined(__CUDA_ARCH__)
+/// Unrolls the loop that follows; in device code only up to 32 turns, so that large states stay loops.
+#define MYRIAD_UNROLL _Pragma("unroll 32")
+#else
+#define MYRIAD_UNROLL
+#endif
 #define MYRIAD_TARGET cuda_lane
 #define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
 #else

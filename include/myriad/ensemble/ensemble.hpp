@@ -145,8 +145,7 @@ public:
             a.located = work_.component(2);
             a.evaluations = work_.component(3);
         }
-        a.shared = shared_.data();
-        a.shared_integer = shared_integer_.data();
+        a.shared = {shared_.data(), shared_integer_.data()};
     }
 
     /// Makes room for the samples that are asked for, or checks that they can be added to those there are.

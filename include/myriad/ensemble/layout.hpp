@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Storage of an ensemble: a structure of arrays, contiguous per component, on cache-line boundaries. The memory is the
+// Storage of an ensemble: a structure of arrays, contiguous per component, on pages of its own, as GPUs pin memory by pages. The memory is the
 // library's own and not Eigen's, whose alignment depends on compiler flags.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <algorithm>
 #include <memory>
 #include <new>
 
@@ -20,7 +20,8 @@ public:
     component_array() = default;
     component_array(int components, std::int64_t size, T value)
         : size_(size), data_(allocate(static_cast<std::size_t>(components), static_cast<std::size_t>(size))) {
-        std::uninitialized_fill_n(data_.get(), static_cast<std::size_t>(components) * static_cast<std::size_t>(size), value);
+        std::uninitialized_fill_n(data_.get(), static_cast<std::size_t>(components) * static_cast<std::size_t>(size),
+                                  value);
         components_ = components;
     }
     component_array(component_array&&) noexcept = default;
@@ -38,17 +39,17 @@ public:
     }
 
 private:
-    static constexpr std::align_val_t alignment{64};
+    static constexpr std::align_val_t alignment{4096};
     struct release {
         void operator()(T* p) const { ::operator delete(p, alignment); }
     };
     static T* allocate(std::size_t components, std::size_t size) {
         if (components == 0 || size == 0) return nullptr;
         const double wanted = static_cast<double>(components) * static_cast<double>(size) * sizeof(T);
-        void* const memory = wanted > 9e18 ? nullptr
-                                           : ::operator new(components * size * sizeof(T), alignment, std::nothrow);
-        require(memory != nullptr, "out of memory: ", wanted / 1e9, " GB are wanted for ", components, " components of ", size,
-                " values: integrate the ensemble in smaller parts");
+        void* const memory =
+            wanted > 9e18 ? nullptr : ::operator new(components* size * sizeof(T), alignment, std::nothrow);
+        require(memory != nullptr, "out of memory: ", wanted / 1e9, " GB are wanted for ", components,
+                " components of ", size, " values: integrate the ensemble in smaller parts");
         return static_cast<T*>(memory);
     }
 

@@ -11,8 +11,10 @@
 
 #include <Eigen/Core>
 
+#include "myriad/backend.hpp"
 #include "myriad/core/error.hpp"
 #include "myriad/core/status.hpp"
+#include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/layout.hpp"
 #include "myriad/ensemble/view.hpp"
 #include "myriad/integrator/options.hpp"
@@ -23,8 +25,8 @@ namespace myriad {
 /// The name of a status, as in the code.
 inline const char* name_of(status s) {
     constexpr const char* names[status_count] = {
-        "not_started",    "success",      "stopped_by_event",   "stopped_by_user",   "max_steps",
-        "step_underflow", "not_finite",   "event_accumulation", "singular_jacobian", "invalid_input"};
+        "not_started",    "success",    "stopped_by_event",   "stopped_by_user",   "max_steps",
+        "step_underflow", "not_finite", "event_accumulation", "singular_jacobian", "invalid_input"};
     return names[static_cast<int>(s)];
 }
 
@@ -81,8 +83,8 @@ private:
     }
     template <class Columns, class T>
     map<T> column(const Columns& columns, int c, const char* what, const component_array<T>& from) const {
-        require(c >= 0 && static_cast<std::size_t>(c) < columns.size() && columns[static_cast<std::size_t>(c)] >= 0, what,
-                " ", c, " was not recorded: name it in options::record");
+        require(c >= 0 && static_cast<std::size_t>(c) < columns.size() && columns[static_cast<std::size_t>(c)] >= 0,
+                what, " ", c, " was not recorded: name it in options::record");
         return map<T>(from.component(columns[static_cast<std::size_t>(c)]), size_, phases_);
     }
 
@@ -103,20 +105,23 @@ struct report {
     std::int64_t instances = 0;
     std::array<std::int64_t, status_count> by_status{};  ///< instances by the status they now have
 
-    std::int64_t first_failed = -1;            ///< index of the first instance with a failure status, or -1
+    std::int64_t first_failed = -1;  ///< index of the first instance with a failure status, or -1
     myriad::status first_status = status::not_started;
     R first_t = 0, first_t_begin = 0, first_t_end = 0;
-    std::vector<R> first_state;                ///< its last finite state
+    std::vector<R> first_state;  ///< its last finite state
     std::vector<R> first_parameter;
 
-    std::int64_t accepted_steps = 0;           ///< of all instances in this call; zero with `counting::off`
+    std::int64_t accepted_steps = 0;  ///< of all instances in this call; zero with `counting::off`
     std::int64_t rejected_steps = 0;
-    std::int64_t located_steps = 0;            ///< trial steps redone to locate events
+    std::int64_t located_steps = 0;  ///< trial steps redone to locate events
     std::int64_t rhs_evaluations = 0;
-    std::int64_t lane_turns = 0;               ///< trial steps times lanes, idle lanes included
+    std::int64_t lane_turns = 0;  ///< trial steps times lanes, idle lanes included
     int lanes = 1;
     int threads = 1;
-    double seconds = 0;                        ///< wall time of the integration
+    double seconds = 0;         ///< wall time of the integration, on a GPU with its transfers
+    std::string device;         ///< its name, as in device::parse
+    cuda::kernel_facts kernel;  ///< on a GPU: the kernel's registers, block size and shared parameters
+    double kernel_seconds = 0;  ///< on a GPU: time of the kernels alone
     phase_records<Model, R> records;
 
     std::int64_t count(status s) const { return by_status[static_cast<std::size_t>(s)]; }
@@ -145,15 +150,22 @@ std::ostream& operator<<(std::ostream& out, const report<Model, R>& r) {
         out << separator << n << ' ' << name_of(static_cast<status>(s));
         separator = ", ";
     }
-    out << "; " << r.seconds << " s on " << r.threads << (r.threads == 1 ? " thread of " : " threads of ") << r.lanes
-        << (r.lanes == 1 ? " lane" : " lanes") << '\n';
+    out << "; " << r.seconds << " s on ";
+    if (r.kernel.block_size > 0) {
+        out << r.device << ", of them " << r.kernel_seconds << " s in kernels of " << r.kernel.registers
+            << " registers and " << r.kernel.local_bytes << " bytes of local memory per thread, " << r.kernel.block_size
+            << " threads per block, shared parameters in " << name_of(r.kernel.shared_placement) << '\n';
+    } else {
+        out << r.threads << (r.threads == 1 ? " thread of " : " threads of ") << r.lanes
+            << (r.lanes == 1 ? " lane" : " lanes") << '\n';
+    }
     if (r.accepted_steps + r.rejected_steps > 0) {
         out << r.accepted_steps << " steps accepted, " << r.rejected_steps << " rejected, " << r.located_steps
             << " redone to locate events; " << r.rhs_evaluations << " evaluations of the right-hand side\n";
     }
     if (r.first_failed >= 0) {
-        out << "first failure: instance " << r.first_failed << " ended as " << name_of(r.first_status) << " at t = " << r.first_t
-            << " of [" << r.first_t_begin << ", " << r.first_t_end << "]; state";
+        out << "first failure: instance " << r.first_failed << " ended as " << name_of(r.first_status)
+            << " at t = " << r.first_t << " of [" << r.first_t_begin << ", " << r.first_t_end << "]; state";
         for (const R v : r.first_state) out << ' ' << v;
         if (!r.first_parameter.empty()) out << "; parameters";
         for (const R v : r.first_parameter) out << ' ' << v;
@@ -162,4 +174,44 @@ std::ostream& operator<<(std::ostream& out, const report<Model, R>& r) {
     return out;
 }
 
+namespace host {
+
+/// The work that an ensemble has counted so far: accepted, rejected and located steps, evaluations.
+template <class Model, class R>
+std::array<std::int64_t, 4> counted_work(const ensemble<Model, R>& e) {
+    if (!e.counted()) return {};
+    return {e.accepted_steps().sum(), e.rejected_steps().sum(), e.located_steps().sum(), e.rhs_evaluations().sum()};
+}
+
+template <class Model, class R>
+void set_work(report<Model, R>& r, const std::array<std::int64_t, 4>& before, const std::array<std::int64_t, 4>& after) {
+    r.accepted_steps = after[0] - before[0];
+    r.rejected_steps = after[1] - before[1];
+    r.located_steps = after[2] - before[2];
+    r.rhs_evaluations = after[3] - before[3];
+}
+
+/// How the first `count` instances ended.
+template <class Model, class R>
+void summarise(const ensemble<Model, R>& e, report<Model, R>& r, std::int64_t count) {
+    r.instances = count;
+    r.by_status = {};
+    r.first_failed = -1;
+    for (std::int64_t i = 0; i < count; ++i) {
+        const status s = e.statuses()[i];
+        ++r.by_status[static_cast<std::size_t>(s)];
+        if (r.first_failed >= 0 || !is_failure(s)) continue;
+        r.first_failed = i;
+        r.first_status = s;
+        r.first_t = e.t()[i];
+        r.first_t_begin = e.t_begin()[i];
+        r.first_t_end = e.t_end()[i];
+        r.first_state.clear();
+        r.first_parameter.clear();
+        for (int c = 0; c < n_state<Model>; ++c) r.first_state.push_back(e.state(c)[i]);
+        for (int c = 0; c < n_parameter<Model>; ++c) r.first_parameter.push_back(e.parameter(c)[i]);
+    }
+}
+
+}  // namespace host
 }  // namespace myriad

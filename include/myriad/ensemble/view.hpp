@@ -41,20 +41,37 @@ template <class Model, class R>
 struct sample_arguments {
     R* time;
     R* values;
-    std::int32_t* stored;      // per instance: samples there are
-    const R* times;            // given times, or null: evenly spaced ones
-    std::int32_t count;        // number of times per phase
-    std::int32_t every;        // accepted steps per sample; 0: by time
+    std::int32_t* stored;  // per instance: samples there are
+    const R* times;        // given times, or null: evenly spaced ones
+    std::int32_t count;    // number of times per phase
+    std::int32_t every;    // accepted steps per sample; 0: by time
     std::int32_t capacity;
-    std::int32_t from_phase;   // of this call
-    R minimum_spacing;         // of samples by steps
+    std::int32_t from_phase;  // of this call
+    R minimum_spacing;        // of samples by steps
     std::int16_t column[n_state<Model>];
+};
+
+/// Where a GPU keeps the parameters that all instances share: the constant bank is fastest where all threads read the same
+/// value at once, shared memory where they are many, the cache where nothing else has room. Choosing by itself, the
+/// backend takes the constant bank up to 1 KiB, then shared memory as long as it fits.
+enum class shared_placement : std::uint8_t { automatic, constant_bank, shared_memory, cache };
+constexpr const char* name_of(shared_placement placement) {
+    constexpr const char* names[] = {"automatic", "constant_bank", "shared_memory", "cache"};
+    return names[static_cast<int>(placement)];
+}
+
+/// The parameters that all instances share, wherever a backend keeps them.
+template <class R>
+struct shared_parameters {
+    const R* real;
+    const std::int32_t* integer;
 };
 
 /// The arguments of a kernel. Arrays are structures of arrays: component c of instance i is at `array[c * size + i]`.
 template <class Model, class R>
 struct kernel_arguments {
-    std::int64_t size;
+    std::int64_t size;         // instances, and the distance between two components
+    std::int64_t first_index;  // number of the first instance, for hooks that ask for it
 
     // per instance, read; parameters and times are written only if the model declares it
     R* parameter;
@@ -66,27 +83,25 @@ struct kernel_arguments {
     R* accessory;
     std::int32_t* integer_accessory;
     // what an instance needs to go on in a later call
-    R* h_next;                // step to try next
-    std::int32_t* phase;      // phases done
-    std::int8_t* side;        // per event: the side of zero its function was last seen on
-    std::uint8_t* ended;      // by action::end_instance or a failure
-    myriad::status* status;   // how the last phase ended
+    R* h_next;               // step to try next
+    std::int32_t* phase;     // phases done
+    std::int8_t* side;       // per event: the side of zero its function was last seen on
+    std::uint8_t* ended;     // by action::end_instance or a failure
+    myriad::status* status;  // how the last phase ended
     // work done in all calls, or null when counting is off
     std::int64_t* accepted;
     std::int64_t* rejected;
     std::int64_t* located;      // steps redone to locate an event
     std::int64_t* evaluations;  // of the right-hand side
 
-    // shared by all instances
-    const R* shared;
-    const std::int32_t* shared_integer;
+    shared_parameters<R> shared;
 
     // options
     std::int32_t phases;
     bool carry_time;  // a phase goes on from where the last one ended, instead of from t_begin
     bool carry_step;  // and with its step size
     std::int32_t max_steps;
-    R step;           // fixed step, or first step of an adaptive method
+    R step;  // fixed step, or first step of an adaptive method
     R minimum_step, maximum_step;
     R growth_limit, shrink_limit;
     R relative_tolerance[n_state<Model>];

@@ -33,8 +33,8 @@ struct integrator {
     sample_state<Method, S> o;
 
     template <class Source>
-    MYRIAD_FUNCTION void run(Source& source) {
-        clear();
+    MYRIAD_FUNCTION void run(Source& source, const shared_parameters<R>& shared) {
+        clear(shared);
         while (fill_lanes(source)) {
             if constexpr (runs_freely) run_freely();
             trial_step trial;
@@ -51,9 +51,9 @@ struct integrator {
     }
 
     /// An empty pack: every lane asks for an instance.
-    MYRIAD_FUNCTION void clear() {
-        s.data.shared = args.shared;
-        s.data.shared_integer = args.shared_integer;
+    MYRIAD_FUNCTION void clear(const shared_parameters<R>& shared) {
+        s.data.shared = shared.real;
+        s.data.shared_integer = shared.integer;
         s.active = mask(false);
         s.ended = mask(true);
         s.turn = 0;
@@ -84,34 +84,44 @@ struct integrator {
         return any(s.active);
     }
 
-    /// Takes whole blocks of fixed steps that nobody looks at, up to the first lane's last step, in registers and with one
-    /// check per block. What is not finite once stays so; a block that ends with such a value is taken back, and the
-    /// ordinary steps find the one to blame.
+    /// Takes the fixed steps that nobody looks at, up to the first lane's last step, in registers and with one check per
+    /// block. What is not finite once stays so: a block that ends with such a value is taken back and halved, and the
+    /// ordinary step after it finds the one to blame.
     MYRIAD_FUNCTION void run_freely() {
-        constexpr int block = 8;
+        constexpr turn_number worthwhile = 4, longest_block = 32;
         turn_number run = args.max_steps - (s.turn - s.first_start) - 1;  // the last one is looked at
+        R lane_step = R(0);
         for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA {
             const auto left = static_cast<turn_number>(get_lane(s.left, i)) - 1;
             run = left < run ? left : run;
+            lane_step = get_lane(s.step, i);
         });
-        if (run < block) return;
+        if (run < worthwhile) return;
+        // One step size for all lanes is one register; lanes that part in direction take ordinary steps.
+        const S step = S(lane_step), base = s.base;
+        if (any(s.running() & (s.step != step))) return;
         const inputs<Model, S> p = s.data;
-        const S step = s.step, base = s.base;
         vec<S, n> y = s.data.y;
         count done = s.done;
-        turn_number taken = 0;
-        for (; run - taken >= block; taken += block) {
+        turn_number taken = 0, block = longest_block;
+        while (taken < run) {
+            block = block < run - taken ? block : run - taken;
             vec<S, n> now = y;
-            for (int i = 0; i < block; ++i) {
+            for (turn_number i = 0; i < block; ++i) {
                 trial_step trial;
                 const S t = fma(S(done + count(static_cast<lane_of<count>>(i))), step, base);
                 trial.k[0] = evaluate_rhs<Model>(t, now, p);
                 explicit_rk_step<Method, Model>(t, step, now, p, trial);
                 now = trial.y;
             }
-            if (MYRIAD_UNLIKELY(any(s.running() & !all_finite(now)))) break;
+            if (MYRIAD_UNLIKELY(any(s.running() & !all_finite(now)))) {
+                if (block == 1) break;
+                block /= 2;
+                continue;
+            }
             y = now;
-            done = done + count(block);
+            done = done + count(static_cast<lane_of<count>>(block));
+            taken += block;
         }
         s.data.y = y;
         s.left = s.left - (done - s.done);
@@ -280,12 +290,14 @@ private:
     }
 };
 
-/// Integrates all instances that `source.next()` hands out (indices, then -1) on one pack of lanes of kind S. Returns the turns the loop took, each a trial step in every lane.
+/// Integrates all instances that `source.next()` hands out (indices, then -1) on one pack of lanes of kind S. Returns the
+/// turns the loop took, each a trial step in every lane. `shared` stands for `args.shared` where a backend has moved them.
 template <class Model, class Method, class S, class Source>
-MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args, Source& source) {
+MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
+                                       const shared_parameters<real_of<S>>& shared, Source& source) {
     static_assert(hooks_fit<Model, real_of<S>>);
     integrator<Model, Method, S> loop{args, {}, {}, {}};
-    loop.run(source);
+    loop.run(source, shared);
     return loop.s.all_turns + loop.s.turn;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "myriad/core/error.hpp"
+#include "myriad/ensemble/view.hpp"
 #include "myriad/stepper/methods/dense.hpp"
 
 namespace myriad {
@@ -103,6 +104,10 @@ struct options {
     myriad::counting counting = myriad::counting::on;
     myriad::invalid_instances invalid_instances = myriad::invalid_instances::refuse;
 
+    std::int64_t block_size = 0;  ///< CUDA threads per block; 0: what fills the multiprocessors best
+    std::int64_t chunk_size = 0;  ///< instances on a GPU at a time; 0: what its memory allows
+    myriad::shared_placement shared_placement = myriad::shared_placement::automatic;
+
     /// Called now and then from the thread that called solve, with the number of instances begun and their total.
     std::function<void(std::int64_t, std::int64_t)> progress = {};
 };
@@ -166,6 +171,19 @@ inline void check_samples(const sample_options& s, const options& o, int n_state
             " samples per instance in this call: raise the capacity");
 }
 
+/// Sample options without states would be ignored, which nobody wants who wrote them.
+inline void check_no_samples(const sample_options& s) {
+    const char* given = nullptr;
+    if (s.capacity != 0) given = "capacity";
+    if (s.evenly != 0) given = "evenly";
+    if (!s.times.empty()) given = "times";
+    if (s.every != 0) given = "every";
+    if (!(s.minimum_spacing == 0)) given = "minimum_spacing";
+    if (s.from_phase != 0) given = "from_phase";
+    require(given == nullptr, "samples.", given, " is given, but samples.states names no state, so that nothing would be "
+            "sampled: name the states to sample, or leave out all of samples");
+}
+
 }  // namespace host
 
 namespace host {
@@ -219,11 +237,21 @@ void check_options(const options& o, int n_state, int n_event, int n_accessory, 
     }
     check_count("sub_samples", o.sub_samples, 1, 10'000);
     check_count("accumulation_limit", o.accumulation_limit, 1, 1'000'000'000);
+    require(o.block_size >= 0 && o.block_size <= 1024 && o.block_size % 32 == 0, "block_size is ", o.block_size,
+            " (must be a multiple of 32 up to 1024, or 0 to choose by itself)");
+    require(o.chunk_size >= 0, "chunk_size is ", o.chunk_size, " (must not be negative): give 0 for what the memory allows");
     if (!o.samples.empty()) {
         require(samples_trajectory<Method>,
                 "samples are asked for, but the method has no dense output: use dense<Method>, in solve and in "
                 "MYRIAD_INSTANTIATE");
         check_samples(o.samples, o, n_state);
+        const std::vector<double>& times = o.samples.times;
+        for (std::size_t k = 1; k < times.size(); ++k)
+            require(static_cast<R>(times[k]) != static_cast<R>(times[k - 1]), "samples.times[", k, "] is ", times[k],
+                    ", which is the same as the time before it in single precision: give times further apart or use an "
+                    "ensemble of doubles");
+    } else {
+        check_no_samples(o.samples);
     }
     if (!o.record.empty()) {
         require(o.record.from_phase >= 0 && o.record.from_phase < o.phases, "record.from_phase is ", o.record.from_phase,

@@ -63,7 +63,7 @@ private:
             set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
         if constexpr (is_adaptive<Method>) set_lane(s.data.h_next, i, args.h_next[index]);
-        set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(index));
+        set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(args.first_index + index));
         if constexpr (m > 0) {
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) set_lane(e.side[j], i, static_cast<R>(at(args.side, j, i)));

@@ -16,7 +16,8 @@ struct sample_state {};
 template <class Method, class S>
 struct sample_state<Method, S, true> {
     S next;                                // time of the next sample; infinitely far ahead: none
-    S last;                                // time of the last one
+    S last;                                // by steps: time of the last sample
+    S begin, end;                          // the domain that evenly spaced samples divide; a hook may move the phase's end
     std::int32_t index[lanes_of<S>];       // number of the next given time in this phase
     std::int32_t steps[lanes_of<S>];       // accepted steps since the last sample; -1: this phase is not sampled
 };
@@ -44,7 +45,10 @@ struct sampler {
             set_lane(o.last, i, t);
             return;
         }
-        const R ahead = get_lane(s.data.t_end, i) - t;
+        const R end = get_lane(s.data.t_end, i);
+        set_lane(o.begin, i, get_lane(s.data.t_begin, i));
+        set_lane(o.end, i, end);
+        const R ahead = end - t;
         while (o.index[i] < args.sample.count && (sample_time(i) - t) * ahead < R(0)) ++o.index[i];
         set_next(i);
         if (get_lane(o.next, i) == t) {
@@ -77,9 +81,10 @@ private:
     }
 
     MYRIAD_FUNCTION void save_times(const rk_trial<Method, S, n>& trial, const S& t1, const mask& accepted) {
-        mask due = accepted & ((t1 - o.next) * s.h >= S(R(0)));
+        const S t0 = s.now();
+        mask due = accepted & falls_between(t0, t1);
         if (!any(due)) return;
-        step_data<Method, S, n> step{s.now(), s.h, s.data.y, trial, s.slope_end};
+        step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slope_end};
         if constexpr (Method::first_same_as_last) {
             step.slope_end = trial.k[Method::stages - 1];
         } else if constexpr (!has_own_interpolant<Method>) {
@@ -106,8 +111,16 @@ private:
                 ++o.index[i];
                 set_next(i);
             });
-            due = accepted & ((t1 - o.next) * s.h >= S(R(0)));
+            due = accepted & falls_between(t0, t1);
         }
+    }
+
+    /// Lanes whose next sample falls into the step from t0 to t1. Not one that a hook which turned the phase round left
+    /// behind; but one that the rounding of t put between the end of the last step and t0.
+    MYRIAD_FUNCTION mask falls_between(const S& t0, const S& t1) const {
+        const S slack = S(R(4) * epsilon_of<R>) * abs(t0);
+        const S ahead = select(s.h < S(R(0)), t0 - o.next, o.next - t0);
+        return ((t1 - o.next) * s.h >= S(R(0))) & (ahead >= -slack);
     }
 
     MYRIAD_FUNCTION R never(int i) const {
@@ -116,11 +129,11 @@ private:
     MYRIAD_FUNCTION void set_next(int i) {
         set_lane(o.next, i, o.index[i] < args.sample.count ? sample_time(i) : never(i));
     }
-    /// Given times, or evenly spaced ones over the instance's domain, both ends included.
+    /// Given times, or evenly spaced ones over the domain with which the phase began, both ends included.
     MYRIAD_FUNCTION R sample_time(int i) const {
         const std::int32_t k = o.index[i];
         if (args.sample.times != nullptr) return args.sample.times[k];
-        const R begin = get_lane(s.data.t_begin, i), end = get_lane(s.data.t_end, i);
+        const R begin = get_lane(o.begin, i), end = get_lane(o.end, i);
         if (k == args.sample.count - 1) return end;
         return fma(static_cast<R>(k) / static_cast<R>(args.sample.count - 1), end - begin, begin);
     }

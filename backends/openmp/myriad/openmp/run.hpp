@@ -2,12 +2,12 @@
 // The OpenMP backend: every thread runs the loop on a pack of SIMD lanes that refill from a common supply of instances.
 #pragma once
 
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <type_traits>
+
+#include <omp.h>
 
 #include "myriad/backend.hpp"
 #include "myriad/scalar/pack.hpp"
@@ -49,13 +49,14 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
     using S = typename lane_kind<R, batches>::type;
     const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
     run_statistics used{0, lanes_of<S>, threads};
-    const std::int64_t chunk = std::clamp<std::int64_t>(arguments.size / (64 * threads), 1, 64);
+    const std::int64_t count = options.count > 0 ? options.count : arguments.size;
+    const std::int64_t chunk = std::clamp<std::int64_t>(count / (64 * threads), 1, 64);
     std::atomic<std::int64_t> begun{0};
     std::atomic<std::int64_t> turns{0};
 #pragma omp parallel num_threads(threads)
     {
-        chunked_instances instances(begun, arguments.size, chunk, options, omp_get_thread_num() == 0);
-        turns += integrate<Model, Method, S>(arguments, instances);
+        chunked_instances instances(begun, count, chunk, options, omp_get_thread_num() == 0);
+        turns += integrate<Model, Method, S>(arguments, arguments.shared, instances);
     }
     used.lane_turns = turns.load() * used.lanes;
     return used;
@@ -67,12 +68,13 @@ namespace myriad::openmp {
 
 template <class Model, class Method, class R>
 run_statistics run(const kernel_arguments<Model, R>& arguments, const run_options& options) {
-    return run_packs<Model, Method, R, scalar_only<Model> ? 0 : default_batches<Model, Method>()>(arguments, options);
+    return run_packs < Model, Method, R,
+           scalar_only<Model> ? 0 : default_batches<Model, Method>() > (arguments, options);
 }
 
 }  // namespace myriad::openmp
 
 /// Compiles the kernel of one model, method and real type.
-#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                       \
-    template myriad::run_statistics myriad::openmp::run<Model, Method, R>( \
-        const myriad::kernel_arguments<Model, R>&, const myriad::run_options&);
+#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                                 \
+    template myriad::run_statistics myriad::openmp::run<Model, Method, R>(const myriad::kernel_arguments<Model, R>&, \
+                                                                          const myriad::run_options&);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// MYRIAD_CUDA(call): checks a CUDA call and throws an error that names it, what went wrong and what to do.
+#pragma once
+
+#include <string>
+
+#include <cuda_runtime.h>
+
+#include "myriad/core/error.hpp"
+
+/// Runs a call of the CUDA runtime; throws myriad::error unless it succeeds.
+#define MYRIAD_CUDA(call) ::myriad::cuda::check((call), #call)
+
+namespace myriad::cuda {
+
+inline const char* advice_for(cudaError_t status) {
+    switch (status) {
+        case cudaErrorNoDevice:
+        case cudaErrorInsufficientDriver:
+        case cudaErrorInitializationError:
+            return "check the driver with nvidia-smi, or use the device \"cpu\"";
+        case cudaErrorMemoryAllocation:
+            return "integrate fewer instances at a time: a smaller options::chunk_size or solver capacity";
+        case cudaErrorNoKernelImageForDevice:
+        case cudaErrorInvalidDeviceFunction:
+        case cudaErrorUnsupportedPtxVersion:
+            return "the program has no code for this GPU: build it with -DMYRIAD_CUDA_ARCHITECTURES=native";
+        case cudaErrorLaunchOutOfResources:
+            return "the kernel needs more registers than a block of that size has: give a smaller options::block_size";
+        case cudaErrorIllegalAddress:
+        case cudaErrorMisalignedAddress:
+        case cudaErrorLaunchFailure:
+        case cudaErrorIllegalInstruction:
+            return "a hook of the model probably reads or writes out of bounds: run the program under "
+                   "compute-sanitizer; the "
+                   "process cannot use this GPU any more";
+        case cudaErrorLaunchTimeout:
+            return "the GPU also drives a display, which limits a kernel's time: integrate fewer phases per call";
+        default:
+            return "run the program under compute-sanitizer for more";
+    }
+}
+
+inline void check(cudaError_t status, const char* call) {
+    if (status == cudaSuccess) return;
+    cudaGetLastError();  // so that an error that does no lasting harm is not found again by the next call
+    throw error(message(call, " failed: ", cudaGetErrorString(status), " (", cudaGetErrorName(status),
+                        "): ", advice_for(status)));
+}
+
+}  // namespace myriad::cuda

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+// The engine of the CUDA backend: device memory for one chunk of an ensemble, its transfers and its kernels, all in one
+// stream.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+
+#include "myriad/backend.hpp"
+#include "myriad/cuda/check.cuh"
+#include "myriad/cuda/launch.cuh"
+#include "myriad/cuda/resources.cuh"
+
+namespace myriad::cuda {
+
+template <class Model, class Method, class R>
+class chunk_engine final : public engine<Model, R> {
+    using arguments = kernel_arguments<Model, R>;
+
+public:
+    explicit chunk_engine(const engine_options& options)
+        : device_(options.device), while_starting_(std::in_place, options.device), launcher_(options.device, options) {
+        while_starting_.reset();
+    }
+    ~chunk_engine() override {
+        cudaSetDevice(device_);
+        cudaStreamSynchronize(stream_.get());
+    }
+
+    void reserve(const arguments& host, std::int64_t count) override {
+        const current_device here(device_);
+        arguments all = host;
+        grow(memory_, count, [&](auto&& add) { for_each_array(all, add); });
+        grow(records_, count, [&](auto&& add) { for_each_record(all.record, add); });
+    }
+
+    void upload(const arguments& host, std::int64_t first, std::int64_t count) override {
+        const current_device here(device_);
+        first_ = first;
+        count_ = count;
+        reserve(host, count);
+        arguments from = host;
+        const bool fresh_samples = !has_samples(host);
+        walk(from, [&](auto*& source, auto* target, std::int64_t components, array_access, array_kind kind) {
+            if (kind == array_kind::samples && fresh_samples) {
+                clear(target, components);
+            } else {
+                for_each_row(source, host.size, target, components, [&](const auto* s, auto* t, std::size_t size) {
+                    MYRIAD_CUDA(cudaMemcpyAsync(t, s, size, cudaMemcpyHostToDevice, stream_.get()));
+                });
+            }
+        });
+        if (launcher_.facts().shared_placement != shared_placement::constant_bank) upload_shared(host.shared);
+    }
+
+    void integrate(const arguments& host) override {
+        require(count_ > 0, "nothing was uploaded yet: call upload before integrate");
+        const current_device here(device_);
+        arguments now = host;
+        walk(now, [](auto*& array, auto* on_device, std::int64_t, array_access, array_kind) { array = on_device; });
+        now.size = count_;
+        now.first_index = host.first_index + first_;
+        now.shared = shared_on_device_;
+        walk_records(now.record, [&](auto*& array, auto* on_device, std::int64_t components, array_access, array_kind) {
+            clear(on_device, components);
+            array = on_device;
+        });
+        prepare_sample_times(now.sample);
+        MYRIAD_CUDA(cudaEventRecord(begun_.get(), stream_.get()));
+        launcher_.launch(now, host.shared, stream_.get());
+        MYRIAD_CUDA(cudaEventRecord(done_.get(), stream_.get()));
+    }
+
+    void download(const arguments& host, bool (*wanted)(void*, array_kind, std::int64_t), void* context) override {
+        require(count_ > 0, "nothing was uploaded yet: call upload before download");
+        const current_device here(device_);
+        const auto copy = [&](auto* target, std::int64_t size, const auto* source, std::int64_t components,
+                              array_kind kind) {
+            const auto one = [&](auto* t, const auto* s, std::size_t bytes) {
+                MYRIAD_CUDA(cudaMemcpyAsync(t, s, bytes, cudaMemcpyDeviceToHost, stream_.get()));
+            };
+            if (wanted == nullptr && count_ == size) return one(target, source, bytes_of(source, components * count_));
+            for (std::int64_t c = 0; c < components; ++c)
+                if (wanted == nullptr || wanted(context, kind, c))
+                    one(target + c * size + first_, source + c * count_, bytes_of(source, count_));
+        };
+        arguments to = host;
+        walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access access, array_kind kind) {
+            if (access != array_access::read) copy(target, host.size, source, components, kind);
+        });
+        walk_records(to.record, [&](auto*& target, auto* source, std::int64_t components, array_access,
+                                    array_kind kind) { copy(target, host.size, source, components, kind); });
+    }
+
+    void wait() override {
+        const current_device here(device_);
+        check(cudaStreamSynchronize(stream_.get()), "the integration on the GPU");
+    }
+    bool idle() override {
+        const current_device here(device_);
+        const cudaError_t status = cudaStreamQuery(stream_.get());
+        if (status == cudaErrorNotReady) return false;
+        check(status, "the integration on the GPU");
+        return true;
+    }
+    void* mark() override {
+        const current_device here(device_);
+        MYRIAD_CUDA(cudaEventRecord(mark_.get(), stream_.get()));
+        return mark_.get();
+    }
+    void wait_for(work& other) override {
+        void* const reached = other.mark();
+        const current_device here(device_);
+        MYRIAD_CUDA(cudaStreamWaitEvent(stream_.get(), static_cast<cudaEvent_t>(reached), 0));
+    }
+    double kernel_seconds() override {
+        const current_device here(device_);
+        check(cudaEventSynchronize(done_.get()), "the integration on the GPU");
+        float milliseconds = 0;
+        MYRIAD_CUDA(cudaEventElapsedTime(&milliseconds, begun_.get(), done_.get()));
+        return 1e-3 * static_cast<double>(milliseconds);
+    }
+    kernel_facts facts() const override { return launcher_.facts(); }
+
+    std::int64_t affordable(std::int64_t bytes) const override {
+        const current_device here(device_);
+        std::size_t free = 0, total = 0;
+        MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
+        return static_cast<std::int64_t>(0.9 * static_cast<double>(free) / static_cast<double>(bytes));
+    }
+    void pin(void* memory, std::size_t bytes) override {
+        const current_device here(device_);
+        pinned_.add(memory, bytes);
+    }
+
+private:
+    template <class T>
+    static std::size_t bytes_of(const T*, std::int64_t values) {
+        return static_cast<std::size_t>(values) * sizeof(T);
+    }
+    /// Bytes of an array, rounded up so that the next one begins where memory transactions do.
+    static std::size_t padded(std::int64_t values, std::size_t element) {
+        return (static_cast<std::size_t>(values) * element + 255) / 256 * 256;
+    }
+
+    /// Calls `visit(pointer, on the device, components, access, kind)` for every array.
+    template <class Visit>
+    void walk(arguments& host, Visit&& visit) {
+        auto* next = static_cast<std::byte*>(memory_.data());
+        for_each_array(host, placing(next, visit));
+    }
+    template <class Visit>
+    void walk_records(record_arguments<Model, R>& host, Visit&& visit) {
+        auto* next = static_cast<std::byte*>(records_.data());
+        for_each_record(host, placing(next, visit));
+    }
+    template <class Visit>
+    auto placing(std::byte*& next, Visit&& visit) const {
+        return [&next, &visit, count = count_](auto*& array, std::int64_t components, array_access access,
+                                               array_kind kind) {
+            auto* const here = reinterpret_cast<std::remove_reference_t<decltype(array)>>(next);
+            next += padded(components * count, sizeof(*array));
+            visit(array, here, components, access, kind);
+        };
+    }
+
+    /// Calls `copy(host, device, bytes)` for the chunk's part of each component, or for all of them at once.
+    template <class T, class Copy>
+    void for_each_row(const T* host, std::int64_t size, T* device, std::int64_t components, Copy&& copy) const {
+        if (count_ == size) return copy(host, device, bytes_of(device, components * count_));
+        for (std::int64_t c = 0; c < components; ++c)
+            copy(host + c * size + first_, device + c * count_, bytes_of(device, count_));
+    }
+
+    /// NaN for reals, as nothing was written there, and 0 for integers.
+    template <class T>
+    void clear(T* device, std::int64_t components) {
+        const int byte = std::is_floating_point_v<T> ? 0xff : 0;
+        MYRIAD_CUDA(cudaMemsetAsync(device, byte, bytes_of(device, components * count_), stream_.get()));
+    }
+
+    bool has_samples(const arguments& host) const {
+        if (host.sample.stored == nullptr) return false;
+        for (std::int64_t i = first_; i < first_ + count_; ++i)
+            if (host.sample.stored[i] != 0) return true;
+        return false;
+    }
+
+    /// Room for all arrays that `each` goes over, for `count` instances. Memory in use is not given back.
+    template <class Each>
+    void grow(device_memory& memory, std::int64_t count, Each&& each) {
+        std::size_t bytes = 0;
+        each([&](auto* array, std::int64_t components, array_access, array_kind) {
+            bytes += padded(components * count, sizeof(*array));
+        });
+        if (bytes <= memory.bytes()) return;
+        wait();
+        memory.reserve(bytes, bytes / static_cast<std::size_t>(count));
+    }
+
+    void prepare_sample_times(sample_arguments<Model, R>& sample) {
+        if (sample.times == nullptr) return;
+        const std::size_t bytes = static_cast<std::size_t>(sample.count) * sizeof(R);
+        if (bytes > sample_times_.bytes()) wait();
+        sample_times_.reserve(bytes, 0);
+        MYRIAD_CUDA(cudaMemcpyAsync(sample_times_.data(), sample.times, bytes, cudaMemcpyHostToDevice, stream_.get()));
+        sample.times = static_cast<const R*>(sample_times_.data());
+    }
+
+    void upload_shared(const shared_parameters<R>& shared) {
+        constexpr std::size_t real = static_cast<std::size_t>(n_shared<Model>) * sizeof(R),
+                              integer = static_cast<std::size_t>(n_shared_integer<Model>) * sizeof(std::int32_t);
+        shared_.reserve(padded(real + 256 + integer, 1), 0);
+        auto* const reals = static_cast<R*>(shared_.data());
+        auto* const integers =
+            reinterpret_cast<std::int32_t*>(static_cast<std::byte*>(shared_.data()) + padded(real, 1));
+        if (real > 0) MYRIAD_CUDA(cudaMemcpyAsync(reals, shared.real, real, cudaMemcpyHostToDevice, stream_.get()));
+        if (integer > 0)
+            MYRIAD_CUDA(cudaMemcpyAsync(integers, shared.integer, integer, cudaMemcpyHostToDevice, stream_.get()));
+        shared_on_device_ = {reals, integers};
+    }
+
+    int device_;
+    std::optional<current_device> while_starting_;  // the members below are made on this device
+    kernel_launcher<Model, Method, R> launcher_;
+    device_memory memory_, records_, sample_times_, shared_;
+    pinned_memory pinned_;
+    stream stream_;
+    event begun_{event::kind::timed}, done_{event::kind::timed}, mark_{event::kind::plain};
+    shared_parameters<R> shared_on_device_{};
+    std::int64_t first_ = 0, count_ = 0;
+};
+
+}  // namespace myriad::cuda

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// Chooses how a kernel is launched: the place of the shared parameters, the block size, and what the compiler made of it.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "myriad/backend.hpp"
+#include "myriad/cuda/check.cuh"
+#include "myriad/cuda/kernel.cuh"
+
+namespace myriad::cuda {
+
+/// The places for which a kernel of the model is compiled: the constant bank for few shared parameters, the others for many.
+template <class Model, class R>
+constexpr bool is_compiled(shared_placement placement) {
+    constexpr bool few = shared_parameter_bytes<Model, R> <= 1024;
+    return few == (placement == shared_placement::constant_bank);
+}
+
+/// Kernels of one model, method and real type on the current device.
+template <class Model, class Method, class R>
+class kernel_launcher {
+    using place = shared_placement;
+    template <place p>
+    static constexpr auto* kernel = &integrate_ensemble<Model, Method, R, p>;
+
+public:
+    kernel_launcher(int device, const engine_options& wanted) {
+        int limit = 0;
+        MYRIAD_CUDA(cudaDeviceGetAttribute(&limit, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+        constexpr auto bytes = shared_parameter_bytes<Model, R>;
+        const bool fits = bytes <= static_cast<std::size_t>(limit);
+        facts_.shared_placement = wanted.shared_placement;
+        if (wanted.shared_placement == place::automatic)
+            facts_.shared_placement = is_compiled<Model, R>(place::constant_bank) ? place::constant_bank
+                                      : fits                                      ? place::shared_memory
+                                                                                  : place::cache;
+        require(facts_.shared_placement != place::shared_memory || fits, "the model's shared parameters take ", bytes,
+                " bytes, but a block of this GPU has at most ", limit,
+                " of shared memory: set shared_placement to automatic or cache");
+        require(is_compiled<Model, R>(facts_.shared_placement), "shared_placement is ",
+                name_of(facts_.shared_placement), ", but the model's shared parameters take ", bytes,
+                " bytes: up to 1024 they are kept in the constant bank, more in "
+                "shared memory or the cache; set it to automatic");
+        with_kernel([&](auto* function) { choose_block(function, static_cast<int>(wanted.block_size)); });
+    }
+
+    const kernel_facts& facts() const { return facts_; }
+
+    /// Launches the kernel on device pointers. `shared` are the shared parameters on the host.
+    void launch(const kernel_arguments<Model, R>& arguments, const shared_parameters<R>& shared,
+                cudaStream_t where) const {
+        const int block = block_for(arguments.size);
+        const auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
+        if (facts_.shared_placement == place::constant_bank) {
+            if constexpr (is_compiled<Model, R>(place::constant_bank)) {
+                launch_arguments<Model, R, place::constant_bank> all{arguments, {}, {}};
+                std::copy_n(shared.real, n_shared<Model>, all.shared);
+                std::copy_n(shared.integer, n_shared_integer<Model>, all.shared_integer);
+                run<place::constant_bank>(all, blocks, block, where);
+            }
+        } else if constexpr (!is_compiled<Model, R>(place::constant_bank)) {
+            if (facts_.shared_placement == place::shared_memory) {
+                run<place::shared_memory>({arguments}, blocks, block, where);
+            } else {
+                run<place::cache>({arguments}, blocks, block, where);
+            }
+        }
+    }
+
+private:
+    template <place p>
+    void run(const launch_arguments<Model, R, p>& all, unsigned blocks, int block, cudaStream_t where) const {
+        kernel<p><<<blocks, static_cast<unsigned>(block), static_cast<std::size_t>(facts_.shared_bytes), where>>>(all);
+        check(cudaPeekAtLastError(), "the launch of the integration kernel");
+    }
+
+    /// Calls `use` with the chosen kernel.
+    template <class Use>
+    void with_kernel(Use&& use) {
+        if constexpr (is_compiled<Model, R>(place::constant_bank)) {
+            use(kernel<place::constant_bank>);
+        } else if (facts_.shared_placement == place::shared_memory) {
+            use(kernel<place::shared_memory>);
+        } else {
+            use(kernel<place::cache>);
+        }
+    }
+
+    template <class Kernel>
+    void choose_block(Kernel* function, int wanted) {
+        const auto* const address = reinterpret_cast<const void*>(function);
+        cudaFuncAttributes attributes{};
+        MYRIAD_CUDA(cudaFuncGetAttributes(&attributes, address));
+        facts_.registers = attributes.numRegs;
+        facts_.local_bytes = static_cast<std::int64_t>(attributes.localSizeBytes);
+        if (facts_.shared_placement == place::shared_memory) {
+            constexpr auto bytes = static_cast<int>(shared_parameter_bytes<Model, R>);
+            MYRIAD_CUDA(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes));
+            facts_.shared_bytes = bytes;
+        }
+        const int most = attributes.maxThreadsPerBlock;
+        require(wanted <= most, "block_size is ", wanted, ", but a block of this kernel has at most ", most,
+                " threads (", attributes.numRegs, " registers each): give a smaller block_size",
+                wanted <= 1024 && max_block_size<Model>() < wanted
+                    ? ", or let the model declare a larger `static constexpr int max_block_size`"
+                    : "");
+        // The smallest block among those that keep most threads running at the same time.
+        int best_threads = 0;
+        for (int block = wanted > 0 ? wanted : 64; block <= (wanted > 0 ? wanted : most); block *= 2) {
+            int blocks = 0;
+            MYRIAD_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, function, block,
+                                                                      static_cast<std::size_t>(facts_.shared_bytes)));
+            if (blocks * block <= best_threads) continue;
+            best_threads = blocks * block;
+            facts_.block_size = block;
+            facts_.blocks_per_multiprocessor = blocks;
+        }
+        require(facts_.block_size > 0, "not one block of this kernel fits into a multiprocessor: ", attributes.numRegs,
+                " registers per thread and ", facts_.shared_bytes, " bytes of shared memory per block");
+        int device = 0;
+        MYRIAD_CUDA(cudaGetDevice(&device));
+        MYRIAD_CUDA(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, device));
+        chosen_by_user_ = wanted > 0;
+    }
+
+    /// Ensembles too small to fill the GPU are spread over all its multiprocessors, one warp per block if need be.
+    int block_for(std::int64_t size) const {
+        int block = facts_.block_size;
+        if (chosen_by_user_) return block;
+        while (block > 32 && size <= static_cast<std::int64_t>(multiprocessors_) * block / 2) block /= 2;
+        return block;
+    }
+
+    kernel_facts facts_;
+    int multiprocessors_ = 1;
+    bool chosen_by_user_ = false;
+};
+
+}  // namespace myriad::cuda

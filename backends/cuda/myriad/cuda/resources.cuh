@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// Owners of what CUDA lends: device memory, pinned host memory, streams and events. Each is bound to the device that was
+// current when it was made.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "myriad/cuda/check.cuh"
+
+namespace myriad::cuda {
+
+/// Makes a device current as long as it lives.
+class current_device {
+public:
+    explicit current_device(int number) {
+        MYRIAD_CUDA(cudaGetDevice(&before_));
+        if (number != before_) MYRIAD_CUDA(cudaSetDevice(number));
+    }
+    ~current_device() { cudaSetDevice(before_); }
+    current_device(const current_device&) = delete;
+    current_device& operator=(const current_device&) = delete;
+
+private:
+    int before_ = 0;
+};
+
+/// Device memory that grows when asked for more; what it held is then lost.
+class device_memory {
+public:
+    device_memory() = default;
+    device_memory(const device_memory&) = delete;
+    device_memory& operator=(const device_memory&) = delete;
+    ~device_memory() { cudaFree(data_); }
+
+    /// Makes room for `bytes`; `per_instance`, if not zero, are the bytes that one instance takes, for the message.
+    void reserve(std::size_t bytes, std::size_t per_instance) {
+        if (bytes <= bytes_) return;
+        MYRIAD_CUDA(cudaFree(data_));
+        data_ = nullptr;
+        bytes_ = 0;
+        const cudaError_t status = cudaMalloc(&data_, bytes);
+        if (status == cudaErrorMemoryAllocation) {
+            cudaGetLastError();
+            std::size_t free = 0, total = 0;
+            MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
+            const double fits =
+                per_instance == 0 ? 0 : 0.9 * static_cast<double>(free) / static_cast<double>(per_instance);
+            throw error(
+                message("out of device memory: ", static_cast<double>(bytes) / 1e9, " GB are wanted and ",
+                        static_cast<double>(free) / 1e9, " of ", static_cast<double>(total) / 1e9,
+                        " GB are free: integrate fewer instances at a time, with options::chunk_size or a solver's "
+                        "capacity of at most ",
+                        static_cast<std::int64_t>(fits)));
+        }
+        check(status, "cudaMalloc");
+        bytes_ = bytes;
+    }
+    void* data() const { return data_; }
+    std::size_t bytes() const { return bytes_; }
+
+private:
+    void* data_ = nullptr;
+    std::size_t bytes_ = 0;
+};
+
+/// Host memory kept in place; released before its owner frees it.
+class pinned_memory {
+public:
+    pinned_memory() = default;
+    pinned_memory(const pinned_memory&) = delete;
+    pinned_memory& operator=(const pinned_memory&) = delete;
+    ~pinned_memory() {
+        for (void* const p : pinned_) cudaHostUnregister(p);
+        cudaGetLastError();
+    }
+    void add(void* memory, std::size_t bytes) {
+        if (memory == nullptr || bytes == 0) return;
+        MYRIAD_CUDA(cudaHostRegister(memory, bytes, cudaHostRegisterPortable));
+        pinned_.push_back(memory);
+    }
+
+private:
+    std::vector<void*> pinned_;
+};
+
+class stream {
+public:
+    stream() { MYRIAD_CUDA(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking)); }
+    stream(const stream&) = delete;
+    stream& operator=(const stream&) = delete;
+    ~stream() { cudaStreamDestroy(stream_); }
+    cudaStream_t get() const { return stream_; }
+
+private:
+    cudaStream_t stream_ = nullptr;
+};
+
+/// A mark in a stream. `timed`: the time at which it is reached is kept.
+class event {
+public:
+    enum class kind { plain, timed };
+    explicit event(kind k) {
+        MYRIAD_CUDA(cudaEventCreateWithFlags(&event_, k == kind::timed ? cudaEventDefault : cudaEventDisableTiming));
+    }
+    event(const event&) = delete;
+    event& operator=(const event&) = delete;
+    ~event() { cudaEventDestroy(event_); }
+    cudaEvent_t get() const { return event_; }
+
+private:
+    cudaEvent_t event_ = nullptr;
+};
+
+}  // namespace myriad::cuda

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// The CUDA backend as a model's source file sees it: what MYRIAD_INSTANTIATE defines when nvcc compiles that file.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "myriad/backend.hpp"
+#include "myriad/cuda/chunk_engine.cuh"
+
+namespace myriad::cuda {
+
+// Weak, and so in every model's object file: the linker keeps one.
+__attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_none) {
+    int count = 0;
+    const cudaError_t status = cudaGetDeviceCount(&count);
+    if (status != cudaSuccess) {
+        cudaGetLastError();
+        why_none = message(cudaGetErrorString(status), " (", cudaGetErrorName(status), ")");
+        return {};
+    }
+    if (count == 0) why_none = "the driver finds no GPU";
+    std::vector<device_facts> found;
+    for (int i = 0; i < count; ++i) {
+        cudaDeviceProp properties{};
+        MYRIAD_CUDA(cudaGetDeviceProperties(&properties, i));
+        found.push_back({properties.name, static_cast<std::int64_t>(properties.totalGlobalMem),
+                         properties.multiProcessorCount, 10 * properties.major + properties.minor});
+    }
+    return found;
+}
+
+template <class Model, class Method, class R>
+std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options) {
+    std::string why_none;
+    const std::size_t count = list_devices(why_none).size();
+    require(count > 0, "device \"cuda:", options.device, "\" is not available: ", why_none,
+            "; use \"cpu\" or \"auto\"");
+    require(options.device >= 0 && static_cast<std::size_t>(options.device) < count, "device \"cuda:", options.device,
+            "\" does not exist: this machine has ", count, " (numbered from 0)");
+    return std::make_unique<chunk_engine<Model, Method, R>>(options);
+}
+
+}  // namespace myriad::cuda
+
+/// Compiles the kernels of one model, method and real type.
+#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                      \
+    template std::unique_ptr<myriad::cuda::engine<Model, R>> myriad::cuda::make_engine<Model, Method, R>( \
+        const myriad::cuda::engine_options&);

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// The checks of an ensemble's data before an integration: nothing unset, nothing that is not finite, sample times within
+// the time domains. They read every value once, and nothing is checked in the loop over steps.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "myriad/core/error.hpp"
+#include "myriad/ensemble/ensemble.hpp"
+#include "myriad/integrator/options.hpp"
+#include "myriad/model/concepts.hpp"
+
+namespace myriad::host {
+
+/// Checks the first `count` instances: throws `error`, naming the count and the first instance, or marks the instances
+/// concerned, as the options say.
+template <class Model, class R>
+class input_check {
+public:
+    input_check(ensemble<Model, R>& e, const options& o, std::int64_t count)
+        : ensemble_(e), options_(o), count_(count) {}
+
+    void run() {
+        for (int c = 0; c < n_shared<Model>; ++c)
+            require(std::isfinite(ensemble_.shared(c)), "shared parameter ", c, " is ", ensemble_.shared(c),
+                    std::isnan(ensemble_.shared(c)) ? " (never set, or NaN)" : "",
+                    ": set it with ensemble.shared(...) before solving");
+        for (int c = 0; c < n_state<Model>; ++c) check("state", c, ensemble_.state(c).data(), false);
+        for (int c = 0; c < n_parameter<Model>; ++c) check("parameter", c, ensemble_.parameter(c).data(), false);
+        check("t_begin", no_component, ensemble_.t_begin().data(), false);
+        check("t_end", endless, ensemble_.t_end().data(), may_be_endless());
+    }
+
+private:
+    static constexpr int no_component = -1, endless = -2;
+
+    /// An infinite t_end is fine where something else can end a phase.
+    bool may_be_endless() const {
+        if constexpr (has_after_step<Model> || has_after_event<Model> || writes_time_domain<Model>) return true;
+        for (const event_options& e : options_.events)
+            if (e.stop_after > 0) return true;
+        return false;
+    }
+
+    void check(const char* what, int component, const R* values, bool allow_infinite) {
+        std::int64_t bad = 0, first = -1;
+        for (std::int64_t i = 0; i < count_; ++i) {
+            if (std::isfinite(values[i]) || (allow_infinite && std::isinf(values[i])) || ensemble_.ended(i)) continue;
+            if (options_.invalid_instances == invalid_instances::mark) {
+                ensemble_.mark_invalid(i);
+            } else {
+                if (first < 0) first = i;
+                ++bad;
+            }
+        }
+        if (bad == 0) return;
+        const std::string name = component < 0 ? std::string(what) : message(what, ' ', component);
+        if (bad == count_ && std::isnan(values[first]))
+            throw error(message(name, " is NaN in all ", bad, " instances: it was never set; set it with ensemble.",
+                                component < 0 ? message(what, "()") : message(what, "(", component, ")"),
+                                " = ... before solving"));
+        const char* advice =
+            std::isinf(values[first]) && component == endless
+                ? ": an infinite time needs an event with stop_after, or a hook, that ends the phase"
+                : ": correct the inputs, or set invalid_instances = invalid_instances::mark to run the others";
+        throw error(message(name, " is not finite in ", bad, " of ", count_, " instances, first in instance ", first,
+                            " (", values[first], ")", advice));
+    }
+
+    ensemble<Model, R>& ensemble_;
+    const options& options_;
+    std::int64_t count_;
+};
+
+/// Sample times must lie in every instance's domain, in the direction in which it is passed, and a domain on which they
+/// are spaced evenly must be finite. Domains that are not numbers are left to the check of the inputs.
+template <class Model, class R>
+void check_sample_times(const ensemble<Model, R>& e, const sample_options& samples, std::int64_t count) {
+    if (samples.empty() || samples.every != 0) return;
+    const std::vector<double>& times = samples.times;
+    for (std::int64_t i = 0; i < count; ++i) {
+        const auto begin = static_cast<double>(e.t_begin()[i]), end = static_cast<double>(e.t_end()[i]);
+        if (e.ended(i) || std::isnan(begin) || std::isnan(end)) continue;
+        if (times.empty()) {
+            require(std::isfinite(end - begin), "samples.evenly divides the domain, but instance ", i,
+                    " is integrated from ", begin, " to ", end, ": give samples.times, or a finite t_end");
+            continue;
+        }
+        const double from = times.front(), to = times.back();
+        const bool inside =
+            end >= begin ? begin <= from && from <= to && to <= end : begin >= from && from >= to && to >= end;
+        require(inside, "samples.times go from ", from, " to ", to, ", but instance ", i, " is integrated from ", begin,
+                " to ", end, ": give times within the domain, in the order in which the integration reaches them");
+    }
+}
+
+}  // namespace myriad::host

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// From an ensemble and options to the arguments of a kernel, checked; solve and solver both start here.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "myriad/ensemble/ensemble.hpp"
+#include "myriad/ensemble/input_check.hpp"
+#include "myriad/ensemble/report.hpp"
+#include "myriad/ensemble/view.hpp"
+#include "myriad/integrator/options.hpp"
+
+namespace myriad::host {
+
+/// The options as a kernel of the method wants them.
+template <class Model, class Method, class R>
+void describe_options(kernel_arguments<Model, R>& a, const options& o) {
+    a.phases = static_cast<std::int32_t>(o.phases);
+    a.carry_time = o.phase_time == phase_time::carry_on;
+    a.carry_step = o.phase_step == phase_step::carry_on;
+    a.max_steps = static_cast<std::int32_t>(o.max_steps);
+    a.step = static_cast<R>(std::isnan(o.step) ? std::min(1e-2, o.maximum_step) : o.step);
+    a.minimum_step = static_cast<R>(o.minimum_step);
+    a.maximum_step = static_cast<R>(o.maximum_step);
+    if constexpr (Method::embedded_order > 0) a.step = std::clamp(a.step, a.minimum_step, a.maximum_step);
+    a.growth_limit = static_cast<R>(o.growth_limit);
+    a.shrink_limit = static_cast<R>(o.shrink_limit);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(n_state<Model>); ++c) {
+        a.relative_tolerance[c] = static_cast<R>(o.relative_tolerance[c]);
+        a.absolute_tolerance[c] = static_cast<R>(o.absolute_tolerance[c]);
+    }
+    for (std::size_t j = 0; j < static_cast<std::size_t>(n_event<Model>); ++j) {
+        const event_options e = o.events.empty() ? event_options{} : o.events[j];
+        a.event[j] = {static_cast<R>(static_cast<int>(e.direction)), static_cast<R>(e.tolerance),
+                      static_cast<std::int32_t>(e.stop_after)};
+    }
+    a.sub_samples = static_cast<std::int32_t>(o.sub_samples);
+    a.accumulation_limit = static_cast<std::int32_t>(o.accumulation_limit);
+}
+
+/// The arguments for an ensemble, with what they point to: the records, and the sample times in the ensemble's real type.
+template <class Model, class Method, class R>
+class prepared_arguments {
+public:
+    /// Throws `error` if an option is invalid.
+    prepared_arguments(ensemble<Model, R>& instances, const options& o)
+        : records_(o.record, o.phases, instances.size()),
+          sample_times_(o.samples.times.begin(), o.samples.times.end()) {
+        describe_options<Model, Method, R>(arguments_, o);
+        instances.describe(arguments_, o.counting);
+        records_.describe(arguments_.record);
+        if (o.samples.empty()) return;
+        auto& sample = arguments_.sample;
+        instances.describe_samples(sample, o.samples);
+        sample.times = sample_times_.empty() ? nullptr : sample_times_.data();
+        sample.count = static_cast<std::int32_t>(sample_times_.empty() ? static_cast<std::size_t>(o.samples.evenly)
+                                                                       : sample_times_.size());
+        sample.every = static_cast<std::int32_t>(o.samples.every);
+        sample.from_phase = static_cast<std::int32_t>(o.samples.from_phase);
+        sample.minimum_spacing = static_cast<R>(o.samples.minimum_spacing);
+    }
+    prepared_arguments(const prepared_arguments&) = delete;
+    prepared_arguments& operator=(const prepared_arguments&) = delete;
+
+    kernel_arguments<Model, R>& get() { return arguments_; }
+    phase_records<Model, R>& records() { return records_; }
+
+private:
+    kernel_arguments<Model, R> arguments_{};
+    phase_records<Model, R> records_;
+    std::vector<R> sample_times_;
+};
+
+/// Checks the first `count` instances of an ensemble against the options; throws `error`.
+template <class Model, class R>
+void check_inputs(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
+    check_sample_times(instances, o.samples, count);
+    input_check<Model, R>(instances, o, count).run();
+}
+
+}  // namespace myriad::host
