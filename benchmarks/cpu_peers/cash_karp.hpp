@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The Cash-Karp step and the controller of the MPGOS package as a careful programmer writes them for one instance: what
-// the implementation `loop` shares between cases. The arithmetic is Myriad's, its kernel body is not used.
+// the implementation `loop` shares between cases. The algorithm is Myriad's, its kernel body is not used.
 #pragma once
 
 #include <cmath>
@@ -37,29 +37,33 @@ CPU_PEERS_INLINE void each(Use&& use) {
 template <int n, class F>
 CPU_PEERS_INLINE double cash_karp_step(F&& f, double t, double h, const double (&y)[n], double tolerance,
                                        trial<n>& step) {
+    // h * weight is known before the slopes are, which leaves one operation between a slope and the next argument.
     auto& k = step.k;
     double z[n];
     each<n>([&](int c) { z[c] = y[c] + h * (1.0 / 5) * k[0][c]; });
     f(t + h * (1.0 / 5), z, k[1]);
-    each<n>([&](int c) { z[c] = y[c] + h * (3.0 / 40 * k[0][c] + 9.0 / 40 * k[1][c]); });
+    each<n>([&](int c) { z[c] = y[c] + h * (3.0 / 40) * k[0][c] + h * (9.0 / 40) * k[1][c]; });
     f(t + h * (3.0 / 10), z, k[2]);
-    each<n>([&](int c) { z[c] = y[c] + h * (3.0 / 10 * k[0][c] - 9.0 / 10 * k[1][c] + 6.0 / 5 * k[2][c]); });
+    each<n>(
+        [&](int c) { z[c] = y[c] + h * (3.0 / 10) * k[0][c] - h * (9.0 / 10) * k[1][c] + h * (6.0 / 5) * k[2][c]; });
     f(t + h * (3.0 / 5), z, k[3]);
     each<n>([&](int c) {
-        z[c] = y[c] + h * (-11.0 / 54 * k[0][c] + 5.0 / 2 * k[1][c] - 70.0 / 27 * k[2][c] + 35.0 / 27 * k[3][c]);
+        z[c] = y[c] - h * (11.0 / 54) * k[0][c] + h * (5.0 / 2) * k[1][c] - h * (70.0 / 27) * k[2][c] +
+               h * (35.0 / 27) * k[3][c];
     });
     f(t + h, z, k[4]);
     each<n>([&](int c) {
-        z[c] = y[c] + h * (1631.0 / 55296 * k[0][c] + 175.0 / 512 * k[1][c] + 575.0 / 13824 * k[2][c] +
-                           44275.0 / 110592 * k[3][c] + 253.0 / 4096 * k[4][c]);
+        z[c] = y[c] + h * (1631.0 / 55296) * k[0][c] + h * (175.0 / 512) * k[1][c] + h * (575.0 / 13824) * k[2][c] +
+               h * (44275.0 / 110592) * k[3][c] + h * (253.0 / 4096) * k[4][c];
     });
     f(t + h * (7.0 / 8), z, k[5]);
     double worst = 0;
     each<n>([&](int c) {
-        step.y[c] =
-            y[c] + h * (37.0 / 378 * k[0][c] + 250.0 / 621 * k[2][c] + 125.0 / 594 * k[3][c] + 512.0 / 1771 * k[5][c]);
-        const double error = h * (-277.0 / 64512 * k[0][c] + 6925.0 / 370944 * k[2][c] - 6925.0 / 202752 * k[3][c] -
-                                  277.0 / 14336 * k[4][c] + 277.0 / 7084 * k[5][c]);
+        step.y[c] = y[c] + h * (37.0 / 378) * k[0][c] + h * (250.0 / 621) * k[2][c] + h * (125.0 / 594) * k[3][c] +
+                    h * (512.0 / 1771) * k[5][c];
+        const double error = h * (-277.0 / 64512) * k[0][c] + h * (6925.0 / 370944) * k[2][c] -
+                             h * (6925.0 / 202752) * k[3][c] - h * (277.0 / 14336) * k[4][c] +
+                             h * (277.0 / 7084) * k[5][c];
         const double size = larger(std::fabs(y[c]), std::fabs(step.y[c]));
         const double ratio = std::fabs(error) / larger(tolerance, tolerance * size);
         worst = ratio <= worst ? worst : ratio;  // NaN enters, and is not accepted

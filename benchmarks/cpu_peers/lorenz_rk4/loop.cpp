@@ -16,7 +16,7 @@ outcome run(const sweep& work) {
             slopes<T>(u[0] + half * k1[0], u[1] + half * k1[1], u[2] + half * k1[2], p, k2[0], k2[1], k2[2]);
             slopes<T>(u[0] + half * k2[0], u[1] + half * k2[1], u[2] + half * k2[2], p, k3[0], k3[1], k3[2]);
             slopes<T>(u[0] + step * k3[0], u[1] + step * k3[1], u[2] + step * k3[2], p, k4[0], k4[1], k4[2]);
-            each<n>([&](int c) { u[c] = u[c] + sixth * (k1[c] + T(2) * (k2[c] + k3[c]) + k4[c]); });
+            each<n>([&](int c) { u[c] = u[c] + sixth * (k1[c] + T(2) * (k2[c] + k3[c])) + sixth * k4[c]; });
         }
         for (int c = 0; c < n; ++c) y[c] = static_cast<double>(u[c]);
         accepted = steps;
