@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// The cases of Lorenz' equations: classic Runge-Kutta steps beside the hand-written kernel, and Tsitouras' method.
+#include <cmath>
+#include <cstdio>
+
+#include "by_hand.hpp"
+#include "cases.hpp"
+#include "models.hpp"
+#include "reference.hpp"
+
+namespace gpu_ensembles {
+namespace {
+
+constexpr int steps = 1000;
+constexpr double h = 1e-3;
+
+Eigen::ArrayXd range_of_rho(std::int64_t size) { return Eigen::ArrayXd::LinSpaced(size, 0, 21); }
+
+template <class Model>
+void fill(myriad::ensemble<Model>& instances) {
+    instances.parameter(Model::rho) = range_of_rho(instances.size());
+    instances.time_domain(0, 1);
+}
+template <class Model>
+void start_at_ten(myriad::ensemble<Model>& instances) {
+    for (const auto c : {Model::x, Model::y, Model::z}) instances.state(c) = 10;
+}
+void start_at_one(myriad::ensemble<lorenz>& instances) {
+    instances.state(lorenz::x) = 1;
+    instances.state(lorenz::y) = 0;
+    instances.state(lorenz::z) = 0;
+}
+
+template <class Model>
+problem<Model> fixed_steps() {
+    return {{.step = h}, &fill<Model>, &start_at_ten<Model>};
+}
+
+/// The error of every compared instance whose results `state(component, instance)` gives: the largest over the components,
+/// over max(scale, |value|).
+template <class State>
+std::vector<double> errors_of(std::int64_t size, State&& state, const exact_state& start, std::int64_t count,
+                              double scale) {
+    const Eigen::ArrayXd rho = range_of_rho(size);
+    std::vector<double> errors;
+    for (std::int64_t k = 0; k < compared; ++k) {
+        const std::int64_t i = compared_instance(k, size);
+        const exact_state exact = lorenz_reference(rho[i], start, count, 1.0L / static_cast<long double>(count));
+        double worst = 0;
+        for (int c = 0; c < 3; ++c) {
+            const long double value = exact[static_cast<std::size_t>(c)];
+            const auto size_of_value = std::max(static_cast<long double>(scale), std::fabs(value));
+            const auto error = static_cast<double>(std::fabs(state(c, i) - value) / size_of_value);
+            if (!(error <= worst) && worst == worst) worst = error;
+        }
+        errors.push_back(worst);
+    }
+    return errors;
+}
+
+constexpr exact_state tens{10, 10, 10};
+
+measurement measure_by_hand(std::int64_t size, const measure_options& how) {
+    measurement m{.implementation = "by_hand", .instances = size};
+    lorenz_by_hand kernel(how.device.number(), size, eight_thirds::b);
+    const auto start = [&] { std::fill_n(kernel.state(), 3 * size, 10.0); };
+    Eigen::Map<Eigen::ArrayXd>(kernel.parameter(), size) = range_of_rho(size);
+    start();
+    kernel.choose_block(steps, h);
+    std::vector<double> alone, all;
+    for (int i = 0; i < how.repetitions; ++i) {
+        start();
+        const auto [kernel_ms, end_to_end_ms] = kernel.run(steps, h);
+        alone.push_back(kernel_ms);
+        all.push_back(end_to_end_ms);
+    }
+    m.kernel_ms = m.counting_kernel_ms = median(alone);
+    m.end_to_end_ms = median(all);
+    m.accepted_steps = steps * size;
+    m.rhs_evaluations = 4 * steps * size;
+    const auto used = kernel.kernel();
+    m.registers = used.registers;
+    m.block_size = used.block_size;
+    m.local_bytes = used.local_bytes;
+    const auto state = [&](int c, std::int64_t i) { return kernel.state()[c * size + i]; };
+    set_errors(m, errors_of(size, state, tens, steps, 1));
+    return m;
+}
+
+std::vector<measurement> measure_fixed(std::int64_t size, const measure_options& how) {
+    const auto inspect = [size](const myriad::ensemble<lorenz>& instances, measurement& m) {
+        set_errors(m, errors_of(
+                          size, [&](int c, std::int64_t i) { return instances.state(c)[i]; }, tens, steps, 1));
+    };
+    std::vector<measurement> all = {measure_myriad<myriad::runge_kutta_4>(fixed_steps<lorenz>(), size, how, inspect)};
+    if (how.device.which() == myriad::device::kind::cuda) all.push_back(measure_by_hand(size, how));
+    return all;
+}
+
+std::vector<measurement> measure_adaptive(double tolerance, std::int64_t size, const measure_options& how) {
+    const problem<lorenz> what{{.relative_tolerance = tolerance, .absolute_tolerance = tolerance / 1000, .step = 0.01},
+                               &fill<lorenz>,
+                               &start_at_one};
+    const auto inspect = [size](const myriad::ensemble<lorenz>& instances, measurement& m) {
+        const exact_state start{1, 0, 0};
+        set_errors(m, errors_of(
+                          size, [&](int c, std::int64_t i) { return instances.state(c)[i]; }, start, 20'000, 0));
+    };
+    return {measure_myriad<myriad::tsitouras_5>(what, size, how, inspect)};
+}
+
+}  // namespace
+
+std::vector<benchmark_case> lorenz_cases() {
+    std::vector<benchmark_case> all = {
+        {.name = "lorenz_rk4",
+         .work = "1000 steps of 1e-3, start (10, 10, 10), rho = linspace(0, 21, N), b = 8/3",
+         .error = "of 64 instances against the same steps in long double, over max(1, |value|)",
+         .allowed_error = 1e-10,
+         .sizes = {8192, 65536, 768'000, 4'194'304},
+         .measure = &measure_fixed}};
+    for (const double tolerance : {1e-3, 1e-6, 1e-8}) {
+        char text[16];
+        std::snprintf(text, sizeof text, "%.0e", tolerance);
+        // 1e-03, as the C library writes it, is 1e-3 here
+        std::string exponent(text);
+        exponent.erase(3, 1);
+        all.push_back({.name = "lorenz_tsit5_" + exponent,
+                       .work = "start (1, 0, 0), t in [0, 1], rtol " + exponent +
+                               ", atol rtol/1000, first step 0.01, rho = linspace(0, 21, N), b = 8/3",
+                       .error = "of 64 instances against 20000 classic Runge-Kutta steps in long double, relative, "
+                                "largest component",
+                       .allowed_error = 100 * tolerance,
+                       .sizes = {32768, 65536, 131'072, 262'144, 524'288},
+                       .measure = [tolerance](std::int64_t size, const measure_options& how) {
+                           return measure_adaptive(tolerance, size, how);
+                       }});
+    }
+    return all;
+}
+
+std::vector<check_value> check_lorenz(const myriad::device& device) {
+    constexpr std::int64_t size = 8192;
+    const auto what = fixed_steps<tutorial_lorenz>();
+    myriad::ensemble<tutorial_lorenz> instances(size);
+    what.fill(instances);
+    what.start(instances);
+    const auto report = myriad::solve<myriad::runge_kutta_4>(device, instances, what.options);
+    using model = tutorial_lorenz;
+    return {{"lorenz sum of x", instances.state(model::x).sum(), 38485.28, 0.00501},
+            {"lorenz sum of y", instances.state(model::y).sum(), 45229.52, 0.00501},
+            {"lorenz sum of z", instances.state(model::z).sum(), 71970.47, 0.00501},
+            {"lorenz evaluations per instance", static_cast<double>(report.rhs_evaluations) / size, 4 * steps, 0}};
+}
+
+}  // namespace gpu_ensembles

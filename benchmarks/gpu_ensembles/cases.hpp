@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// The cases of the benchmark: what each integrates, at which sizes, and how its results are judged.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "measure.hpp"
+
+namespace gpu_ensembles {
+
+struct benchmark_case {
+    std::string name;
+    std::string work;   ///< what is integrated, for the header
+    std::string error;  ///< what max_error is
+    double allowed_error;
+    std::vector<std::int64_t> sizes;
+    /// Measures all implementations at one size.
+    std::function<std::vector<measurement>(std::int64_t size, const measure_options&)> measure;
+};
+
+/// lorenz_rk4, and lorenz_tsit5 at three tolerances.
+std::vector<benchmark_case> lorenz_cases();
+benchmark_case keller_miksis_case();
+benchmark_case relief_valve_case();
+
+/// A value that the package of the paper gives, for the same work.
+struct check_value {
+    std::string name;
+    double value, expected, allowed;
+    bool right() const { return value >= expected - allowed && value <= expected + allowed; }
+};
+std::vector<check_value> check_lorenz(const myriad::device& device);
+std::vector<check_value> check_relief_valve(const myriad::device& device);
+
+}  // namespace gpu_ensembles

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// The models that the benchmark integrates: Lorenz, the Keller-Miksis bubble and the pressure relief valve.
+#pragma once
+
+#include <myriad/model.hpp>
+
+namespace gpu_ensembles {
+
+/// x' = 10 (y - x), y' = rho x - y - x z, z' = x y - b z; `Constant::b` is 8/3 or what the paper's tutorial writes for it.
+template <class Constant>
+struct lorenz_with {
+    enum state { x, y, z, n_state };
+    enum parameter { rho, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
+        // Six floating-point instructions, one of each line's two fused.
+        return {R(10) * (s[y] - s[x]), myriad::fma(s[x], p[rho] - s[z], -s[y]),
+                myriad::fma(s[x], s[y], -(R(Constant::b) * s[z]))};
+    }
+};
+struct eight_thirds {
+    static constexpr double b = 8.0 / 3;
+};
+struct rounded_down {
+    static constexpr double b = 2.666;
+};
+using lorenz = lorenz_with<eight_thirds>;
+using tutorial_lorenz = lorenz_with<rounded_down>;
+
+/// The dimensionless radius y and its slope v over time in periods of the first forcing; keeps each phase's largest radius.
+struct keller_miksis {
+    enum state { y, v, n_state };
+    enum parameter { C0, C1, C2, C3, C4, C5, C6, C7, C8, C9, C10, C11, C12, n_parameter };
+    enum accessory { y_max, n_accessory };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& u, const auto& p) {
+        using myriad::cospi, myriad::exp2, myriad::log2, myriad::sinpi;
+        const R first = 2.0 * t, second = 2.0 * p[C11] * t + p[C12];
+        const R inverse = 1.0 / u[y];
+        // CUDA's pow has a slow path, which costs a stack frame and half of the speed; this has none, and loses a digit
+        // only where the radius changes by orders of magnitude.
+        const R power = exp2(-p[C10] * log2(u[y]));
+        const R numerator = (p[C0] + p[C1] * u[v]) * power - p[C2] * (1.0 + p[C9] * u[v]) - p[C3] * inverse -
+                            p[C4] * u[v] * inverse - (1.5 - 0.5 * p[C9] * u[v]) * u[v] * u[v] -
+                            (p[C5] * sinpi(first) + p[C6] * sinpi(second)) * (1.0 + p[C9] * u[v]) -
+                            u[y] * (p[C7] * cospi(first) + p[C8] * cospi(second));
+        const R denominator = u[y] - p[C9] * u[y] * u[v] + p[C4] * p[C9];
+        return {u[v], numerator / denominator};
+    }
+
+    MYRIAD_FUNCTION static void initialise(auto& lane) { lane.accessory[y_max] = lane.y[y]; }
+
+    template <class R>
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        lane.accessory[y_max] = myriad::max(lane.accessory[y_max], lane.y[y]);
+    }
+};
+
+/// Displacement y, velocity v, pressure u. Event `section` (v falling) ends a phase by its count, `seat` (y falling) is an
+/// impact; a valve that stays where it is for 50 steps ends its phase too.
+struct relief_valve {
+    enum state { y, v, u, n_state };
+    enum parameter { q, n_parameter };
+    enum shared { kappa, delta, beta, restitution, rest_band, n_shared };
+    enum accessory { lowest, highest, rest_at, n_accessory };
+    enum integer_accessory { steps_at_rest, n_integer_accessory };
+    enum event { section, seat, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
+        using myriad::sqrt;
+        return {s[v], -p.shared[kappa] * s[v] - (s[y] + p.shared[delta]) + s[u],
+                p.shared[beta] * (p[q] - s[y] * sqrt(s[u]))};
+    }
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return {s[v], s[y]};
+    }
+
+    MYRIAD_FUNCTION static void initialise(auto& lane) {
+        lane.accessory[lowest] = lane.y[y];
+        lane.accessory[highest] = lane.y[y];
+        lane.accessory[rest_at] = lane.y[y];
+        lane.integer_accessory[steps_at_rest] = 0;
+    }
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane) {
+        using myriad::abs, myriad::max, myriad::min, myriad::select;
+        using count = myriad::integer_of<R>;
+        lane.accessory[lowest] = min(lane.accessory[lowest], lane.y[y]);
+        lane.accessory[highest] = max(lane.accessory[highest], lane.y[y]);
+        const auto rests = abs(lane.y[y] - lane.accessory[rest_at]) <= R(lane.shared[rest_band]);
+        count& steps = lane.integer_accessory[steps_at_rest];
+        lane.accessory[rest_at] = select(rests, lane.accessory[rest_at], lane.y[y]);
+        steps = select(rests, steps + count(1), count(0));
+        return steps >= count(50);
+    }
+
+    MYRIAD_FUNCTION static void after_event(int event, auto& lane) {
+        if (event == seat) lane.y[v] = -lane.shared[restitution] * lane.y[v];
+    }
+};
+
+}  // namespace gpu_ensembles

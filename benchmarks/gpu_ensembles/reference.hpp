@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// What results are compared with: classic Runge-Kutta steps of Lorenz' equations in long double, and the differences.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "measure.hpp"
+#include "models.hpp"
+
+namespace gpu_ensembles {
+
+/// Instances that are compared, spread evenly over the ensemble, both ends included.
+inline constexpr std::int64_t compared = 64;
+inline std::int64_t compared_instance(std::int64_t number, std::int64_t size) {
+    return number * (size - 1) / (compared - 1);
+}
+
+using exact_state = std::array<long double, 3>;
+
+/// The state after `steps` classic Runge-Kutta steps of length h.
+inline exact_state lorenz_reference(double rho, const exact_state& start, std::int64_t steps, long double h) {
+    const auto slope = [rho](const exact_state& s) {
+        return exact_state{10 * (s[1] - s[0]), rho * s[0] - s[1] - s[0] * s[2], s[0] * s[1] - 8.0L / 3 * s[2]};
+    };
+    const auto advance = [](const exact_state& s, long double length, const exact_state& k) {
+        return exact_state{s[0] + length * k[0], s[1] + length * k[1], s[2] + length * k[2]};
+    };
+    exact_state s = start;
+    for (std::int64_t i = 0; i < steps; ++i) {
+        exact_state k = slope(s), sum = advance(s, h / 6, k);
+        k = slope(advance(s, h / 2, k));
+        sum = advance(sum, h / 3, k);
+        k = slope(advance(s, h / 2, k));
+        sum = advance(sum, h / 3, k);
+        k = slope(advance(s, h, k));
+        s = advance(sum, h / 6, k);
+    }
+    return s;
+}
+
+/// Keeps the errors' maximum, which is NaN if one of them is, and their median.
+inline void set_errors(measurement& m, const std::vector<double>& errors) {
+    m.max_error = 0;
+    for (const double e : errors)
+        m.max_error = e <= m.max_error ? m.max_error : (m.max_error != m.max_error ? m.max_error : e);
+    m.median_error = median(errors);
+}
+
+/// The same as `problem`, for the 64 compared instances of an ensemble of `size` and one phase: the largest difference
+/// between the device and the CPU, over max(1, |value|).
+template <class Method, class Model>
+std::vector<double> differences_from_cpu(const problem<Model>& what, std::int64_t size, const myriad::device& device) {
+    myriad::ensemble<Model> all(size);
+    what.fill(all);
+    const auto integrated_on = [&](const myriad::device& where) {
+        myriad::ensemble<Model> few(compared);
+        what.fill(few);  // what all instances share
+        for (int c = 0; c < myriad::n_parameter<Model>; ++c)
+            for (std::int64_t k = 0; k < compared; ++k)
+                few.parameter(c)[k] = all.parameter(c)[compared_instance(k, size)];
+        what.start(few);
+        myriad::options options = what.options;
+        options.phases = 1;
+        myriad::solve<Method>(where, few, options);
+        return few;
+    };
+    const auto here = integrated_on(device), there = integrated_on(myriad::device::cpu());
+    std::vector<double> differences;
+    for (std::int64_t k = 0; k < compared; ++k) {
+        double worst = here.status(k) == there.status(k) ? 0 : std::nan("");
+        for (int c = 0; c < myriad::n_state<Model>; ++c) {
+            const double value = there.state(c)[k], difference = std::fabs(here.state(c)[k] - value);
+            const double relative = difference / std::max(1.0, std::fabs(value));
+            if (!(relative <= worst) && worst == worst) worst = relative;
+        }
+        differences.push_back(worst);
+    }
+    return differences;
+}
+
+}  // namespace gpu_ensembles
