@@ -3,8 +3,6 @@
 // every n-th step. Only in kernels of a method `dense<Method>`; others have none of it.
 #pragma once
 
-#include <limits>
-
 #include "myriad/integrator/state.hpp"
 #include "myriad/stepper/dense_output.hpp"
 
@@ -124,7 +122,8 @@ private:
     }
 
     MYRIAD_FUNCTION R never(int i) const {
-        return copysign(std::numeric_limits<R>::infinity(), get_lane(s.data.t_end, i) - get_lane(s.data.t, i));
+        constexpr R far = infinity_of<R>;
+        return copysign(far, get_lane(s.data.t_end, i) - get_lane(s.data.t, i));
     }
     MYRIAD_FUNCTION void set_next(int i) {
         set_lane(o.next, i, o.index[i] < args.sample.count ? sample_time(i) : never(i));

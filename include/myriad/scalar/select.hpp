@@ -36,11 +36,13 @@ using integer_of = typename scalar_traits<S>::integer;
 template <class S>
 inline constexpr int lanes_of = scalar_traits<S>::lanes;
 
-/// Spacing of the numbers next to one, and the largest finite number.
+/// Spacing of the numbers next to one, the largest finite number, and infinity.
 template <class R>
 inline constexpr R epsilon_of = std::numeric_limits<R>::epsilon();
 template <class R>
 inline constexpr R largest_of = std::numeric_limits<R>::max();
+template <class R>
+inline constexpr R infinity_of = std::numeric_limits<R>::infinity();
 
 template <class T>
 concept plain_number = std::is_arithmetic_v<T>;

@@ -30,8 +30,8 @@ public:
     kernel_launcher(int device, const engine_options& wanted) {
         int limit = 0;
         MYRIAD_CUDA(cudaDeviceGetAttribute(&limit, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
-        constexpr auto bytes = shared_parameter_bytes<Model, R>;
-        const bool fits = bytes <= static_cast<std::size_t>(limit);
+        constexpr int bytes = shared_parameter_bytes<Model, R>;
+        const bool fits = bytes <= limit;
         facts_.shared_placement = wanted.shared_placement;
         if (wanted.shared_placement == place::automatic)
             facts_.shared_placement = is_compiled<Model, R>(place::constant_bank) ? place::constant_bank
@@ -97,7 +97,7 @@ private:
         facts_.registers = attributes.numRegs;
         facts_.local_bytes = static_cast<std::int64_t>(attributes.localSizeBytes);
         if (facts_.shared_placement == place::shared_memory) {
-            constexpr auto bytes = static_cast<int>(shared_parameter_bytes<Model, R>);
+            constexpr int bytes = shared_parameter_bytes<Model, R>;
             MYRIAD_CUDA(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes));
             facts_.shared_bytes = bytes;
         }
