@@ -9,7 +9,11 @@ A limit is a comment line
 and every kernel named must be within it: stack frame, spill stores plus spill loads, registers, registers compared
 with another kernel of the same file (a hand-written one). <kernel> is the function's name without namespace, template
 arguments and parameters; with the template arguments, it means that instance only (as in `run<lorenz, rk4>`, their
-namespaces and last ones left out or not). Kernels without a limit are listed and pass. Exit status: 0 all within, 1 a limit broken or
+namespaces and last ones left out or not). Kernels without a limit are listed and pass. A line
+
+    // forbid: <type> in <kernel>
+
+means that the kernel's PTX has no instruction on that type, such as f64. Exit status: 0 all within, 1 a limit broken or
 the compiler failed, 2 a wrong limit line or option.
 """
 import argparse
@@ -70,6 +74,44 @@ def read_limits(source):
             rest = rest[(bound or within).end():]
         limits.append(limit)
     return limits
+
+
+def read_forbidden(source):
+    """(type, kernel) of the `forbid` comments of a source text."""
+    forbidden = []
+    for number, line in enumerate(source.splitlines(), 1):
+        match = re.match(r"\s*//\s*forbid:\s*(.*?)\s*$", line)
+        if not match:
+            continue
+        parts = re.match(r"(\w+) in (\w+(?:<.*>)?)$", match.group(1))
+        if not parts:
+            raise WrongLimit(f"line {number}: '{match.group(1)}' is not TYPE in KERNEL")
+        forbidden.append(parts.groups())
+    return forbidden
+
+
+def check_ptx(ptx, forbidden, names=None):
+    """Complaints about instructions on forbidden types, from the text of a PTX module."""
+    bodies, kernel = {}, None
+    for line in ptx.splitlines():
+        entry = re.search(r"\.entry (\w+)", line)
+        if entry:
+            kernel = entry.group(1)
+            bodies[kernel] = []
+        elif kernel:
+            bodies[kernel].append(line.strip())
+    names = names or demangle(bodies)
+    bodies = {short_name(names[mangled]): lines for mangled, lines in bodies.items()}
+    complaints = []
+    for kind, kernel in forbidden:
+        chosen = matching(bodies, kernel)
+        if not chosen:
+            complaints.append(f"{kernel}: may not use {kind}, but there is no such kernel")
+        for name in chosen:
+            used = [line for line in bodies[name] if re.search(rf"\.{kind}\b", line) and not line.startswith(".")]
+            if used:
+                complaints.append(f"{name}: {len(used)} instructions on {kind}, the first: {used[0]}")
+    return complaints
 
 
 def demangle(names):
@@ -164,13 +206,13 @@ def check(kernels, limits):
     return complaints
 
 
-def compile_command(arguments, source, output):
+def compile_command(arguments, source, output, to_ptx=False):
     """The nvcc call: one real architecture and its PTX, no flag that the library promises not to need."""
     architecture = arguments.arch.removeprefix("sm_")
-    command = [arguments.nvcc, "-std=c++20", "-O3", "-c", "-o", output,
-               f"-gencode=arch=compute_{architecture},code=[sm_{architecture},compute_{architecture}]",
-               # The host compiler does not know nvcc's own `#pragma unroll`.
-               "-Xptxas", "-v", "-Xcompiler", "-Wall,-Wextra,-Wno-unknown-pragmas", "-Werror", "all-warnings"]
+    code = f"compute_{architecture}" if to_ptx else f"[sm_{architecture},compute_{architecture}]"
+    command = [arguments.nvcc, "-std=c++20", "-O3", "-ptx" if to_ptx else "-c", "-o", output,
+               f"-gencode=arch=compute_{architecture},code={code}", "-Xptxas", "-v", "-Xcompiler", "-Wall,-Wextra",
+               "-Werror", "all-warnings"]
     for directory in arguments.include:
         command += ["-I", directory]
     for directory in arguments.system_include:
@@ -190,7 +232,8 @@ def main():
     arguments = parser.parse_args()
 
     try:
-        limits = read_limits(Path(arguments.source).read_text(encoding="utf-8"))
+        text = Path(arguments.source).read_text(encoding="utf-8")
+        limits, forbidden = read_limits(text), read_forbidden(text)
     except (OSError, WrongLimit) as error:
         print(f"{arguments.source}: {error}", file=sys.stderr)
         return 2
@@ -202,6 +245,12 @@ def main():
         except OSError as error:
             print(f"{arguments.nvcc}: {error}", file=sys.stderr)
             return 2
+        ptx = ""
+        if forbidden and result.returncode == 0:
+            output = str(Path(folder) / "kernel.ptx")
+            made = subprocess.run(compile_command(arguments, arguments.source, output, to_ptx=True),
+                                  capture_output=True, text=True, check=False)
+            ptx = Path(output).read_text(encoding="utf-8") if made.returncode == 0 else ""
     report = result.stdout + result.stderr
     if result.returncode != 0:
         print(report)
@@ -212,7 +261,7 @@ def main():
     for name, used in kernels.items():
         note = "" if name in limited else "  (no limit)"
         print(f"{name}: {used.registers} registers, stack {used.stack}, spill {used.spill}{note}")
-    complaints = check(kernels, limits)
+    complaints = check(kernels, limits) + check_ptx(ptx, forbidden)
     for complaint in complaints:
         print(f"too much: {complaint}")
     return 1 if complaints else 0

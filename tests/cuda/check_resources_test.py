@@ -74,6 +74,17 @@ class CheckResources(unittest.TestCase):
         self.assertEqual(checker.matching(kernels, "run<lorenz, rk4>"), kernels[:1])
         self.assertEqual(checker.matching(kernels, "run<lorenz>"), kernels[:1])
 
+    def test_forbidden_type_is_found_in_its_kernel_only(self):
+        ptx = """.visible .entry _Z5scaleIfEviT_PS0_(
+            .reg .f64 %fd<3>;
+            add.f32 %f1, %f2, %f3;
+        .visible .entry _Z6lorenzPd(
+            fma.rn.f64 %fd1, %fd2, %fd3, %fd4;"""
+        self.assertEqual(checker.check_ptx(ptx, [("f64", "scale")], NAMES), [])
+        (complaint,) = checker.check_ptx(ptx, [("f64", "lorenz")], NAMES)
+        self.assertIn("fma.rn.f64", complaint)
+        self.assertIn("no such kernel", checker.check_ptx(ptx, [("f64", "lorentz")], NAMES)[0])
+
     def test_wrong_limit_line_is_refused(self):
         for line in ("// limit: lorenz stak 0", "// limit: lorenz", "// limit: lorenz registers many",
                      "// limit: lorenz registers_within 1.1 lorenz_by_hand"):

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Single precision stays single: no double arithmetic in the kernels of float models, adaptive, with events, hooks and dense
+// output too. (Trigonometric functions are left out: CUDA's own reduction of large arguments is in double.)
+//
+// forbid: f64 in integrate_ensemble
+// limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers 48
+// limit: integrate_ensemble<bouncer> stack 0 spill 0
+
+#include <myriad/cuda/kernel.cuh>
+#include <myriad/methods.hpp>
+#include <myriad/model.hpp>
+
+struct lorenz {
+    enum state { x, y, z, n_state };
+    enum parameter { rho, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
+        return {R(10) * (s[y] - s[x]), p[rho] * s[x] - s[y] - s[x] * s[z], s[x] * s[y] - R(8.0 / 3) * s[z]};
+    }
+};
+
+struct bouncer {
+    enum state { height, speed, n_state };
+    enum parameter { bounce, n_parameter };
+    enum shared { gravity, n_shared };
+    enum accessory { highest, n_accessory };
+    enum event { floor, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
+        using myriad::exp, myriad::sqrt;
+        return {s[speed], -p.shared[gravity] * exp(-s[height]) * sqrt(s[height] * s[height] + R(1))};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return {s[height]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        lane.accessory[highest] = myriad::max(lane.accessory[highest], lane.y[height]);
+    }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) { lane.y[speed] = -lane.parameter[bounce] * lane.y[speed]; }
+};
+
+constexpr auto constant = myriad::shared_placement::constant_bank;
+#define INSTANTIATE(Model, Method)                                                               \
+    template __global__ void myriad::integrate_ensemble<Model, myriad::Method, float, constant>( \
+        const __grid_constant__ myriad::launch_arguments<Model, float, constant>);
+INSTANTIATE(lorenz, runge_kutta_4)
+INSTANTIATE(lorenz, tsitouras_5)
+INSTANTIATE(bouncer, cash_karp)
+INSTANTIATE(bouncer, dense<myriad::tsitouras_5>)
