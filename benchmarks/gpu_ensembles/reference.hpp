@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "measure.hpp"
@@ -42,16 +44,21 @@ inline exact_state lorenz_reference(double rho, const exact_state& start, std::i
     return s;
 }
 
+/// The larger of two errors; NaN if one is.
+inline double larger_or_nan(double a, double b) { return a != a || b <= a ? a : b; }
+
 /// Keeps the errors' maximum, which is NaN if one of them is, and their median.
-inline void set_errors(measurement& m, const std::vector<double>& errors) {
+inline void set_errors(measurement& m, std::vector<double> errors) {
     m.max_error = 0;
-    for (const double e : errors)
-        m.max_error = e <= m.max_error ? m.max_error : (m.max_error != m.max_error ? m.max_error : e);
-    m.median_error = median(errors);
+    for (double& e : errors) {
+        m.max_error = larger_or_nan(m.max_error, e);
+        if (e != e) e = std::numeric_limits<double>::infinity();  // NaN cannot be sorted
+    }
+    m.median_error = median(std::move(errors));
 }
 
-/// The same as `problem`, for the 64 compared instances of an ensemble of `size` and one phase: the largest difference
-/// between the device and the CPU, over max(1, |value|).
+/// One phase of the 64 compared instances of an ensemble of `size` on the device and on the CPU: for each, the difference
+/// in its worst component, over max(1, |value|); NaN if they ended differently.
 template <class Method, class Model>
 std::vector<double> differences_from_cpu(const problem<Model>& what, std::int64_t size, const myriad::device& device) {
     myriad::ensemble<Model> all(size);
@@ -74,8 +81,7 @@ std::vector<double> differences_from_cpu(const problem<Model>& what, std::int64_
         double worst = here.status(k) == there.status(k) ? 0 : std::nan("");
         for (int c = 0; c < myriad::n_state<Model>; ++c) {
             const double value = there.state(c)[k], difference = std::fabs(here.state(c)[k] - value);
-            const double relative = difference / std::max(1.0, std::fabs(value));
-            if (!(relative <= worst) && worst == worst) worst = relative;
+            worst = larger_or_nan(worst, difference / std::max(1.0, std::fabs(value)));
         }
         differences.push_back(worst);
     }
