@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Impact dynamics: largest and smallest displacement of a pressure relief valve over its flow, as in the MPGOS paper.
+#include <cstdint>
+#include <iostream>
+
+#include <myriad/myriad.hpp>
+
+#include "../common/command_line.hpp"
+#include "../common/csv_file.hpp"
+#include "../common/progress.hpp"
+#include "sweep.hpp"
+
+namespace {
+
+int run(const examples::sweep_options& chosen, const myriad::device& device) {
+    const auto rows = static_cast<std::uintmax_t>(chosen.instances) * static_cast<std::uintmax_t>(chosen.recorded);
+    examples::csv_file file(chosen.output, 40 * rows);
+    auto sweep = relief_valve_sweep::prepare(chosen.instances);
+    examples::progress shown(chosen.quiet ? examples::progress::style::none : examples::progress::style::automatic);
+    auto options = relief_valve_sweep::integration(chosen.transient + chosen.recorded);
+    options.record = {.from_phase = chosen.transient,
+                      .accessories = {relief_valve::y_min, relief_valve::y_max},
+                      .integer_accessories = {relief_valve::impacts}};
+    options.progress = [&shown](std::int64_t begun, std::int64_t total) { shown(begun, total); };
+    const auto report = myriad::solve<myriad::cash_karp>(device, sweep, options);
+    shown.finish();
+    if (!chosen.quiet) std::cout << report;
+
+    file.comment("Pressure relief valve: smallest and largest displacement in each recorded phase, over the flow q");
+    file.comment("impacts: from the start on. Valves whose impacts accumulate hold nan from there on.");
+    file.row("instance", "phase", "q", "y_min", "y_max", "impacts", "status");
+    const auto y_min = report.records.accessory(relief_valve::y_min),
+               y_max = report.records.accessory(relief_valve::y_max);
+    const auto impacts = report.records.integer_accessory(relief_valve::impacts);
+    for (std::int64_t i = 0; i < sweep.size(); ++i)
+        for (std::int64_t r = 0; r < report.records.phases(); ++r)
+            file.row(i, chosen.transient + r, sweep.parameter(relief_valve::q)[i], y_min(i, r), y_max(i, r),
+                     impacts(i, r), myriad::name_of(sweep.status(i)));
+    file.commit();
+    // accumulation is a finding here, and no failure
+    return report.failed() == report.count(myriad::status::event_accumulation) ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return examples::run_sweep(
+        argc, argv, "Displacement of a pressure relief valve over its flow q",
+        {.instances = 30720, .transient = 1024, .recorded = 32, .output = "results/relief_valve.csv"}, run);
+}
