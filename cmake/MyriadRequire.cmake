@@ -10,7 +10,9 @@ function(myriad_require package debian_package)
     if(arg_COMPONENTS)
         set(components COMPONENTS ${arg_COMPONENTS})
     endif()
-    if(package STREQUAL "OpenMP")
+    if(TARGET ${arg_TARGET})
+        return() # given in another way
+    elseif(package STREQUAL "OpenMP")
         find_package(OpenMP QUIET ${components}) # CMake's own module, not a package that OpenMP installs
     else()
         find_package(${package} CONFIG QUIET ${components})

@@ -85,7 +85,7 @@ TEST_CASE("samples across events lie on the exact solution, before and after eve
                 }
             }
             CAPTURE(step, worst);
-            CHECK(near_jumps > 500);
+            CHECK(near_jumps > 300);
             // Every impact is located to 1e-12 in x, that is 1e-12 / v in t; at most ten impacts, none slower than
             // 0.75^10 of 2: each is wrong by 2e-11 in time, which the acceleration of 3 turns into errors of v.
             CHECK(worst <= 10 * 3 * 2e-11);
@@ -103,13 +103,14 @@ TEST_CASE("samples across events do not depend on the pack", "[output]") {
         auto packs = balls(), lane = balls();
         solve<dense<cash_karp>>(device::cpu(1), packs, o);
 
-        auto arguments = myriad::host::arguments_of<bouncing, double>(o);
+        myriad::kernel_arguments<bouncing, double> arguments{};
+        myriad::host::describe_options<bouncing, dense<cash_karp>>(arguments, o);
         lane.describe(arguments, o.counting);
         lane.describe_samples(arguments.sample, o.samples);
         arguments.sample.count = 101;
         arguments.sample.every = static_cast<std::int32_t>(every);
         run_one_lane<bouncing, dense<cash_karp>>(arguments, {});
-        CHECK((packs.samples().stored() > 100).all());
+        CHECK((packs.samples().stored() >= (every == 0 ? 101 : 5)).all());
         CHECK(same_samples(packs, lane));
         CHECK(compare::difference(packs, lane) == "");
     }

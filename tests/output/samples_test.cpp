@@ -206,9 +206,11 @@ TEST_CASE("nothing is written beyond the arrays of the samples", "[output]") {
     for (const bool steps : {true, false}) {
         auto e = curves(1, size);
         options o = by_steps(1, capacity);
-        auto arguments = myriad::host::arguments_of<curve, double>(o);
+        myriad::kernel_arguments<curve, double> arguments{};
+        myriad::host::describe_options<curve, dense<cash_karp>>(arguments, o);
         e.describe(arguments, o.counting);
-        std::vector<double> time(capacity * size + 2 * guard, pattern), values(2 * capacity * size + 2 * guard, pattern);
+        std::vector<double> time(capacity * size + 2 * guard, pattern),
+            values(2 * capacity * size + 2 * guard, pattern);
         std::vector<std::int32_t> stored(size + 2 * guard, -7);
         std::fill_n(stored.begin() + guard, size, 0);
         arguments.sample.time = time.data() + guard;

@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Builds both backends on a machine with a GPU, offline, and tests, sanitizes and measures the CUDA backend there.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=scripts/lib.sh
+source scripts/lib.sh
+
+usage() {
+    cat <<'END'
+Usage: scripts/gpu.sh [--tests] [--sanitize] [--bench] [--deps DIR] [--output DIR] [--jobs N] [--help]
+
+Needs nvcc, cmake, ninja, g++, Eigen, Catch2 and a GPU. Nothing is installed and nothing fetched.
+Without --tests, --sanitize or --bench: all three, in this order.
+
+  --tests        the test programs on the GPU, then those of the solver on the CPU too
+  --sanitize     compute-sanitizer memcheck and racecheck on small cases
+  --bench        the benchmark, as CSV, and a table of registers, stack and spills per kernel
+  --deps DIR     folder with the headers of what is not installed: DIR/xsimd, DIR/CLI (default: .deps, if it is there)
+  --output DIR   where logs and CSV files go (default: results/gpu)
+  --jobs N       processes at a time (default: number of cores)
+END
+}
+
+deps=.deps
+output=results/gpu
+jobs=$(nproc)
+parts=()
+while (($#)); do
+    case $1 in
+        --help | -h) usage; exit 0 ;;
+        --tests | --sanitize | --bench) parts+=("${1#--}") ;;
+        --deps | --output | --jobs)
+            (($# > 1)) || usage_error "$1 needs a value"
+            case $1 in --deps) deps=$2 ;; --output) output=$2 ;; --jobs) jobs=$2 ;; esac
+            shift ;;
+        *) usage_error "Unknown option '$1'" ;;
+    esac
+    shift
+done
+((${#parts[@]})) || parts=(tests sanitize bench)
+wants() { [[ " ${parts[*]} " == *" $1 "* ]]; }
+
+has_command nvcc || { say "nvcc is not on the PATH: install the CUDA Toolkit"; exit 2; }
+nvidia-smi --query-gpu=name,driver_version --format=csv,noheader || { say "There is no GPU, or no driver for it"; exit 2; }
+mkdir -p "$output"
+failed=()
+
+options=(-DMYRIAD_BUILD_VALIDATION=OFF -DMYRIAD_CUDA_COMPILE_CHECK=OFF)
+if [[ -d $deps/xsimd ]]; then options+=("-DMYRIAD_XSIMD_INCLUDE_DIR=$PWD/$deps"); fi
+if [[ -d $deps/CLI ]]; then options+=("-DMYRIAD_CLI11_INCLUDE_DIR=$PWD/$deps"); fi
+say "Building in build/cuda"
+cmake --preset cuda "${options[@]}" >"$output/configure.log" 2>&1 || { tail -30 "$output/configure.log"; exit 1; }
+targets=()
+if wants tests || wants sanitize; then targets+=(check_gpu); fi
+if wants bench; then targets+=(gpu_ensembles); fi
+cmake --build --preset cuda --parallel "$jobs" --target "${targets[@]}" -- -k 0 >"$output/build.log" 2>&1 || {
+    grep -E "error|FAILED" "$output/build.log" | head -40
+    failed+=(build)
+}
+
+if wants tests; then
+    for program in build/cuda/tests/*_test; do
+        name=$(basename "$program" _test)
+        grep -qw "$name" build/cuda/tests/gpu_programs.txt || continue
+        if MYRIAD_TEST_DEVICE=cuda timeout 300 "$program" >"$output/tests_$name.log" 2>&1; then
+            say "$name on the GPU: $(tail -2 "$output/tests_$name.log" | head -1)"
+        else
+            failed+=("$name")
+            say "$name on the GPU: FAILED"
+            tail -4 "$output/tests_$name.log"
+        fi
+    done
+    if ! build/cuda/tests/solver_test >"$output/tests_solver_cpu.log" 2>&1; then
+        failed+=(solver-on-the-cpu)
+        tail -4 "$output/tests_solver_cpu.log"
+    fi
+fi
+
+if wants sanitize; then
+    for tool in memcheck racecheck; do
+        if MYRIAD_TEST_DEVICE=cuda timeout 400 compute-sanitizer --tool "$tool" --error-exitcode 9 \
+            build/cuda/tests/solver_test '[small]' >"$output/$tool.log" 2>&1; then
+            say "compute-sanitizer $tool: clean"
+        else
+            failed+=("$tool")
+            say "compute-sanitizer $tool: FAILED"
+        fi
+        grep "SUMMARY" "$output/$tool.log" || true
+    done
+fi
+
+if wants bench; then
+    build/cuda/benchmarks/gpu_ensembles/gpu_ensembles --output "$output/gpu_ensembles.csv" || failed+=(bench)
+    cuobjdump --dump-resource-usage build/cuda/benchmarks/gpu_ensembles/gpu_ensembles 2>/dev/null | c++filt |
+        sed -nE '/Function/{s/.*Function (void )?//;s/\(.*//;h};/REG:/{s/.*(REG:[0-9]+).*(STACK:[0-9]+).*(LOCAL:[0-9]+).*/\1 \2 \3/;G;s/\n/  /p}' |
+        tee "$output/kernels.txt"
+fi
+
+if ((${#failed[@]})); then
+    say "Failed: ${failed[*]}"
+    exit 1
+fi
+say "All well"

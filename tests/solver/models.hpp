@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Models for the tests of solvers and backends: one with everything that a kernel copies in and out, one whose shared
+// parameters are a matrix.
+#pragma once
+
+#include <myriad/model.hpp>
+
+namespace solving {
+
+/// A driven, damped swing with a wall: events with an impact, accessories, a parameter that a hook writes.
+struct swing {
+    enum state { x, v, n_state };
+    enum parameter { damping, drive, n_parameter };
+    enum shared { stiffness, bounce, n_shared };
+    enum shared_integer { weight, n_shared_integer };
+    enum accessory { highest, my_number, n_accessory };
+    enum integer_accessory { impacts, my_phase, n_integer_accessory };
+    enum event { wall, n_event };
+    static constexpr bool writes_parameters = true;
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
+        using myriad::cos;
+        return {y[v], R(p.shared_integer[weight]) * p[drive] * cos(t) - p.shared[stiffness] * y[x] - p[damping] * y[v]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return {y[x] + R(1)};
+    }
+    MYRIAD_FUNCTION static void initialise(auto& lane) {
+        lane.accessory[highest] = lane.y[x];
+        lane.integer_accessory[my_phase] = static_cast<int>(lane.phase);
+    }
+    template <class R>
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        lane.accessory[highest] = myriad::max(lane.accessory[highest], lane.y[x]);
+    }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) {
+        lane.y[v] = -lane.shared[bounce] * lane.y[v];
+        ++lane.integer_accessory[impacts];
+    }
+    MYRIAD_FUNCTION static void finalise(auto& lane) {
+        using real = std::remove_cvref_t<decltype(lane.accessory[my_number])>;
+        lane.accessory[my_number] = static_cast<real>(lane.index);
+        lane.parameter[damping] *= real(1.0625);
+    }
+};
+
+/// dT/dt = rate * D T with one matrix D for all: 77 x 77 doubles, too many for a GPU's constant bank.
+struct heat {
+    static constexpr int points = 77;
+    enum state { first, n_state = points };
+    enum parameter { rate, n_parameter };
+    enum shared { matrix, n_shared = points * points };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& temperature, const auto& p) {
+        myriad::vec<R, n_state> slope;
+#pragma GCC unroll 1
+        for (int i = 0; i < points; ++i) {
+            R sum = R(0);
+#pragma GCC unroll 1
+            for (int j = 0; j < points; ++j) sum += p.shared[i * points + j] * temperature[j];
+            slope[i] = p[rate] * sum;
+        }
+        return slope;
+    }
+};
+
+}  // namespace solving

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+// The solver object, on the CPU and on a GPU alike: what it copies, how several of them work side by side, and what it
+// refuses.
+#include <cmath>
+
+#include "tests/catch.hpp"
+#include "tests/ensemble/refusal.hpp"
+#include "tests/solver/fill.hpp"
+
+using namespace solving;
+using myriad::cash_karp;
+using solver = myriad::solver<swing, cash_karp>;
+using tests::test_device;
+
+TEST_CASE("a solver gives the bits that solve gives", "[small]") {
+    myriad::ensemble<swing> e(333);
+    fill(e);
+    myriad::options o = usual();
+    o.record = {.from_phase = 1, .states = {swing::x}, .accessories = {swing::highest}, .integer_accessories = {swing::impacts}};
+    const auto report = myriad::solve<cash_karp>(test_device(), e, o);
+
+    solver s(test_device(), 333, o);
+    fill(s.instances());
+    s.upload();
+    s.integrate();
+    s.download();
+    CHECK(same_results(s.instances(), e));
+    CHECK(s.report().count(myriad::status::success) == 333);
+    CHECK(s.report().accepted_steps == report.accepted_steps);
+    CHECK(s.report().rhs_evaluations == report.rhs_evaluations);
+    CHECK(s.records().phases() == 2);
+    CHECK(same_bits(s.records().state(swing::x), report.records.state(swing::x)));
+    CHECK(same_bits(s.records().accessory(swing::highest), report.records.accessory(swing::highest)));
+    CHECK(same_bits(s.records().integer_accessory(swing::impacts), report.records.integer_accessory(swing::impacts)));
+    CHECK(e.integer_accessory(swing::impacts).maxCoeff() > 0);
+    CHECK(e.integer_accessory(swing::my_phase).minCoeff() == 2);
+}
+
+TEST_CASE("phases asked for one by one are those asked for at once") {
+    solver at_once(test_device(), 100, usual()), one_by_one(test_device(), 100, usual());
+    for (solver* s : {&at_once, &one_by_one}) {
+        fill(s->instances());
+        s->upload();
+    }
+    at_once.integrate();
+    for (int phase = 0; phase < 3; ++phase) one_by_one.integrate(1);
+    at_once.download();
+    one_by_one.download();
+    CHECK(same_results(at_once.instances(), one_by_one.instances()));
+}
+
+TEST_CASE("a solver that comes back to the host between calls goes on with the same bits") {
+    solver straight(test_device(), 100, usual()), back(test_device(), 100, usual());
+    for (solver* s : {&straight, &back}) {
+        fill(s->instances());
+        s->upload();
+    }
+    straight.integrate();
+    straight.download();
+    for (int phase = 0; phase < 3; ++phase) {
+        back.integrate(1);
+        back.download();
+        back.upload();
+    }
+    CHECK(same_results(straight.instances(), back.instances()));
+}
+
+TEST_CASE("refilling one solver while another runs gives the bits of doing it serially", "[small]") {
+    constexpr std::int64_t size = 200;
+    constexpr int batches = 6;
+    std::vector<myriad::ensemble<swing>> serial;
+    for (int batch = 0; batch < batches; ++batch) {
+        serial.emplace_back(size);
+        fill(serial.back(), size * batch);
+        myriad::solve<cash_karp>(test_device(), serial.back(), usual());
+    }
+    solver first(test_device(), size, usual()), second(test_device(), size, usual());
+    solver* turns[] = {&first, &second};
+    const auto begin = [&](int batch) {
+        solver& s = *turns[batch % 2];
+        s.instances().restart();
+        fill(s.instances(), size * batch);
+        s.upload();
+        s.integrate();
+        s.download();
+    };
+    begin(0);
+    for (int batch = 0; batch < batches; ++batch) {
+        if (batch + 1 < batches) begin(batch + 1);
+        INFO("batch " << batch);
+        CHECK(same_results(turns[batch % 2]->instances(), serial[static_cast<std::size_t>(batch)]));
+    }
+}
+
+TEST_CASE("fewer instances than the capacity leave the others alone") {
+    solver s(test_device(), 100, usual());
+    fill(s.instances());
+    s.upload(60);
+    s.integrate();
+    s.download();
+    CHECK(s.report().instances == 60);
+    CHECK(s.report().count(myriad::status::success) == 60);
+    CHECK(s.instances().phases_done()(59) == 3);
+    CHECK(s.instances().phases_done()(60) == 0);
+    CHECK(s.instances().status(60) == myriad::status::not_started);
+    CHECK(s.instances().accessory(swing::my_number)(59) == 59);
+    CHECK(s.instances().accessory(swing::my_number)(60) == -1);
+}
+
+TEST_CASE("download of chosen components leaves the others on the host as they were") {
+    solver s(test_device(), 50, usual());
+    fill(s.instances());
+    const Eigen::ArrayXd before = s.instances().state(swing::v);
+    s.upload();
+    s.integrate();
+    s.download({.states = {swing::x}, .integer_accessories = {swing::impacts}});
+    CHECK(s.instances().phases_done().minCoeff() == 3);
+    if (!tests::tests_cpu()) CHECK((s.instances().state(swing::v) == before).all());
+    myriad::ensemble<swing> e(50);
+    fill(e);
+    myriad::solve<cash_karp>(test_device(), e, usual());
+    CHECK(same_bits(s.instances().state(swing::x), e.state(swing::x)));
+    s.download();
+    CHECK(same_results(s.instances(), e));
+}
+
+TEST_CASE("a solver that waits for another begins when it is done") {
+    solver first(test_device(), 64, usual()), second(test_device(), 64, usual());
+    fill(first.instances());
+    fill(second.instances());
+    first.upload();
+    second.upload();
+    first.integrate();
+    second.wait_for(first);
+    second.integrate();
+    second.wait();
+    CHECK(first.idle());
+    CHECK(second.idle());
+}
+
+TEST_CASE("samples of a solver are those of solve, in one call and in two") {
+    using dense = myriad::dense<myriad::tsitouras_5>;
+    myriad::options o = usual();
+    o.phases = 2;
+    o.samples = {.states = {swing::x}, .capacity = 40, .evenly = 10};
+    myriad::ensemble<swing> e(70);
+    fill(e);
+    myriad::solve<dense>(test_device(), e, o);
+    myriad::solver<swing, dense> s(test_device(), 70, o);
+    fill(s.instances());
+    s.upload();
+    s.integrate();
+    s.download();
+    CHECK(same_bits(s.instances().samples().state(swing::x), e.samples().state(swing::x)));
+    CHECK(e.samples().stored().minCoeff() == 20);
+    myriad::solve<dense>(test_device(), e, o);
+    s.upload();
+    s.integrate();
+    s.download();
+    CHECK(same_bits(s.instances().samples().state(swing::x), e.samples().state(swing::x)));
+    CHECK(e.samples().stored().minCoeff() == 40);
+}
+
+TEST_CASE("what a solver cannot do is refused before any work", "[small]") {
+    refused([] { solver s(test_device(), 0); }, {"capacity is 0", "must be positive"});
+    refused([] { solver s(test_device(), -3); }, {"capacity is -3", "must be positive"});
+    solver s(test_device(), 10, usual());
+    refused([&] { s.integrate(); }, {"call upload first"});
+    refused([&] { s.upload(11); }, {"11 instances", "capacity", "10"});
+    refused([&] { s.upload(); }, {"shared parameter 0", "never set"});
+    fill(s.instances());
+    s.instances().state(swing::v) = std::nan("");
+    refused([&] { s.upload(); }, {"state 1", "never set"});
+    refused([&] { s.integrate(); }, {"call upload first"});
+    fill(s.instances());
+    s.upload();
+    refused([&] { s.integrate(-1); }, {"phases is -1"});
+    refused([&] { s.download({.states = {7}}); }, {"names component 7", "has 2"});
+    myriad::options o = usual();
+    o.block_size = 33;
+    refused([&] { solver t(test_device(), 10, o); }, {"block_size is 33", "multiple of 32"});
+    o = usual();
+    o.record.states = {swing::x};
+    solver recording(test_device(), 10, o);
+    fill(recording.instances());
+    recording.upload();
+    refused([&] { recording.integrate(5); }, {"5 phases", "laid out for 3"});
+}
