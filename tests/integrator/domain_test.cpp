@@ -65,10 +65,6 @@ TEST_CASE("10000 steps of a thousandth over [0, 10] are 10000 steps") {
 TEST_CASE("10000 steps of a thousandth over [0, 10] are 10000 steps in single precision") {
     each_method([]<class Method> { check_steps<Method>(0.0f, 10.0f, fixed_step(1e-3), 10000); });
 }
-TEST_CASE("100000 steps of a ten-thousandth over [0, 10] are 100000 steps in single precision") {
-    // near t = 10 every hundredth of a step would be lost to the rounding of t, were it not kept
-    each_method([]<class Method> { check_steps<Method>(0.0f, 10.0f, fixed_step(1e-4), 100000); });
-}
 TEST_CASE("10000 steps of a thousandth back from 10 to 0 are 10000 steps") {
     each_method([]<class Method> {
         check_steps<Method>(10.0, 0.0, fixed_step(1e-3), 10000);
