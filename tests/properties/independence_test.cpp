@@ -102,7 +102,8 @@ std::vector<unsigned char> bits_of(const ensemble<Model, R>& e, std::int64_t i) 
 
 template <class Model, class Method, class R>
 void run(int batches, ensemble<Model, R>& e, const options& o, int threads = 2) {
-    auto arguments = myriad::host::arguments_of<Model, R>(o);
+    myriad::kernel_arguments<Model, R> arguments{};
+    myriad::host::describe_options<Model, Method, R>(arguments, o);
     e.describe(arguments, o.counting);
     myriad::run_options how;
     how.threads = threads;

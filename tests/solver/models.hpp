@@ -21,7 +21,8 @@ struct swing {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
         using myriad::cos;
-        return {y[v], R(p.shared_integer[weight]) * p[drive] * cos(t) - p.shared[stiffness] * y[x] - p[damping] * y[v]};
+        const auto factor = static_cast<myriad::real_of<R>>(p.shared_integer[weight]);
+        return {y[v], factor * p[drive] * cos(t) - p.shared[stiffness] * y[x] - p[damping] * y[v]};
     }
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {

@@ -79,7 +79,7 @@ private:
 template <class Model, class R>
 void check_sample_times(const ensemble<Model, R>& e, const sample_options& samples, std::int64_t count) {
     if (samples.empty() || samples.every != 0) return;
-    const std::vector<double>& times = samples.times;
+    const std::vector<R> times(samples.times.begin(), samples.times.end());  // as the kernel has them
     for (std::int64_t i = 0; i < count; ++i) {
         const auto begin = static_cast<double>(e.t_begin()[i]), end = static_cast<double>(e.t_end()[i]);
         if (e.ended(i) || std::isnan(begin) || std::isnan(end)) continue;
@@ -88,7 +88,7 @@ void check_sample_times(const ensemble<Model, R>& e, const sample_options& sampl
                     " is integrated from ", begin, " to ", end, ": give samples.times, or a finite t_end");
             continue;
         }
-        const double from = times.front(), to = times.back();
+        const auto from = static_cast<double>(times.front()), to = static_cast<double>(times.back());
         const bool inside =
             end >= begin ? begin <= from && from <= to && to <= end : begin >= from && from >= to && to >= end;
         require(inside, "samples.times go from ", from, " to ", to, ", but instance ", i, " is integrated from ", begin,
