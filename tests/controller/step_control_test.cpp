@@ -7,6 +7,7 @@
 
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/device.hpp"
 #include "tests/support/problems.hpp"
 #include "tests/support/recorder.hpp"
 #include "tests/support/textbook.hpp"
@@ -41,7 +42,7 @@ template <class Method>
 outcome first_trial(options o) {
     auto e = one_instance<oscillator>(0.5, 100);
     o.max_steps = 1;
-    const auto report = myriad::solve<Method>(myriad::device::cpu(1), e, o);
+    const auto report = myriad::solve<Method>(tests::test_device(1), e, o);
     REQUIRE(report.accepted_steps + report.rejected_steps == 1);
     return {report.accepted_steps == 1, e.next_step()[0]};
 }
@@ -104,7 +105,7 @@ template <class Method, class Model>
 std::vector<recorder::call> steps_of(const options& o, double t_end, double t_begin = 0) {
     recorder::take();
     auto e = one_instance<recorder::recorded<Model>>(t_begin, t_end);
-    const auto report = myriad::solve<Method>(myriad::device::cpu(1), e, o);
+    const auto report = myriad::solve<Method>(tests::test_device(1), e, o);
     REQUIRE(report.count(myriad::status::success) == 1);
     auto steps = recorder::take();
     REQUIRE(static_cast<std::int64_t>(steps.size()) == report.accepted_steps);
@@ -246,13 +247,13 @@ TEST_CASE("steps backwards are those forwards, mirrored") {
 TEST_CASE("a component with a loose tolerance does not hold up the others") {
     options o = tolerance(1e-30, 1e-9);
     auto both = one_instance<problems::two_speeds>(0, 20);
-    const auto all = myriad::solve<cash_karp>(myriad::device::cpu(1), both, o);
+    const auto all = myriad::solve<cash_karp>(tests::test_device(1), both, o);
     o.absolute_tolerance = {1e9, 1e9, 1e-9, 1e-9};
     auto loose = one_instance<problems::two_speeds>(0, 20);
-    const auto slow = myriad::solve<cash_karp>(myriad::device::cpu(1), loose, o);
+    const auto slow = myriad::solve<cash_karp>(tests::test_device(1), loose, o);
     o.absolute_tolerance = 1e-9;
     auto alone = one_instance<oscillator>(0, 20);
-    const auto single = myriad::solve<cash_karp>(myriad::device::cpu(1), alone, o);
+    const auto single = myriad::solve<cash_karp>(tests::test_device(1), alone, o);
     CHECK(all.accepted_steps > 15 * single.accepted_steps);  // twenty times as fast
     CHECK(slow.accepted_steps == single.accepted_steps);
     CHECK(slow.rejected_steps == single.rejected_steps);

@@ -317,6 +317,26 @@ TEST_CASE("an event direction that does not exist is refused", "[input]") {
     input_refused(e, {"event direction is 7", "falling, either or rising"}, o);
 }
 
+TEST_CASE("an event tolerance below the resolution of its function is refused", "[input]") {
+    options o;
+    o.events.resize(1);
+    auto e = good_travellers();  // x - 1: rounding of the one is 2^-53, of the 0 at which x begins nothing
+    o.events[0].tolerance = 1e-17;
+    input_refused(e, {"tolerance of event 0 is 1e-17", "rounding changes its function by 1.11022302e-16",
+                      "instance 0", "raise the tolerance"}, o);
+    o.events[0].tolerance = 2.3e-16;
+    CHECK(solve<cash_karp>(one_thread, e, o).count(status::success) == 5);
+
+    // v: no constant is subtracted, but v begins at 0.5
+    auto f = good_oscillators();
+    o.events[0].tolerance = 1e-25;
+    input_refused(f, {"tolerance of event 0 is 1e-25", "rounding", "raise the tolerance"}, o);
+    // A value that is far from zero now may be close to it later, where it is resolved.
+    f.state(complete::v) = 1e6;
+    o.events[0].tolerance = 1e-11;
+    CHECK(solve<cash_karp>(one_thread, f, o).count(status::success) == 5);
+}
+
 TEST_CASE("a step or tolerance that vanishes in the model's float is refused", "[input]") {
     // positive in double, zero in float
     auto e = good_decays<float>();
@@ -394,6 +414,21 @@ TEST_CASE("no way, or two ways, of choosing samples is refused", "[input]") {
     options_refused<dense<cash_karp>>(o, {"samples names 2 of evenly, times and every", "exactly one"});
     o.samples.times = {0.5};
     options_refused<dense<cash_karp>>(o, {"samples names 3 of"});
+}
+
+TEST_CASE("samples without states are refused, and not ignored", "[input]") {
+    for (int which = 0; which < 5; ++which) {
+        options o;
+        if (which == 0) o.samples.evenly = 5;
+        if (which == 1) o.samples.capacity = 5;
+        if (which == 2) o.samples.times = {0.5};
+        if (which == 3) o.samples.every = 2;
+        if (which == 4) o.samples.minimum_spacing = 0.1;
+        const char* const names[] = {"samples.evenly", "samples.capacity", "samples.times", "samples.every",
+                                     "samples.minimum_spacing"};
+        options_refused<dense<cash_karp>>(o, {names[which], "samples.states names no state", "name the states"});
+        options_refused<cash_karp>(o, {names[which], "samples.states names no state"});
+    }
 }
 
 TEST_CASE("a capacity of zero, or too small for the chosen samples, is refused", "[input]") {

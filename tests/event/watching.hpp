@@ -126,6 +126,13 @@ auto solve(myriad::ensemble<watch, R>& e, const myriad::options& o) {
     return myriad::solve<Method>(tests::test_device(1), e, o);
 }
 
+/// Without the checks of the options, which refuse what only rounding keeps from working: the kernel itself, on the CPU.
+template <class Method, class R>
+void solve_unchecked(myriad::ensemble<watch, R>& e, const myriad::options& o) {
+    myriad::host::prepared_arguments<watch, Method, R> prepared(e, o);
+    myriad::openmp::run<watch, Method, R>(prepared.get(), {});
+}
+
 }  // namespace watching
 
 #define ALL_METHODS myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4

@@ -69,7 +69,7 @@ TEST_CASE("samples across events lie on the exact solution, before and after eve
             const options b = bounces(997);
             o.events = b.events;
             o.samples = b.samples;
-            solve<Dense>(device::cpu(1), e, o);
+            solve<Dense>(tests::test_device(1), e, o);
             CHECK((e.samples().stored() == 997).all());
             double worst = 0;
             int near_jumps = 0;
@@ -101,7 +101,7 @@ TEST_CASE("samples across events do not depend on the pack", "[output]") {
         o.samples.every = every;
         o.samples.capacity = 400;
         auto packs = balls(), lane = balls();
-        solve<dense<cash_karp>>(device::cpu(1), packs, o);
+        solve<dense<cash_karp>>(tests::test_device(1), packs, o);
 
         myriad::kernel_arguments<bouncing, double> arguments{};
         myriad::host::describe_options<bouncing, dense<cash_karp>>(arguments, o);
@@ -122,7 +122,7 @@ TEST_CASE("samples by steps show the state before the action of an event, once",
         options o = bounces(0);
         o.samples.every = 1;
         o.samples.capacity = 2000;
-        solve<Dense>(device::cpu(1), e, o);
+        solve<Dense>(tests::test_device(1), e, o);
         for (std::int64_t i = 0; i < e.size(); ++i) {
             const int n = e.samples().stored()[i];
             REQUIRE(n == e.accepted_steps()[i] + 1);
@@ -143,7 +143,7 @@ TEST_CASE("a phase that an event ends has the samples up to the event", "[output
         auto e = balls();
         options o = bounces(101);
         o.events[0].stop_after = 2;
-        solve<Dense>(device::cpu(1), e, o);
+        solve<Dense>(tests::test_device(1), e, o);
         for (std::int64_t i = 0; i < e.size(); ++i) {
             REQUIRE(e.status(i) == status::stopped_by_event);
             const int n = e.samples().stored()[i];
@@ -158,12 +158,12 @@ TEST_CASE("phases that an event ends and that carry time on sample every time on
     each_dense_method([]<class Dense, class Method> {
         auto e = balls(), whole = balls();
         options o = bounces(101);
-        solve<Dense>(device::cpu(1), whole, o);
+        solve<Dense>(tests::test_device(1), whole, o);
         o.phases = 6;
         o.samples.capacity = 606;
         o.phase_time = myriad::phase_time::carry_on;
         o.events[0].stop_after = 1;
-        solve<Dense>(device::cpu(1), e, o);
+        solve<Dense>(tests::test_device(1), e, o);
         for (std::int64_t i = 0; i < e.size(); ++i) {
             const int n = e.samples().stored()[i];
             REQUIRE(n >= 60);
@@ -212,7 +212,7 @@ TEST_CASE("a phase that a hook turns round takes no sample beyond the turn", "[o
             auto e = moving(0.5, -1);
             options o = moved(given ? 0 : 21);
             if (given) o.samples.times = {0.1, 0.3, 0.5001, 0.9};
-            solve<Dense>(device::cpu(1), e, o);
+            solve<Dense>(tests::test_device(1), e, o);
             REQUIRE(e.t()[0] == -1);
             for (std::int64_t i = 0; i < e.size(); ++i) {
                 const int n = e.samples().stored()[i];
@@ -232,7 +232,7 @@ TEST_CASE("evenly spaced samples keep their times where a hook moves the end of 
     both_kinds([]<class Dense> {
         for (const double new_end : {0.75, 2.0}) {
             auto e = moving(0.5, new_end);
-            solve<Dense>(device::cpu(1), e, moved(21));
+            solve<Dense>(tests::test_device(1), e, moved(21));
             REQUIRE(e.t()[0] == new_end);
             for (std::int64_t i = 0; i < e.size(); ++i) {
                 const int n = e.samples().stored()[i];

@@ -14,7 +14,7 @@ double sample_error(double h, double span) {
     options o = compare::fixed_step(h);
     o.samples.states = {curve::u, curve::w};
     o.samples.evenly = o.samples.capacity = 998;  // 997 is a prime, so no fraction comes twice
-    const auto report = solve<dense<Method>>(device::cpu(1), e, o);
+    const auto report = solve<dense<Method>>(tests::test_device(1), e, o);
     REQUIRE(report.accepted_steps == e.size() * std::lround(std::abs(span) / h));  // steps of h and no other
     REQUIRE((e.samples().stored() == 998).all());
     double squares = 0;
@@ -64,10 +64,10 @@ TEST_CASE("samples at the ends of steps are the steps' own and no interpolant's"
         by_steps.t_end() = by_steps.t_begin() + 1;
         by_time.t_end() = by_time.t_begin() + 1;
         o.samples.every = 1;
-        solve<Dense>(device::cpu(1), by_steps, o);
+        solve<Dense>(tests::test_device(1), by_steps, o);
         o.samples.every = 0;
         o.samples.evenly = 65;  // multiples of 1/64 from a multiple of 1/16: exact
-        solve<Dense>(device::cpu(1), by_time, o);
+        solve<Dense>(tests::test_device(1), by_time, o);
         REQUIRE((by_steps.samples().stored() == 65).all());
         CHECK(same_samples(by_steps, by_time));
     });

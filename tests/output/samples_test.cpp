@@ -17,7 +17,7 @@ void check_evenly(double span) {
         const auto start = ensemble<curve, R>(curves<R>(span));
         options o = evenly(13);
         o.relative_tolerance = o.absolute_tolerance = 1e-5;
-        solve<Dense>(device::cpu(1), e, o);
+        solve<Dense>(tests::test_device(1), e, o);
         REQUIRE((e.samples().stored() == 13).all());
         const auto t = e.samples().time();
         for (std::int64_t i = 0; i < e.size(); ++i) {
@@ -67,7 +67,7 @@ TEST_CASE("samples at given times have exactly these times and lie on the soluti
             o.samples.evenly = 0;
             o.samples.times = times;
             o.samples.capacity = 20;
-            solve<Dense>(device::cpu(1), e, o);
+            solve<Dense>(tests::test_device(1), e, o);
             CHECK((e.samples().stored() == 8).all());
             for (std::int64_t i = 0; i < e.size(); ++i) {
                 for (int k = 0; k < 8; ++k) CHECK(e.samples().time()(i, k) == times[static_cast<std::size_t>(k)]);
@@ -86,7 +86,7 @@ TEST_CASE("a sample time equal to the end of a float domain is inside it", "[out
     options o = evenly(2);
     o.samples.evenly = 0;
     o.samples.times = {0.5, 0.7};
-    solve<dense<cash_karp>>(device::cpu(1), e, o);
+    solve<dense<cash_karp>>(tests::test_device(1), e, o);
     CHECK((e.samples().stored() == 2).all());
     CHECK(e.samples().time()(0, 1) == 0.7f);
     CHECK(e.samples().state(curve::u)(0, 1) == e.state(curve::u)[0]);
@@ -99,7 +99,7 @@ TEST_CASE("sample times that are one and the same in single precision are refuse
     o.samples.times = {1.4, 1.4 + 1e-9};
     std::string said;
     try {
-        solve<dense<cash_karp>>(device::cpu(1), e, o);
+        solve<dense<cash_karp>>(tests::test_device(1), e, o);
     } catch (const myriad::error& problem) {
         said = problem.what();
     }
@@ -111,7 +111,7 @@ TEST_CASE("samples by steps hold the start and the end of every accepted step", 
     each_dense_method([]<class Dense, class Method> {
         auto e = curves();
         const auto start = curves();
-        solve<Dense>(device::cpu(1), e, by_steps(1, 200));
+        solve<Dense>(tests::test_device(1), e, by_steps(1, 200));
         for (std::int64_t i = 0; i < e.size(); ++i) {
             const int n = e.samples().stored()[i];
             REQUIRE(n == e.accepted_steps()[i] + 1);
@@ -129,8 +129,8 @@ TEST_CASE("samples by steps hold the start and the end of every accepted step", 
 TEST_CASE("samples by every n-th step are every n-th of those by every step", "[output]") {
     each_dense_method([]<class Dense, class Method> {
         auto all = curves(), some = curves();
-        solve<Dense>(device::cpu(1), all, by_steps(1, 200));
-        solve<Dense>(device::cpu(1), some, by_steps(3, 200));
+        solve<Dense>(tests::test_device(1), all, by_steps(1, 200));
+        solve<Dense>(tests::test_device(1), some, by_steps(3, 200));
         for (std::int64_t i = 0; i < all.size(); ++i) {
             const int n = some.samples().stored()[i];
             REQUIRE(n == all.accepted_steps()[i] / 3 + 1);
@@ -146,10 +146,10 @@ TEST_CASE("samples by steps keep the minimum spacing and no more than a step bey
     each_dense_method([]<class Dense, class Method> {
         for (const double direction : {1.0, -1.0}) {
             auto all = curves(direction), some = curves(direction);
-            solve<Dense>(device::cpu(1), all, by_steps(1, 200));
+            solve<Dense>(tests::test_device(1), all, by_steps(1, 200));
             options o = by_steps(1, 200);
             o.samples.minimum_spacing = 0.2;
-            solve<Dense>(device::cpu(1), some, o);
+            solve<Dense>(tests::test_device(1), some, o);
             for (std::int64_t i = 0; i < all.size(); ++i) {
                 double longest = 0;
                 for (int k = 1; k < all.samples().stored()[i]; ++k)
@@ -169,10 +169,10 @@ TEST_CASE("samples by steps keep the minimum spacing and no more than a step bey
 
 TEST_CASE("chosen components are sampled as they are among all", "[output]") {
     auto all = curves(), one = curves();
-    solve<dense<tsitouras_5>>(device::cpu(1), all, evenly(9));
+    solve<dense<tsitouras_5>>(tests::test_device(1), all, evenly(9));
     options o = evenly(9);
     o.samples.states = {curve::w};
-    solve<dense<tsitouras_5>>(device::cpu(1), one, o);
+    solve<dense<tsitouras_5>>(tests::test_device(1), one, o);
     CHECK(compare::same_bits_everywhere(all.samples().state(curve::w), one.samples().state(curve::w)));
     CHECK_THROWS_AS(one.samples().state(curve::u), myriad::error);
 }
@@ -180,8 +180,8 @@ TEST_CASE("chosen components are sampled as they are among all", "[output]") {
 TEST_CASE("a full trajectory takes no more samples, says how many it has, and is integrated to its end", "[output]") {
     each_dense_method([]<class Dense, class Method> {
         auto ample = curves(), tight = curves();
-        solve<Dense>(device::cpu(1), ample, by_steps(1, 200));
-        solve<Dense>(device::cpu(1), tight, by_steps(1, 5));
+        solve<Dense>(tests::test_device(1), ample, by_steps(1, 200));
+        solve<Dense>(tests::test_device(1), tight, by_steps(1, 5));
         REQUIRE((ample.accepted_steps() > 5).all());
         CHECK(tight.samples().capacity() == 5);
         CHECK((tight.samples().stored() == 5).all());
@@ -194,7 +194,7 @@ TEST_CASE("a full trajectory takes no more samples, says how many it has, and is
 TEST_CASE("samples of further phases and calls stop at the capacity", "[output]") {
     auto e = curves();
     options o = by_steps(1, 20);
-    for (int call = 0; call < 3; ++call) solve<dense<tsitouras_5>>(device::cpu(1), e, o);
+    for (int call = 0; call < 3; ++call) solve<dense<tsitouras_5>>(tests::test_device(1), e, o);
     REQUIRE((e.accepted_steps() >= 20).all());
     CHECK((e.samples().stored() == 20).all());
 }
@@ -244,9 +244,9 @@ TEST_CASE("phases in one call and in several give the same samples", "[output]")
                 o.phase_time = time;
                 o.phases = 4;
                 auto at_once = curves(), split = curves();
-                solve<Dense>(device::cpu(1), at_once, o);
+                solve<Dense>(tests::test_device(1), at_once, o);
                 o.phases = 1;
-                for (int call = 0; call < 4; ++call) solve<Dense>(device::cpu(1), split, o);
+                for (int call = 0; call < 4; ++call) solve<Dense>(tests::test_device(1), split, o);
                 CAPTURE(every, static_cast<int>(time));
                 CHECK(same_samples(at_once, split));
                 // time that is carried on has passed the whole domain in the first phase, and the others have no step
@@ -262,9 +262,9 @@ TEST_CASE("phases in one call and in several give the same samples", "[output]")
 TEST_CASE("phases before from_phase are not sampled", "[output]") {
     auto all = curves(), late = curves();
     options o = evenly(5, 3);
-    solve<dense<cash_karp>>(device::cpu(1), all, o);
+    solve<dense<cash_karp>>(tests::test_device(1), all, o);
     o.samples.from_phase = 2;
-    solve<dense<cash_karp>>(device::cpu(1), late, o);
+    solve<dense<cash_karp>>(tests::test_device(1), late, o);
     CHECK((late.samples().stored() == 5).all());
     CHECK(compare::same_bits_everywhere(late.samples().time().leftCols(5), all.samples().time().rightCols(5)));
     CHECK(compare::same_bits_everywhere(late.samples().state(1).leftCols(5), all.samples().state(1).rightCols(5)));
@@ -273,7 +273,7 @@ TEST_CASE("phases before from_phase are not sampled", "[output]") {
 TEST_CASE("restart forgets the samples", "[output]") {
     auto e = curves();
     options o = evenly(5);
-    solve<dense<cash_karp>>(device::cpu(1), e, o);
+    solve<dense<cash_karp>>(tests::test_device(1), e, o);
     e.restart();
     CHECK((e.samples().stored() == 0).all());
     CHECK(std::isnan(e.samples().time()(0, 0)));
@@ -285,9 +285,9 @@ TEST_CASE("sampling changes no bit of the results and at most the last evaluatio
         for (const std::int64_t every : {0, 1}) {
             auto plain = curves(), sampled = curves();
             options o = every == 0 ? evenly(101) : by_steps(every, 200);
-            solve<Dense>(device::cpu(1), sampled, o);
+            solve<Dense>(tests::test_device(1), sampled, o);
             o.samples = {};
-            solve<Method>(device::cpu(1), plain, o);
+            solve<Method>(tests::test_device(1), plain, o);
             for (std::int64_t i = 0; i < plain.size(); ++i) {
                 CHECK(plain.state(0)[i] == sampled.state(0)[i]);
                 CHECK(plain.state(1)[i] == sampled.state(1)[i]);
@@ -306,9 +306,9 @@ TEST_CASE("samples do not depend on threads or on the ensemble's size", "[output
     for (const std::int64_t every : {0, 2}) {
         const options o = every == 0 ? evenly(17) : by_steps(every, 40);
         ensemble<curve> a = curves(1, 203), b = curves(1, 203), c = curves(1, 19);
-        solve<dense<tsitouras_5>>(device::cpu(1), a, o);
-        solve<dense<tsitouras_5>>(device::cpu(2), b, o);
-        solve<dense<tsitouras_5>>(device::cpu(1), c, o);
+        solve<dense<tsitouras_5>>(tests::test_device(1), a, o);
+        solve<dense<tsitouras_5>>(tests::test_device(2), b, o);
+        solve<dense<tsitouras_5>>(tests::test_device(1), c, o);
         CHECK(same_samples(a, b));
         CHECK(compare::same_bits_everywhere(a.samples().state(0).topRows(19), c.samples().state(0)));
     }
@@ -316,10 +316,10 @@ TEST_CASE("samples do not depend on threads or on the ensemble's size", "[output
 
 TEST_CASE("an instance that fails keeps the samples before its failure and has NaN after them", "[output]") {
     auto e = curves(), whole = curves();
-    solve<dense<cash_karp>>(device::cpu(1), whole, evenly(21));
+    solve<dense<cash_karp>>(tests::test_device(1), whole, evenly(21));
     options o = evenly(21);
     o.max_steps = 8;
-    solve<dense<cash_karp>>(device::cpu(1), e, o);
+    solve<dense<cash_karp>>(tests::test_device(1), e, o);
     for (std::int64_t i = 0; i < e.size(); ++i) {
         REQUIRE(e.status(i) == status::max_steps);
         const int n = e.samples().stored()[i];
@@ -342,8 +342,8 @@ TEST_CASE("one instance that was marked invalid has no samples and takes none fr
     e.state(0)[7] = not_a_number;
     options o = evenly(9);
     o.invalid_instances = myriad::invalid_instances::mark;
-    solve<dense<cash_karp>>(device::cpu(1), clean, o);
-    solve<dense<cash_karp>>(device::cpu(1), e, o);
+    solve<dense<cash_karp>>(tests::test_device(1), clean, o);
+    solve<dense<cash_karp>>(tests::test_device(1), e, o);
     for (std::int64_t i = 0; i < e.size(); ++i) {
         CHECK(e.samples().stored()[i] == (i == 7 ? 0 : 9));
         for (int k = 0; k < 9 && i != 7; ++k) CHECK(e.samples().state(1)(i, k) == clean.samples().state(1)(i, k));

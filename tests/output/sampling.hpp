@@ -11,6 +11,7 @@
 #include "tests/catch.hpp"
 #include "tests/output/models.hpp"
 #include "tests/support/compare.hpp"
+#include "tests/support/device.hpp"
 
 namespace output {
 

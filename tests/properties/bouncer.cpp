@@ -6,4 +6,3 @@ RUN_WITH_PACKS(properties::bouncer, myriad::cash_karp, double)
 #if defined(MYRIAD_NIGHTLY)
 RUN_WITH_PACKS(properties::bouncer, myriad::runge_kutta_4, double)
 #endif
-MYRIAD_INSTANTIATE(properties::bouncer, myriad::cash_karp)

@@ -13,6 +13,7 @@
 #include "tests/catch.hpp"
 #include "tests/properties/models.hpp"
 #include "tests/properties/pack_sizes.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -144,20 +145,20 @@ TEST_CASE("a model with elementary functions gives the same bits in packs of eve
 TEST_CASE("the order of the ensemble changes no bit of any result") {
     auto order = numbers(0, 203);
     auto straight = make<mixed, double>(order);
-    myriad::solve<myriad::tsitouras_5>(myriad::device::cpu(2), straight, settings(3));
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(2), straight, settings(3));
     std::shuffle(order.begin(), order.end(), std::mt19937(1));
     auto shuffled = make<mixed, double>(order);
-    myriad::solve<myriad::tsitouras_5>(myriad::device::cpu(2), shuffled, settings(3));
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(2), shuffled, settings(3));
     for (std::size_t at = 0; at < order.size(); ++at)
         REQUIRE(bits_of(shuffled, static_cast<std::int64_t>(at)) == bits_of(straight, order[at]));
 }
 
 TEST_CASE("the size of the ensemble changes no bit of any result") {
     auto all = make<bouncer, double>(numbers(0, 203));
-    myriad::solve<myriad::cash_karp>(myriad::device::cpu(2), all, settings(3));
+    myriad::solve<myriad::cash_karp>(tests::test_device(2), all, settings(3));
     for (const std::int64_t size : {1, 7, 64}) {
         auto some = make<bouncer, double>(numbers(100, 100 + size));
-        myriad::solve<myriad::cash_karp>(myriad::device::cpu(2), some, settings(3));
+        myriad::solve<myriad::cash_karp>(tests::test_device(2), some, settings(3));
         for (std::int64_t i = 0; i < size; ++i) REQUIRE(bits_of(some, i) == bits_of(all, 100 + i));
     }
 }
@@ -182,12 +183,12 @@ TEST_CASE("splitting phases into calls changes no bit of any result") {
             // A section ends each phase, so that there is something left of a carried-on domain.
             o.events = {{myriad::direction::falling, 1e-8, 2}, {}};
             auto whole = make<bouncer, double>(numbers(0, 100));
-            myriad::solve<myriad::cash_karp>(myriad::device::cpu(2), whole, o);
+            myriad::solve<myriad::cash_karp>(tests::test_device(2), whole, o);
             for (const std::vector<std::int64_t>& split : {std::vector<std::int64_t>{1, 1, 1, 1, 1, 1}, {2, 4}, {5, 1}}) {
                 auto e = make<bouncer, double>(numbers(0, 100));
                 for (const std::int64_t phases : split) {
                     o.phases = phases;
-                    myriad::solve<myriad::cash_karp>(myriad::device::cpu(2), e, o);
+                    myriad::solve<myriad::cash_karp>(tests::test_device(2), e, o);
                 }
                 for (std::int64_t i = 0; i < e.size(); ++i) REQUIRE(bits_of(e, i) == bits_of(whole, i));
             }
@@ -197,7 +198,7 @@ TEST_CASE("splitting phases into calls changes no bit of any result") {
 
 TEST_CASE("neighbours that are not finite or huge change no bit of any result") {
     auto clean = make<mixed, double>(numbers(0, 96));
-    myriad::solve<myriad::tsitouras_5>(myriad::device::cpu(1), clean, settings(3));
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(1), clean, settings(3));
     auto mixed_in = make<mixed, double>(numbers(0, 96));
     constexpr double inf = std::numeric_limits<double>::infinity();
     const double bad[] = {std::nan(""), inf, -inf, 1e300, -1e300, 1e7, 5e-324};
@@ -206,7 +207,7 @@ TEST_CASE("neighbours that are not finite or huge change no bit of any result") 
     o.max_steps = 2000;
     o.invalid_instances = myriad::invalid_instances::mark;
     options unmarked = o;
-    myriad::solve<myriad::tsitouras_5>(myriad::device::cpu(1), mixed_in, o);
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(1), mixed_in, o);
     for (std::int64_t i = 0; i < 96; ++i) {
         if (i % 3 != 1) REQUIRE(bits_of(mixed_in, i) == bits_of(clean, i));
         for (int c = 0; c < 2; ++c) {
@@ -219,10 +220,10 @@ TEST_CASE("neighbours that are not finite or huge change no bit of any result") 
 
 TEST_CASE("fixed steps take a neighbour that overflows without a change of any bit") {
     auto clean = make<lorenz, double>(numbers(0, 96));
-    myriad::solve<myriad::runge_kutta_4>(myriad::device::cpu(1), clean, settings(1));
+    myriad::solve<myriad::runge_kutta_4>(tests::test_device(1), clean, settings(1));
     auto e = make<lorenz, double>(numbers(0, 96));
     for (std::int64_t i = 1; i < 96; i += 3) e.state(lorenz::x)(i) = 1e200;
-    const auto report = myriad::solve<myriad::runge_kutta_4>(myriad::device::cpu(1), e, settings(1));
+    const auto report = myriad::solve<myriad::runge_kutta_4>(tests::test_device(1), e, settings(1));
     CHECK(report.count(myriad::status::not_finite) == 32);
     for (std::int64_t i = 0; i < 96; ++i) {
         if (i % 3 != 1) {

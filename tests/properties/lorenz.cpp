@@ -4,4 +4,3 @@
 
 RUN_WITH_PACKS(properties::lorenz, myriad::runge_kutta_4, double)
 RUN_WITH_PACKS(properties::lorenz, myriad::cash_karp, float)
-MYRIAD_INSTANTIATE(properties::lorenz, myriad::runge_kutta_4)

@@ -6,4 +6,3 @@ RUN_WITH_PACKS(properties::mixed, myriad::tsitouras_5, double)
 #if defined(MYRIAD_NIGHTLY)
 RUN_WITH_PACKS(properties::mixed, myriad::cash_karp, float)
 #endif
-MYRIAD_INSTANTIATE(properties::mixed, myriad::tsitouras_5)

@@ -64,7 +64,7 @@ expect "output of apt-get is shown if it fails" 1 'no such thing' \
     in_lib "$missing; root_prefix() { return 0; }; env() { echo no such thing; return 100; }; require_packages catch2"
 
 # Every file with code says its licence, and none knows where it was written.
-unlicensed=$(find . \( -name .git -o -name build -o -name results -o -name __pycache__ \) -prune -o -type f \
+unlicensed=$(find . \( -name '.?*' -o -name build -o -name results -o -name __pycache__ \) -prune -o -type f \
     \( -name '*.hpp' -o -name '*.cuh' -o -name '*.cpp' -o -name '*.cu' -o -name '*.sh' -o -name '*.py' -o -name '*.cmake' -o -name CMakeLists.txt \) \
     -exec grep -L 'SPDX-License-Identifier: MIT' {} +)
 expect "every file with code has its SPDX line" 0 '^$' echo "$unlicensed"

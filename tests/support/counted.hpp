@@ -6,10 +6,28 @@
 
 #include <myriad/model.hpp>
 
+#include "tests/support/kernel_memory.hpp"
+
 namespace counted {
 
-/// One more evaluation; in a file of its own, compiled without the instruction-set flags.
+/// Evaluations in the kernels of one file.
+struct kernel_count {
+    unsigned long long evaluations;
+};
+#if defined(__CUDACC__)
+MYRIAD_TEST_KERNEL_VARIABLE(kernel_count, in_kernels)
+#endif
+
+/// One more evaluation on the CPU; in a file of its own, compiled without the instruction-set flags.
 void add();
+/// One more evaluation.
+MYRIAD_FUNCTION void count() {
+#if defined(__CUDA_ARCH__)
+    atomicAdd(&in_kernels.evaluations, 1ull);
+#else
+    add();
+#endif
+}
 /// Evaluations since the last call.
 std::int64_t take();
 
@@ -18,7 +36,7 @@ struct oscillator {
     enum state { x, v, n_state };
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto, const myriad::vec<R, 2>& y, const auto&) {
-        add();
+        count();
         return {y[v], -y[x]};
     }
 };

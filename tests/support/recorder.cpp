@@ -2,6 +2,7 @@
 // The log of hook calls.
 #include "tests/support/recorder.hpp"
 
+#include <stdexcept>
 #include <utility>
 
 namespace recorder {
@@ -10,6 +11,14 @@ std::vector<call> log_of_calls;
 }
 
 void add(const call& c) { log_of_calls.push_back(c); }
-std::vector<call> take() { return std::exchange(log_of_calls, {}); }
+
+std::vector<call> take() {
+    tests::for_each_kernel_variable<kernel_log>([](kernel_log& log) {
+        if (log.size > kernel_log::capacity) throw std::length_error("more calls in a kernel than its log can hold");
+        log_of_calls.insert(log_of_calls.end(), log.calls, log.calls + log.size);
+        log.size = 0;
+    });
+    return std::exchange(log_of_calls, {});
+}
 
 }  // namespace recorder

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A log of hook calls: what each saw, in the order of the calls. For runs on one thread. The hooks are in files compiled
-// for an instruction set, the log is not: only plain numbers go from one to the other.
+// A log of hook calls: what each saw, in the order of the calls of an instance. For runs on one thread or on a GPU. The
+// hooks are in files compiled for an instruction set, the log is not: only plain numbers go from one to the other.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include <myriad/model.hpp>
+
+#include "tests/support/kernel_memory.hpp"
 
 namespace recorder {
 
@@ -22,9 +24,19 @@ struct call {
     int event_count;     // of that event
 };
 
+/// The calls from the kernels of one file.
+struct kernel_log {
+    static constexpr unsigned int capacity = 32768;
+    unsigned int size;
+    call calls[capacity];
+};
+#if defined(__CUDACC__)
+MYRIAD_TEST_KERNEL_VARIABLE(kernel_log, kernel_calls)
+#endif
+
 /// Adds a call to the log.
 void add(const call& c);
-/// The log; it is empty afterwards.
+/// The log; it is empty afterwards. Throws if it was too small.
 std::vector<call> take();
 
 /// Logs what a scalar hook sees. `n`: components of the state.
@@ -43,7 +55,12 @@ MYRIAD_FUNCTION void log(hook which, const auto& lane, int event = -1) {
     c.first = lane.y[0];
     c.last = lane.y[n - 1];
     c.event_count = event < 0 ? 0 : lane.event_count[event];
+#if defined(__CUDA_ARCH__)
+    const unsigned int number = atomicAdd(&kernel_calls.size, 1u);
+    if (number < kernel_log::capacity) kernel_calls.calls[number] = c;
+#else
     add(c);
+#endif
 }
 
 /// Any model, with its accepted steps logged.

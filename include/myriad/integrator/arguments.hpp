@@ -9,6 +9,7 @@
 
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/input_check.hpp"
+#include "myriad/event/resolution.hpp"
 #include "myriad/ensemble/report.hpp"
 #include "myriad/ensemble/view.hpp"
 #include "myriad/integrator/options.hpp"
@@ -78,6 +79,7 @@ private:
 template <class Model, class R>
 void check_inputs(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
     check_sample_times(instances, o.samples, count);
+    check_event_tolerances(instances, o, count);
     input_check<Model, R>(instances, o, count).run();
 }
 

@@ -241,8 +241,7 @@ struct integrator {
 private:
     using count = typename integration_state<Model, Method, S>::count;
 
-    /// Only packs have per-lane book-keeping to save.
-    static constexpr bool runs_freely = lanes_of<S> > 1 && !adaptive && !has_events<Model> && !has_after_step<Model> && !samples &&
+    static constexpr bool runs_freely = !adaptive && !has_events<Model> && !has_after_step<Model> && !samples &&
                                         !Method::first_same_as_last;
     /// Slopes are worth keeping where a step may be repeated or its last slope is the next one's first.
     static constexpr bool keeps_slope = stepper_keeps_slope<Model, Method>;

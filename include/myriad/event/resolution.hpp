@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// Refuses event tolerances that rounding cannot meet. Host code; it calls the model's `events` on some initial states.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "myriad/core/error.hpp"
+#include "myriad/ensemble/ensemble.hpp"
+#include "myriad/integrator/options.hpp"
+#include "myriad/model/lane.hpp"
+#include "myriad/scalar/dual.hpp"
+
+namespace myriad::host {
+
+/// What one instance says about the resolution of event functions, in their units.
+template <class Model, class R>
+struct event_resolution {
+    /// Rounding of the constant that a function subtracts, as 1e6 in x - 1e6: closer to zero it has no values. The
+    /// constant is g - p dg/dp, exact for functions linear in p = (t, y); of others the smaller of its values at p and
+    /// at zero counts, and none where that is not finite.
+    vec<R, n_event<Model>> of_constant;
+    /// A thousandth of the rounding of g at the start. Time advances in steps of its own rounding, and g, which gets from
+    /// here to zero, in steps proportional to them; a thousandth, since it may slow down on its way.
+    vec<R, n_event<Model>> of_start;
+
+    event_resolution(ensemble<Model, R>& e, std::int64_t i) {
+        inputs<Model, R> p;
+        vec<R, at_least_one(n_shared<Model>)> shared;
+        std::int32_t shared_integer[at_least_one(n_shared_integer<Model>)];
+        for (int c = 0; c < n_shared<Model>; ++c) shared[c] = e.shared(c);
+        for (int c = 0; c < n_shared_integer<Model>; ++c) shared_integer[c] = e.shared_integer(c);
+        for (int c = 0; c < n_parameter<Model>; ++c) p.parameter[c] = e.parameter(c)[i];
+        for (int c = 0; c < n_accessory<Model>; ++c) p.accessory[c] = e.accessory(c)[i];
+        for (int c = 0; c < n_integer_accessory<Model>; ++c) p.integer_accessory[c] = e.integer_accessory(c)[i];
+        p.shared = &shared[0];
+        p.shared_integer = shared_integer;
+
+        const R t = e.t_begin()[i];
+        vec<dual<R>, n_state<Model>> y;
+        vec<R, n_state<Model>> origin;
+        for (int c = 0; c < n_state<Model>; ++c) {
+            y[c] = dual<R>(e.state(c)[i], e.state(c)[i]);
+            origin[c] = R(0);
+        }
+        const auto g = Model::template events<dual<R>>(dual<R>(t, t), y, p);  // derivative: p dg/dp
+        const auto g0 = Model::template events<R>(R(0), origin, p);
+        constexpr R half_ulp = std::numeric_limits<R>::epsilon() / 2;
+        for (int j = 0; j < n_event<Model>; ++j) {
+            const R here = std::abs(g[j].value - g[j].derivative), there = std::abs(g0[j]);
+            of_constant[j] = std::isfinite(here) && std::isfinite(there) ? half_ulp * std::min(here, there) : R(0);
+            of_start[j] = std::isfinite(g[j].value) ? half_ulp * R(1e-3) * std::abs(g[j].value) : R(0);
+        }
+    }
+};
+
+/// Throws `error` if an event tolerance is below the resolution of its function in most instances; in single ones, whose
+/// state may be huge, crossings are located as well as rounding lets them. Looks at a thousand or so of the first `count`
+/// instances, spread over them.
+template <class Model, class R>
+void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_t count) {
+    if constexpr (has_events<Model>) {
+        struct {
+            std::int64_t instances = 0, worst = 0;
+            double least = 0;
+        } too_fine[n_event<Model>];
+        std::int64_t looked_at = 0;
+        const auto tolerance_of = [&](int j) {
+            return o.events.empty() ? event_options{}.tolerance : o.events[static_cast<std::size_t>(j)].tolerance;
+        };
+        const std::int64_t stride = std::max<std::int64_t>(count / 1024, 1);
+        for (std::int64_t i = 0; i < count; i += stride) {
+            if (e.ended(i)) continue;
+            ++looked_at;
+            const event_resolution<Model, R> finest(e, i);
+            for (int j = 0; j < n_event<Model>; ++j) {
+                const double least = static_cast<double>(std::max(finest.of_constant[j], finest.of_start[j]));
+                if (tolerance_of(j) >= least) continue;
+                ++too_fine[j].instances;
+                if (least > too_fine[j].least) too_fine[j] = {too_fine[j].instances, i, least};
+            }
+        }
+        for (int j = 0; j < n_event<Model>; ++j) {
+            require(2 * too_fine[j].instances <= looked_at, "the tolerance of event ", j, " is ", tolerance_of(j),
+                    ", but rounding changes its function by ", too_fine[j].least, " in instance ", too_fine[j].worst,
+                    ", and by more than the tolerance in most instances: raise the tolerance, scale or shift the "
+                    "function or t",
+                    std::numeric_limits<R>::digits < 53 ? ", or use an ensemble of doubles" : "");
+        }
+    }
+}
+
+}  // namespace myriad::host

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: MIT
+// Compiles the kernels of the models whose results must depend on nothing but the instance.
+#include <myriad/instantiate.hpp>
+
+#include "tests/properties/models.hpp"
+
+MYRIAD_INSTANTIATE(properties::lorenz, myriad::runge_kutta_4)
+MYRIAD_INSTANTIATE(properties::mixed, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(properties::bouncer, myriad::cash_karp)
