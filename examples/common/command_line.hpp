@@ -25,6 +25,24 @@ struct sweep_options {
     bool quiet = false;
 };
 
+/// What `--device` may be, in this program.
+inline std::string device_help() {
+    const bool with_cuda = myriad::host::if_defined(&myriad::cuda::list_devices) != nullptr;
+    return with_cuda ? "Where to compute: auto (a GPU if there is one), cpu, cpu:THREADS, cuda or cuda:NUMBER"
+                     : "Where to compute: auto, cpu or cpu:THREADS (built without the CUDA backend)";
+}
+
+/// Says where the sweep is computed and, if a GPU would have been taken, why there is none.
+inline void announce(const std::string& wanted, const myriad::device& device) {
+    std::cerr << "Computing on " << device.name();
+    if (device.which() == myriad::device::kind::cuda) {
+        std::cerr << " (" << device.description() << ')';
+    } else if (wanted == "auto") {
+        std::cerr << "; no GPU: " << myriad::device::no_gpu();
+    }
+    std::cerr << '\n';
+}
+
 /// Parses the command line over the given defaults and calls `sweep(options, device)`, which returns the exit status.
 template <class Sweep>
 int run_sweep(int argc, const char* const* argv, const std::string& description, sweep_options options, Sweep&& sweep) {
@@ -36,9 +54,7 @@ int run_sweep(int argc, const char* const* argv, const std::string& description,
     add_count("--instances", options.instances, 1, "Number of instances");
     add_count("--transient", options.transient, 0, "Phases to let pass");
     add_count("--recorded", options.recorded, 1, "Phases to record after them");
-    app.add_option("--device", options.device, "Where to compute: auto, cpu or cpu:THREADS")
-        ->type_name("NAME")
-        ->capture_default_str();
+    app.add_option("--device", options.device, device_help())->type_name("NAME")->capture_default_str();
     app.add_option("--output", options.output, "File to write, as comma-separated values")
         ->type_name("FILE")
         ->capture_default_str();
@@ -47,7 +63,9 @@ int run_sweep(int argc, const char* const* argv, const std::string& description,
     std::signal(SIGXFSZ, SIG_IGN);
     try {
         app.parse(argc, argv);
-        const int status = sweep(options, myriad::device::parse(options.device));
+        const myriad::device device = myriad::device::parse(options.device);
+        if (!options.quiet) announce(options.device, device);
+        const int status = sweep(options, device);
         if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
         return status;
     } catch (const CLI::ParseError& e) {

@@ -25,7 +25,7 @@ expect() {
     [[ -z $(find . -name '*.part') ]] || fail "a temporary file is left: $*"
 }
 
-expect 0 'Integrating 40 instances' "$program" "${small[@]}" --output new/table.csv
+expect 0 'Integrating 40 instances' "$program" "${small[@]}" --device cpu --output new/table.csv
 grep -q '40 success' stdout || fail 'no report'
 [[ $(grep -vc '^#' new/table.csv) == 81 ]] || fail 'a header and 80 rows were expected'
 [[ $(grep -v '^#' new/table.csv | head -n 1) == instance,phase,k,B,x,v,x_local_max,v_second_zero,x_global_max,zeros,status ]] ||
@@ -36,6 +36,13 @@ if grep -v '^#' new/table.csv | grep -q nan; then fail 'values are missing'; fi
 expect 0 '' "$program" "${small[@]}" --output one.csv --device cpu:1 --quiet
 [[ ! -s stdout && ! -s stderr ]] || fail '--quiet is not quiet'
 cmp one.csv new/table.csv || fail 'the result depends on the number of threads'
+
+if ! nvidia-smi -L >/dev/null 2>&1; then
+    expect 2 'device "cuda" is not available: .*use "cpu" or "auto"' "$program" "${small[@]}" --device cuda --output no.csv
+    [[ ! -e no.csv ]] || fail 'a file without a result'
+    expect 0 'Computing on cpu.*; no GPU: ' "$program" "${small[@]}" --output auto.csv
+    cmp one.csv auto.csv || fail 'the result without a GPU is not that of the CPU'
+fi
 
 expect 2 'not expected: --bogus' "$program" --bogus
 expect 2 'instances' "$program" --instances 0

@@ -99,7 +99,7 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
     auto sweep = prepare(chosen.instances);
     if (!chosen.quiet)
         std::cerr << "Integrating " << sweep.size() << " instances over " << chosen.transient << " + "
-                  << chosen.recorded << " phases on " << device.name() << '\n';
+                  << chosen.recorded << " phases\n";
     examples::progress shown(chosen.quiet ? examples::progress::style::none : examples::progress::style::automatic);
     const auto report = myriad::solve<myriad::cash_karp>(device, sweep, integration(chosen, shown));
     shown.finish();

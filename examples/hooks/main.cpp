@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Runs the small models of docs/writing_a_model.md and compares them with what is known of them; exit status 1 if one is
-// wrong.
+// Runs the small models of docs/writing_a_model.md and the solvers of docs/gpu.md, and compares them with what is known
+// of them; exit status 1 if one is wrong.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
+#include <deque>
 #include <iostream>
 #include <limits>
 #include <numbers>
@@ -40,6 +43,54 @@ void bounce(double tolerance) {
     const double fall = std::sqrt(2 / 9.81);
     compare("time of the fifth impact", static_cast<double>(balls.accessory(bouncing_ball::t_impact)[9]),
             fall * (1 + 2 * (r + r * r + r * r * r + r * r * r * r)), 20 * tolerance);
+}
+
+// snippet: solvers
+/// The time of the fifth impact for each restitution, batch by batch: two solvers on every GPU take turns.
+Eigen::ArrayXd fifth_impacts(const Eigen::ArrayXd& restitution, Eigen::Index batch, const myriad::options& options) {
+    using solver = myriad::solver<bouncing_ball, myriad::cash_karp>;
+    std::deque<solver> solvers;  // they can be neither copied nor moved
+    for (const myriad::device& where : myriad::devices()) {
+        if (where.which() == myriad::device::kind::cpu && !solvers.empty()) continue;  // the CPU if there is no GPU
+        for (int i = 0; i < 2; ++i) solvers.emplace_back(where, batch, options);
+    }
+    const auto turns = static_cast<Eigen::Index>(solvers.size());
+
+    Eigen::ArrayXd t(restitution.size());
+    for (Eigen::Index first = 0; first < t.size() + turns * batch; first += batch) {
+        solver& next = solvers[static_cast<std::size_t>(first / batch % turns)];
+        auto& balls = next.instances();  // waits for this solver; the others go on
+        if (const Eigen::Index done = first - turns * batch; done >= 0) {
+            const Eigen::Index n = std::min(batch, t.size() - done);
+            t.segment(done, n) = balls.accessory(bouncing_ball::t_impact).head(n);
+        }
+        if (first >= t.size()) continue;
+        const Eigen::Index n = std::min(batch, t.size() - first);
+        balls.restart();  // a new batch, and not further phases of the one before
+        balls.parameter(bouncing_ball::r).head(n) = restitution.segment(first, n);
+        balls.shared(bouncing_ball::g) = 9.81;
+        balls.state(bouncing_ball::x) = 1;
+        balls.state(bouncing_ball::v) = 0;
+        balls.time_domain(0, endless);  // infinity: the hook ends the phase
+        next.upload(n);
+        next.integrate();
+        next.download({.accessories = {bouncing_ball::t_impact}});
+    }
+    return t;
+}
+// end of snippet
+
+void take_turns() {
+    constexpr double tolerance = 1e-9;
+    const Eigen::ArrayXd r = Eigen::ArrayXd::LinSpaced(1000, 0.5, 0.9);
+    const Eigen::ArrayXd t =
+        fifth_impacts(r, 150,
+                      {.relative_tolerance = tolerance,
+                       .absolute_tolerance = tolerance,
+                       .events = {{.direction = myriad::direction::falling, .tolerance = tolerance}}});
+    const Eigen::ArrayXd exact = std::sqrt(2 / 9.81) * (1 + 2 * (r + r.square() + r.cube() + r.square().square()));
+    compare("solvers in turns differ in the time of the fifth impact by",
+            (t - exact).abs().maxCoeff<Eigen::PropagateNaN>(), 0, 20 * tolerance);
 }
 
 void lyapunov() {
@@ -127,6 +178,7 @@ int main() {
     bounce<myriad::cash_karp, double>(1e-9);
     bounce<myriad::tsitouras_5, double>(1e-9);
     bounce<myriad::tsitouras_5, float>(1e-5);
+    take_turns();
     lyapunov();
     settle<myriad::tsitouras_5, double>({.maximum_step = 0.01}, 1e-4);
     settle<myriad::runge_kutta_4, float>({.step = 0.01}, 1e-4);

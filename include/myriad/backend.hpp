@@ -41,12 +41,12 @@ namespace cuda {
 
 /// A CUDA kernel and how it is launched.
 struct kernel_facts {
-    int block_size = 0;
+    int block_size = 0;             ///< of the last launch; before it, what fills a multiprocessor best
     int registers = 0;              ///< per thread
     std::int64_t local_bytes = 0;   ///< per thread: stack frame and spilled registers
     std::int64_t shared_bytes = 0;  ///< of shared memory per block
     myriad::shared_placement shared_placement = myriad::shared_placement::constant_bank;
-    int blocks_per_multiprocessor = 0;  ///< that run at the same time
+    int blocks_per_multiprocessor = 0;  ///< that run at the same time, of the size that fills it best
 };
 
 struct engine_options {

@@ -34,29 +34,16 @@ struct progress_relay {
     }
 };
 
-/// The OpenMP kernel; throws `error` if the program has none.
+/// Throws `error` if the program has no kernel of the model and method for that device.
 template <class Model, class Method, class R>
-auto* openmp_kernel() {
-    auto* const kernel = if_defined(&openmp::run<Model, Method, R>);
-    require(
-        kernel != nullptr,
-        "this model was not instantiated for this method and real type, or its source file was not linked: write "
-        "MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for float) in the model's source file, and name "
-        "that file in myriad_add_models");
-    return kernel;
-}
-
-/// An engine on a CUDA device; throws `error` if the program has no kernel for it.
-template <class Model, class Method, class R>
-std::unique_ptr<cuda::engine<Model, R>> make_cuda_engine(const device& where, const options& o) {
-    auto* const make = if_defined(&cuda::make_engine<Model, Method, R>);
-    require(
-        make != nullptr,
-        "this program has no CUDA kernel for this model, method and real type: write MYRIAD_INSTANTIATE(model, method) "
-        "(MYRIAD_INSTANTIATE_FLOAT for float) in the model's source file, name that file in myriad_add_models, and "
-        "build "
-        "with -DMYRIAD_ENABLE_CUDA=ON");
-    return make({where.number(), o.block_size, o.shared_placement});
+void require_kernel(const device& where) {
+    const bool on_cpu = where.which() == device::kind::cpu;
+    require(on_cpu ? if_defined(&openmp::run<Model, Method, R>) != nullptr
+                   : if_defined(&cuda::make_engine<Model, Method, R>) != nullptr,
+            "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
+            ", or its source file was not linked: write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for "
+            "float) in the model's source file, and name that file in myriad_add_models",
+            on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
 }
 
 template <class Model, class Method, class R>
@@ -66,7 +53,7 @@ void solve_on_cpu(const device& where, const kernel_arguments<Model, R>& argumen
     how.threads = where.threads();
     how.progress = &progress_relay::call;
     how.context = &relay;
-    const run_statistics used = openmp_kernel<Model, Method, R>()(arguments, how);
+    const run_statistics used = openmp::run<Model, Method, R>(arguments, how);
     result.lane_turns = used.lane_turns;
     result.lanes = used.lanes;
     result.threads = used.threads;
@@ -84,7 +71,8 @@ void solve_on_cuda(const device& where, const options& o, kernel_arguments<Model
     for_each_record(arguments.record, add);
 
     std::unique_ptr<cuda::engine<Model, R>> engines[2];
-    engines[0] = make_cuda_engine<Model, Method, R>(where, o);
+    const cuda::engine_options how{where.number(), o.block_size, o.shared_placement};
+    engines[0] = cuda::make_engine<Model, Method, R>(how);
     const std::int64_t size = arguments.size;
     std::int64_t chunk = o.chunk_size;
     if (chunk == 0) {
@@ -92,7 +80,7 @@ void solve_on_cuda(const device& where, const options& o, kernel_arguments<Model
         chunk = size <= affordable ? size : std::max(affordable / 2, std::int64_t{1});
     }
     chunk = std::min(chunk, size);
-    if (chunk < size) engines[1] = make_cuda_engine<Model, Method, R>(where, o);
+    if (chunk < size) engines[1] = cuda::make_engine<Model, Method, R>(how);
 
     const auto finish = [&](cuda::engine<Model, R>& engine, std::int64_t done) {
         engine.download(arguments);
@@ -126,7 +114,7 @@ template <class Method, class Model, class R>
 report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
     check_options<Model, Method, R>(options, n_state<Model>, n_event<Model>, n_accessory<Model>,
                                     n_integer_accessory<Model>);
-    if (where.which() == device::kind::cpu) host::openmp_kernel<Model, Method, R>();
+    host::require_kernel<Model, Method, R>(where);
     host::check_inputs(instances, options, instances.size());
 
     report<Model, R> result;

@@ -27,10 +27,11 @@ struct components {
     std::vector<int> integer_accessories = {};
 };
 
-/// Up to `capacity` instances on a device, with pinned host memory. On a GPU, `upload`, `integrate` and `download` return at
-/// once and are done one after the other in the solver's own stream; on the CPU they work in place, and `integrate` returns when
-/// it is done. Whatever reads or changes host data waits first: `instances`, `report`, `wait`. An error of the device is
-/// thrown by whichever call meets it; other solvers go on.
+/// Up to `capacity` instances on a device, with pinned host memory. On a GPU, copies and kernels are asked for and done one
+/// after the other in the solver's own stream: `integrate` and `download` return at once, `upload` when what was asked before
+/// is done. On the CPU they work in place, and `integrate` returns when it is done. Whatever hands out host data waits first:
+/// `instances`, `records`, `report`; and on either device it refuses to while results were not downloaded, so that what works
+/// on the CPU works on a GPU. An error of the device is thrown by whichever call meets it; other solvers go on.
 ///
 ///     solver<duffing, cash_karp> sweep(device::best(), 100'000, {.phases = 64});
 ///     sweep.instances().state(duffing::x) = -0.5;   // and so on
@@ -46,11 +47,9 @@ public:
     solver(const device& where, std::int64_t capacity, options o = {})
         : where_(where), options_(checked(std::move(o), capacity)), instances_(capacity),
           prepared_(instances_, options_) {
-        if (where.which() == device::kind::cpu) {
-            host::openmp_kernel<Model, Method, R>();
-            return;
-        }
-        engine_ = host::make_cuda_engine<Model, Method, R>(where, options_);
+        host::require_kernel<Model, Method, R>(where);
+        if (where.which() == device::kind::cpu) return;
+        engine_ = cuda::make_engine<Model, Method, R>({where.number(), options_.block_size, options_.shared_placement});
         engine_->reserve(prepared_.get(), capacity);
         const auto pin = [&](auto* array, std::int64_t components_of_it, array_access, array_kind) {
             engine_->pin(array, static_cast<std::size_t>(components_of_it * capacity) * sizeof(*array));
@@ -64,30 +63,45 @@ public:
     std::int64_t capacity() const { return instances_.size(); }
     const device& where() const { return where_; }
 
-    /// The host's data, once nothing is being copied from or to it. What it holds after `integrate` is there after `download`.
+    /// The host's data, once nothing is being copied from or to it. Throws `error` after an `integrate` without a `download`.
+    /// A reference kept over an `upload` or `download` is valid, but the data may be under way: ask again.
     ensemble<Model, R>& instances() {
         wait();
+        require_results("instances");
         return instances_;
     }
 
-    /// Takes the first `count` instances (0: all) to the device; those that have been there before go on from their phase.
-    /// Throws `error` if their data are invalid.
+    /// Takes the first `count` instances (0: all) to the device, with the shared parameters; those that have been there before
+    /// go on from their phase. Waits for what was asked before. Throws `error` if their data are invalid, or are results of
+    /// which the host has not got all.
     void upload(std::int64_t count = 0) {
         require(count >= 0 && count <= capacity(), "upload asks for ", count,
                 " instances (must be from 1 to the capacity, ", capacity(), ", or 0 for all)");
         wait();
-        count_ = 0;
+        require_results("upload");
         const std::int64_t wanted = count > 0 ? count : capacity();
+        if (results_ == results::partly_on_host) {
+            for (std::int64_t i = 0; i < wanted; ++i)
+                require(instances_.status(i) == status::not_started,
+                        "upload would mix old and new values, as only chosen components of the last results were "
+                        "downloaded: "
+                        "restart() and set the instances anew, or download() all of them before");
+        }
+        count_ = 0;
         host::check_inputs(instances_, options_, wanted);
         count_ = wanted;
+        results_ = results::on_host;
         report_ = {};
+        prepared_.records().clear();
+        copy_shared();
         work_before_ = host::counted_work(instances_);
         if (engine_) engine_->upload(prepared_.get(), 0, count_);
     }
 
-    /// Integrates `phases` phases (0: as the options say). With records, the number is that of the options.
+    /// Integrates `phases` phases (0: as the options say). With records, the number is that of the options; they are those
+    /// of the last call.
     void integrate(std::int64_t phases = 0) {
-        require(count_ > 0, "integrate has no instances to work on: call upload first");
+        require_upload("integrate");
         require(phases == 0 || phases == options_.phases || (options_.record.empty() && options_.samples.empty()),
                 "integrate asks for ", phases, " phases, but records and samples were laid out for ", options_.phases,
                 ": give that number in the options");
@@ -95,17 +109,19 @@ public:
                                         n_integer_accessory<Model>);
         auto& arguments = prepared_.get();
         arguments.phases = static_cast<std::int32_t>(phases > 0 ? phases : options_.phases);
+        results_ = results::on_device;
         if (engine_) {
             engine_->integrate(arguments);
             integrated_ = true;
             return;
         }
+        prepared_.records().clear();
         run_options how;
         how.threads = where_.threads();
         how.count = count_;
         const auto begin = std::chrono::steady_clock::now();
-        const run_statistics used = host::openmp_kernel<Model, Method, R>()(arguments, how);
-        report_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        const run_statistics used = openmp::run<Model, Method, R>(arguments, how);
+        report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         report_.lane_turns += used.lane_turns;
         report_.lanes = used.lanes;
         report_.threads = used.threads;
@@ -113,16 +129,20 @@ public:
 
     /// Brings everything back that a kernel may have written.
     void download() {
+        require_upload("download");
         if (engine_) engine_->download(prepared_.get());
+        results_ = results::on_host;
     }
-    /// The same, but of states and accessories only those that are named; the others on the host stay as they were, and
-    /// another upload would take those there.
+    /// The same, but of states and accessories only those that are named. What the others on the host are then is not said:
+    /// their old values on a GPU, the new ones on the CPU.
     void download(const components& chosen) {
+        require_upload("download");
         host::check_components("components.states", chosen.states, n_state<Model>);
         host::check_components("components.accessories", chosen.accessories, n_accessory<Model>);
         host::check_components("components.integer_accessories", chosen.integer_accessories,
                                n_integer_accessory<Model>);
         if (engine_) engine_->download(prepared_.get(), &is_chosen, const_cast<components*>(&chosen));
+        if (results_ == results::on_device) results_ = results::partly_on_host;
     }
 
     /// Waits for everything asked of this solver. Throws `error` if any of it failed.
@@ -141,9 +161,11 @@ public:
     /// Whether nothing is under way.
     bool idle() { return !engine_ || engine_->idle(); }
 
-    /// How the instances uploaded last have ended, and the work since, as of the last `download`. Waits for it.
+    /// How the instances uploaded last have ended, and the work since. Times are those of the last `integrate`, of its kernel
+    /// on a GPU. Waits; throws `error` after an `integrate` without a `download`.
     const myriad::report<Model, R>& report() {
         wait();
+        require_results("report");
         if (options_.counting == counting::on) host::set_work(report_, work_before_, host::counted_work(instances_));
         host::summarise(instances_, report_, count_);
         report_.device = where_.name();
@@ -154,9 +176,10 @@ public:
         }
         return report_;
     }
-    /// The records of the last `integrate`, as of the last `download`. Waits for it.
+    /// The records of the last `integrate`. Waits; throws `error` after an `integrate` without a `download`.
     const phase_records<Model, R>& records() {
         wait();
+        require_results("records");
         return prepared_.records();
     }
 
@@ -164,12 +187,29 @@ private:
     template <class, class, class>
     friend class solver;
 
+    enum class results { on_host, on_device, partly_on_host };
+
+    void require_upload(const char* what) const {
+        require(count_ > 0, what, " has no instances to work on: call upload first");
+    }
+    void require_results(const char* what) const {
+        require(results_ != results::on_device, what,
+                " needs the results of integrate on the host: call download before (download({}) brings no component)");
+    }
+
     static options checked(options o, std::int64_t capacity) {
         require(capacity > 0, "the solver's capacity is ", capacity,
                 " (must be positive): give the number of instances it holds");
         check_options<Model, Method, R>(o, n_state<Model>, n_event<Model>, n_accessory<Model>,
                                         n_integer_accessory<Model>);
         return o;
+    }
+    /// Shared parameters are those of the upload, whatever happens to the ensemble's on the host afterwards.
+    void copy_shared() {
+        for (int c = 0; c < n_shared<Model>; ++c) shared_[static_cast<std::size_t>(c)] = instances_.shared(c);
+        for (int c = 0; c < n_shared_integer<Model>; ++c)
+            shared_integer_[static_cast<std::size_t>(c)] = instances_.shared_integer(c);
+        prepared_.get().shared = {shared_.data(), shared_integer_.data()};
     }
     options with_phases(std::int64_t phases) const {
         options o = options_;
@@ -197,7 +237,10 @@ private:
     options options_;
     ensemble<Model, R> instances_;
     host::prepared_arguments<Model, Method, R> prepared_;
+    std::array<R, at_least_one(n_shared<Model>)> shared_{};
+    std::array<std::int32_t, at_least_one(n_shared_integer<Model>)> shared_integer_{};
     std::int64_t count_ = 0;
+    results results_ = results::on_host;
     bool integrated_ = false;
     std::array<std::int64_t, 4> work_before_{};
     myriad::report<Model, R> report_;

@@ -549,7 +549,7 @@ TEST_CASE("instances with invalid input can be marked, and all others are integr
     e.t_begin()[41] = infinity;
     e.t_end()[98] = nan;
     e.t_end()[99] = infinity;  // and nothing could end it
-    const auto report = solve<cash_karp>(device::cpu(2), e, o);
+    const auto report = solve<cash_karp>(tests::test_device(2), e, o);
     CHECK(report.count(status::invalid_input) == 6);
     CHECK(report.count(status::success) == size - 6);
     CHECK(report.failed() == 6);

@@ -8,6 +8,7 @@
 #include "tests/catch.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/counted.hpp"
+#include "tests/support/device.hpp"
 
 namespace {
 
@@ -35,16 +36,17 @@ template <class Model, class Method>
 auto count(options o, int threads = 1) {
     auto e = oscillators<Model>();
     counted::take();
-    auto r = solve<Method>(device::cpu(threads), e, o);
+    auto r = solve<Method>(tests::test_device(threads), e, o);
     const std::int64_t evaluations = counted::take();
     CHECK(r.rhs_evaluations == evaluations);
     CHECK(e.rhs_evaluations().sum() == evaluations);
     CHECK(e.accepted_steps().sum() == r.accepted_steps);
     CHECK(e.rejected_steps().sum() == r.rejected_steps);
     CHECK(e.located_steps().sum() == r.located_steps);
-    // scalar lanes have no idle neighbours: every turn is somebody's trial
-    CHECK(r.lanes == 1);
-    CHECK(r.lane_turns == r.accepted_steps + r.rejected_steps + r.located_steps);
+    if (tests::tests_cpu()) {  // scalar lanes have no idle neighbours: every turn is somebody's trial
+        CHECK(r.lanes == 1);
+        CHECK(r.lane_turns == r.accepted_steps + r.rejected_steps + r.located_steps);
+    }
     CHECK(r.failed() == 0);
     return r;
 }
@@ -118,8 +120,8 @@ TEST_CASE("steps without event, and those redone for one, are counted apart") {
         options o = with_tolerance(1e-9);
         auto plain = oscillators<counted::oscillator>(1);
         auto watched = oscillators<counted::with_events>(1);
-        solve<Method>(device::cpu(1), plain, o);
-        solve<Method>(device::cpu(1), watched, o);
+        solve<Method>(tests::test_device(1), plain, o);
+        solve<Method>(tests::test_device(1), watched, o);
         CHECK(plain.located_steps()[0] == 0);
         CHECK(watched.located_steps()[0] > 0);
         // each of the 12 events cuts a step in two, at most
@@ -136,7 +138,7 @@ TEST_CASE("a hook that changes an accessory costs tsitouras_5 one evaluation a s
     auto e = oscillators<counted::busy_hook>();
     e.accessory(0) = 0.0;
     counted::take();
-    const auto r = solve<myriad::tsitouras_5>(device::cpu(1), e, rough_start());
+    const auto r = solve<myriad::tsitouras_5>(tests::test_device(1), e, rough_start());
     CHECK(r.rhs_evaluations == counted::take());
     // the last step's successor needs no slope
     CHECK(r.rhs_evaluations == 6 * (r.accepted_steps + r.rejected_steps) + r.accepted_steps);
@@ -146,7 +148,7 @@ TEST_CASE("nothing is counted where counting is off") {
     auto e = oscillators<counted::oscillator>();
     options o = with_tolerance(1e-9);
     o.counting = myriad::counting::off;
-    const auto r = solve<myriad::cash_karp>(device::cpu(1), e, o);
+    const auto r = solve<myriad::cash_karp>(tests::test_device(1), e, o);
     CHECK(r.accepted_steps + r.rejected_steps + r.located_steps + r.rhs_evaluations == 0);
     CHECK_FALSE(e.counted());
     CHECK_THROWS_AS(e.accepted_steps(), myriad::error);

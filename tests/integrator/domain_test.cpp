@@ -65,6 +65,11 @@ TEST_CASE("10000 steps of a thousandth over [0, 10] are 10000 steps") {
 TEST_CASE("10000 steps of a thousandth over [0, 10] are 10000 steps in single precision") {
     each_method([]<class Method> { check_steps<Method>(0.0f, 10.0f, fixed_step(1e-3), 10000); });
 }
+TEST_CASE("100000 steps of a ten-thousandth over [0, 10] are 100000 steps in single precision") {
+    // Near t = 10 every hundredth of a step would be lost to the rounding of t, were it not kept; and the last step but one
+    // may be rounded to the end itself.
+    each_method([]<class Method> { check_steps<Method>(0.0f, 10.0f, fixed_step(1e-4), 100000); });
+}
 TEST_CASE("10000 steps of a thousandth back from 10 to 0 are 10000 steps") {
     each_method([]<class Method> {
         check_steps<Method>(10.0, 0.0, fixed_step(1e-3), 10000);

@@ -101,7 +101,7 @@ TEST_CASE("samples across events do not depend on the pack", "[output]") {
         o.samples.every = every;
         o.samples.capacity = 400;
         auto packs = balls(), lane = balls();
-        solve<dense<cash_karp>>(tests::test_device(1), packs, o);
+        solve<dense<cash_karp>>(device::cpu(1), packs, o);
 
         myriad::kernel_arguments<bouncing, double> arguments{};
         myriad::host::describe_options<bouncing, dense<cash_karp>>(arguments, o);

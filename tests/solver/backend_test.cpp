@@ -142,7 +142,7 @@ TEST_CASE("a GPU that lacks memory or room for a block says so, and the next sol
     o.block_size = 1024;
     refused([&] { solved(10, o); }, {"block_size is 1024", "registers", "smaller block_size"});
 
-    auto engine = myriad::host::make_cuda_engine<swing, cash_karp, double>(test_device(), usual());
+    auto engine = myriad::cuda::make_engine<swing, cash_karp, double>({test_device().number(), 0, {}});
     myriad::ensemble<swing> e(10);
     fill(e);
     myriad::host::prepared_arguments<swing, cash_karp, double> prepared(e, usual());

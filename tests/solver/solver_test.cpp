@@ -116,12 +116,70 @@ TEST_CASE("download of chosen components leaves the others on the host as they w
     s.download({.states = {swing::x}, .integer_accessories = {swing::impacts}});
     CHECK(s.instances().phases_done().minCoeff() == 3);
     if (!tests::tests_cpu()) CHECK((s.instances().state(swing::v) == before).all());
+    refused([&] { s.upload(); }, {"mix old and new values", "restart()"});
     myriad::ensemble<swing> e(50);
     fill(e);
     myriad::solve<cash_karp>(test_device(), e, usual());
     CHECK(same_bits(s.instances().state(swing::x), e.state(swing::x)));
     s.download();
     CHECK(same_results(s.instances(), e));
+}
+
+TEST_CASE("results that were not downloaded cannot be read or overwritten by mistake") {
+    myriad::options o = usual();
+    o.record = {.from_phase = 2, .states = {swing::x}};
+    solver s(test_device(), 50, o);
+    refused([&] { s.download(); }, {"download has no instances", "call upload first"});
+    fill(s.instances());
+    s.upload();
+    CHECK(s.instances().size() == 50);  // as they were sent
+    s.integrate();
+    refused([&] { s.instances(); }, {"instances needs the results", "call download"});
+    refused([&] { s.report(); }, {"report needs the results", "call download"});
+    refused([&] { s.records(); }, {"records needs the results", "call download"});
+    refused([&] { s.upload(); }, {"upload needs the results", "call download"});
+    s.download({});
+    CHECK(s.report().count(myriad::status::success) == 50);
+    CHECK(s.records().phases() == 1);
+    s.instances().restart();  // to be filled anew
+    fill(s.instances());
+    s.upload();
+    s.integrate();
+    s.download();
+    CHECK(s.report().count(myriad::status::success) == 50);
+}
+
+TEST_CASE("shared parameters are those of the upload") {
+    solver early(test_device(), 20, usual()), late(test_device(), 20, usual());
+    for (solver* s : {&early, &late}) {
+        fill(s->instances());
+        s->upload();
+    }
+    late.instances().shared(0) = 17;
+    for (solver* s : {&early, &late}) {
+        s->integrate();
+        s->download();
+    }
+    CHECK(same_results(late.instances(), early.instances()));
+}
+
+TEST_CASE("records of an earlier call do not stay behind") {
+    myriad::options o = usual();
+    o.phases = 1;
+    o.record = {.from_phase = 0, .states = {swing::x}};
+    solver s(test_device(), 10, o);
+    fill(s.instances());
+    s.upload();
+    s.integrate();
+    s.download();
+    CHECK(s.records().state(swing::x).isFinite().all());
+    s.instances().restart();
+    fill(s.instances());
+    s.upload(5);
+    s.integrate();
+    s.download();
+    CHECK(s.records().state(swing::x).col(0).head(5).isFinite().all());
+    CHECK(s.records().state(swing::x).col(0).tail(5).isNaN().all());
 }
 
 TEST_CASE("a solver that waits for another begins when it is done") {

@@ -26,7 +26,7 @@ struct call {
 
 /// The calls from the kernels of one file.
 struct kernel_log {
-    static constexpr unsigned int capacity = 32768;
+    static constexpr unsigned int capacity = 131072;
     unsigned int size;
     call calls[capacity];
 };

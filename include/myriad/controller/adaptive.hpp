@@ -34,26 +34,28 @@ template <class Model, class Method, class S>
 MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>>& args,
                                         integration_state<Model, Method, S>& s,
                                         const rk_trial<Method, S, n_state<Model>>& trial, const mask_of<S>& valid) {
-    using R = real_of<S>;
+    using C = control_of<S>;
+    using R = real_of<C>;
     using mask = mask_of<S>;
     const error_norm<S> error = scaled_error<Model, Method>(args, s.data.y, s.h, trial);
     const mask within = valid & error.within;
     const mask accepted = s.running() & within;
-    const S exponent = select(within, S(R(-1.0 / (Method::embedded_order + 1))), S(R(-1.0 / Method::embedded_order)));
-    S factor = S(R(0.9)) * fast_power(error.worst, exponent);
-    factor = min(max(factor, S(args.shrink_limit)), S(args.growth_limit));
+    const C exponent = select(within, C(R(-1.0 / (Method::embedded_order + 1))), C(R(-1.0 / Method::embedded_order)));
+    const C shrink_limit = C(static_cast<R>(args.shrink_limit));
+    C factor = C(R(0.9)) * fast_power(error.worst, exponent);
+    factor = min(max(factor, shrink_limit), C(static_cast<R>(args.growth_limit)));
 
     s.last_not_finite = s.last_not_finite & !within;
     const mask rejected = s.running() & !within;
     if (any(rejected)) {
-        const mask finite = valid & (error.worst > S(R(1))) & (error.worst <= S(largest_of<R>));
-        factor = select(within | finite, factor, S(args.shrink_limit));
+        const mask finite = valid & (error.worst > C(R(1))) & (error.worst <= C(largest_of<R>));
+        factor = select(within | finite, factor, shrink_limit);
         s.rejected = count_where(rejected, s.rejected);
         s.last_not_finite = select(rejected, !finite, s.last_not_finite);
         const mask smallest = rejected & (abs(s.h) <= S(args.minimum_step));
         if (MYRIAD_UNLIKELY(any(smallest))) end_stuck_lanes(s, smallest);
     }
-    S size = min(max(abs(s.h) * factor, S(args.minimum_step)), S(args.maximum_step));
+    S size = min(max(abs(s.h) * S(factor), S(args.minimum_step)), S(args.maximum_step));
     // A step cut short by the end of the domain says little about the step size that goes on from there.
     size = select(accepted & s.final_step, max(size, abs(s.data.h_next)), size);
     s.data.h_next = select(s.running(), copysign(size, s.h), s.data.h_next);

@@ -13,8 +13,11 @@
 #if defined(__CUDA_ARCH__)
 /// Unrolls the loop that follows; in device code only up to 32 turns, so that large states stay loops.
 #define MYRIAD_UNROLL _Pragma("unroll 32")
+/// Unrolls the loop of steps that follows, in device code, where constants are loaded anew in every turn.
+#define MYRIAD_UNROLL_BY_FOUR _Pragma("unroll 4")
 #else
 #define MYRIAD_UNROLL
+#define MYRIAD_UNROLL_BY_FOUR
 #endif
 #define MYRIAD_TARGET cuda_lane
 #define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
@@ -23,6 +26,7 @@
 /// The same for a lambda, between its parameters and its body.
 #define MYRIAD_LAMBDA __attribute__((always_inline))
 #define MYRIAD_FORGET(value) static_cast<void>(value)
+#define MYRIAD_UNROLL_BY_FOUR
 #if defined(__clang__)
 #define MYRIAD_UNROLL _Pragma("clang loop unroll(full)")
 #else

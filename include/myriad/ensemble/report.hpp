@@ -61,6 +61,12 @@ public:
     /// Time at the end of the phase.
     map<R> time() const { return column(std::array<int, 1>{time_}, 0, "time", values_); }
 
+    /// Forgets what was recorded.
+    void clear() {
+        values_.fill(std::numeric_limits<R>::quiet_NaN());
+        integers_.fill(0);
+    }
+
     void describe(record_arguments<Model, R>& a) {
         a.values = values_.data();
         a.integers = integers_.data();

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/input_check.hpp"
-#include "myriad/event/resolution.hpp"
 #include "myriad/ensemble/report.hpp"
 #include "myriad/ensemble/view.hpp"
+#include "myriad/event/resolution.hpp"
 #include "myriad/integrator/options.hpp"
 
 namespace myriad::host {
@@ -31,7 +32,8 @@ void describe_options(kernel_arguments<Model, R>& a, const options& o) {
     a.shrink_limit = static_cast<R>(o.shrink_limit);
     for (std::size_t c = 0; c < static_cast<std::size_t>(n_state<Model>); ++c) {
         a.relative_tolerance[c] = static_cast<R>(o.relative_tolerance[c]);
-        a.absolute_tolerance[c] = static_cast<R>(o.absolute_tolerance[c]);
+        // not subnormal: a GPU takes its reciprocal
+        a.absolute_tolerance[c] = std::max(static_cast<R>(o.absolute_tolerance[c]), std::numeric_limits<R>::min());
     }
     for (std::size_t j = 0; j < static_cast<std::size_t>(n_event<Model>); ++j) {
         const event_options e = o.events.empty() ? event_options{} : o.events[j];

@@ -88,7 +88,7 @@ struct integrator {
     /// block. What is not finite once stays so: a block that ends with such a value is taken back and halved, and the
     /// ordinary step after it finds the one to blame.
     MYRIAD_FUNCTION void run_freely() {
-        constexpr turn_number worthwhile = 4, longest_block = 32;
+        constexpr turn_number worthwhile = 4, longest_block = 128;
         turn_number run = args.max_steps - (s.turn - s.first_start) - 1;  // the last one is looked at
         R lane_step = R(0);
         for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA {
@@ -107,6 +107,7 @@ struct integrator {
         while (taken < run) {
             block = block < run - taken ? block : run - taken;
             vec<S, n> now = y;
+            MYRIAD_UNROLL_BY_FOUR
             for (turn_number i = 0; i < block; ++i) {
                 trial_step trial;
                 const S t = fma(S(done + count(static_cast<lane_of<count>>(i))), step, base);
@@ -224,8 +225,13 @@ struct integrator {
                 }
             }
         }
-        s.ended = s.ended | (accepted & s.final_step);
-        if constexpr (has_events<Model>) s.ended = s.ended | (accepted & s.slope_end_known & (s.data.t == s.data.t_end));
+        if constexpr (adaptive) {
+            // The last step ends there, and so may one before it, by rounding or at an event.
+            s.ended = s.ended | (accepted & (s.data.t == s.data.t_end));
+        } else {
+            s.ended = s.ended | (accepted & s.final_step);
+            if constexpr (has_events<Model>) s.ended = s.ended | (accepted & s.slope_end_known & (s.data.t == s.data.t_end));
+        }
     }
 
     /// Ends phases that have taken as many trial steps as the options allow.

@@ -25,15 +25,26 @@ public:
         while_starting_.reset();
     }
     ~chunk_engine() override {
+        int before = device_;
+        cudaGetDevice(&before);
         cudaSetDevice(device_);
         cudaStreamSynchronize(stream_.get());
+        cudaSetDevice(before);
     }
 
     void reserve(const arguments& host, std::int64_t count) override {
         const current_device here(device_);
         arguments all = host;
-        grow(memory_, count, [&](auto&& add) { for_each_array(all, add); });
-        grow(records_, count, [&](auto&& add) { for_each_record(all.record, add); });
+        const auto arrays = [&](auto&& add) { for_each_array(all, add); };
+        const auto records = [&](auto&& add) { for_each_record(all.record, add); };
+        std::size_t per_instance = 0;
+        const auto add = [&](auto* array, std::int64_t components, array_access, array_kind) {
+            per_instance += bytes_of(array, components);
+        };
+        arrays(add);
+        records(add);
+        grow(memory_, bytes_for(count, arrays), per_instance);
+        grow(records_, bytes_for(count, records), per_instance);
     }
 
     void upload(const arguments& host, std::int64_t first, std::int64_t count) override {
@@ -52,6 +63,7 @@ public:
                 });
             }
         });
+        launcher_.set_shared(host.shared);
         if (launcher_.facts().shared_placement != shared_placement::constant_bank) upload_shared(host.shared);
     }
 
@@ -69,7 +81,7 @@ public:
         });
         prepare_sample_times(now.sample);
         MYRIAD_CUDA(cudaEventRecord(begun_.get(), stream_.get()));
-        launcher_.launch(now, host.shared, stream_.get());
+        launcher_.launch(now, stream_.get());
         MYRIAD_CUDA(cudaEventRecord(done_.get(), stream_.get()));
     }
 
@@ -188,23 +200,27 @@ private:
         return false;
     }
 
-    /// Room for all arrays that `each` goes over, for `count` instances. Memory in use is not given back.
+    /// What all arrays that `each` goes over take, for `count` instances.
     template <class Each>
-    void grow(device_memory& memory, std::int64_t count, Each&& each) {
+    static std::size_t bytes_for(std::int64_t count, Each&& each) {
         std::size_t bytes = 0;
         each([&](auto* array, std::int64_t components, array_access, array_kind) {
             bytes += padded(components * count, sizeof(*array));
         });
+        return bytes;
+    }
+    /// Memory in use is not given back.
+    void grow(device_memory& memory, std::size_t bytes, std::size_t per_instance) {
         if (bytes <= memory.bytes()) return;
         wait();
-        memory.reserve(bytes, bytes / static_cast<std::size_t>(count));
+        memory.reserve(bytes, per_instance, memory_.bytes() + records_.bytes());
     }
 
     void prepare_sample_times(sample_arguments<Model, R>& sample) {
         if (sample.times == nullptr) return;
         const std::size_t bytes = static_cast<std::size_t>(sample.count) * sizeof(R);
         if (bytes > sample_times_.bytes()) wait();
-        sample_times_.reserve(bytes, 0);
+        sample_times_.reserve(bytes);
         MYRIAD_CUDA(cudaMemcpyAsync(sample_times_.data(), sample.times, bytes, cudaMemcpyHostToDevice, stream_.get()));
         sample.times = static_cast<const R*>(sample_times_.data());
     }
@@ -212,7 +228,7 @@ private:
     void upload_shared(const shared_parameters<R>& shared) {
         constexpr std::size_t real = static_cast<std::size_t>(n_shared<Model>) * sizeof(R),
                               integer = static_cast<std::size_t>(n_shared_integer<Model>) * sizeof(std::int32_t);
-        shared_.reserve(padded(real + 256 + integer, 1), 0);
+        shared_.reserve(padded(real + 256 + integer, 1));
         auto* const reals = static_cast<R*>(shared_.data());
         auto* const integers =
             reinterpret_cast<std::int32_t*>(static_cast<std::byte*>(shared_.data()) + padded(real, 1));

@@ -49,17 +49,22 @@ public:
 
     const kernel_facts& facts() const { return facts_; }
 
-    /// Launches the kernel on device pointers. `shared` are the shared parameters on the host.
-    void launch(const kernel_arguments<Model, R>& arguments, const shared_parameters<R>& shared,
-                cudaStream_t where) const {
-        const int block = block_for(arguments.size);
+    /// Keeps the shared parameters of launches from the constant bank; `shared` is on the host.
+    void set_shared(const shared_parameters<R>& shared) {
+        if constexpr (is_compiled<Model, R>(place::constant_bank)) {
+            std::copy_n(shared.real, n_shared<Model>, shared_.shared);
+            std::copy_n(shared.integer, n_shared_integer<Model>, shared_.shared_integer);
+        }
+    }
+
+    /// Launches the kernel on device pointers.
+    void launch(const kernel_arguments<Model, R>& arguments, cudaStream_t where) {
+        const int block = facts_.block_size = block_for(arguments.size);
         const auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
         if (facts_.shared_placement == place::constant_bank) {
             if constexpr (is_compiled<Model, R>(place::constant_bank)) {
-                launch_arguments<Model, R, place::constant_bank> all{arguments, {}, {}};
-                std::copy_n(shared.real, n_shared<Model>, all.shared);
-                std::copy_n(shared.integer, n_shared_integer<Model>, all.shared_integer);
-                run<place::constant_bank>(all, blocks, block, where);
+                shared_.ensemble = arguments;
+                run<place::constant_bank>(shared_, blocks, block, where);
             }
         } else if constexpr (!is_compiled<Model, R>(place::constant_bank)) {
             if (facts_.shared_placement == place::shared_memory) {
@@ -109,13 +114,13 @@ private:
                     : "");
         // The smallest block among those that keep most threads running at the same time.
         int best_threads = 0;
-        for (int block = wanted > 0 ? wanted : 64; block <= (wanted > 0 ? wanted : most); block *= 2) {
+        for (int block = wanted > 0 ? wanted : std::min(64, most / 32 * 32); block <= (wanted > 0 ? wanted : most); block *= 2) {
             int blocks = 0;
             MYRIAD_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, function, block,
                                                                       static_cast<std::size_t>(facts_.shared_bytes)));
             if (blocks * block <= best_threads) continue;
             best_threads = blocks * block;
-            facts_.block_size = block;
+            chosen_block_ = facts_.block_size = block;
             facts_.blocks_per_multiprocessor = blocks;
         }
         require(facts_.block_size > 0, "not one block of this kernel fits into a multiprocessor: ", attributes.numRegs,
@@ -128,14 +133,15 @@ private:
 
     /// Ensembles too small to fill the GPU are spread over all its multiprocessors, one warp per block if need be.
     int block_for(std::int64_t size) const {
-        int block = facts_.block_size;
+        int block = chosen_block_;
         if (chosen_by_user_) return block;
         while (block > 32 && size <= static_cast<std::int64_t>(multiprocessors_) * block / 2) block /= 2;
         return block;
     }
 
     kernel_facts facts_;
-    int multiprocessors_ = 1;
+    launch_arguments<Model, R, is_compiled<Model, R>(place::constant_bank) ? place::constant_bank : place::cache> shared_{};
+    int multiprocessors_ = 1, chosen_block_ = 0;
     bool chosen_by_user_ = false;
 };
 

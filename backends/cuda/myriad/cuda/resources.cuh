@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "myriad/cuda/check.cuh"
@@ -34,8 +35,9 @@ public:
     device_memory& operator=(const device_memory&) = delete;
     ~device_memory() { cudaFree(data_); }
 
-    /// Makes room for `bytes`; `per_instance`, if not zero, are the bytes that one instance takes, for the message.
-    void reserve(std::size_t bytes, std::size_t per_instance) {
+    /// Makes room for `bytes`. For the message, if `per_instance` is not zero: the bytes that one instance takes, and those
+    /// that are held for instances already.
+    void reserve(std::size_t bytes, std::size_t per_instance = 0, std::size_t held = 0) {
         if (bytes <= bytes_) return;
         MYRIAD_CUDA(cudaFree(data_));
         data_ = nullptr;
@@ -45,14 +47,16 @@ public:
             cudaGetLastError();
             std::size_t free = 0, total = 0;
             MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
-            const double fits =
-                per_instance == 0 ? 0 : 0.9 * static_cast<double>(free) / static_cast<double>(per_instance);
-            throw error(
-                message("out of device memory: ", static_cast<double>(bytes) / 1e9, " GB are wanted and ",
-                        static_cast<double>(free) / 1e9, " of ", static_cast<double>(total) / 1e9,
-                        " GB are free: integrate fewer instances at a time, with options::chunk_size or a solver's "
-                        "capacity of at most ",
-                        static_cast<std::int64_t>(fits)));
+            std::string advice;
+            if (per_instance > 0) {
+                const auto fits = static_cast<std::int64_t>(0.9 * static_cast<double>(free + held) /
+                                                            static_cast<double>(per_instance));
+                advice = message(": integrate fewer instances at a time, with a solver's capacity of at most ", fits,
+                                 " or, as solve works on two chunks at a time, an options::chunk_size of at most ", fits / 2);
+            }
+            throw error(message("out of device memory: ", static_cast<double>(bytes) / 1e9, " GB are wanted and ",
+                                static_cast<double>(free) / 1e9, " of ", static_cast<double>(total) / 1e9,
+                                " GB are free", advice));
         }
         check(status, "cudaMalloc");
         bytes_ = bytes;
