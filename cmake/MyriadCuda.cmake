@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Turns on the CUDA language, with nvcc and the architectures of MYRIAD_CUDA_ARCHITECTURES. Included at file scope, as CMake
 # wants it, by the project itself and by the installed package.
-include_guard(GLOBAL)
 
 set(MYRIAD_CUDA_ARCHITECTURES "" CACHE STRING "GPUs to compile for, as CMAKE_CUDA_ARCHITECTURES; empty: this machine's")
 get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)

@@ -51,6 +51,11 @@ function(myriad_add_models target)
         message(FATAL_ERROR "myriad_add_models(${target} ...): there is no target ${target}; "
                             "call add_executable or add_library first")
     endif()
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL "STATIC_LIBRARY")
+        message(FATAL_ERROR "myriad_add_models(${target} ...): a linker takes no models out of a static library, as nothing "
+                            "refers to them by name; make ${target} an OBJECT library, or add the models to the program")
+    endif()
     myriad_model_flags(flags)
     foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
         cmake_path(ABSOLUTE_PATH file NORMALIZE)

@@ -5,6 +5,7 @@
 set(MYRIAD_TEST_LAUNCHER)
 set(MYRIAD_TEST_ENVIRONMENT)
 if(MYRIAD_SANITIZE)
+    add_compile_definitions(MYRIAD_SCALAR_LANES)
     add_compile_options("-fsanitize=${MYRIAD_SANITIZE}" -fno-sanitize-recover=all -fno-omit-frame-pointer)
     add_link_options("-fsanitize=${MYRIAD_SANITIZE}")
     if(MYRIAD_SANITIZE MATCHES "address")

@@ -18,7 +18,7 @@ namespace myriad {
 struct run_options {
     int threads = 0;  ///< OpenMP threads; 0: as OMP_NUM_THREADS or the machine says
     /// Called from the calling thread with the number of instances begun; may be null.
-    void (*progress)(void* context, std::int64_t begun) = nullptr;
+    bool (*progress)(void* context, std::int64_t begun) = nullptr;  ///< returns whether to go on
     void* context = nullptr;
     std::int64_t count = 0;  ///< instances to integrate, the first ones; 0: all
 };

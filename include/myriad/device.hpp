@@ -62,10 +62,13 @@ public:
     std::string description() const {
         if (kind_ == kind::cpu) return "CPU";
         std::string why_none;
-        return gpus(why_none)[static_cast<std::size_t>(number_)].name;
+        const auto all = gpus(why_none);
+        const auto number = static_cast<std::size_t>(number_);
+        return number < all.size() ? all[number].name : "GPU that is no longer there";
     }
 
 private:
+    friend std::vector<device> devices();
     device(device::kind k, int number) : kind_(k), number_(number) {}
 
     static std::vector<myriad::cuda::device_facts> gpus(std::string& why_none) {
@@ -98,8 +101,8 @@ private:
 inline std::vector<device> devices() {
     std::vector<device> found;
     std::string why_none;
-    if (auto* const list = host::if_defined(&cuda::list_devices))
-        for (int i = 0; i < static_cast<int>(list(why_none).size()); ++i) found.push_back(device::cuda(i));
+    const auto count = static_cast<int>(device::gpus(why_none).size());
+    for (int i = 0; i < count; ++i) found.push_back(device(device::kind::cuda, i));
     found.push_back(device::cpu());
     return found;
 }

@@ -23,14 +23,16 @@ struct progress_relay {
     std::int64_t total;
     std::exception_ptr failure;
 
-    static void call(void* context, std::int64_t begun) {
+    /// False once it has thrown: no further instance is to be begun.
+    static bool call(void* context, std::int64_t begun) {
         auto& relay = *static_cast<progress_relay*>(context);
-        if (relay.failure || !relay.function) return;
+        if (relay.failure || !relay.function) return !relay.failure;
         try {
             relay.function(begun, relay.total);
         } catch (...) {
             relay.failure = std::current_exception();
         }
+        return !relay.failure;
     }
 };
 
@@ -42,7 +44,7 @@ void require_kernel(const device& where) {
                    : if_defined(&cuda::make_engine<Model, Method, R>) != nullptr,
             "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
             ", or its source file was not linked: write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for "
-            "float) in the model's source file, and name that file in myriad_add_models",
+            "float) in the model's source file, and name that file in myriad_add_models for the program or an OBJECT library",
             on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
 }
 
@@ -112,8 +114,7 @@ void solve_on_cuda(const device& where, const options& o, kernel_arguments<Model
 /// the model and method.
 template <class Method, class Model, class R>
 report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
-    check_options<Model, Method, R>(options, n_state<Model>, n_event<Model>, n_accessory<Model>,
-                                    n_integer_accessory<Model>);
+    check_options<Model, Method, R>(options);
     host::require_kernel<Model, Method, R>(where);
     host::check_inputs(instances, options, instances.size());
 

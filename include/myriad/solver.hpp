@@ -63,11 +63,19 @@ public:
     std::int64_t capacity() const { return instances_.size(); }
     const device& where() const { return where_; }
 
-    /// The host's data, once nothing is being copied from or to it. Throws `error` after an `integrate` without a `download`.
-    /// A reference kept over an `upload` or `download` is valid, but the data may be under way: ask again.
+    /// The host's data, to be set: the next `integrate` needs an `upload` before it. Waits until nothing is being copied from or
+    /// to them; throws `error` after an `integrate` without a `download`. A reference kept over an `upload` or `download` is
+    /// valid, but the data may be under way: ask again.
     ensemble<Model, R>& instances() {
         wait();
         require_results("instances");
+        uploaded_ = false;
+        return instances_;
+    }
+    /// The same data, to be read.
+    const ensemble<Model, R>& results() {
+        wait();
+        require_results("results");
         return instances_;
     }
 
@@ -80,20 +88,25 @@ public:
         wait();
         require_results("upload");
         const std::int64_t wanted = count > 0 ? count : capacity();
-        if (results_ == results::partly_on_host) {
+        require(
+            instances_.statuses() == prepared_.get().status,
+            "the solver's ensemble was replaced by another or moved away, and its memory with it: set the values of "
+            "instances() instead");
+        if (results_ == held::partly_on_host) {
             for (std::int64_t i = 0; i < wanted; ++i)
                 require(instances_.status(i) == status::not_started,
                         "upload would mix old and new values, as only chosen components of the last results were "
                         "downloaded: "
                         "restart() and set the instances anew, or download() all of them before");
         }
-        count_ = 0;
+        uploaded_ = false;
         host::check_inputs(instances_, options_, wanted);
         count_ = wanted;
-        results_ = results::on_host;
+        uploaded_ = true;
+        integrated_ = false;
+        results_ = held::on_host;
         report_ = {};
         prepared_.records().clear();
-        copy_shared();
         work_before_ = host::counted_work(instances_);
         if (engine_) engine_->upload(prepared_.get(), 0, count_);
     }
@@ -101,15 +114,16 @@ public:
     /// Integrates `phases` phases (0: as the options say). With records, the number is that of the options; they are those
     /// of the last call.
     void integrate(std::int64_t phases = 0) {
-        require_upload("integrate");
+        require(uploaded_,
+                "integrate has no instances to work on, or instances() may have changed them since the upload: call "
+                "upload first, and read with results()");
         require(phases == 0 || phases == options_.phases || (options_.record.empty() && options_.samples.empty()),
                 "integrate asks for ", phases, " phases, but records and samples were laid out for ", options_.phases,
                 ": give that number in the options");
-        check_options<Model, Method, R>(with_phases(phases), n_state<Model>, n_event<Model>, n_accessory<Model>,
-                                        n_integer_accessory<Model>);
+        check_options<Model, Method, R>(with_phases(phases));
         auto& arguments = prepared_.get();
         arguments.phases = static_cast<std::int32_t>(phases > 0 ? phases : options_.phases);
-        results_ = results::on_device;
+        results_ = held::on_device;
         if (engine_) {
             engine_->integrate(arguments);
             integrated_ = true;
@@ -129,20 +143,20 @@ public:
 
     /// Brings everything back that a kernel may have written.
     void download() {
-        require_upload("download");
+        require(count_ > 0, "download has no instances to bring: call upload first");
         if (engine_) engine_->download(prepared_.get());
-        results_ = results::on_host;
+        results_ = held::on_host;
     }
     /// The same, but of states and accessories only those that are named. What the others on the host are then is not said:
     /// their old values on a GPU, the new ones on the CPU.
     void download(const components& chosen) {
-        require_upload("download");
+        require(count_ > 0, "download has no instances to bring: call upload first");
         host::check_components("components.states", chosen.states, n_state<Model>);
         host::check_components("components.accessories", chosen.accessories, n_accessory<Model>);
         host::check_components("components.integer_accessories", chosen.integer_accessories,
                                n_integer_accessory<Model>);
         if (engine_) engine_->download(prepared_.get(), &is_chosen, const_cast<components*>(&chosen));
-        if (results_ == results::on_device) results_ = results::partly_on_host;
+        if (results_ == held::on_device) results_ = held::partly_on_host;
     }
 
     /// Waits for everything asked of this solver. Throws `error` if any of it failed.
@@ -187,29 +201,18 @@ private:
     template <class, class, class>
     friend class solver;
 
-    enum class results { on_host, on_device, partly_on_host };
+    enum class held { on_host, on_device, partly_on_host };
 
-    void require_upload(const char* what) const {
-        require(count_ > 0, what, " has no instances to work on: call upload first");
-    }
     void require_results(const char* what) const {
-        require(results_ != results::on_device, what,
+        require(results_ != held::on_device, what,
                 " needs the results of integrate on the host: call download before (download({}) brings no component)");
     }
 
     static options checked(options o, std::int64_t capacity) {
         require(capacity > 0, "the solver's capacity is ", capacity,
                 " (must be positive): give the number of instances it holds");
-        check_options<Model, Method, R>(o, n_state<Model>, n_event<Model>, n_accessory<Model>,
-                                        n_integer_accessory<Model>);
+        check_options<Model, Method, R>(o);
         return o;
-    }
-    /// Shared parameters are those of the upload, whatever happens to the ensemble's on the host afterwards.
-    void copy_shared() {
-        for (int c = 0; c < n_shared<Model>; ++c) shared_[static_cast<std::size_t>(c)] = instances_.shared(c);
-        for (int c = 0; c < n_shared_integer<Model>; ++c)
-            shared_integer_[static_cast<std::size_t>(c)] = instances_.shared_integer(c);
-        prepared_.get().shared = {shared_.data(), shared_integer_.data()};
     }
     options with_phases(std::int64_t phases) const {
         options o = options_;
@@ -237,10 +240,9 @@ private:
     options options_;
     ensemble<Model, R> instances_;
     host::prepared_arguments<Model, Method, R> prepared_;
-    std::array<R, at_least_one(n_shared<Model>)> shared_{};
-    std::array<std::int32_t, at_least_one(n_shared_integer<Model>)> shared_integer_{};
     std::int64_t count_ = 0;
-    results results_ = results::on_host;
+    bool uploaded_ = false;  // and not handed out to be set since
+    held results_ = held::on_host;
     bool integrated_ = false;
     std::array<std::int64_t, 4> work_before_{};
     myriad::report<Model, R> report_;

@@ -216,7 +216,8 @@ TEST_CASE("the progress function is called from the calling thread, with counts 
             elsewhere = elsewhere || std::this_thread::get_id() != caller;
         };
         solve<cash_karp>(tests::test_device(threads), e, o);
-        REQUIRE(begun.size() >= 2);
+        // the second thread may have taken all before the first looks
+        REQUIRE(begun.size() >= (threads == 1 ? 2u : 1u));
         CHECK(total == 5000);
         CHECK_FALSE(elsewhere);
         CHECK(begun.front() >= 0);
@@ -257,6 +258,7 @@ TEST_CASE("an exception of the progress function reaches the caller of solve, on
         }
         CHECK(said == "enough");
         CHECK(calls == 1);
+        if (threads == 1) CHECK(e.phases_done().sum() < 2000);  // no further instances were begun
         // The ensemble is sound: after a restart it gives what it would have given.
         auto fresh = good_decays(2000);
         e.state(bare::x) = fresh.state(bare::x);

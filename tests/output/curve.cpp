@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Compiles the kernels with dense output of the model with an exact solution.
+// Compiles the kernels, with and without dense output, of the model with an exact solution.
 #include <myriad/instantiate.hpp>
 
 #include "tests/output/models.hpp"
 
+MYRIAD_INSTANTIATE(output::curve, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(output::curve, myriad::dense<myriad::runge_kutta_4>, myriad::dense<myriad::cash_karp>,
                    myriad::dense<myriad::tsitouras_5>)
 MYRIAD_INSTANTIATE_FLOAT(output::curve, myriad::dense<myriad::runge_kutta_4>, myriad::dense<myriad::cash_karp>,

@@ -16,7 +16,10 @@ TEST_CASE("a solver gives the bits that solve gives", "[small]") {
     myriad::ensemble<swing> e(333);
     fill(e);
     myriad::options o = usual();
-    o.record = {.from_phase = 1, .states = {swing::x}, .accessories = {swing::highest}, .integer_accessories = {swing::impacts}};
+    o.record = {.from_phase = 1,
+                .states = {swing::x},
+                .accessories = {swing::highest},
+                .integer_accessories = {swing::impacts}};
     const auto report = myriad::solve<cash_karp>(test_device(), e, o);
 
     solver s(test_device(), 333, o);
@@ -132,9 +135,10 @@ TEST_CASE("results that were not downloaded cannot be read or overwritten by mis
     refused([&] { s.download(); }, {"download has no instances", "call upload first"});
     fill(s.instances());
     s.upload();
-    CHECK(s.instances().size() == 50);  // as they were sent
+    CHECK(s.results().size() == 50);  // as they were sent
     s.integrate();
     refused([&] { s.instances(); }, {"instances needs the results", "call download"});
+    refused([&] { s.results(); }, {"results needs the results", "call download"});
     refused([&] { s.report(); }, {"report needs the results", "call download"});
     refused([&] { s.records(); }, {"records needs the results", "call download"});
     refused([&] { s.upload(); }, {"upload needs the results", "call download"});
@@ -149,18 +153,34 @@ TEST_CASE("results that were not downloaded cannot be read or overwritten by mis
     CHECK(s.report().count(myriad::status::success) == 50);
 }
 
-TEST_CASE("shared parameters are those of the upload") {
-    solver early(test_device(), 20, usual()), late(test_device(), 20, usual());
-    for (solver* s : {&early, &late}) {
-        fill(s->instances());
-        s->upload();
-    }
-    late.instances().shared(0) = 17;
-    for (solver* s : {&early, &late}) {
-        s->integrate();
-        s->download();
-    }
-    CHECK(same_results(late.instances(), early.instances()));
+TEST_CASE("instances that may have been changed are uploaded again before they are integrated") {
+    solver s(test_device(), 20, usual());
+    fill(s.instances());
+    s.upload();
+    s.instances().shared(0) = 17;
+    refused([&] { s.integrate(); }, {"instances() may have changed them", "call upload", "results()"});
+    s.upload();
+    s.integrate(1);
+    s.download();
+    CHECK(s.results().phases_done().minCoeff() == 1);
+    s.integrate(1);  // reading is no change
+    s.download();
+    s.instances().state(swing::v) += 0.1;
+    refused([&] { s.integrate(1); }, {"instances() may have changed them"});
+    s.upload();
+    s.integrate(1);
+    s.download();
+    CHECK(s.results().phases_done().minCoeff() == 3);
+}
+
+TEST_CASE("a solver's ensemble cannot be replaced") {
+    solver s(test_device(), 20, usual());
+    fill(s.instances());
+    myriad::ensemble<swing> mine(20);
+    fill(mine);
+    const auto theirs = std::move(s.instances());
+    s.instances() = std::move(mine);
+    refused([&] { s.upload(); }, {"was replaced", "set the values of instances()"});
 }
 
 TEST_CASE("records of an earlier call do not stay behind") {
@@ -223,13 +243,13 @@ TEST_CASE("what a solver cannot do is refused before any work", "[small]") {
     refused([] { solver s(test_device(), 0); }, {"capacity is 0", "must be positive"});
     refused([] { solver s(test_device(), -3); }, {"capacity is -3", "must be positive"});
     solver s(test_device(), 10, usual());
-    refused([&] { s.integrate(); }, {"call upload first"});
+    refused([&] { s.integrate(); }, {"no instances to work on", "call upload first"});
     refused([&] { s.upload(11); }, {"11 instances", "capacity", "10"});
     refused([&] { s.upload(); }, {"shared parameter 0", "never set"});
     fill(s.instances());
     s.instances().state(swing::v) = std::nan("");
     refused([&] { s.upload(); }, {"state 1", "never set"});
-    refused([&] { s.integrate(); }, {"call upload first"});
+    refused([&] { s.integrate(); }, {"no instances to work on", "call upload first"});
     fill(s.instances());
     s.upload();
     refused([&] { s.integrate(-1); }, {"phases is -1"});

@@ -273,6 +273,31 @@ struct ramp {
     }
 };
 
+/// y' = 1 with an event at y = 1, and an after_step that breaks something in the step that arrives there.
+struct breaker {
+    enum state { y0, n_state };
+    enum integer_accessory { mode, events_seen, n_integer_accessory };
+    enum mode { none, state_not_finite, end_not_finite };
+    enum event { one, n_event };
+    static constexpr bool writes_time_domain = true;
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>&, const auto&) {
+        return myriad::vec<R, 1>{R(1)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> events(auto, const myriad::vec<R, 1>& y, const auto&) {
+        return myriad::vec<R, 1>{y[y0] - R(1)};
+    }
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        if (lane.y[y0] < 1 - 1e-3) return;
+        const auto zero = lane.y[y0] - lane.y[y0];
+        if (lane.integer_accessory[0] == state_not_finite) lane.y[y0] = zero / zero;
+        if (lane.integer_accessory[0] == end_not_finite) lane.t_end = zero / zero;
+    }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) { lane.integer_accessory[events_seen] += 1; }
+};
+
 /// y' = 1, with an after_step that sets the step to try next.
 struct step_setter {
     enum state { y0, n_state };

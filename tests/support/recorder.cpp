@@ -14,9 +14,9 @@ void add(const call& c) { log_of_calls.push_back(c); }
 
 std::vector<call> take() {
     tests::for_each_kernel_variable<kernel_log>([](kernel_log& log) {
-        if (log.size > kernel_log::capacity) throw std::length_error("more calls in a kernel than its log can hold");
-        log_of_calls.insert(log_of_calls.end(), log.calls, log.calls + log.size);
-        log.size = 0;
+        const unsigned int size = std::exchange(log.size, 0u);
+        if (size > kernel_log::capacity) throw std::length_error("more calls in a kernel than its log can hold");
+        log_of_calls.insert(log_of_calls.end(), log.calls, log.calls + size);
     });
     return std::exchange(log_of_calls, {});
 }

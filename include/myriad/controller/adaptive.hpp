@@ -43,7 +43,7 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
     const C exponent = select(within, C(R(-1.0 / (Method::embedded_order + 1))), C(R(-1.0 / Method::embedded_order)));
     const C shrink_limit = C(static_cast<R>(args.shrink_limit));
     C factor = C(R(0.9)) * fast_power(error.worst, exponent);
-    factor = min(max(factor, shrink_limit), C(static_cast<R>(args.growth_limit)));
+    factor = smaller(larger(factor, shrink_limit), C(static_cast<R>(args.growth_limit)));
 
     s.last_not_finite = s.last_not_finite & !within;
     const mask rejected = s.running() & !within;
@@ -55,9 +55,9 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
         const mask smallest = rejected & (abs(s.h) <= S(args.minimum_step));
         if (MYRIAD_UNLIKELY(any(smallest))) end_stuck_lanes(s, smallest);
     }
-    S size = min(max(abs(s.h) * S(factor), S(args.minimum_step)), S(args.maximum_step));
+    S size = smaller(larger(abs(s.h) * S(factor), S(args.minimum_step)), S(args.maximum_step));
     // A step cut short by the end of the domain says little about the step size that goes on from there.
-    size = select(accepted & s.final_step, max(size, abs(s.data.h_next)), size);
+    size = select(accepted & s.final_step, larger(size, abs(s.data.h_next)), size);
     s.data.h_next = select(s.running(), copysign(size, s.h), s.data.h_next);
     return accepted;
 }

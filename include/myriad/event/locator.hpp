@@ -8,90 +8,12 @@
 // where it is heading, and a root at the start is divided out, so that a short flight after an impact is not missed.
 #pragma once
 
+#include "myriad/event/event_state.hpp"
 #include "myriad/event/root_finder.hpp"
 #include "myriad/integrator/state.hpp"
-#include "myriad/scalar/dual.hpp"
 #include "myriad/stepper/dense_output.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
-
-/// What is remembered of the events of a pack. Absent, and empty, for a model without events.
-template <class Model, class S>
-struct event_state {
-    static constexpr int m = n_event<Model>;
-    using mask = mask_of<S>;
-    vec<S, m> value;     // event functions at the committed state
-    vec<S, m> side;      // -1, +1: the side last seen; 0: on the surface, not yet known
-    vec<S, m> heading;   // slope of a firing function along the solution, before the actions
-    vec<mask, m> target;   // the event a lane is being stepped to
-    vec<mask, m> crossed;  // events that crossed in the trial in which the target was found
-    vec<mask, m> firing;   // events that have happened at the committed state
-    vec<mask, m> left;     // the function has been beyond its tolerance since the event last fired
-    mask locating;       // lanes whose next trial is a step redone to the time of an event
-    S h_redo;            // its length
-    S h_resume;          // the step size to go on with afterwards
-    S h_before, h_beyond;  // longest step known to end before the event, shortest beyond it
-    S tries;
-    std::int32_t lingered[m][lanes_of<S>];
-};
-
-template <class Model, class S>
-MYRIAD_FUNCTION vec<S, n_event<Model>> evaluate_events(const S& t, const vec<S, n_state<Model>>& y,
-                                                       const inputs<Model, S>& p) {
-    return Model::template events<S>(t, y, p);
-}
-
-/// Derivatives of the event functions along the solution that passes (t, y) with the given slope.
-template <class Model, class S>
-MYRIAD_FUNCTION vec<S, n_event<Model>> event_slopes(const S& t, const vec<S, n_state<Model>>& y,
-                                                    const vec<S, n_state<Model>>& slope, const inputs<Model, S>& p) {
-    using R = real_of<S>;
-    vec<dual<S>, n_state<Model>> y_dual;
-    MYRIAD_UNROLL
-    for (int c = 0; c < n_state<Model>; ++c) y_dual[c] = dual<S>(y[c], slope[c]);
-    const auto g = Model::template events<dual<S>>(dual<S>(t, S(R(1))), y_dual, p);
-    vec<S, n_event<Model>> slopes;
-    MYRIAD_UNROLL
-    for (int j = 0; j < n_event<Model>; ++j) slopes[j] = g[j].derivative;
-    return slopes;
-}
-
-template <class S>
-MYRIAD_FUNCTION S sign_of(const S& x) {
-    using R = real_of<S>;
-    return select(x > S(R(0)), S(R(1)), select(x < S(R(0)), S(R(-1)), S(R(0))));
-}
-
-/// Whether any of the event's masks holds, lane by lane.
-template <class M, int m>
-MYRIAD_FUNCTION M any_event(const vec<M, m>& masks) {
-    M joined = masks[0];
-    MYRIAD_UNROLL
-    for (int j = 1; j < m; ++j) joined = joined | masks[j];
-    return joined;
-}
-
-/// The value of the first event whose mask holds.
-template <class M, class S, int m>
-MYRIAD_FUNCTION S pick(const vec<M, m>& which, const vec<S, m>& values) {
-    S picked = values[m - 1];
-    MYRIAD_UNROLL
-    for (int j = m - 2; j >= 0; --j) picked = select(which[j], values[j], picked);
-    return picked;
-}
-
-/// Keeps only the first event of each lane.
-template <class M, int m>
-MYRIAD_FUNCTION vec<M, m> first_event(const vec<M, m>& masks) {
-    vec<M, m> first;
-    M seen = M(false);
-    MYRIAD_UNROLL
-    for (int j = 0; j < m; ++j) {
-        first[j] = masks[j] & !seen;
-        seen = seen | masks[j];
-    }
-    return first;
-}
 
 /// Locates the events of one trial step of a pack.
 template <class Model, class Method, class S>
@@ -344,8 +266,7 @@ private:
         const mask hopeless = again & ((e.tries >= S(R(10))) | (abs(length) <= abs(e.h_before)));
         length = select(hopeless, e.h_before, length);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
-            e.crossed[j] = select(crossing, crossed[j] | (again & e.crossed[j]), e.crossed[j]);
+        for (int j = 0; j < m; ++j) e.crossed[j] = select(crossing, crossed[j] | (again & e.crossed[j]), e.crossed[j]);
         const mask here = crossing & (length == S(R(0)));
         redo(crossing & !here, length);
         forget(here);
@@ -353,7 +274,8 @@ private:
             const values slope = event_slopes<Model>(step.t, step.y, step.trial.k[0], s.data);
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {
-                const mask fires = here & (e.target[j] | (e.crossed[j] & (abs(e.value[j]) <= S(args.event[j].tolerance))));
+                const mask fires =
+                    here & (e.target[j] | (e.crossed[j] & (abs(e.value[j]) <= S(args.event[j].tolerance))));
                 e.firing[j] = e.firing[j] | fires;
                 e.heading[j] = select(here, slope[j], e.heading[j]);
             }
@@ -364,53 +286,61 @@ private:
     /// Looks at lanes that did not cross: has a redone step arrived, or did it stop short; does the domain end on a root?
     MYRIAD_FUNCTION void finish_located(const step_data<Method, S, n>& step, const S& t1, const values& g1,
                                         const values& side, const mask& crossing, mask& accepted) {
-        mask arrived = accepted & e.locating & !crossing;
+        const mask arrived = accepted & e.locating & !crossing;
         const mask domain_end = accepted & s.final_step & !crossing & !e.locating;
-        if (any(arrived)) {
-            const values slope = event_slopes<Model>(t1, step.trial.y, step.slope_end, s.data);
-            values tolerance;
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) tolerance[j] = S(args.event[j].tolerance);
-            const S from = pick(e.target, side);
-            const S gap = from * pick(e.target, g1);
-            const mask narrow = abs(e.h_beyond - step.h) <= S(R(4) * epsilon_of<R>) * abs(t1);
-            const mask short_of =
-                arrived & (gap > pick(e.target, tolerance)) & !narrow & (e.tries < S(R(10)));
-            if (any(short_of)) {
-                const S newton = step.h - gap / (from * pick(e.target, slope));
-                const mask inside = (abs(newton) > abs(step.h)) & (abs(newton) < abs(e.h_beyond)) & (newton * step.h > S(R(0)));
-                e.tries = count_where(short_of, e.tries);
-                e.h_before = select(short_of, step.h, e.h_before);
-                redo(short_of, select(inside, newton, S(R(0.5)) * (step.h + e.h_beyond)));
-                s.located = count_where(short_of, s.located);
-                accepted = accepted & !short_of;
-                arrived = arrived & !short_of;
-            }
-            const values g_middle = values_at(step, S(R(0.5)));
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) {
-                const S near = tolerance[j];
-                const mask together = e.crossed[j] & (abs(g1[j]) <= near) & (side[j] * slope[j] * step.h < S(R(0)));
-                e.firing[j] = arrived & (e.target[j] | together);
-                e.heading[j] = slope[j];
-                e.left[j] = e.left[j] | (arrived & (abs(g_middle[j]) > near));
-            }
-            forget(arrived);
-            if constexpr (is_adaptive<Method>) s.data.h_next = select(arrived, e.h_resume, s.data.h_next);
-            s.slope_end = step.slope_end;
-            s.slope_end_known = arrived;
+        if (any(arrived)) arrive(step, t1, g1, side, arrived, accepted);
+        if (any(domain_end)) end_on_root(step, t1, g1, side, domain_end);
+    }
+
+    /// Redone steps that ended before their crossing: within the tolerance their events have happened; others go further.
+    MYRIAD_FUNCTION void arrive(const step_data<Method, S, n>& step, const S& t1, const values& g1, const values& side,
+                                mask arrived, mask& accepted) {
+        const values slope = event_slopes<Model>(t1, step.trial.y, step.slope_end, s.data);
+        values tolerance;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) tolerance[j] = S(args.event[j].tolerance);
+        const S from = pick(e.target, side);
+        const S gap = from * pick(e.target, g1);
+        const mask narrow = abs(e.h_beyond - step.h) <= S(R(4) * epsilon_of<R>) * abs(t1);
+        const mask short_of = arrived & (gap > pick(e.target, tolerance)) & !narrow & (e.tries < S(R(10)));
+        if (any(short_of)) {
+            const S newton = step.h - gap / (from * pick(e.target, slope));
+            const mask inside =
+                (abs(newton) > abs(step.h)) & (abs(newton) < abs(e.h_beyond)) & (newton * step.h > S(R(0)));
+            e.tries = count_where(short_of, e.tries);
+            e.h_before = select(short_of, step.h, e.h_before);
+            redo(short_of, select(inside, newton, S(R(0.5)) * (step.h + e.h_beyond)));
+            s.located = count_where(short_of, s.located);
+            accepted = accepted & !short_of;
+            arrived = arrived & !short_of;
         }
-        if (any(domain_end)) {
-            const values slope = event_slopes<Model>(t1, step.trial.y, step.slope_end, s.data);
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) {
-                const S g = side[j] * g1[j];
-                const mask fires = domain_end & (S(args.event[j].direction) * side[j] <= S(R(0))) &
-                                   (side[j] != S(R(0))) & (abs(g) <= S(args.event[j].tolerance)) &
-                                   ((g <= S(R(0))) | (side[j] * slope[j] * step.h < S(R(0))));
-                e.heading[j] = select(fires, slope[j], e.heading[j]);
-                e.firing[j] = e.firing[j] | fires;
-            }
+        const values g_middle = values_at(step, S(R(0.5)));
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const S near = tolerance[j];
+            const mask together = e.crossed[j] & (abs(g1[j]) <= near) & (side[j] * slope[j] * step.h < S(R(0)));
+            e.firing[j] = arrived & (e.target[j] | together);
+            e.heading[j] = slope[j];
+            e.left[j] = e.left[j] | (arrived & (abs(g_middle[j]) > near));
+        }
+        forget(arrived);
+        if constexpr (is_adaptive<Method>) s.data.h_next = select(arrived, e.h_resume, s.data.h_next);
+        s.slope_end = step.slope_end;
+        s.slope_end_known = arrived;
+    }
+
+    /// Functions within their tolerance, and at zero or heading for it, where the domain ends: their events happen there.
+    MYRIAD_FUNCTION void end_on_root(const step_data<Method, S, n>& step, const S& t1, const values& g1,
+                                     const values& side, const mask& domain_end) {
+        const values slope = event_slopes<Model>(t1, step.trial.y, step.slope_end, s.data);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const S g = side[j] * g1[j];
+            const mask fires = domain_end & (S(args.event[j].direction) * side[j] <= S(R(0))) & (side[j] != S(R(0))) &
+                               (abs(g) <= S(args.event[j].tolerance)) &
+                               ((g <= S(R(0))) | (side[j] * slope[j] * step.h < S(R(0))));
+            e.heading[j] = select(fires, slope[j], e.heading[j]);
+            e.firing[j] = e.firing[j] | fires;
         }
     }
 

@@ -28,15 +28,11 @@ struct event_resolution {
 
     event_resolution(ensemble<Model, R>& e, std::int64_t i) {
         inputs<Model, R> p;
-        vec<R, at_least_one(n_shared<Model>)> shared;
-        std::int32_t shared_integer[at_least_one(n_shared_integer<Model>)];
-        for (int c = 0; c < n_shared<Model>; ++c) shared[c] = e.shared(c);
-        for (int c = 0; c < n_shared_integer<Model>; ++c) shared_integer[c] = e.shared_integer(c);
         for (int c = 0; c < n_parameter<Model>; ++c) p.parameter[c] = e.parameter(c)[i];
         for (int c = 0; c < n_accessory<Model>; ++c) p.accessory[c] = e.accessory(c)[i];
         for (int c = 0; c < n_integer_accessory<Model>; ++c) p.integer_accessory[c] = e.integer_accessory(c)[i];
-        p.shared = &shared[0];
-        p.shared_integer = shared_integer;
+        if constexpr (n_shared<Model> > 0) p.shared = &e.shared(0);
+        if constexpr (n_shared_integer<Model> > 0) p.shared_integer = &e.shared_integer(0);
 
         const R t = e.t_begin()[i];
         vec<dual<R>, n_state<Model>> y;
@@ -58,10 +54,10 @@ struct event_resolution {
 
 /// Throws `error` if an event tolerance is below the resolution of its function in most instances; in single ones, whose
 /// state may be huge, crossings are located as well as rounding lets them. Looks at a thousand or so of the first `count`
-/// instances, spread over them.
+/// instances, spread over them. Not for models with `initialise`, before which `events` cannot be called.
 template <class Model, class R>
 void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_t count) {
-    if constexpr (has_events<Model>) {
+    if constexpr (has_events<Model> && !has_initialise<Model>) {
         struct {
             std::int64_t instances = 0, worst = 0;
             double least = 0;

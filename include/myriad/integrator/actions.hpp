@@ -41,7 +41,8 @@ struct hook_driver {
                 run_hook(i, [](auto& lane) MYRIAD_LAMBDA { return Model::after_step(lane); });
             });
         }
-        if constexpr (Method::first_same_as_last || has_events<Model>) {
+        // Where the slope at the end of the step may be known, as the first of the next.
+        if constexpr (Method::first_same_as_last || has_events<Model> || samples_trajectory<Method>) {
             const mask changed = accepted & differs(before, s.data);
             if (any(changed)) follow_up(changed, before.y);
         } else {
@@ -55,8 +56,7 @@ struct hook_driver {
         if (!any(acting)) return;
         const auto before = s.data.y;
         for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
-        if constexpr (has_after_event<Model>) s.slope_valid = s.slope_valid & !acting;
-        follow_up(acting, before);
+        if constexpr (has_after_event<Model>) follow_up(acting, before);
         event_locator<Model, Method, S> locate{args, s, e};
         locate.renew_slope(acting);
         locate.settle(acting);
@@ -83,8 +83,9 @@ private:
     /// Calls a scalar hook and does what it asks for.
     template <class Hook>
     MYRIAD_FUNCTION void run_hook(int i, Hook&& hook) {
-        const R t_end = get_lane(s.data.t_end, i);
+        const R t_end = get_lane(s.data.t_end, i), h_next = get_lane(s.data.h_next, i);
         const action wanted = run_on_lane(s.data, i, hook);
+        if (get_lane(s.data.h_next, i) != h_next) s.bound_step(args, i);
         if constexpr (writes_time_domain<Model>) {
             if (get_lane(s.data.t_end, i) != t_end) retarget(i);
         }
@@ -97,6 +98,7 @@ private:
     MYRIAD_FUNCTION void retarget(int i) {
         const R t = get_lane(s.data.t, i);
         const R t_end = get_lane(s.data.t_end, i);
+        if (t_end != t_end) return s.end_lane(i, status::not_finite);
         const bool there = t == t_end;
         if (s.ending[i] == status::success) set_lane(s.ended, i, there);  // other endings stand
         if (there) return;
@@ -113,7 +115,9 @@ private:
         blend_all(d.y, after.y, n);
         blend_all(d.accessory, after.accessory, n_accessory<Model>);
         blend_all(d.integer_accessory, after.integer_accessory, n_integer_accessory<Model>);
+        const mask rescaled = lanes & (after.h_next != d.h_next);
         d.h_next = select(lanes, after.h_next, d.h_next);
+        if (any(rescaled)) for_each_lane(rescaled, [&](int i) MYRIAD_LAMBDA { s.bound_step(args, i); });
         if constexpr (writes_parameters<Model>) blend_all(d.parameter, after.parameter, n_parameter<Model>);
         if constexpr (writes_time_domain<Model>) {
             d.t_begin = select(lanes, after.t_begin, d.t_begin);

@@ -37,8 +37,8 @@ enum class direction { falling = -1, either = 0, rising = 1 };
 /// How one event function is watched.
 struct event_options {
     myriad::direction direction = myriad::direction::either;
-    double tolerance = 1e-6;        ///< an event is located where |g| is at most this; unit of the event function
-    std::int64_t stop_after = 0;    ///< number of detections in a phase that ends it (`stopped_by_event`); 0: never
+    double tolerance = 1e-6;      ///< an event is located where |g| is at most this; unit of the event function
+    std::int64_t stop_after = 0;  ///< number of detections in a phase that ends it (`stopped_by_event`); 0: never
 };
 
 /// Where a phase starts: at the instance's t_begin, or where the last phase ended.
@@ -66,13 +66,13 @@ struct record_options {
 /// Dense output, for a method `dense<Method>`: states along every trajectory, by exactly one of `evenly`, `times` and
 /// `every`. Samples are appended phase by phase and call by call until the capacity is reached.
 struct sample_options {
-    std::vector<int> states = {};      ///< components to sample; empty: no samples
-    std::int64_t capacity = 0;         ///< samples kept per instance, over all phases and calls
-    std::int64_t evenly = 0;           ///< number of evenly spaced times over [t_begin, t_end] in every phase, ends included
-    std::vector<double> times = {};    ///< or these times in every phase, in the order in which they are reached
-    std::int64_t every = 0;            ///< or the start of the phase and the end of every n-th accepted step
-    double minimum_spacing = 0;        ///< least time between samples by steps
-    std::int64_t from_phase = 0;       ///< first phase of the call that is sampled
+    std::vector<int> states = {};  ///< components to sample; empty: no samples
+    std::int64_t capacity = 0;     ///< samples kept per instance, over all phases and calls
+    std::int64_t evenly = 0;  ///< number of evenly spaced times over [t_begin, t_end] in every phase, ends included
+    std::vector<double> times = {};  ///< or these times in every phase, in the order in which they are reached
+    std::int64_t every = 0;          ///< or the start of the phase and the end of every n-th accepted step
+    double minimum_spacing = 0;      ///< least time between samples by steps
+    std::int64_t from_phase = 0;     ///< first phase of the call that is sampled
 
     bool empty() const { return states.empty(); }
 };
@@ -84,20 +84,21 @@ struct options {
     per_component relative_tolerance = 1e-8;  ///< error per step over max(|y|, |y1|), per component of the state
     per_component absolute_tolerance = 1e-8;  ///< error per step, per component of the state, in its unit
 
-    double step = std::numeric_limits<double>::quiet_NaN();  ///< fixed step (must be given), or first step (default 1e-2)
-    double minimum_step = 0;                                         ///< 0: the resolution of t
+    double step =
+        std::numeric_limits<double>::quiet_NaN();  ///< fixed step (must be given), or first step (default 1e-2)
+    double minimum_step = 0;                       ///< 0: the resolution of t
     double maximum_step = std::numeric_limits<double>::infinity();
-    double growth_limit = 5;    ///< largest factor from one step to the next
-    double shrink_limit = 0.1;  ///< smallest factor
+    double growth_limit = 5;              ///< largest factor from one step to the next
+    double shrink_limit = 0.1;            ///< smallest factor
     std::int64_t max_steps = 10'000'000;  ///< trial steps per phase; more end the instance as `max_steps`
 
     myriad::phase_time phase_time = myriad::phase_time::restart;
     myriad::phase_step phase_step = myriad::phase_step::restart;
 
     std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all
-    std::int64_t sub_samples = 1;            ///< points per step at which event functions are looked at (the last is the end)
-    std::int64_t accumulation_limit = 50;    ///< actions of one event, without its function leaving its tolerance in
-                                             ///< between, that end the instance as `event_accumulation`
+    std::int64_t sub_samples = 1;  ///< points per step at which event functions are looked at (the last is the end)
+    std::int64_t accumulation_limit = 50;  ///< actions of one event, without its function leaving its tolerance in
+                                           ///< between, that end the instance as `event_accumulation`
 
     record_options record = {};
     sample_options samples = {};
@@ -131,8 +132,7 @@ inline void check_components(const std::string& what, const std::vector<int>& ch
     for (const int c : chosen) {
         require(c >= 0 && c < count, what, " names component ", c, ", but the model has ", count,
                 " (numbered from 0): use the model's enumerators");
-        require(!seen[static_cast<std::size_t>(c)], what, " names component ", c,
-                " twice: name each component once");
+        require(!seen[static_cast<std::size_t>(c)], what, " names component ", c, " twice: name each component once");
         seen[static_cast<std::size_t>(c)] = true;
     }
 }
@@ -149,8 +149,8 @@ inline void check_samples(const sample_options& s, const options& o, int n_state
             " (must be positive): give the number of samples to keep per instance");
     require(s.from_phase >= 0 && s.from_phase < o.phases, "samples.from_phase is ", s.from_phase, ", but the call has ",
             o.phases, " phases (counted from 0): nothing would be sampled");
-    require(s.minimum_spacing >= 0 && std::isfinite(s.minimum_spacing), "samples.minimum_spacing is ", s.minimum_spacing,
-            " (must not be negative)");
+    require(s.minimum_spacing >= 0 && std::isfinite(s.minimum_spacing), "samples.minimum_spacing is ",
+            s.minimum_spacing, " (must not be negative)");
     if (s.every != 0) {
         check_count("samples.every", s.every, 1, 2'000'000'000);
         return;
@@ -162,8 +162,8 @@ inline void check_samples(const sample_options& s, const options& o, int n_state
         if (k == 0) continue;
         rising = rising && s.times[k] > s.times[k - 1];
         falling = falling && s.times[k] < s.times[k - 1];
-        require(rising || falling, "samples.times are not in order at number ", k, " (", s.times[k], " after ", s.times[k - 1],
-                "): give each time once, in the order in which the integration reaches them");
+        require(rising || falling, "samples.times are not in order at number ", k, " (", s.times[k], " after ",
+                s.times[k - 1], "): give each time once, in the order in which the integration reaches them");
     }
     const std::int64_t wanted =
         (s.evenly != 0 ? s.evenly : static_cast<std::int64_t>(s.times.size())) * (o.phases - s.from_phase);
@@ -180,7 +180,8 @@ inline void check_no_samples(const sample_options& s) {
     if (s.every != 0) given = "every";
     if (!(s.minimum_spacing == 0)) given = "minimum_spacing";
     if (s.from_phase != 0) given = "from_phase";
-    require(given == nullptr, "samples.", given, " is given, but samples.states names no state, so that nothing would be "
+    require(given == nullptr, "samples.", given,
+            " is given, but samples.states names no state, so that nothing would be "
             "sampled: name the states to sample, or leave out all of samples");
 }
 
@@ -199,12 +200,12 @@ void check_kept(const char* name, double value) {
 
 /// Checks everything about the options that does not need the ensemble's data; throws `error`.
 template <class Model, class Method, class R>
-void check_options(const options& o, int n_state, int n_event, int n_accessory, int n_integer_accessory) {
+void check_options(const options& o) {
     using namespace host;
     constexpr bool adaptive = Method::embedded_order > 0;
     check_count("phases", o.phases, 1, 1'000'000'000);
-    check_tolerance("relative_tolerance", o.relative_tolerance, static_cast<std::size_t>(n_state));
-    check_tolerance("absolute_tolerance", o.absolute_tolerance, static_cast<std::size_t>(n_state));
+    check_tolerance("relative_tolerance", o.relative_tolerance, static_cast<std::size_t>(n_state<Model>));
+    check_tolerance("absolute_tolerance", o.absolute_tolerance, static_cast<std::size_t>(n_state<Model>));
     if (adaptive) {
         require(std::isnan(o.step) || (o.step > 0 && std::isfinite(o.step)), "step is ", o.step,
                 " (must be positive and finite): give the length of the first step to try");
@@ -213,23 +214,28 @@ void check_options(const options& o, int n_state, int n_event, int n_accessory, 
         check_positive("step", o.step, "give the length of the fixed step; the direction follows from t_end");
     }
     if (!std::isnan(o.step)) check_kept<R>("step", o.step);
-    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) check_kept<R>("relative_tolerance", o.relative_tolerance[c]);
-    for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c) check_kept<R>("absolute_tolerance", o.absolute_tolerance[c]);
+    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c)
+        check_kept<R>("relative_tolerance", o.relative_tolerance[c]);
+    for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c)
+        check_kept<R>("absolute_tolerance", o.absolute_tolerance[c]);
     require(o.minimum_step >= 0 && std::isfinite(o.minimum_step), "minimum_step is ", o.minimum_step,
             " (must not be negative): give 0 for the resolution of t");
     require(o.maximum_step > 0, "maximum_step is ", o.maximum_step, " (must be positive)");
-    require(o.minimum_step <= o.maximum_step, "minimum_step ", o.minimum_step, " is above maximum_step ", o.maximum_step,
-            ": no step size is left; exchange them");
+    check_kept<R>("maximum_step", o.maximum_step);
+    require(o.minimum_step <= o.maximum_step, "minimum_step ", o.minimum_step, " is above maximum_step ",
+            o.maximum_step, ": no step size is left; exchange them");
     require(o.growth_limit >= 1 && std::isfinite(o.growth_limit), "growth_limit is ", o.growth_limit,
             " (must be at least 1): give the largest factor from one step to the next, such as 5");
     require(o.shrink_limit > 0 && o.shrink_limit < 1, "shrink_limit is ", o.shrink_limit,
             " (must be between 0 and 1): give the smallest factor from one step to the next, such as 0.1");
     // Fixed steps are counted in the state's own kind of number, exact up to its mantissa.
     check_count("max_steps", o.max_steps, 1, std::numeric_limits<R>::digits > 31 ? 2'000'000'000 : 16'000'000);
-    require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), "events has ", o.events.size(),
-            " entries, but the model has ", n_event, " event functions: give one entry for each, or none for defaults");
+    require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event<Model>), "events has ",
+            o.events.size(), " entries, but the model has ", n_event<Model>,
+            " event functions: give one entry for each, or none for defaults");
     for (const event_options& e : o.events) {
-        check_positive("event tolerance", e.tolerance, "give the |g| at which an event counts as located, such as 1e-6");
+        check_positive("event tolerance", e.tolerance,
+                       "give the |g| at which an event counts as located, such as 1e-6");
         check_kept<R>("event tolerance", e.tolerance);
         check_count("stop_after", e.stop_after, 0, 2'000'000'000);
         const int d = static_cast<int>(e.direction);
@@ -239,12 +245,13 @@ void check_options(const options& o, int n_state, int n_event, int n_accessory, 
     check_count("accumulation_limit", o.accumulation_limit, 1, 1'000'000'000);
     require(o.block_size >= 0 && o.block_size <= 1024 && o.block_size % 32 == 0, "block_size is ", o.block_size,
             " (must be a multiple of 32 up to 1024, or 0 to choose by itself)");
-    require(o.chunk_size >= 0, "chunk_size is ", o.chunk_size, " (must not be negative): give 0 for what the memory allows");
+    require(o.chunk_size >= 0, "chunk_size is ", o.chunk_size,
+            " (must not be negative): give 0 for what the memory allows");
     if (!o.samples.empty()) {
         require(samples_trajectory<Method>,
                 "samples are asked for, but the method has no dense output: use dense<Method>, in solve and in "
                 "MYRIAD_INSTANTIATE");
-        check_samples(o.samples, o, n_state);
+        check_samples(o.samples, o, n_state<Model>);
         const std::vector<double>& times = o.samples.times;
         for (std::size_t k = 1; k < times.size(); ++k)
             require(static_cast<R>(times[k]) != static_cast<R>(times[k - 1]), "samples.times[", k, "] is ", times[k],
@@ -254,11 +261,12 @@ void check_options(const options& o, int n_state, int n_event, int n_accessory, 
         check_no_samples(o.samples);
     }
     if (!o.record.empty()) {
-        require(o.record.from_phase >= 0 && o.record.from_phase < o.phases, "record.from_phase is ", o.record.from_phase,
-                ", but the call has ", o.phases, " phases (counted from 0): nothing would be recorded");
-        check_components("record.states", o.record.states, n_state);
-        check_components("record.accessories", o.record.accessories, n_accessory);
-        check_components("record.integer_accessories", o.record.integer_accessories, n_integer_accessory);
+        require(o.record.from_phase >= 0 && o.record.from_phase < o.phases, "record.from_phase is ",
+                o.record.from_phase, ", but the call has ", o.phases,
+                " phases (counted from 0): nothing would be recorded");
+        check_components("record.states", o.record.states, n_state<Model>);
+        check_components("record.accessories", o.record.accessories, n_accessory<Model>);
+        check_components("record.integer_accessories", o.record.integer_accessories, n_integer_accessory<Model>);
     }
 }
 

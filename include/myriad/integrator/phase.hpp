@@ -129,8 +129,11 @@ private:
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) set_lane(s.data.event_count[j], i, 0);
         if constexpr (is_adaptive<Method>) {
-            const bool restart_step = !args.carry_step || phase == 0;
+            // A method with fixed steps leaves none to carry on with.
+            const bool restart_step = !args.carry_step || phase == 0 || get_lane(s.data.h_next, i) == R(0);
             if (restart_step) set_lane(s.data.h_next, i, args.step);
+        } else {
+            set_lane(s.data.h_next, i, args.step);
         }
         if constexpr (has_initialise<Model>) {
             place(i, [](auto& lane) MYRIAD_LAMBDA { Model::initialise(lane); });
@@ -142,8 +145,10 @@ private:
         args.t[index] = t;
         if constexpr (is_adaptive<Method>) {
             set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), get_lane(s.data.t_end, i) - t));
+            s.bound_step(args, i);
         } else {
             lay_fixed_steps(args, s, i, t);
+            set_lane(s.data.h_next, i, get_lane(s.step, i));
         }
         if constexpr (m > 0) {
             MYRIAD_UNROLL

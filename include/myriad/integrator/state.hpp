@@ -129,9 +129,15 @@ struct integration_state {
         }
     }
 
-    /// Ends the phase of lane i with the given status.
+    /// Keeps a step that a hook or an earlier call left within the options' limits.
+    MYRIAD_FUNCTION void bound_step(const kernel_arguments<Model, R>& args, int i) {
+        const R wanted = get_lane(data.h_next, i);
+        set_lane(data.h_next, i, copysign(min(max(abs(wanted), args.minimum_step), args.maximum_step), wanted));
+    }
+
+    /// Ends the phase of lane i with the given status; a failure stands.
     MYRIAD_FUNCTION void end_lane(int i, myriad::status why) {
-        ending[i] = why;
+        if (!is_failure(ending[i])) ending[i] = why;
         set_lane(ended, i, true);
     }
     /// Ends the phase of every lane of the mask.

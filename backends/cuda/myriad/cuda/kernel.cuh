@@ -25,8 +25,8 @@ private:
 };
 
 template <class Model, class R>
-inline constexpr int shared_parameter_bytes = n_shared<Model> * static_cast<int>(sizeof(R)) +
-                                              n_shared_integer<Model> * static_cast<int>(sizeof(std::int32_t));
+inline constexpr int shared_parameter_bytes =
+    n_shared<Model>* static_cast<int>(sizeof(R)) + n_shared_integer<Model>* static_cast<int>(sizeof(std::int32_t));
 
 /// Most threads per block; a model may choose by `static constexpr int max_block_size = 512;`. Up to 256, a thread can have
 /// as many registers as the hardware addresses.

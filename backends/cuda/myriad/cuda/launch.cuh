@@ -52,8 +52,8 @@ public:
     /// Keeps the shared parameters of launches from the constant bank; `shared` is on the host.
     void set_shared(const shared_parameters<R>& shared) {
         if constexpr (is_compiled<Model, R>(place::constant_bank)) {
-            std::copy_n(shared.real, n_shared<Model>, shared_.shared);
-            std::copy_n(shared.integer, n_shared_integer<Model>, shared_.shared_integer);
+            std::copy_n(shared.real, n_shared<Model>, constants_.shared);
+            std::copy_n(shared.integer, n_shared_integer<Model>, constants_.shared_integer);
         }
     }
 
@@ -63,8 +63,8 @@ public:
         const auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
         if (facts_.shared_placement == place::constant_bank) {
             if constexpr (is_compiled<Model, R>(place::constant_bank)) {
-                shared_.ensemble = arguments;
-                run<place::constant_bank>(shared_, blocks, block, where);
+                constants_.ensemble = arguments;
+                run<place::constant_bank>(constants_, blocks, block, where);
             }
         } else if constexpr (!is_compiled<Model, R>(place::constant_bank)) {
             if (facts_.shared_placement == place::shared_memory) {
@@ -78,8 +78,12 @@ public:
 private:
     template <place p>
     void run(const launch_arguments<Model, R, p>& all, unsigned blocks, int block, cudaStream_t where) const {
-        kernel<p><<<blocks, static_cast<unsigned>(block), static_cast<std::size_t>(facts_.shared_bytes), where>>>(all);
-        check(cudaPeekAtLastError(), "the launch of the integration kernel");
+        // Not <<<>>>, whose status is that of whatever failed last in the thread.
+        void* arguments[] = {const_cast<launch_arguments<Model, R, p>*>(&all)};
+        check(
+            cudaLaunchKernel(reinterpret_cast<const void*>(kernel<p>), dim3(blocks), dim3(static_cast<unsigned>(block)),
+                             arguments, static_cast<std::size_t>(facts_.shared_bytes), where),
+            "the launch of the integration kernel");
     }
 
     /// Calls `use` with the chosen kernel.
@@ -114,7 +118,8 @@ private:
                     : "");
         // The smallest block among those that keep most threads running at the same time.
         int best_threads = 0;
-        for (int block = wanted > 0 ? wanted : std::min(64, most / 32 * 32); block <= (wanted > 0 ? wanted : most); block *= 2) {
+        for (int block = wanted > 0 ? wanted : std::min(64, most / 32 * 32); block <= (wanted > 0 ? wanted : most);
+             block *= 2) {
             int blocks = 0;
             MYRIAD_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, function, block,
                                                                       static_cast<std::size_t>(facts_.shared_bytes)));
@@ -140,7 +145,8 @@ private:
     }
 
     kernel_facts facts_;
-    launch_arguments<Model, R, is_compiled<Model, R>(place::constant_bank) ? place::constant_bank : place::cache> shared_{};
+    launch_arguments<Model, R, is_compiled<Model, R>(place::constant_bank) ? place::constant_bank : place::cache>
+        constants_{};
     int multiprocessors_ = 1, chosen_block_ = 0;
     bool chosen_by_user_ = false;
 };

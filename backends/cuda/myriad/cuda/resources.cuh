@@ -52,7 +52,8 @@ public:
                 const auto fits = static_cast<std::int64_t>(0.9 * static_cast<double>(free + held) /
                                                             static_cast<double>(per_instance));
                 advice = message(": integrate fewer instances at a time, with a solver's capacity of at most ", fits,
-                                 " or, as solve works on two chunks at a time, an options::chunk_size of at most ", fits / 2);
+                                 " or, as solve works on two chunks at a time, an options::chunk_size of at most ",
+                                 fits / 2);
             }
             throw error(message("out of device memory: ", static_cast<double>(bytes) / 1e9, " GB are wanted and ",
                                 static_cast<double>(free) / 1e9, " of ", static_cast<double>(total) / 1e9,

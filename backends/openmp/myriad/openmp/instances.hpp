@@ -20,12 +20,12 @@ public:
                       bool reports)
         : begun_(begun), size_(size), chunk_(chunk), options_(options), reports_(reports && options.progress) {}
 
-    /// The next instance, or -1 when all are taken.
+    /// The next instance, or -1 when all are taken. If the progress function says no, none is handed out any more.
     std::int64_t next() {
         if (next_ == end_) {
             next_ = std::min(begun_.fetch_add(chunk_, std::memory_order_relaxed), size_);
             end_ = std::min(next_ + chunk_, size_);
-            if (reports_) options_.progress(options_.context, next_);
+            if (reports_ && !options_.progress(options_.context, next_)) begun_.store(size_, std::memory_order_relaxed);
             if (next_ == end_) return -1;
         }
         return next_++;

@@ -24,7 +24,14 @@ namespace myriad::inline MYRIAD_TARGET {
 /// constexpr int pack_batches = 2;`.
 template <class Model, class Method>
 constexpr int default_batches() {
-    if constexpr (requires { Model::pack_batches; }) {
+#if defined(MYRIAD_SCALAR_LANES)  // with sanitizers, which take minutes to compile the kernel of a pack
+    constexpr bool one_by_one = true;
+#else
+    constexpr bool one_by_one = scalar_only<Model>;
+#endif
+    if constexpr (one_by_one) {
+        return 0;
+    } else if constexpr (requires { Model::pack_batches; }) {
         return Model::pack_batches;
     } else if constexpr (has_events<Model> || n_state<Model> > 16) {
         return 1;
@@ -68,8 +75,7 @@ namespace myriad::openmp {
 
 template <class Model, class Method, class R>
 run_statistics run(const kernel_arguments<Model, R>& arguments, const run_options& options) {
-    return run_packs < Model, Method, R,
-           scalar_only<Model> ? 0 : default_batches<Model, Method>() > (arguments, options);
+    return run_packs<Model, Method, R, default_batches<Model, Method>()>(arguments, options);
 }
 
 }  // namespace myriad::openmp
