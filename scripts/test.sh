@@ -20,7 +20,7 @@ Steps, in this order:
   cuda    all kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
           both backends runs without a GPU (skipped without nvcc)
   strict  no contraction of a * b + c: scalar lanes and packs agree bit for bit
-  clang   clang++, release, warnings are errors
+  clang   clang++, warnings are errors
   asan    address and undefined-behaviour sanitizer
   tsan    thread sanitizer
 
