@@ -52,6 +52,28 @@ TEMPLATE_TEST_CASE("every crossing fires once wherever the phases end", "", ALL_
     }
 }
 
+TEMPLATE_TEST_CASE("the host may turn the flow round between phases that stop on the surface", "", ALL_METHODS) {
+    // A ball dropped from one: impacts at sqrt(2) (1, 3, 5, 7), the law of which is the host's.
+    for (const auto d : {myriad::direction::either, myriad::direction::falling}) {
+        for (const auto step : {myriad::phase_step::restart, myriad::phase_step::carry_on}) {
+            CAPTURE(static_cast<int>(d), static_cast<int>(step));
+            auto e = ensemble_of(motion{.x = 1, .a = -1}, {position(), never(), never()}, 0, 20);
+            auto o = options_for(1e-9, 1e-2, d);
+            o.events[0].stop_after = 1;
+            o.phase_time = myriad::phase_time::carry_on;
+            o.phase_step = step;
+            for (int impact = 0; impact < 4; ++impact) {
+                solve<TestType>(e, o);
+                CHECK(e.status(0) == myriad::status::stopped_by_event);
+                CHECK(std::abs(e.t()[0] - std::sqrt(2.0) * (2 * impact + 1)) < 1e-7);
+                e.state(watch::x) = 0.0;
+                e.state(watch::v) = -e.state(watch::v)[0];
+            }
+            CHECK(count_of(e) == 4);
+        }
+    }
+}
+
 TEMPLATE_TEST_CASE("a phase that stops on its event does not find it again in the next", "", ALL_METHODS) {
     for (const double tolerance : {1e-3, 1e-6, 1e-12}) {
         auto e = ensemble_of(sine, {position(), never(), never()}, 0, 100);

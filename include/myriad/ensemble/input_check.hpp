@@ -75,14 +75,17 @@ private:
 };
 
 /// Sample times must lie in every instance's domain, in the direction in which it is passed, and a domain on which they
-/// are spaced evenly must be finite. Domains that are not numbers are left to the check of the inputs.
+/// are spaced evenly must be finite. Domains that are not numbers, or with `mark` not finite, are left to the check of the
+/// inputs.
 template <class Model, class R>
-void check_sample_times(const ensemble<Model, R>& e, const sample_options& samples, std::int64_t count) {
+void check_sample_times(const ensemble<Model, R>& e, const options& o, std::int64_t count) {
+    const sample_options& samples = o.samples;
     if (samples.empty() || samples.every != 0) return;
     const std::vector<R> times(samples.times.begin(), samples.times.end());  // as the kernel has them
     for (std::int64_t i = 0; i < count; ++i) {
         const auto begin = static_cast<double>(e.t_begin()[i]), end = static_cast<double>(e.t_end()[i]);
         if (e.ended(i) || std::isnan(begin) || std::isnan(end)) continue;
+        if (o.invalid_instances == invalid_instances::mark && !std::isfinite(end - begin)) continue;
         if (times.empty()) {
             require(std::isfinite(end - begin), "samples.evenly divides the domain, but instance ", i,
                     " is integrated from ", begin, " to ", end, ": give samples.times, or a finite t_end");

@@ -24,6 +24,8 @@ struct event_locator {
     static constexpr int m = n_event<Model>;
     using values = vec<S, m>;
     using masks = vec<mask, m>;
+    /// Redone steps per event: a step halved that often is as long as the rounding of its ends.
+    static constexpr int most_tries = 80;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
@@ -195,6 +197,7 @@ private:
                 crossed[j] = crossed[j] | now[j];
                 const mask beyond = abs(g[j]) > S(args.event[j].tolerance);
                 side[j] = select(open & beyond, sign_of(g[j]), side[j]);
+                e.left[j] = e.left[j] | (open & beyond);
                 w.g_low[j] = select(open & !mask(last), g[j], w.g_low[j]);
                 w.g_high[j] = select(found, g[j], w.g_high[j]);
             }
@@ -263,8 +266,11 @@ private:
         e.h_before = select(crossing & !again, S(R(0)), e.h_before);
         e.h_beyond = select(crossing, step.h, e.h_beyond);
         e.tries = select(again, e.tries + S(R(1)), select(crossing, S(R(0)), e.tries));
-        const mask hopeless = again & ((e.tries >= S(R(10))) | (abs(length) <= abs(e.h_before)));
-        length = select(hopeless, e.h_before, length);
+        // Where the interpolant has led beyond the crossing again and again, halve what is left of the step.
+        const mask slow = again & ((e.tries >= S(R(10))) | (abs(length) <= abs(e.h_before)));
+        length = select(slow, S(R(0.5)) * (e.h_before + step.h), length);
+        const mask narrow = abs(step.h - e.h_before) <= S(R(0.5) * epsilon_of<R>) * abs(step.t + step.h);
+        length = select(again & (narrow | (e.tries >= S(R(most_tries)))), e.h_before, length);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) e.crossed[j] = select(crossing, crossed[j] | (again & e.crossed[j]), e.crossed[j]);
         const mask here = crossing & (length == S(R(0)));
@@ -302,11 +308,11 @@ private:
         const S from = pick(e.target, side);
         const S gap = from * pick(e.target, g1);
         const mask narrow = abs(e.h_beyond - step.h) <= S(R(4) * epsilon_of<R>) * abs(t1);
-        const mask short_of = arrived & (gap > pick(e.target, tolerance)) & !narrow & (e.tries < S(R(10)));
+        const mask short_of = arrived & (gap > pick(e.target, tolerance)) & !narrow & (e.tries < S(R(most_tries)));
         if (any(short_of)) {
             const S newton = step.h - gap / (from * pick(e.target, slope));
-            const mask inside =
-                (abs(newton) > abs(step.h)) & (abs(newton) < abs(e.h_beyond)) & (newton * step.h > S(R(0)));
+            const mask inside = (e.tries < S(R(10))) & (abs(newton) > abs(step.h)) & (abs(newton) < abs(e.h_beyond)) &
+                                (newton * step.h > S(R(0)));
             e.tries = count_where(short_of, e.tries);
             e.h_before = select(short_of, step.h, e.h_before);
             redo(short_of, select(inside, newton, S(R(0.5)) * (step.h + e.h_beyond)));

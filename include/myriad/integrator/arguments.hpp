@@ -80,7 +80,7 @@ private:
 /// Checks the first `count` instances of an ensemble against the options; throws `error`.
 template <class Model, class R>
 void check_inputs(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
-    check_sample_times(instances, o.samples, count);
+    check_sample_times(instances, o, count);
     check_event_tolerances(instances, o, count);
     input_check<Model, R>(instances, o, count).run();
 }

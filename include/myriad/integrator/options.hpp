@@ -189,11 +189,13 @@ inline void check_no_samples(const sample_options& s) {
 
 namespace host {
 
-/// Refuses numbers that turn into zero in the ensemble's real type.
+/// Refuses numbers that turn into zero or infinity in the ensemble's real type.
 template <class R>
 void check_kept(const char* name, double value) {
     require(value == 0 || static_cast<R>(value) != R(0), name, " is ", value,
             ", which is zero in single precision: give a larger value or use an ensemble of doubles");
+    require(std::isinf(value) || std::isfinite(static_cast<R>(value)), name, " is ", value,
+            ", which is infinite in single precision: give a smaller value or use an ensemble of doubles");
 }
 
 }  // namespace host
@@ -220,6 +222,7 @@ void check_options(const options& o) {
         check_kept<R>("absolute_tolerance", o.absolute_tolerance[c]);
     require(o.minimum_step >= 0 && std::isfinite(o.minimum_step), "minimum_step is ", o.minimum_step,
             " (must not be negative): give 0 for the resolution of t");
+    check_kept<R>("minimum_step", o.minimum_step);
     require(o.maximum_step > 0, "maximum_step is ", o.maximum_step, " (must be positive)");
     check_kept<R>("maximum_step", o.maximum_step);
     require(o.minimum_step <= o.maximum_step, "minimum_step ", o.minimum_step, " is above maximum_step ",
@@ -228,6 +231,8 @@ void check_options(const options& o) {
             " (must be at least 1): give the largest factor from one step to the next, such as 5");
     require(o.shrink_limit > 0 && o.shrink_limit < 1, "shrink_limit is ", o.shrink_limit,
             " (must be between 0 and 1): give the smallest factor from one step to the next, such as 0.1");
+    require(static_cast<R>(o.shrink_limit) < R(1), "shrink_limit is ", o.shrink_limit,
+            ", which is 1 in single precision: give a smaller value, such as 0.1");
     // Fixed steps are counted in the state's own kind of number, exact up to its mantissa.
     check_count("max_steps", o.max_steps, 1, std::numeric_limits<R>::digits > 31 ? 2'000'000'000 : 16'000'000);
     require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event<Model>), "events has ",

@@ -46,8 +46,8 @@ struct sampler {
         const R end = get_lane(s.data.t_end, i);
         set_lane(o.begin, i, get_lane(s.data.t_begin, i));
         set_lane(o.end, i, end);
-        const R ahead = end - t;
-        while (o.index[i] < args.sample.count && (sample_time(i) - t) * ahead < R(0)) ++o.index[i];
+        const auto passed = [&](R time) MYRIAD_LAMBDA { return end < t ? time > t : end > t && time < t; };
+        while (o.index[i] < args.sample.count && passed(sample_time(i))) ++o.index[i];
         set_next(i);
         if (get_lane(o.next, i) == t) {
             store(i, t, get_lanes<R>(s.data.y, i));
@@ -118,7 +118,8 @@ private:
     MYRIAD_FUNCTION mask falls_between(const S& t0, const S& t1) const {
         const S slack = S(R(4) * epsilon_of<R>) * abs(t0);
         const S ahead = select(s.h < S(R(0)), t0 - o.next, o.next - t0);
-        return ((t1 - o.next) * s.h >= S(R(0))) & (ahead >= -slack);
+        const mask backwards = s.h < S(R(0)), forwards = !backwards;
+        return ((backwards & (t1 <= o.next)) | (forwards & (t1 >= o.next))) & (ahead >= -slack);
     }
 
     MYRIAD_FUNCTION R never(int i) const {
