@@ -4,6 +4,8 @@
 
 #include <myriad/model.hpp>
 
+#include "benchmarks/cpu_peers/relief_valve/model.hpp"
+
 namespace gpu_ensembles {
 
 /// x' = 10 (y - x), y' = rho x - y - x z, z' = x y - b z; `Constant::b` is 8/3 or what the paper's tutorial writes for it.
@@ -58,51 +60,7 @@ struct keller_miksis {
     }
 };
 
-/// Displacement y, velocity v, pressure u. Event `section` (v falling) ends a phase by its count, `seat` (y falling) is an
-/// impact; a valve that stays where it is for 50 steps ends its phase too.
-struct relief_valve {
-    enum state { y, v, u, n_state };
-    enum parameter { q, n_parameter };
-    enum shared { kappa, delta, beta, restitution, rest_band, n_shared };
-    enum accessory { lowest, highest, rest_at, n_accessory };
-    enum integer_accessory { steps_at_rest, n_integer_accessory };
-    enum event { section, seat, n_event };
-
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
-        using myriad::sqrt;
-        return {s[v], -p.shared[kappa] * s[v] - (s[y] + p.shared[delta]) + s[u],
-                p.shared[beta] * (p[q] - s[y] * sqrt(s[u]))};
-    }
-
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto&) {
-        return {s[v], s[y]};
-    }
-
-    MYRIAD_FUNCTION static void initialise(auto& lane) {
-        lane.accessory[lowest] = lane.y[y];
-        lane.accessory[highest] = lane.y[y];
-        lane.accessory[rest_at] = lane.y[y];
-        lane.integer_accessory[steps_at_rest] = 0;
-    }
-
-    template <class R>
-    MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane) {
-        using myriad::abs, myriad::max, myriad::min, myriad::select;
-        using count = myriad::integer_of<R>;
-        lane.accessory[lowest] = min(lane.accessory[lowest], lane.y[y]);
-        lane.accessory[highest] = max(lane.accessory[highest], lane.y[y]);
-        const auto rests = abs(lane.y[y] - lane.accessory[rest_at]) <= R(lane.shared[rest_band]);
-        count& steps = lane.integer_accessory[steps_at_rest];
-        lane.accessory[rest_at] = select(rests, lane.accessory[rest_at], lane.y[y]);
-        steps = select(rests, steps + count(1), count(0));
-        return steps >= count(50);
-    }
-
-    MYRIAD_FUNCTION static void after_event(int event, auto& lane) {
-        if (event == seat) lane.y[v] = -lane.shared[restitution] * lane.y[v];
-    }
-};
+/// The valve of the benchmark on CPUs.
+using relief_valve = cpu_peers::relief_valve_model;
 
 }  // namespace gpu_ensembles
