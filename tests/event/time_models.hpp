@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Two small models with one event that depends on time alone: a smooth one, and one that jumps or is no number; and a
-// pendulum.
+// Two small models with one event that depends on time alone: a smooth one, and one that jumps or is no number; a
+// pendulum; and a ball between walls that its event function tells by its sign alone.
 #pragma once
 
 #include <limits>
@@ -83,4 +83,27 @@ struct pendulum {
         return myriad::vec<R, n_event>{y[v]};
     }
     MYRIAD_FUNCTION static void after_event(int, auto& lane) { log_action<pendulum>(lane); }
+};
+
+/// x'' = 0 between walls at 0 and 1: g is 1 between and -1 beyond them. At an event the ball turns round or goes through.
+struct walled {
+    enum state { x, v, n_state };
+    enum shared_integer { turns_round, n_shared_integer };
+    enum event { wall, n_event };
+    static constexpr int log_length = 16;
+    enum accessory { n_accessory = log_length };
+    enum integer_accessory { fired, n_integer_accessory };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return {y[v], R(0)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_event>{myriad::select((y[x] > R(0)) & (y[x] < R(1)), R(1), R(-1))};
+    }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) {
+        log_action<walled>(lane);
+        if (lane.shared_integer[turns_round] != 0) lane.y[v] = -lane.y[v];
+    }
 };

@@ -11,6 +11,15 @@
 
 namespace myriad::inline MYRIAD_TARGET {
 
+/// By what a side is multiplied while it is kept between phases.
+namespace event_sides {
+/// The function was beyond its tolerance: if the next phase begins within it, something other than the integration put it
+/// there (finalise, the host, a time that starts again).
+inline constexpr int beyond = 2;
+/// The phase ended on a jump of the function: on which side the next one begins is to be seen.
+inline constexpr int on_jump = 3;
+}  // namespace event_sides
+
 /// What is remembered of the events of a pack. Absent, and empty, for a model without events.
 template <class Model, class S>
 struct event_state {

@@ -34,13 +34,20 @@ struct event_locator {
     /// Forgets a location under way, such as that of a trial that failed its error test.
     MYRIAD_FUNCTION void forget(const mask& lanes) { e.locating = e.locating & !lanes; }
 
-    /// Takes the event values at the start of a phase.
+    /// Takes the event values at the start of a phase, which go on with the sides that the phase before left.
     MYRIAD_FUNCTION void begin(const mask& lanes) {
         const values g = evaluate_events<Model>(s.now(), s.data.y, s.data);
+        masks on_jump;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
+            on_jump[j] = lanes & (abs(e.side[j]) == S(R(event_sides::on_jump))) & (abs(g[j]) > S(args.event[j].tolerance));
             adopt(lanes, j, g[j], abs(e.side[j]) > S(R(1)));
             e.left[j] = e.left[j] | lanes;
+        }
+        const mask jumps = any_event(on_jump);
+        if (MYRIAD_UNLIKELY(any(jumps))) {
+            renew_slope(jumps);
+            look_beyond(on_jump);
         }
     }
 
@@ -54,17 +61,21 @@ struct event_locator {
 
     /// The same after the actions of firing events, with the slopes of the state they left (`s.slope`). A function that
     /// fired is on the side it is heading for. Where its slope is zero, it rests on the side it came from if an action
-    /// changed it, and passed if none did (it jumped). Where it was still moving away when it fired, as in a flight too
-    /// short for the resolution of the state, an action that turned it round must not send it through the surface.
+    /// changed it, and passed if none did. Where it was still moving away when it fired, as in a flight too short for the
+    /// resolution of the state, an action that turned it round must not send it through the surface. One that jumps fired
+    /// right before the jump: a look ahead tells whether it is about to pass it.
     MYRIAD_FUNCTION void settle(const mask& lanes) {
         const values g = evaluate_events<Model>(s.now(), s.data.y, s.data);
         const values slope = event_slopes<Model>(s.now(), s.data.y, s.slope, s.data);
+        masks on_jump;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const mask fired = lanes & e.firing[j];
             const S from = e.side[j];
             const mask moved = g[j] != e.value[j];
-            const mask jumped = moved & (abs(g[j]) > S(args.event[j].tolerance));
+            const mask beyond = abs(g[j]) > S(args.event[j].tolerance);
+            const mask jumped = moved & beyond;
+            on_jump[j] = fired & beyond;
             const mask acted = moved | (slope[j] != e.heading[j]);
             const S ahead = sign_of(slope[j]) * sign_of(s.h);
             const mask unresolved = from * sign_of(e.heading[j]) * sign_of(s.h) > S(R(0));
@@ -75,6 +86,7 @@ struct event_locator {
             e.value[j] = select(fired, g[j], e.value[j]);
             e.left[j] = (e.left[j] & !fired) | (lanes & jumped);
         }
+        if (MYRIAD_UNLIKELY(any(any_event(on_jump)))) look_beyond(on_jump);
     }
 
     /// f at the committed state, where it is not known; the next step takes it from there.
@@ -136,6 +148,25 @@ struct event_locator {
     }
 
 private:
+    /// Puts functions on the side that they have a little ahead, further than the rounding of t and of the state: that is
+    /// beyond a jump which a step was located to, and which the state is heading for. Needs the slope.
+    MYRIAD_FUNCTION void look_beyond(const masks& on_jump) {
+        constexpr R fraction = std::is_same_v<R, float> ? R(0x1p-12) : R(0x1p-26);
+        const S t = s.now();
+        const S little = S(fraction) * abs(s.data.h_next) + S(R(64) * epsilon_of<R>) * abs(t);
+        const S ahead = copysign(little, s.data.t_end - t);
+        vec<S, n> y;
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) y[c] = fma(ahead, s.slope[c], s.data.y[c]);
+        const values g = evaluate_events<Model>(t + ahead, y, s.data);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const mask beyond = on_jump[j] & (abs(g[j]) > S(args.event[j].tolerance));
+            e.side[j] = select(beyond, sign_of(g[j]), e.side[j]);
+            e.value[j] = select(beyond, g[j], e.value[j]);
+        }
+    }
+
     MYRIAD_FUNCTION void adopt(const mask& lanes, int j, const S& g, const mask& open) {
         const mask beyond = abs(g) > S(args.event[j].tolerance);
         const S side = select(beyond, sign_of(g), select(open, S(R(0)), e.side[j]));

@@ -197,25 +197,25 @@ private:
         for (int j = 0; j < m; ++j) set_lane(e.side[j], i, R(0));
     }
 
+    /// What the next phase is to know of the sides. A phase without a step has not looked at its event functions.
+    MYRIAD_FUNCTION void keep_sides(int i) {
+        if (s.turn == s.phase_start[i]) return;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool beyond = abs(get_lane(e.value[j], i)) > args.event[j].tolerance;
+            const bool fired_last = !get_lane(e.left[j], i);
+            // No side where the event has happened and the function not yet left its tolerance: it is on the side that it is
+            // heading for as the next phase begins, whatever turns it round in between.
+            const int kept = beyond ? (fired_last ? event_sides::on_jump : event_sides::beyond) : (fired_last ? 0 : 1);
+            set_lane(e.side[j], i, static_cast<R>(kept) * get_lane(e.side[j], i));
+        }
+    }
+
     /// Ends the phase that lane i is in: `finalise`, record, count; a failed phase ends the instance instead.
     MYRIAD_FUNCTION void end_phase(int i) {
         const std::int64_t index = s.instance[i];
         if (args.accepted != nullptr) count_work(i);
-        // Twice the side: the function was beyond its tolerance, so if the next phase begins within it, something other
-        // than the integration put it there (finalise, the host, a time that starts again). No side where the event has
-        // happened and the function not yet left its tolerance: it is on the side that it is heading for as the next
-        // phase begins, whatever turns it round in between.
-        // A phase without a step has not looked at its event functions.
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            const R g = get_lane(e.value[j], i);
-            if (s.turn == s.phase_start[i]) continue;
-            if (abs(g) > args.event[j].tolerance) {
-                set_lane(e.side[j], i, R(2) * get_lane(e.side[j], i));
-            } else if (!get_lane(e.left[j], i)) {
-                set_lane(e.side[j], i, R(0));
-            }
-        }
+        if constexpr (m > 0) keep_sides(i);
         if constexpr (!is_adaptive<Method>) set_lane(s.data.t, i, fixed_step_time(args, s, i));
         args.t[index] = get_lane(s.data.t, i);
         if constexpr (has_finalise<Model>) {

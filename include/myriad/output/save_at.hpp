@@ -48,12 +48,13 @@ struct sampler {
         set_lane(o.end, i, end);
         const auto passed = [&](R time) MYRIAD_LAMBDA { return end < t ? time > t : end > t && time < t; };
         while (o.index[i] < args.sample.count && passed(sample_time(i))) ++o.index[i];
-        set_next(i);
-        if (get_lane(o.next, i) == t) {
-            store(i, t, get_lanes<R>(s.data.y, i));
+        // Where a phase goes on inside its domain, the one before has what falls on its end.
+        const bool has_it = t != get_lane(s.data.t_begin, i) && ends_with(i, t);
+        while (o.index[i] < args.sample.count && sample_time(i) == t) {
+            if (!has_it) store(i, t, get_lanes<R>(s.data.y, i));
             ++o.index[i];
-            set_next(i);
         }
+        set_next(i);
     }
 
     /// Stores what falls into the accepted trial steps, which end at t1; called before they are committed.
@@ -136,6 +137,12 @@ private:
         const R begin = get_lane(o.begin, i), end = get_lane(o.end, i);
         if (k == args.sample.count - 1) return end;
         return fma(static_cast<R>(k) / static_cast<R>(args.sample.count - 1), end - begin, begin);
+    }
+
+    /// Whether the last sample is that of time t.
+    MYRIAD_FUNCTION bool ends_with(int i, R t) const {
+        const std::int32_t stored = args.sample.stored[s.instance[i]];
+        return stored > 0 && args.sample.time[static_cast<std::int64_t>(stored - 1) * args.size + s.instance[i]] == t;
     }
 
     MYRIAD_FUNCTION void store(int i, R t, const vec<R, n>& y) const {
