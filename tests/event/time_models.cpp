@@ -4,7 +4,9 @@
 
 #include <myriad/instantiate.hpp>
 
-MYRIAD_INSTANTIATE(wave, myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4)
-MYRIAD_INSTANTIATE(gate, myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4)
-MYRIAD_INSTANTIATE(pendulum, myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4)
-MYRIAD_INSTANTIATE(walled, myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4)
+#define ALL_METHODS myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4, myriad::dormand_prince_8
+
+MYRIAD_INSTANTIATE(wave, ALL_METHODS)
+MYRIAD_INSTANTIATE(gate, ALL_METHODS)
+MYRIAD_INSTANTIATE(pendulum, ALL_METHODS)
+MYRIAD_INSTANTIATE(walled, ALL_METHODS)

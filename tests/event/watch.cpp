@@ -4,5 +4,5 @@
 
 #include <myriad/instantiate.hpp>
 
-MYRIAD_INSTANTIATE(watch, myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4)
+MYRIAD_INSTANTIATE(watch, myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4, myriad::dormand_prince_8)
 MYRIAD_INSTANTIATE_FLOAT(watch, myriad::cash_karp)

@@ -135,4 +135,4 @@ void solve_unchecked(myriad::ensemble<watch, R>& e, const myriad::options& o) {
 
 }  // namespace watching
 
-#define ALL_METHODS myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4
+#define ALL_METHODS myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4, myriad::dormand_prince_8

@@ -193,14 +193,14 @@ TEST_CASE("a sample on the very end of a phase that carries time on is stored on
     });
 }
 
-TEST_CASE("a domain of length zero has as many evenly spaced samples as any other", "[output]") {
+TEST_CASE("a domain of length zero has one evenly spaced sample", "[output]") {
     each_dense_method([]<class Dense, class Method> {
         auto e = balls();
         e.time_domain(2, 2);
         solve<Dense>(tests::test_device(1), e, bounces(3));
-        CHECK((e.samples().stored() == 3).all());
+        CHECK((e.samples().stored() == 1).all());
         for (std::int64_t i = 0; i < e.size(); ++i)
-            for (const int k : {0, 1, 2}) CHECK((e.samples().time()(i, k) == 2 && e.samples().state(0)(i, k) == height(i)));
+            CHECK((e.samples().time()(i, 0) == 2 && e.samples().state(0)(i, 0) == height(i)));
     });
 }
 

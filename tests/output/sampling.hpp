@@ -18,12 +18,15 @@ namespace output {
 using myriad::cash_karp;
 using myriad::dense;
 using myriad::device;
+using myriad::dormand_prince_5;
+using myriad::dormand_prince_8;
 using myriad::ensemble;
 using myriad::options;
 using myriad::runge_kutta_4;
 using myriad::solve;
 using myriad::status;
 using myriad::tsitouras_5;
+using myriad::verner_7;
 
 template <class R>
 inline constexpr double eps_of = static_cast<double>(std::numeric_limits<R>::epsilon());

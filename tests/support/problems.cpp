@@ -4,6 +4,10 @@
 
 #include <myriad/instantiate.hpp>
 
-MYRIAD_INSTANTIATE(problems::log_circle, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5)
-MYRIAD_INSTANTIATE(problems::timed_circle, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5)
+#define ALL_METHODS                                                                                 \
+    myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5, myriad::dormand_prince_5, myriad::verner_7, \
+        myriad::dormand_prince_8
+
+MYRIAD_INSTANTIATE(problems::log_circle, ALL_METHODS)
+MYRIAD_INSTANTIATE(problems::timed_circle, ALL_METHODS)
 MYRIAD_INSTANTIATE(problems::two_speeds, myriad::cash_karp)

@@ -40,7 +40,8 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
     const error_norm<S> error = scaled_error<Model, Method>(args, s.data.y, s.h, trial);
     const mask within = valid & error.within;
     const mask accepted = s.running() & within;
-    const C exponent = select(within, C(R(-1.0 / (Method::embedded_order + 1))), C(R(-1.0 / Method::embedded_order)));
+    constexpr int order = estimate_order<Method>;
+    const C exponent = select(within, C(R(-1.0 / (order + 1))), C(R(-1.0 / order)));
     const C shrink_limit = C(static_cast<R>(args.shrink_limit));
     C factor = C(R(0.9)) * fast_power(error.worst, exponent);
     factor = smaller(larger(factor, shrink_limit), C(static_cast<R>(args.growth_limit)));

@@ -124,12 +124,12 @@ struct event_locator {
         const bool look_inside = args.sub_samples > 1;
         mask crossing = any_event(crossed);
         if (MYRIAD_UNLIKELY(look_inside || any(crossing | e.locating | (accepted & s.final_step)))) {
-            step_data<Method, S, n> step{s.now(), s.h, s.data.y, trial, s.slope};
+            step_data<Method, S, n> step{s.now(), s.h, s.data.y, trial, s.slope, {}};
             mask wanted = look_inside ? accepted : crossing | (accepted & e.locating);
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j)
                 wanted = wanted | (accepted & s.final_step & (abs(g1[j]) <= S(args.event[j].tolerance)));
-            if (any(wanted)) set_slope_end(step, t1, wanted);
+            if (any(wanted)) complete(step, t1, wanted);
             window w{S(R(0)), S(R(1)), e.value, g1};
             if (look_inside) {
                 crossed = scan(step, accepted, side, w);
@@ -153,7 +153,7 @@ private:
     MYRIAD_FUNCTION void look_beyond(const masks& on_jump) {
         constexpr R fraction = std::is_same_v<R, float> ? R(0x1p-12) : R(0x1p-26);
         const S t = s.now();
-        const S little = S(fraction) * abs(s.data.h_next) + S(R(64) * epsilon_of<R>) * abs(t);
+        const S little = fma(S(fraction), abs(s.data.h_next), S(R(64) * epsilon_of<R>) * abs(t));
         const S ahead = copysign(little, s.data.t_end - t);
         vec<S, n> y;
         MYRIAD_UNROLL
@@ -196,13 +196,15 @@ private:
         }
     }
 
-    /// f at the end of the trial: free for methods whose last stage is there, one more evaluation for others.
-    MYRIAD_FUNCTION void set_slope_end(step_data<Method, S, n>& step, const S& t1, const mask& wanted) {
+    /// f at the end of the trial, free for methods whose last stage is there, one more evaluation for others; and what else
+    /// the interpolant needs.
+    MYRIAD_FUNCTION void complete(step_data<Method, S, n>& step, const S& t1, const mask& wanted) {
         if constexpr (Method::first_same_as_last) {
             step.slope_end = step.trial.k[Method::stages - 1];
         } else {
             step.slope_end = evaluate_rhs<Model>(t1, step.trial.y, s.data);
-            s.extra_evaluations = count_where(wanted, s.extra_evaluations);
+            s.extra_evaluations = count_where(wanted, s.extra_evaluations, 1 + extra_stages<Method>);
+            complete_interpolant<Model>(step, s.data);
         }
     }
 

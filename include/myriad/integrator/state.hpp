@@ -41,15 +41,15 @@ MYRIAD_FUNCTION mask_of<S> all_finite(const vec<S, n>& y) {
     return finite;
 }
 
-/// a + 1 where the mask holds.
-template <class C, class M>
-MYRIAD_FUNCTION C count_where(const M& mask, const C& count) {
-    return select(mask, count + C(1), count);
-}
-
 /// The number that one lane of a count holds.
 template <class C>
 using lane_of = std::conditional_t<std::is_integral_v<C>, C, decltype(get_lane(std::declval<C>(), 0))>;
+
+/// a + amount where the mask holds.
+template <class C, class M>
+MYRIAD_FUNCTION C count_where(const M& mask, const C& count, int amount = 1) {
+    return select(mask, count + C(static_cast<lane_of<C>>(amount)), count);
+}
 
 /// Sets the count of lane i.
 template <class C, class R>

@@ -46,15 +46,18 @@ struct sampler {
         const R end = get_lane(s.data.t_end, i);
         set_lane(o.begin, i, get_lane(s.data.t_begin, i));
         set_lane(o.end, i, end);
-        const auto passed = [&](R time) MYRIAD_LAMBDA { return end < t ? time > t : end > t && time < t; };
-        while (o.index[i] < args.sample.count && passed(sample_time(i))) ++o.index[i];
         // Where a phase goes on inside its domain, the one before has what falls on its end.
-        const bool has_it = t != get_lane(s.data.t_begin, i) && ends_with(i, t);
-        while (o.index[i] < args.sample.count && sample_time(i) == t) {
-            if (!has_it) store(i, t, get_lanes<R>(s.data.y, i));
-            ++o.index[i];
-        }
+        const bool has_start = t != get_lane(s.data.t_begin, i) && ends_with(i, t);
+        const auto passed = [&](R time) MYRIAD_LAMBDA {
+            return (has_start && time == t) || (end < t ? time > t : end > t && time < t);
+        };
+        while (o.index[i] < args.sample.count && passed(sample_time(i))) ++o.index[i];
         set_next(i);
+        if (get_lane(o.next, i) == t) {
+            store(i, t, get_lanes<R>(s.data.y, i));
+            ++o.index[i];
+            set_next(i);
+        }
     }
 
     /// Stores what falls into the accepted trial steps, which end at t1; called before they are committed.
@@ -83,10 +86,10 @@ private:
         const S t0 = s.now();
         mask due = accepted & falls_between(t0, t1);
         if (!any(due)) return;
-        step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slope_end};
+        step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slope_end, {}};
         if constexpr (Method::first_same_as_last) {
             step.slope_end = trial.k[Method::stages - 1];
-        } else if constexpr (!has_own_interpolant<Method>) {
+        } else if constexpr (interpolates_with_slope_end<Method>) {
             // The slope at the end is the first of the next step, unless a hook changes the state; locating an event may
             // have it already.
             const mask needed = due & !s.slope_end_known;
@@ -98,6 +101,10 @@ private:
                 s.slope_end_known = s.slope_end_known | needed;
                 s.slope_end = step.slope_end;
             }
+        }
+        if constexpr (extra_stages<Method> > 0) {
+            complete_interpolant<Model>(step, s.data);
+            s.extra_evaluations = count_where(due, s.extra_evaluations, extra_stages<Method>);
         }
         while (any(due)) {
             const S theta = (o.next - step.t) / step.h;

@@ -6,12 +6,40 @@
 
 namespace myriad::inline MYRIAD_TARGET {
 
+template <class Method>
+inline constexpr bool has_own_interpolant = requires { Method::interpolant_degree; };
+
+/// Stages that the interpolant has beyond those of the step and the slope at its end.
+template <class Method>
+inline constexpr int extra_stages = [] {
+    if constexpr (requires { Method::extra_stages; }) {
+        return Method::extra_stages;
+    } else {
+        return 0;
+    }
+}();
+/// Stages of a method's own interpolant. Stage `stages` is the slope at the end of the step, where the last one is not.
+template <class Method>
+inline constexpr int interpolant_stages = Method::stages + (extra_stages<Method> > 0 ? 1 + extra_stages<Method> : 0);
+/// Whether an interpolant needs the slope at the end of the step on top of the step's stages.
+template <class Method>
+inline constexpr bool interpolates_with_slope_end = !has_own_interpolant<Method> || (extra_stages<Method> > 0);
+
 /// Coefficient of theta^(power + 1) in the weight of a stage.
 template <class Method, int stage, int power, class R>
 inline constexpr R interpolant_weight = static_cast<R>(Method::interpolant_weight(stage, power));
-
-template <class Method>
-inline constexpr bool has_own_interpolant = requires { Method::interpolant_degree; };
+/// Whether a stage has a part in the interpolant.
+template <class Method, int stage>
+inline constexpr bool interpolant_uses = [] {
+    bool used = false;
+    for (int power = 0; power < Method::interpolant_degree; ++power)
+        used = used || Method::interpolant_weight(stage, power) != 0;
+    return used;
+}();
+template <class Method, int i, class R>
+inline constexpr R extra_node = static_cast<R>(Method::extra_node(i));
+template <class Method, int i, int stage, class R>
+inline constexpr R extra_weight = static_cast<R>(Method::extra_weight(i, stage));
 
 /// A trial step as the interpolants and event functions need it.
 template <class Method, class S, int n>
@@ -21,7 +49,40 @@ struct step_data {
     vec<S, n> y;  // state at the start
     const rk_trial<Method, S, n>& trial;
     vec<S, n> slope_end;  // f at the end of the step
+    vec<vec<S, n>, extra_stages<Method>> extra;  // further stages, by complete_interpolant
+
+    /// The slope of an interpolant's stage.
+    template <int stage>
+    MYRIAD_FUNCTION const vec<S, n>& slope() const {
+        if constexpr (stage < Method::stages) {
+            return trial.k[stage];
+        } else if constexpr (stage == Method::stages) {
+            return slope_end;
+        } else {
+            return extra[stage - Method::stages - 1];
+        }
+    }
 };
+
+/// Evaluates the stages that only the interpolant needs. The slope at the end of the step is given.
+template <class Model, class Method, class S, int n>
+MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const inputs<Model, S>& p) {
+    using R = real_of<S>;
+    static_for<0, extra_stages<Method>>([&](auto i) MYRIAD_LAMBDA {
+        constexpr int own = decltype(i)::value;
+        vec<S, n> argument = step.y;
+        static_for<0, Method::stages + 1 + own>([&](auto j) MYRIAD_LAMBDA {
+            constexpr int stage = decltype(j)::value;
+            if constexpr (extra_weight<Method, own, stage, R> != R(0)) {
+                const S scale = step.h * S(extra_weight<Method, own, stage, R>);
+                MYRIAD_UNROLL
+                for (int c = 0; c < n; ++c)
+                    argument[c] = fma(scale, step.template slope<stage>()[c], argument[c]);
+            }
+        });
+        step.extra[own] = evaluate_rhs<Model>(fma(S(extra_node<Method, own, R>), step.h, step.t), argument, p);
+    });
+}
 
 /// State at t + theta h, 0 <= theta <= 1. Hermite: Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7).
 template <class Method, class S, int n>
@@ -29,21 +90,26 @@ MYRIAD_FUNCTION vec<S, n> interpolate(const step_data<Method, S, n>& step, const
     using R = real_of<S>;
     vec<S, n> out;
     if constexpr (has_own_interpolant<Method>) {
-        vec<S, Method::stages> weight;
-        static_for<0, Method::stages>([&](auto i) MYRIAD_LAMBDA {
-            constexpr int degree = Method::interpolant_degree;
+        constexpr int degree = Method::interpolant_degree, stages = interpolant_stages<Method>;
+        vec<S, stages> weight;
+        static_for<0, stages>([&](auto i) MYRIAD_LAMBDA {
             constexpr int stage = decltype(i)::value;
-            S b = S(interpolant_weight<Method, stage, degree - 1, R>);
-            static_for<1, degree>([&](auto power) MYRIAD_LAMBDA {
-                b = fma(b, theta, S(interpolant_weight<Method, stage, degree - 1 - decltype(power)::value, R>));
-            });
-            weight[i] = b * theta * step.h;
+            if constexpr (interpolant_uses<Method, stage>) {
+                S b = S(interpolant_weight<Method, stage, degree - 1, R>);
+                static_for<1, degree>([&](auto power) MYRIAD_LAMBDA {
+                    b = fma(b, theta, S(interpolant_weight<Method, stage, degree - 1 - decltype(power)::value, R>));
+                });
+                weight[i] = b * theta * step.h;
+            }
         });
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) {
             S increment = weight[0] * step.trial.k[0][c];
-            static_for<1, Method::stages>(
-                [&](auto i) MYRIAD_LAMBDA { increment = fma(weight[i], step.trial.k[i][c], increment); });
+            static_for<1, stages>([&](auto i) MYRIAD_LAMBDA {
+                constexpr int stage = decltype(i)::value;
+                if constexpr (interpolant_uses<Method, stage>)
+                    increment = fma(weight[i], step.template slope<stage>()[c], increment);
+            });
             out[c] = step.y[c] + increment;
         }
     } else {

@@ -24,22 +24,51 @@ struct rk_trial {
     vec<S, n> y;
 };
 
+/// Whether a method has a second error estimate, of lower order.
+template <class Method>
+inline constexpr bool has_coarse_estimate = requires { Method::coarse_error_weight(0); };
+
+/// The order that a method's error estimate falls with, less one: that of the embedded solution, where that is all there is.
+template <class Method>
+inline constexpr int estimate_order = [] {
+    if constexpr (requires { Method::estimate_order; }) {
+        return Method::estimate_order;
+    } else {
+        return Method::embedded_order;
+    }
+}();
+
+/// Rows of weights: the arguments of stages 1, 2, ... come first.
+template <class Method>
+struct row_of {
+    static constexpr int solution = Method::stages;
+    static constexpr int error = Method::stages + 1;
+    static constexpr int coarse_error = Method::stages + 2;
+};
+template <class Method>
+constexpr double weight_in(int row, int stage) {
+    if constexpr (has_coarse_estimate<Method>) {
+        if (row == row_of<Method>::coarse_error) return Method::coarse_error_weight(stage);
+    }
+    return Method::tableau().weight(row, stage);
+}
+
 // The tableau's entries as constants, which device code may use where it may not call the functions behind them.
 
 /// First stage whose weight in `row` is not zero.
 template <class Method, int row>
 inline constexpr int first_stage = [] {
     int j = 0;
-    while (Method::tableau().weight(row, j) == 0) ++j;
+    while (weight_in<Method>(row, j) == 0) ++j;
     return j;
 }();
 /// Its weight.
 template <class Method, int row, class R>
-inline constexpr R first_weight = static_cast<R>(Method::tableau().weight(row, first_stage<Method, row>));
+inline constexpr R first_weight = static_cast<R>(weight_in<Method>(row, first_stage<Method, row>));
 /// The weight of stage j over the first one.
 template <class Method, int row, int j, class R>
 inline constexpr R relative_weight =
-    static_cast<R>(Method::tableau().weight(row, j) / Method::tableau().weight(row, first_stage<Method, row>));
+    static_cast<R>(weight_in<Method>(row, j) / weight_in<Method>(row, first_stage<Method, row>));
 /// The node of stage i.
 template <class Method, int i, class R>
 inline constexpr R node = static_cast<R>(Method::tableau().c[static_cast<std::size_t>(i)]);
@@ -80,9 +109,8 @@ MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<
 }
 
 /// The error estimate h * sum_j e_j k_j of one component.
-template <class Method, class S, int n>
+template <class Method, int row = row_of<Method>::error, class S, int n>
 MYRIAD_FUNCTION S error_estimate(const S& h, const vec<vec<S, n>, Method::stages>& k, int component) {
-    constexpr int row = Method::stages + 1;
     return h * S(first_weight<Method, row, real_of<S>>) * scaled_sum<Method, row>(k, component);
 }
 
@@ -93,7 +121,7 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const vec<S, n_sta
                                       const inputs<Model, S>& p, rk_trial<Method, S, n_state<Model>>& trial) {
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
-    constexpr int last = Method::stages;
+    constexpr int last = row_of<Method>::solution;
     vec<S, n> sum;
     const auto add_stage = [&](auto j) MYRIAD_LAMBDA {
         constexpr int stage = decltype(j)::value, first = first_stage<Method, last>;
