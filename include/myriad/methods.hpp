@@ -2,6 +2,7 @@
 // All methods of integration.
 #pragma once
 
+#include "myriad/controller/choices.hpp"
 #include "myriad/stepper/methods/cash_karp.hpp"
 #include "myriad/stepper/methods/dense.hpp"
 #include "myriad/stepper/methods/dormand_prince_5.hpp"

@@ -3,6 +3,7 @@
 // file: it builds trials by hand.
 #include "myriad/controller/norm.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -85,4 +86,45 @@ TEST_CASE("a step to a state that is not finite is not accepted") {
 }
 TEST_CASE("an infinite error is not accepted") {
     CHECK_FALSE(norm_of({1, 1}, {1, 1}, {infinity, 0}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+}
+
+TEST_CASE("the combined estimate of dormand_prince_8 falls with the step to the eighth power") {
+    using method = myriad::dormand_prince_8;
+    myriad::kernel_arguments<model, double> args{};
+    for (int c = 0; c < 2; ++c) args.absolute_tolerance[c] = 1e-6;
+    const auto worst = [&](double h) {
+        const myriad::inputs<model, double> p{};
+        const myriad::vec<double, 2> y = model::exact(0.5);
+        myriad::rk_trial<method, double, 2> trial;
+        trial.k[0] = myriad::evaluate_rhs<model>(0.5, y, p);
+        myriad::explicit_rk_step<method, model>(0.5, h, y, p, trial);
+        return myriad::scaled_error<model, method>(args, y, h, trial).worst;
+    };
+    // e5 ~ h^6 and e3 ~ h^4, so e5^2 / e3 ~ h^8 (1 + O(h))
+    for (const double h : {0.125, -0.125}) CHECK(std::abs(std::log2(worst(h) / worst(h / 2)) - 8) < 0.3);
+}
+
+TEST_CASE("two estimates are combined as in DOP853, and are nothing where the first is") {
+    using method = myriad::dormand_prince_8;
+    myriad::kernel_arguments<model, double> args{};
+    for (int c = 0; c < 2; ++c) args.absolute_tolerance[c] = 1;
+    myriad::rk_trial<method, double, 2> trial{};
+    trial.y = {1.0, 1.0};
+    for (const pair k : {pair{3, 0}, pair{-5, 4}, pair{0, 0}, pair{1e200, 0}}) {
+        trial.k[0] = {k.first, k.second};
+        trial.k[8] = {k.second, k.first};
+        const auto size = [&](const auto& weight) {
+            double d = 0;
+            for (int c = 0; c < 2; ++c) d = std::max(d, std::abs(weight(0) * trial.k[0][c] + weight(8) * trial.k[8][c]));
+            return d;
+        };
+        const double e5 = size([](int i) { return method::tableau().e[static_cast<std::size_t>(i)]; });
+        const double e3 = size([](int i) { return method::coarse_error_weight(i); });
+        const auto norm = myriad::scaled_error<model, method>(args, {1.0, 1.0}, 1.0, trial);
+        const double expected = e5 == 0 ? 0 : e5 * (e5 / std::hypot(e5, 0.1 * e3));
+        CHECK(std::abs(norm.worst - expected) <= 2 * tolerance * expected);
+        CHECK(norm.within == (expected <= 1));
+    }
+    trial.y[1] = infinity;
+    CHECK_FALSE(myriad::scaled_error<model, method>(args, {1.0, 1.0}, 1.0, trial).within);
 }

@@ -25,10 +25,13 @@ MYRIAD_FUNCTION void end_stuck_lanes(integration_state<Model, Method, S>& s, con
     s.end_lanes(stuck & !s.last_not_finite, status::step_underflow);
 }
 
+/// Binary logarithm of 1e-4, as in Hairer and Wanner's DOPRI5.
+inline constexpr double least_error_remembered = -13.2877;
+
 /// Accepts or rejects the trial of every lane and sets `data.h_next`, the elementary (I) controller of the MPGOS package:
 /// factor 0.9 q^(-1/(p+1)) after an accepted and 0.9 q^(-1/p) after a rejected step, with q the largest ratio of error to
 /// tolerance and p the order of the error estimate, kept within the options' limits (Hairer, Norsett, Wanner, Solving
-/// ODE I, II.4, eq. (4.13)). Lanes whose trial is not finite (or not `valid`) are rejected with the smallest factor.
+/// ODE I, II.4, eq. (4.13)); or the one chosen with `controlled`. Lanes whose trial is not finite (or not `valid`) are rejected with the smallest factor.
 /// Lanes that are rejected at the minimum step end. Returns the accepted lanes.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>>& args,
@@ -41,9 +44,20 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
     const mask within = valid & error.within;
     const mask accepted = s.running() & within;
     constexpr int order = estimate_order<Method>;
-    const C exponent = select(within, C(R(-1.0 / (order + 1))), C(R(-1.0 / order)));
     const C shrink_limit = C(static_cast<R>(args.shrink_limit));
-    C factor = C(R(0.9)) * fast_power(error.worst, exponent);
+    C factor;
+    if constexpr (remembers_errors<Method>) {
+        const C now = fast_log2(error.worst);
+        C sum = fma(C(R(Method::exponent_last)), s.errors.last, C(R(Method::exponent_now)) * now);
+        if constexpr (Method::exponent_before != 0) sum = fma(C(R(Method::exponent_before)), s.errors.before, sum);
+        factor = C(R(0.9)) * fast_exp2(select(within, sum * C(R(-1.0 / (order + 1))), now * C(R(-1.0 / order))));
+        // Steps without any error are forgotten: they would shorten the next ones.
+        s.errors.before = select(accepted, s.errors.last, s.errors.before);
+        s.errors.last = select(accepted, larger(now, C(R(least_error_remembered))), s.errors.last);
+    } else {
+        const C exponent = select(within, C(R(-1.0 / (order + 1))), C(R(-1.0 / order)));
+        factor = C(R(0.9)) * fast_power(error.worst, exponent);
+    }
     factor = smaller(larger(factor, shrink_limit), C(static_cast<R>(args.growth_limit)));
 
     s.last_not_finite = s.last_not_finite & !within;

@@ -46,7 +46,7 @@ struct event_locator {
         }
         const mask jumps = any_event(on_jump);
         if (MYRIAD_UNLIKELY(any(jumps))) {
-            renew_slope(jumps);
+            s.renew_slope(jumps);
             look_beyond(on_jump);
         }
     }
@@ -87,17 +87,6 @@ struct event_locator {
             e.left[j] = (e.left[j] & !fired) | (lanes & jumped);
         }
         if (MYRIAD_UNLIKELY(any(any_event(on_jump)))) look_beyond(on_jump);
-    }
-
-    /// f at the committed state, where it is not known; the next step takes it from there.
-    MYRIAD_FUNCTION void renew_slope(const mask& lanes) {
-        const mask needed = lanes & !s.slope_valid;
-        if (!any(needed)) return;
-        const auto slope = evaluate_rhs<Model>(s.now(), s.data.y, s.data);
-        MYRIAD_UNROLL
-        for (int c = 0; c < n; ++c) s.slope[c] = select(needed, slope[c], s.slope[c]);
-        s.extra_evaluations = count_where(needed, s.extra_evaluations);
-        s.slope_valid = s.slope_valid | needed;
     }
 
     /// Events of which a crossing from the given sides is asked for.

@@ -57,9 +57,8 @@ struct hook_driver {
         const auto before = s.data.y;
         for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
         if constexpr (has_after_event<Model>) follow_up(acting, before);
-        event_locator<Model, Method, S> locate{args, s, e};
-        locate.renew_slope(acting);
-        locate.settle(acting);
+        s.renew_slope(acting);
+        event_locator<Model, Method, S>{args, s, e}.settle(acting);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) e.firing[j] = mask(false);
     }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "myriad/controller/choices.hpp"
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/input_check.hpp"
 #include "myriad/ensemble/report.hpp"
@@ -24,10 +25,11 @@ void describe_options(kernel_arguments<Model, R>& a, const options& o) {
     a.carry_time = o.phase_time == phase_time::carry_on;
     a.carry_step = o.phase_step == phase_step::carry_on;
     a.max_steps = static_cast<std::int32_t>(o.max_steps);
-    a.step = static_cast<R>(std::isnan(o.step) ? std::min(1e-2, o.maximum_step) : o.step);
+    constexpr double default_step = chooses_first_step<Method> ? 0 : 1e-2;
+    a.step = static_cast<R>(std::isnan(o.step) ? std::min(default_step, o.maximum_step) : o.step);
     a.minimum_step = static_cast<R>(o.minimum_step);
     a.maximum_step = static_cast<R>(o.maximum_step);
-    if constexpr (Method::embedded_order > 0) a.step = std::clamp(a.step, a.minimum_step, a.maximum_step);
+    if (Method::embedded_order > 0 && a.step > 0) a.step = std::clamp(a.step, a.minimum_step, a.maximum_step);
     a.growth_limit = static_cast<R>(o.growth_limit);
     a.shrink_limit = static_cast<R>(o.shrink_limit);
     for (std::size_t c = 0; c < static_cast<std::size_t>(n_state<Model>); ++c) {

@@ -6,6 +6,7 @@
 
 #include "myriad/controller/adaptive.hpp"
 #include "myriad/controller/fixed.hpp"
+#include "myriad/controller/initial_step.hpp"
 #include "myriad/event/locator.hpp"
 #include "myriad/integrator/actions.hpp"
 #include "myriad/integrator/phase.hpp"
@@ -80,6 +81,10 @@ struct integrator {
                 s.first_start = s.phase_start[i] < s.first_start ? s.phase_start[i] : s.first_start;
             });
         }
+        if constexpr (chooses_first_step<Method>) {
+            const mask open = begun & s.first_step_open;
+            if (any(open)) choose_first_step(args, s, open);
+        }
         if constexpr (has_events<Model>) locator{args, s, e}.begin(begun);
         return any(s.active);
     }
@@ -141,16 +146,7 @@ struct integrator {
             s.h = select(e.locating, e.h_redo, s.h);
             s.final_step = s.final_step & !e.locating;
         }
-        if constexpr (keeps_slope) {
-            const mask needed = !s.slope_valid;
-            if (any(needed)) {
-                const auto slope = evaluate_rhs<Model>(s.now(), s.data.y, s.data);
-                MYRIAD_UNROLL
-                for (int c = 0; c < n; ++c) s.slope[c] = select(needed, slope[c], s.slope[c]);
-                s.extra_evaluations = count_where(needed, s.extra_evaluations);
-                s.slope_valid = mask(true);
-            }
-        }
+        if constexpr (keeps_slope) s.renew_slope(mask(true));
     }
 
     MYRIAD_FUNCTION void take_step(trial_step& trial) {

@@ -144,6 +144,11 @@ private:
         const R t = get_lane(s.data.t, i);
         args.t[index] = t;
         if constexpr (is_adaptive<Method>) {
+            if constexpr (chooses_first_step<Method>) set_lane(s.first_step_open, i, get_lane(s.data.h_next, i) == R(0));
+            if constexpr (remembers_errors<Method>) {
+                set_lane(s.errors.last, i, 0);
+                set_lane(s.errors.before, i, 0);
+            }
             set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), get_lane(s.data.t_end, i) - t));
             s.bound_step(args, i);
         } else {

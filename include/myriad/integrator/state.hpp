@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "myriad/controller/choices.hpp"
+#include "myriad/controller/kind.hpp"
 #include "myriad/ensemble/view.hpp"
 #include "myriad/model/hooks.hpp"
 #include "myriad/scalar/math.hpp"
@@ -71,6 +73,15 @@ MYRIAD_FUNCTION void for_each_lane(const M& mask, Visit&& visit) {
     }
 }
 
+/// Binary logarithms of the error over the tolerance of the last accepted step and of the one before; for controllers that
+/// look back.
+template <class Method, class S, bool remembers = remembers_errors<Method>>
+struct control_memory {};
+template <class Method, class S>
+struct control_memory<Method, S, true> {
+    control_of<S> last, before;
+};
+
 template <class Model, class Method, class S>
 struct integration_state {
     using R = real_of<S>;
@@ -93,6 +104,8 @@ struct integration_state {
     S h;               // its length, signed
     mask final_step;   // it ends at t_end
     mask last_not_finite;  // the lane's last rejection was for a value that is not finite
+    mask first_step_open;  // the phase's first step is yet to be chosen
+    control_memory<Method, S> errors;  // of earlier steps
 
     // fixed steps: t = base + done * step, so that no rounding adds up and no step is added
     S base, step;
@@ -127,6 +140,17 @@ struct integration_state {
         } else {
             return fma(S(done), step, base);
         }
+    }
+
+    /// f at the committed state, in the lanes where it is not known.
+    MYRIAD_FUNCTION void renew_slope(const mask& lanes) {
+        const mask needed = lanes & !slope_valid;
+        if (!any(needed)) return;
+        const auto fresh = evaluate_rhs<Model>(now(), data.y, data);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) slope[c] = select(needed, fresh[c], slope[c]);
+        extra_evaluations = count_where(needed, extra_evaluations);
+        slope_valid = slope_valid | needed;
     }
 
     /// Keeps a step that a hook or an earlier call left within the options' limits.

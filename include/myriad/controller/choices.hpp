@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Other step-size controls than the default, chosen with the method: a type of its own each, because kernels hold no
+// instruction of what was not chosen.
+#pragma once
+
+namespace myriad {
+
+/// PI control: the factor of the next step is 0.9 q^(-0.7/k) r^(0.4/k), with q and r the errors over tolerance of this and of
+/// the last accepted step and k the order of the error estimate plus one. Fewer rejections where stability limits the step.
+/// Gustafsson, ACM Trans. Math. Softw. 17 (1991) 533; Hairer, Wanner, Solving ODE II, IV.2, eq. (2.43c).
+struct pi_control {
+    static constexpr double exponent_now = 0.7, exponent_last = -0.4, exponent_before = 0;
+};
+
+/// PID control: 0.9 q^(-0.58/k) r^(0.21/k) s^(-0.1/k), s being the error of the accepted step before the last. Kennedy and
+/// Carpenter, Appl. Numer. Math. 44 (2003) 139; the constants are those of SUNDIALS' ARKODE.
+struct pid_control {
+    static constexpr double exponent_now = 0.58, exponent_last = -0.21, exponent_before = 0.1;
+};
+
+/// The root mean square of the components' errors over their tolerances, instead of the largest.
+struct rms_norm {
+    static constexpr bool averages_errors = true;
+};
+
+/// Errors are compared with atol + rtol max(|y|, |y1|), instead of the larger of the two.
+struct mixed_scale {
+    static constexpr bool adds_tolerances = true;
+};
+
+/// Where options::step is not given, the first step of a phase follows from the slope and its change over a short Euler step,
+/// for two evaluations, one of which the first step uses. Hairer, Norsett, Wanner, Solving ODE I, II.4, "Starting step size".
+struct automatic_first_step {
+    static constexpr bool chooses_first_step = true;
+};
+
+/// `Method`, an adaptive one, with the chosen controls: `controlled<dormand_prince_8, pi_control, automatic_first_step>`.
+/// Instantiate it where it is wanted, like any method.
+template <class Method, class... Choices>
+struct controlled : Method, Choices... {
+    static_assert(Method::embedded_order > 0, "the method takes fixed steps and has no step-size control to choose");
+};
+
+/// Whether a method's control knows the errors of earlier steps.
+template <class Method>
+inline constexpr bool remembers_errors = requires { Method::exponent_last; };
+template <class Method>
+inline constexpr bool averages_errors = requires { Method::averages_errors; };
+template <class Method>
+inline constexpr bool adds_tolerances = requires { Method::adds_tolerances; };
+template <class Method>
+inline constexpr bool chooses_first_step = requires { Method::chooses_first_step; };
+
+}  // namespace myriad
