@@ -4,6 +4,7 @@
 
 #include "myriad/device.hpp"
 #include "myriad/ensemble/ensemble.hpp"
+#include "myriad/ensemble/exponents.hpp"
 #include "myriad/ensemble/report.hpp"
 #include "myriad/integrator/options.hpp"
 #include "myriad/methods.hpp"

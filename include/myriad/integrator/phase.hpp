@@ -192,7 +192,7 @@ private:
         if (!finite) {
             set_lanes(s.data.y, i, before);
             s.ending[i] = status::not_finite;
-        } else if (!same_values(before, after)) {
+        } else if (!same_values(before, after, n - n_tangent<Model>)) {
             forget_sides(i);
         }
     }

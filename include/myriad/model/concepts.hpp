@@ -25,6 +25,8 @@ MYRIAD_MODEL_COUNT(n_shared_integer)
 MYRIAD_MODEL_COUNT(n_accessory)
 MYRIAD_MODEL_COUNT(n_integer_accessory)
 MYRIAD_MODEL_COUNT(n_event)
+/// States, at the end of all, that event functions do not read (`with_tangents`).
+MYRIAD_MODEL_COUNT(n_tangent)
 #undef MYRIAD_MODEL_COUNT
 
 // Declarations: `static constexpr bool name = true;` in the model.

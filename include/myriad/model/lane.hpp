@@ -99,12 +99,12 @@ MYRIAD_FUNCTION void set_lanes(vec<S, n>& v, int i, const vec<R, n>& lane) {
     for (int c = 0; c < n; ++c) set_lane(v[c], i, lane[c]);
 }
 
-/// Whether two states are the same (a NaN differs from everything).
+/// Whether two states are the same in their first components (a NaN differs from everything).
 template <class R, int n>
-MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b) {
+MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int count = n) {
     bool same = true;
     MYRIAD_UNROLL
-    for (int c = 0; c < n; ++c) same = same && a[c] == b[c];
+    for (int c = 0; c < count; ++c) same = same && a[c] == b[c];
     return same;
 }
 

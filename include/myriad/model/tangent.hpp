@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Tangent dynamics: a model together with its variational equations, whose right-hand side is that of the model called
+// with dual numbers, and with the growth of the tangent vectors, which gives Lyapunov exponents.
+#pragma once
+
+#include "myriad/model/tangent_lane.hpp"
+
+namespace myriad {
+
+// One layer for each optional function: there if the model has it, so that the wrapped model has the functions of the
+// model and no others. Each inherits the one before it, and hides the function of the model by its own.
+namespace tangent_layers {
+
+template <class Model, int vectors>
+struct events_layer : Model {};
+template <class Model, int vectors>
+    requires has_events<Model>
+struct events_layer<Model, vectors> : Model {
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, n_event<Model>> events(auto t, const auto& y, const auto& p) {
+        return Model::template events<R>(t, part<n_state<Model>>(y), p);
+    }
+};
+
+template <class Model, int vectors>
+struct after_step_layer : events_layer<Model, vectors> {};
+template <class Model, int vectors>
+    requires(has_after_step<Model> && !has_generic_after_step<Model>)
+struct after_step_layer<Model, vectors> : events_layer<Model, vectors> {
+    MYRIAD_FUNCTION static action after_step(auto& wrapped) {
+        action wanted = action::proceed;
+        move_tangents<Model, vectors>(wrapped, [&](auto& own) MYRIAD_LAMBDA {
+            wanted = action_of([&]() MYRIAD_LAMBDA { return Model::after_step(own); });
+        });
+        return wanted;
+    }
+};
+template <class Model, int vectors>
+    requires has_generic_after_step<Model>
+struct after_step_layer<Model, vectors> : events_layer<Model, vectors> {
+    template <class R>
+    MYRIAD_FUNCTION static mask_of<R> after_step(auto& wrapped) {
+        mask_of<R> stops = mask_of<R>(false);
+        move_tangents<Model, vectors>(wrapped, [&](auto& own) MYRIAD_LAMBDA {
+            if constexpr (std::is_void_v<decltype(Model::template after_step<dual<R>>(own))>) {
+                Model::template after_step<dual<R>>(own);
+            } else {
+                stops = Model::template after_step<dual<R>>(own);
+            }
+        });
+        return stops;
+    }
+};
+
+/// A neighbour reaches the surface g = 0 later by dt = -(grad g v) / (dg/dt). With f and f+ the slopes before and after
+/// the action y -> r(t, y), its distance v becomes Dr (v + f dt) + dr/dt dt - f+ dt (Mueller, Chaos, Solitons and Fractals
+/// 5 (1995) 1671), in which the first two terms are how r moves along (v + f dt, dt).
+template <class Model, int vectors>
+struct after_event_layer : after_step_layer<Model, vectors> {};
+template <class Model, int vectors>
+    requires has_after_event<Model>
+struct after_event_layer<Model, vectors> : after_step_layer<Model, vectors> {
+    MYRIAD_FUNCTION static action after_event(int event, auto& wrapped) {
+        constexpr int n = n_state<Model>;
+        using R = std::remove_cvref_t<decltype(wrapped.t)>;
+        const vec<R, n> before = slope<R>(wrapped);
+        const R approach = event_along(event, wrapped, before, R(1));
+        vec<R, vectors> dt;
+        vec<R, vectors * n> arriving;
+        MYRIAD_UNROLL
+        for (int i = 0; i < vectors; ++i) {
+            vec<R, n> v = part<n>(wrapped.y, n + i * n);
+            dt[i] = -event_along(event, wrapped, v, R(0)) / approach;
+            // A surface that is only touched has no dt, which does no harm where nothing jumps.
+            const R finite = is_finite(dt[i]) ? dt[i] : R(0);
+            for (int c = 0; c < n; ++c) v[c] = fma(before[c], finite, v[c]);
+            set_part(arriving, i * n, v);
+        }
+        action wanted = action::proceed;
+        const auto left = move_through<Model, vectors>(wrapped, arriving, dt, [&](auto& own) MYRIAD_LAMBDA {
+            wanted = action_of([&]() MYRIAD_LAMBDA { return Model::after_event(event, own); });
+        });
+        const vec<R, n> after = slope<R>(wrapped);
+        const bool no_jump = same_values(left, arriving) && same_values(before, after);
+        if (no_jump) return wanted;  // not even a rounding
+        MYRIAD_UNROLL
+        for (int i = 0; i < vectors; ++i)
+            for (int c = 0; c < n; ++c) wrapped.y[n + i * n + c] = fma(-after[c], dt[i], left[i * n + c]);
+        return wanted;
+    }
+
+private:
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, n_state<Model>> slope(const auto& wrapped) {
+        return Model::template rhs<R>(wrapped.t, part<n_state<Model>>(wrapped.y), inputs_in<Model>(wrapped));
+    }
+    template <class R, int n>
+    MYRIAD_FUNCTION static R event_along(int event, const auto& wrapped, const vec<R, n>& direction, R dt) {
+        const auto g = Model::template events<dual<R>>(dual<R>(wrapped.t, dt),
+                                                       along(part<n>(wrapped.y), direction), inputs_in<Model>(wrapped));
+        return g[event].derivative;
+    }
+};
+
+}  // namespace tangent_layers
+
+/// Model with `vectors` solutions v' = J v of its variational equations, J the Jacobian of its right-hand side: a model
+/// itself, for which `with_tangents<Model>::tangent(c, i)` is component c of tangent i among the states. The tangents
+/// start orthonormal (`initial_tangents(ensemble)` sets some), are made so again at the end of every phase, by a QR
+/// decomposition, and the logarithms of the diagonal of R are summed up, from phase `transient_phases` on: over
+/// `time_summed`, the sums are the Lyapunov exponents, the largest first (`exponents(ensemble)`); Benettin et al.,
+/// Meccanica 15 (1980) 9 and 21. The first components, parameters, shared values, accessories, events and hooks are
+/// those of Model; actions move the tangents as they do the distance of a neighbouring solution.
+///
+/// Model's functions, hooks included, are called with dual numbers: their variables are `auto` or R, their functions
+/// those of `myriad`. What a hook writes elsewhere than to the state, and `rhs` reads, must not depend on the state, and
+/// `rhs` may jump only where an event with `after_event` is.
+template <class Model, int vectors = 1>
+struct with_tangents : tangent_layers::after_event_layer<Model, vectors> {
+    static_assert(check_model<Model>());
+    static_assert(vectors >= 1 && vectors <= myriad::n_state<Model>,
+                  "a model of n components has from 1 to n independent tangent vectors");
+
+    using original = Model;
+    static constexpr int n_original = myriad::n_state<Model>;
+    static constexpr int n_vectors = vectors;
+
+    /// States that are no part of the model's own, at their end.
+    static constexpr int n_tangent = vectors * n_original;
+    static constexpr int n_state = n_original + n_tangent;
+    /// Component c of tangent vector i, among the states.
+    MYRIAD_FUNCTION static constexpr int tangent(int c, int i = 0) { return n_original + i * n_original + c; }
+
+    /// The sum of ln |r_ii| of the phases, among the accessories.
+    MYRIAD_FUNCTION static constexpr int growth(int i = 0) { return myriad::n_accessory<Model> + i; }
+    /// Their time, and the time at which the running phase began.
+    static constexpr int time_summed = myriad::n_accessory<Model> + vectors;
+    static constexpr int phase_began = time_summed + 1;
+    static constexpr int n_accessory = phase_began + 1;
+
+    /// Number of phases, from the ensemble's start, that are left out of the sums, among the shared integers.
+    static constexpr int transient_phases = myriad::n_shared_integer<Model>;
+    static constexpr int n_shared_integer = transient_phases + 1;
+
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, n_state> rhs(auto t, const vec<R, n_state>& y, const auto& p) {
+        static_assert(hooks_fit<Model, real_of<R>>);
+        const vec<R, n_original> at = part<n_original>(y);
+        vec<R, n_state> slope;
+        MYRIAD_UNROLL
+        for (int i = 0; i < vectors; ++i) {
+            // t is no dual number: the derivative is the one at a given time.
+            const vec<dual<R>, n_original> f =
+                Model::template rhs<dual<R>>(t, along(at, part<n_original>(y, tangent(0, i))), p);
+            MYRIAD_UNROLL
+            for (int c = 0; c < n_original; ++c) {
+                if (i == 0) slope[c] = f[c].value;
+                slope[tangent(c, i)] = f[c].derivative;
+            }
+        }
+        return slope;
+    }
+
+    MYRIAD_FUNCTION static void initialise(auto& wrapped) {
+        const bool at_t_begin = wrapped.t == wrapped.t_begin;
+        if constexpr (has_initialise<Model>) {
+            const auto given = part<n_tangent>(wrapped.y, n_original);
+            move_tangents<Model, vectors>(wrapped, [](auto& own) MYRIAD_LAMBDA { Model::initialise(own); });
+            if (wrapped.phase == 0) set_part(wrapped.y, n_original, given);  // they begin with the state it has set
+        }
+        wrapped.accessory[phase_began] = at_t_begin ? wrapped.t_begin : wrapped.t;
+        if (wrapped.phase == 0) {
+            for (int i = 0; i < vectors; ++i) wrapped.accessory[growth(i)] = 0;
+            wrapped.accessory[time_summed] = 0;
+            orthonormalise<n_original, vectors>(wrapped.y, n_original, [](int, const auto&) MYRIAD_LAMBDA {});
+        }
+    }
+
+    MYRIAD_FUNCTION static void finalise(auto& wrapped) {
+        if constexpr (has_finalise<Model>)
+            move_tangents<Model, vectors>(wrapped, [](auto& own) MYRIAD_LAMBDA { Model::finalise(own); });
+        const bool counts = wrapped.phase >= wrapped.shared_integer[transient_phases];
+        orthonormalise<n_original, vectors>(wrapped.y, n_original, [&](int i, const auto& length) MYRIAD_LAMBDA {
+            if (counts) wrapped.accessory[growth(i)] += log(length);
+        });
+        if (counts) wrapped.accessory[time_summed] += wrapped.t - wrapped.accessory[phase_began];
+    }
+};
+
+}  // namespace myriad

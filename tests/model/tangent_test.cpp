@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: MIT
+// Tangent dynamics: tangents are those of closed forms and differences of trajectories, exponents those that are known, and
+// nothing of the model itself changes.
+#include "myriad/model/tangent.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include <Eigen/Dense>
+
+#include <myriad/myriad.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/model/tangent_models.hpp"
+#include "tests/support/compare.hpp"
+#include "tests/support/device.hpp"
+
+namespace {
+
+using namespace tangents;
+using compare::same_bits_everywhere;
+using compare::with_tolerance;
+using Eigen::ArrayXd;
+using Eigen::Index;
+
+/// Column i holds tangent vector i of an instance.
+template <class W, class R>
+Eigen::MatrixXd tangents_of(const myriad::ensemble<W, R>& e, Index instance) {
+    Eigen::MatrixXd q(W::n_original, W::n_vectors);
+    for (int i = 0; i < W::n_vectors; ++i)
+        for (int c = 0; c < W::n_original; ++c) q(c, i) = static_cast<double>(e.state(W::tangent(c, i))[instance]);
+    return q;
+}
+
+/// Where the first tangent has got to in one phase, with its length.
+template <class W>
+Eigen::VectorXd first_tangent(const myriad::ensemble<W>& e, Index instance) {
+    return tangents_of(e, instance).col(0) * std::exp(e.accessory(W::growth(0))[instance]);
+}
+
+template <class W, class R>
+double departure_from_orthonormal(const myriad::ensemble<W, R>& e) {
+    double most = 0;
+    for (Index i = 0; i < e.size(); ++i) {
+        const auto q = tangents_of(e, i);
+        const Eigen::MatrixXd gram = q.transpose() * q;
+        const double off = (gram - Eigen::MatrixXd::Identity(W::n_vectors, W::n_vectors)).cwiseAbs().maxCoeff();
+        most = off <= most ? most : off;  // NaN too
+    }
+    return most;
+}
+
+template <class R>
+myriad::ensemble<lorenz_spectrum, R> lorenz_sweep(Index size, R phase_length) {
+    myriad::ensemble<lorenz_spectrum, R> e(size);
+    e.parameter(lorenz::rho) = R(28);
+    e.state(lorenz::x).setLinSpaced(R(-10), R(10));
+    e.state(lorenz::y) = R(1);
+    e.state(lorenz::z) = R(20);
+    myriad::initial_tangents(e);
+    e.time_domain(0, phase_length);
+    return e;
+}
+
+myriad::ensemble<spiral_spectrum> spirals(double t_end) {
+    using W = spiral_spectrum;
+    myriad::ensemble<W> e(40);
+    e.parameter(spiral::growth).setLinSpaced(-0.5, 0.5);
+    e.parameter(spiral::frequency) = 2;
+    e.parameter(spiral::decay).setLinSpaced(-1, 0.8);
+    e.parameter(spiral::coupling) = 1.5;
+    for (int c = 0; c < spiral::n_state; ++c) e.state(c) = 1;
+    myriad::initial_tangents(e);
+    e.time_domain(0, t_end);
+    return e;
+}
+
+/// The solution of the spiral's equations, linear in where it starts: z is driven by the real part of a complex exponential.
+Eigen::Vector3d spiral_flow(const myriad::ensemble<spiral_spectrum>& e, Index i, double t, const Eigen::Vector3d& start) {
+    const std::complex<double> eigenvalue(e.parameter(spiral::growth)[i], e.parameter(spiral::frequency)[i]);
+    const double decay = e.parameter(spiral::decay)[i];
+    const std::complex<double> z0(start[0], start[1]), z = z0 * std::exp(eigenvalue * t);
+    const auto driven = z0 * (std::exp(eigenvalue * t) - std::exp(decay * t)) / (eigenvalue - decay);
+    return {z.real(), z.imag(), start[2] * std::exp(decay * t) + e.parameter(spiral::coupling)[i] * driven.real()};
+}
+
+/// Mean over the instances and its standard error, from their spread.
+struct estimate {
+    double mean, error;
+    explicit estimate(const ArrayXd& values)
+        : mean(values.mean()),
+          error(std::sqrt((values - mean).square().sum() / static_cast<double>((values.size() - 1) * values.size()))) {}
+};
+
+const myriad::options table_events = [] {
+    myriad::options o = with_tolerance(1e-12);
+    o.events = {{.direction = myriad::direction::falling, .tolerance = 1e-11}, {.tolerance = 1e-11}};
+    return o;
+}();
+
+template <class Model>
+void fill_table(myriad::ensemble<Model>& e) {
+    e.parameter(table::r).setLinSpaced(0.7, 1.0);
+    e.shared(table::amplitude) = 0.1;
+    e.shared(table::drag) = 0.05;
+    e.state(table::x) = ArrayXd::LinSpaced(e.size(), 1, 1.3);
+    e.state(table::v) = ArrayXd::LinSpaced(e.size(), -0.2, 0.1);
+    e.time_domain(0, 8);
+}
+
+}  // namespace
+
+TEST_CASE("the initial tangents are orthonormal, and no component of them is zero") {
+    auto e = lorenz_sweep<double>(3, 1);
+    CHECK(departure_from_orthonormal(e) <= 4 * std::numeric_limits<double>::epsilon());
+    for (Index i = 0; i < e.size(); ++i) CHECK(tangents_of(e, i).cwiseAbs().minCoeff() > 0.01);
+}
+
+TEST_CASE("tangents of a linear flow are its solutions, forwards and backwards") {
+    const double t = GENERATE(3.0, -3.0);
+    CAPTURE(t);
+    auto e = spirals(t);
+    const Eigen::Vector3d start = tangents_of(e, 0).col(0);
+    const auto report = myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, with_tolerance(1e-12));
+    REQUIRE(report.count(myriad::status::success) == e.size());
+    for (Index i = 0; i < e.size(); ++i) {
+        const Eigen::Vector3d exact = spiral_flow(e, i, t, start);
+        // At most 2000 steps with an error of 1e-12, which grows like the solutions: by e^3 at most.
+        CAPTURE(i, e.accepted_steps()[i]);
+        CHECK(e.accepted_steps()[i] < 2000);
+        CHECK((first_tangent(e, i) - exact).cwiseAbs().maxCoeff() <= 4e-8);
+    }
+}
+
+TEST_CASE("with fixed steps the tangent is the derivative of the method's own map") {
+    // Of a linear flow the map of Runge-Kutta 4 is linear: the first four terms of the exponential series, per step.
+    auto e = spirals(1);
+    e.parameter(spiral::coupling) = 0;
+    e.state(spiral_spectrum::tangent(spiral::x)) = 1;
+    e.state(spiral_spectrum::tangent(spiral::y)) = 0;
+    e.state(spiral_spectrum::tangent(spiral::z)) = 0;
+    e.state(spiral_spectrum::tangent(spiral::x, 1)) = 0;
+    myriad::solve<myriad::runge_kutta_4>(tests::test_device(), e, {.step = 0.125});
+    for (Index i = 0; i < e.size(); ++i) {
+        const std::complex<double> z = 0.125 * std::complex<double>(e.parameter(spiral::growth)[i], 2);
+        const double growth = 8 * std::log(std::abs(1.0 + z + z * z / 2.0 + z * z * z / 6.0 + z * z * z * z / 24.0));
+        CHECK(std::abs(e.accessory(spiral_spectrum::growth(0))[i] - growth) <= 1e-14);  // some dozen roundings
+    }
+}
+
+TEST_CASE("exponents of a linear flow are the real parts of its eigenvalues, and a rotation has zero") {
+    auto e = spirals(0.5);
+    e.parameter(spiral::growth) = ArrayXd::LinSpaced(e.size(), -0.5, 0);  // the last one rotates
+    e.parameter(spiral::decay) = -1;
+    const int transient = 100, phases = 1100;
+    e.shared_integer(spiral_spectrum::transient_phases) = transient;
+    myriad::options o = with_tolerance(1e-10);
+    o.phases = phases;
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, o);
+    CHECK((e.accessory(spiral_spectrum::time_summed) == 0.5 * (phases - transient)).all());  // exact in binary
+    const Eigen::ArrayXXd found = myriad::exponents(e);
+    const ArrayXd growth = e.parameter(spiral::growth);
+    // By then the tangents of an instance are in their planes to e^(-0.5 * 50), and turn there, being longer and shorter
+    // by a factor of less than 4 (the coupling tilts the plane): over a time of 500 that makes ln 4 / 500.
+    CHECK((found.col(0) - growth).abs().maxCoeff() <= 2.8e-3);
+    CHECK((found.col(1) - growth).abs().maxCoeff() <= 2.8e-3);
+    CHECK((found.col(2) + 1).abs().maxCoeff() <= 2.8e-3);
+    // Their sum is the trace: steps of 0.02 or more with errors of 1e-10, in each of three tangents.
+    CHECK((found.rowwise().sum() - (2 * growth - 1)).abs().maxCoeff() <= 3e-8);
+}
+
+TEST_CASE("exponents of Lorenz' equations are those known, and sum up to the divergence") {
+    const int phases = 2000;
+    auto e = lorenz_sweep<double>(512, 0.25);
+    e.shared_integer(lorenz_spectrum::transient_phases) = 200;
+    myriad::options o = with_tolerance(1e-7);
+    o.phases = phases;
+    const auto report = myriad::solve<myriad::tsitouras_5>(tests::test_device(2), e, o);
+    REQUIRE(report.count(myriad::status::success) == e.size());
+    const Eigen::ArrayXXd found = myriad::exponents(e);
+    const estimate largest(found.col(0)), middle(found.col(1));
+    CAPTURE(largest.mean, largest.error, middle.mean, middle.error);
+    CHECK(largest.error <= 4e-4);  // else the next lines say nothing
+    CHECK(std::abs(largest.mean - 0.9055) <= 3e-4 + 3 * largest.error);
+    CHECK(std::abs(middle.mean) <= 3 * middle.error + 1e-5);
+    // The divergence is the same everywhere. 100 steps per unit of time err by 1e-7 in each of three tangents.
+    CHECK((found.rowwise().sum() + 41.0 / 3).abs().maxCoeff() <= 3e-5);
+    CHECK(departure_from_orthonormal(e) <= 8 * std::numeric_limits<double>::epsilon());
+}
+
+TEST_CASE("the largest exponent of Roessler's equations is the one known") {
+    using W = myriad::with_tangents<roessler>;
+    myriad::ensemble<W> e(512);
+    e.state(roessler::x).setLinSpaced(1, 5);
+    e.state(roessler::y) = 0;
+    e.state(roessler::z) = 0;
+    myriad::initial_tangents(e);
+    e.time_domain(0, 10);
+    e.shared_integer(W::transient_phases) = 20;
+    myriad::options o = with_tolerance(1e-7);
+    o.phases = 220;
+    const auto report = myriad::solve<myriad::tsitouras_5>(tests::test_device(2), e, o);
+    REQUIRE(report.count(myriad::status::success) == e.size());
+    const estimate largest(myriad::exponents(e).col(0));
+    CAPTURE(largest.mean, largest.error);
+    CHECK(largest.error <= 1e-4);
+    CHECK(std::abs(largest.mean - 0.0714) <= 2e-4 + 3 * largest.error);
+}
+
+TEST_CASE("on a limit cycle one exponent is zero and the other the mean divergence") {
+    // The cycle in long double: Runge-Kutta 4 with steps of 1e-3 errs by less than 1e-11.
+    using cycle = Eigen::Array<long double, 3, 1>;  // x, v and the integral of the divergence
+    const auto slope = [](const cycle& y) {
+        const auto f = van_der_pol::rhs<long double>(0, {y[0], y[1]}, 0);
+        return cycle(f[0], f[1], 1 - y[0] * y[0]);
+    };
+    const auto step = [&](const cycle& y, long double h) -> cycle {
+        const cycle a = slope(y), b = slope(y + h / 2 * a), c = slope(y + h / 2 * b), d = slope(y + h * c);
+        return y + h / 6 * (a + 2 * b + 2 * c + d);
+    };
+    cycle y(2, 0, 0);
+    long double t = 0, t_maximum = 0, divergence = 0, period = 0;
+    for (int maxima = 0; maxima < 8;) {  // each period takes the cycle nearer by a factor of 1000
+        const long double h = 1e-3L;
+        if (y[1] > 0 && step(y, h)[1] <= 0) {
+            long double low = 0, high = h;
+            for (int i = 0; i < 64; ++i) {
+                const long double middle = (low + high) / 2;
+                (step(y, middle)[1] > 0 ? low : high) = middle;
+            }
+            period = t + high - t_maximum;
+            t_maximum = t + high;
+            const long double integral = step(y, high)[2];
+            y[2] -= integral;
+            divergence = integral / period;
+            ++maxima;
+        }
+        y = step(y, h);
+        t += h;
+    }
+    CHECK(std::abs(static_cast<double>(period) - 6.66328685932313) <= 1e-10);  // known to all these digits
+
+    using W = van_der_pol_spectrum;
+    myriad::ensemble<W> e(16);
+    e.state(van_der_pol::x).setLinSpaced(-2, 2);
+    e.state(van_der_pol::v) = 1;
+    myriad::initial_tangents(e);
+    e.time_domain(0, static_cast<double>(period));
+    e.shared_integer(W::transient_phases) = 10;
+    myriad::options o = with_tolerance(1e-11);
+    o.phases = 20;
+    myriad::solve<myriad::cash_karp>(tests::test_device(), e, o);
+    const Eigen::ArrayXXd found = myriad::exponents(e);
+    // At most 1000 steps per period with errors of 1e-11, by which the cycle is not closed either.
+    CHECK(e.accepted_steps().maxCoeff() <= 20 * 1000);
+    CHECK(found.col(0).abs().maxCoeff() <= 1e-8);
+    CHECK((found.col(1) - static_cast<double>(divergence)).abs().maxCoeff() <= 1e-8);
+}
+
+TEST_CASE("left out of the error test, tangents do not change a bit of the model") {
+    auto e = lorenz_sweep<double>(20, 0.7);
+    myriad::ensemble<lorenz> alone(e.size());
+    alone.parameter(lorenz::rho) = 28;
+    for (int c = 0; c < lorenz::n_state; ++c) alone.state(c) = e.state(c);
+    alone.time_domain(0, 0.7);
+    myriad::options o = with_tolerance(1e-9);
+    o.phases = 3;
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(), alone, o);
+    o.relative_tolerance = o.absolute_tolerance = myriad::without_tangents<lorenz_spectrum>(1e-9);
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, o);
+    for (int c = 0; c < lorenz::n_state; ++c) {
+        if (tests::tests_cpu()) {
+            CHECK(same_bits_everywhere(e.state(c), alone.state(c)));
+        } else {  // whose compiler may fuse other operations: roundings grow by e^(0.9 * 2.1) and a little more
+            CHECK((e.state(c) - alone.state(c)).abs().maxCoeff() <= 1e-10);
+        }
+    }
+    if (tests::tests_cpu()) CHECK(same_bits_everywhere(e.accepted_steps(), alone.accepted_steps()));
+}
+
+TEST_CASE("tangents pass impacts on a moving table as the differences of trajectories do") {
+    using W = table_spectrum;
+    myriad::ensemble<W> e(24);
+    fill_table(e);
+    for (int c = 0; c < 2; ++c)  // instances take turns in which direction comes first
+        for (int i = 0; i < 2; ++i)
+            for (Index k = 0; k < e.size(); ++k) e.state(W::tangent(c, i))[k] = (c + i + k) % 2 == 0 ? 1 : 0;
+    // Central differences, d = 1e-5: their error is of the order d^2, and 1e-10, what steps and events leave, over d.
+    const double d = 1e-5;
+    const auto shifted = [&](double sign) {
+        myriad::ensemble<table> alone(e.size());
+        fill_table(alone);
+        for (Index k = 0; k < e.size(); ++k) alone.state(k % 2 == 0 ? table::x : table::v)[k] += sign * d;
+        myriad::solve<myriad::tsitouras_5>(tests::test_device(), alone, table_events);
+        return alone;
+    };
+    const auto up = shifted(1), down = shifted(-1);
+    const auto report = myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, table_events);
+    REQUIRE(report.count(myriad::status::success) == e.size());
+    for (Index k = 0; k < e.size(); ++k) {
+        const auto bounces = e.integer_accessory(table::bounces)[k];
+        CAPTURE(k, bounces);
+        CHECK(bounces >= 2);
+        const auto difference = [&](int c) { return (up.state(c)[k] - down.state(c)[k]) / (2 * d); };
+        const Eigen::Vector2d expected(difference(table::x), difference(table::v));
+        CHECK((first_tangent(e, k) - expected).norm() <= 2e-5 * (1 + expected.norm()));
+        // Areas: an impact takes r^2 of them, drag the rest; exact, but for the errors of steps and events.
+        const double growth = e.accessory(W::growth(0))[k] + e.accessory(W::growth(1))[k];
+        CHECK(std::abs(growth - (2 * bounces * std::log(e.parameter(table::r)[k]) - 0.05 * 8)) <= 1e-8);
+    }
+}
+
+TEST_CASE("hooks and events do with tangents what they do without, at the ends of phases too") {
+    // Of 400 phases many end while an event function is within such a tolerance.
+    myriad::options o = with_tolerance(1e-9);
+    o.events = {{.direction = myriad::direction::falling, .tolerance = 1e-2}, {.tolerance = 1e-2}};
+    o.phases = 400;
+    o.phase_time = myriad::phase_time::carry_on;
+    o.step = 1e-3;
+    myriad::ensemble<table> alone(48);
+    myriad::ensemble<table_spectrum> e(48);
+    const auto run = [&](auto& instances) {
+        fill_table(instances);
+        instances.shared_integer(table::bounces_allowed) = 3;
+        // The hook leaves the end where it is, so each phase after the first is one of no length: so step by step.
+        instances.time_domain(0, 0.02);
+        for (int k = 1; k <= 400; ++k) {
+            instances.t_end() = 0.02 * k;
+            o.phases = 1;
+            myriad::solve<myriad::tsitouras_5>(tests::test_device(), instances, o);
+        }
+    };
+    run(alone);
+    myriad::initial_tangents(e);
+    o.relative_tolerance = o.absolute_tolerance = myriad::without_tangents<table_spectrum>(1e-9);
+    run(e);
+    CHECK((e.phases_done() == alone.phases_done()).all());
+    CHECK((e.integer_accessory(table::bounces) == alone.integer_accessory(table::bounces)).all());
+    CHECK((e.integer_accessory(table::phases) == alone.integer_accessory(table::phases)).all());
+    CHECK(e.phases_done().minCoeff() < 400);  // some are ended by their hook
+    if (!tests::tests_cpu()) return;
+    for (int c = 0; c < table::n_state; ++c) CHECK(same_bits_everywhere(e.state(c), alone.state(c)));
+    for (int c = 0; c < table::n_accessory; ++c) CHECK(same_bits_everywhere(e.accessory(c), alone.accessory(c)));
+}
+
+TEST_CASE("a change of mode and a map at the end of a phase move the tangent") {
+    using W = myriad::with_tangents<gear>;
+    myriad::ensemble<W> e(10);
+    e.state(gear::x) = -1;
+    e.parameter(gear::speed).setLinSpaced(2, 4);
+    e.state(W::tangent(gear::x)) = 1;
+    e.time_domain(0, 1.5);
+    myriad::options o = with_tolerance(1e-9);
+    o.maximum_step = 0.0625;
+    const auto growth_of_phase = [&] {
+        const ArrayXd before = e.accessory(W::growth());
+        myriad::solve<myriad::cash_karp>(tests::test_device(), e, o);
+        return ArrayXd(e.accessory(W::growth()) - before);
+    };
+    e.accessory(W::growth()) = 0;
+    // Twice the speed is twice the distance; then finalise takes x to three times x. Exact up to some roundings.
+    CHECK((growth_of_phase() - (3 * e.parameter(gear::speed)).log()).abs().maxCoeff() <= 1e-14);
+    CHECK((e.state(gear::x) - 1.5 * e.parameter(gear::speed)).abs().maxCoeff() <= 1e-5);  // located to 1e-6
+    CHECK((growth_of_phase() - std::log(3.0)).abs().maxCoeff() <= 1e-14);
+    CHECK((e.accessory(W::time_summed) < 3).any());  // where after_step has ended the phase
+    CHECK((e.t() - 1.5).abs().minCoeff() == 0);
+}
+
+TEST_CASE("phases in one call and in many give the same bits, sums included") {
+    auto once = lorenz_sweep<double>(9, 0.3), often = lorenz_sweep<double>(9, 0.3);
+    myriad::options o = with_tolerance(1e-8);
+    o.phase_step = myriad::phase_step::carry_on;
+    for (int k = 0; k < 5; ++k) myriad::solve<myriad::tsitouras_5>(tests::test_device(), often, o);
+    o.phases = 5;
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(), once, o);
+    CHECK(compare::difference(once, often).empty());
+}
+
+TEST_CASE("exponents in single precision sum up to the divergence too") {
+    auto e = lorenz_sweep<float>(64, 0.25f);
+    myriad::options o = with_tolerance(1e-5);
+    o.phases = 100;
+    const auto report = myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, o);
+    REQUIRE(report.count(myriad::status::success) == e.size());
+    const Eigen::ArrayXXf found = myriad::exponents(e);
+    // 50 steps per unit of time err by 1e-5 in each of three tangents, 400 roundings of a sum of 300 by 1.5e-5 over 25.
+    CHECK((found.rowwise().sum() + 41.0f / 3).abs().maxCoeff() <= 2e-3f);
+    CHECK(departure_from_orthonormal(e) <= 8 * static_cast<double>(std::numeric_limits<float>::epsilon()));
+}
+
+TEST_CASE("tangents that nobody set are refused by name") {
+    auto e = lorenz_sweep<double>(2, 1);
+    e.state(lorenz_spectrum::tangent(lorenz::y)) = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH(myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, with_tolerance(1e-8)),
+                      Catch::Matchers::Contains("state 4 is NaN"));
+}
