@@ -7,3 +7,4 @@
 MYRIAD_INSTANTIATE(tangents::table, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(tangents::table_spectrum, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(myriad::with_tangents<tangents::gear>, myriad::cash_karp)
+MYRIAD_INSTANTIATE(myriad::with_tangents<tangents::dip>, myriad::cash_karp)

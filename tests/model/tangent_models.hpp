@@ -122,4 +122,21 @@ struct gear {
     MYRIAD_FUNCTION static void finalise(auto& lane) { lane.y[x] = lane.y[x] * 3; }
 };
 
+/// x = x(0) - 1 + (t - 1)^2, whose lowest value is at t = 1, and beside it w' = w, so that tangents grow.
+struct dip {
+    enum state { x, w, n_state };
+    enum integer_accessory { crossings, n_integer_accessory };
+    enum event { zero, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto&) {
+        return {R(2) * (t - R(1)), y[w]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_event>{y[x]};
+    }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) { lane.integer_accessory[crossings] += 1; }
+};
+
 }  // namespace tangents

@@ -1,0 +1,20 @@
+// expect: no matching function for call to .sin
+// SPDX-License-Identifier: MIT
+// Functions that take plain numbers have no derivative: no tangent can do without it.
+#include <cmath>
+
+#include "myriad/instantiate.hpp"
+#include "myriad/model.hpp"
+#include "myriad/model/tangent.hpp"
+
+struct pendulum {
+    static constexpr bool scalar_only = true;
+    enum state { x, v, n_state };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return {y[v], -std::sin(y[x])};
+    }
+};
+
+MYRIAD_INSTANTIATE(myriad::with_tangents<pendulum>, myriad::runge_kutta_4)
