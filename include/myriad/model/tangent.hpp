@@ -3,6 +3,9 @@
 // with dual numbers, and with the growth of the tangent vectors, which gives Lyapunov exponents.
 #pragma once
 
+#include <utility>
+
+#include "myriad/core/static_for.hpp"
 #include "myriad/model/tangent_lane.hpp"
 
 namespace myriad {
@@ -145,20 +148,8 @@ struct with_tangents : tangent_layers::after_event_layer<Model, vectors> {
     template <class R>
     MYRIAD_FUNCTION static vec<R, n_state> rhs(auto t, const vec<R, n_state>& y, const auto& p) {
         static_assert(hooks_fit<Model, real_of<R>>);
-        const vec<R, n_original> at = part<n_original>(y);
-        vec<R, n_state> slope;
-        MYRIAD_UNROLL
-        for (int i = 0; i < vectors; ++i) {
-            // t is no dual number: the derivative is the one at a given time.
-            const vec<dual<R>, n_original> f =
-                Model::template rhs<dual<R>>(t, along(at, part<n_original>(y, tangent(0, i))), p);
-            MYRIAD_UNROLL
-            for (int c = 0; c < n_original; ++c) {
-                if (i == 0) slope[c] = f[c].value;
-                slope[tangent(c, i)] = f[c].derivative;
-            }
-        }
-        return slope;
+        return slopes<R>(t, y, p, std::make_integer_sequence<int, n_original>{},
+                         std::make_integer_sequence<int, vectors>{}, std::make_integer_sequence<int, n_state>{});
     }
 
     MYRIAD_FUNCTION static void initialise(auto& wrapped) {
@@ -184,6 +175,20 @@ struct with_tangents : tangent_layers::after_event_layer<Model, vectors> {
             if (counts) wrapped.accessory[growth(i)] += log(length);
         });
         if (counts) wrapped.accessory[time_summed] += wrapped.t - wrapped.accessory[phase_began];
+    }
+
+private:
+    template <class R, int... c, int... i, int... all>
+    MYRIAD_FUNCTION static vec<R, n_state> slopes(const auto& t, const vec<R, n_state>& y, const auto& p,
+                                                  std::integer_sequence<int, c...>, std::integer_sequence<int, i...>,
+                                                  std::integer_sequence<int, all...>) {
+        const auto along_tangent = [&](auto k) MYRIAD_LAMBDA {
+            return Model::template rhs<dual<R>>(
+                t, vec<dual<R>, n_original>{dual<R>(y[c], y[tangent(c, decltype(k)::value)])...}, p);
+        };
+        const vec<dual<R>, n_original> f[vectors] = {along_tangent(constant_index<i>{})...};
+        return vec<R, n_state>{(all < n_original ? f[0][all].value
+                                                 : f[all / n_original - (all >= n_original)][all % n_original].derivative)...};
     }
 };
 
