@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// The Lyapunov spectrum of Lorenz' equations over rho, the Rayleigh number.
+#include <cstdint>
+#include <iostream>
+
+#include <myriad/myriad.hpp>
+
+#include "../common/command_line.hpp"
+#include "../common/csv_file.hpp"
+#include "../common/progress.hpp"
+#include "lorenz.hpp"
+
+namespace {
+
+constexpr double rho_first = 0, rho_last = 250, sigma_of_all = 10, beta_of_all = 8.0 / 3;
+constexpr double tolerance = 1e-8, phase_length = 0.25;
+
+myriad::ensemble<lorenz_spectrum> prepare(std::int64_t instances, std::int64_t transient) {
+    // snippet: ensemble
+    myriad::ensemble<lorenz_spectrum> sweep(instances);
+    sweep.parameter(lorenz::rho).setLinSpaced(rho_first, rho_last);
+    sweep.shared(lorenz::sigma) = sigma_of_all;
+    sweep.shared(lorenz::beta) = beta_of_all;
+    for (const auto c : {lorenz::x, lorenz::y, lorenz::z}) sweep.state(c) = 1;
+    myriad::initial_tangents(sweep);
+    sweep.shared_integer(lorenz_spectrum::transient_phases) = static_cast<std::int32_t>(transient);
+    sweep.time_domain(0, phase_length);
+    // end of snippet
+    return sweep;
+}
+
+// Nothing here tells when, where or on how many threads the file was made: equal results are equal files.
+void write(examples::csv_file& file, const myriad::ensemble<lorenz_spectrum>& sweep, std::int64_t transient,
+           std::int64_t summed) {
+    using myriad::message;
+    // snippet: exponents
+    const Eigen::ArrayXXd lambda = myriad::exponents(sweep);  // one row per instance, the largest exponent first
+    // end of snippet
+    file.comment("Lyapunov exponents of x' = sigma (y - x), y' = x (rho - z) - y, z' = x y - beta z, per unit of time, "
+                 "natural logarithm");
+    file.comment(message("rho = linspace(", rho_first, ", ", rho_last, ", ", sweep.size(), "), sigma = ", sigma_of_all,
+                         ", beta = ", beta_of_all, ", x(0) = y(0) = z(0) = 1"));
+    file.comment(message("phases of length ", phase_length, ": ", transient, " transient, ", summed, " summed"));
+    file.comment(message("Myriad " MYRIAD_VERSION ", method tsitouras_5, relative and absolute tolerance ", tolerance));
+    file.row("instance", "rho", "lambda_1", "lambda_2", "lambda_3", "status");
+    for (std::int64_t i = 0; i < sweep.size(); ++i)
+        file.row(i, sweep.parameter(lorenz::rho)[i], lambda(i, 0), lambda(i, 1), lambda(i, 2),
+                 myriad::name_of(sweep.status(i)));
+    file.commit();
+}
+
+int run(const examples::sweep_options& chosen, const myriad::device& device) {
+    const auto rows = static_cast<std::uintmax_t>(chosen.instances);
+    examples::csv_file file(chosen.output, 40 * rows);  // the shortest rows have about 60 characters
+    auto sweep = prepare(chosen.instances, chosen.transient);
+    examples::progress shown(chosen.quiet ? examples::progress::style::none : examples::progress::style::automatic);
+    const myriad::options options{
+        .phases = chosen.transient + chosen.recorded,
+        .relative_tolerance = tolerance,
+        .absolute_tolerance = tolerance,
+        .phase_step = myriad::phase_step::carry_on,
+        .progress = [&shown](std::int64_t begun, std::int64_t total) { shown(begun, total); }};
+    const auto report = myriad::solve<myriad::tsitouras_5>(device, sweep, options);
+    shown.finish();
+    if (!chosen.quiet) std::cout << report;
+
+    write(file, sweep, chosen.transient, chosen.recorded);
+    if (!chosen.quiet) std::cout << "Written to " << file.path().string() << '\n';
+    if (report.failed() == 0) return 0;
+    std::cerr << report.failed() << " of " << report.instances << " instances failed, the first of them instance "
+              << report.first_failed << ": " << myriad::name_of(report.first_status) << " at t = " << report.first_t
+              << '\n';
+    return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return examples::run_sweep(argc, argv, "Lyapunov spectrum of Lorenz' equations over rho; recorded phases are summed",
+                               {.instances = 2000, .transient = 400, .recorded = 2000, .output = "results/lyapunov.csv"},
+                               run);
+}
