@@ -36,6 +36,11 @@ function(myriad_model_flags result)
         endif()
     endif()
     list(APPEND flags "-ffp-contract=${MYRIAD_FP_CONTRACT}" -fno-math-errno)
+    # g++ keeps large objects that are copied as a whole in memory, dual numbers of packs among them. In registers,
+    # a Runge-Kutta 4 step of Lorenz' equations with three tangents takes 7.5 ns instead of 20 (Zen 4, AVX-512).
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        list(APPEND flags "--param=sra-max-scalarization-size-Ospeed=2048")
+    endif()
     # Release as CMake has it; RelWithDebInfo gets more than CMake's -O2. Debug cannot go without: the AVX-512 part of
     # xsimd 8.1 compiles with optimisation only, and lanes that are not inlined are useless at any speed.
     list(APPEND flags "$<$<CONFIG:Release,RelWithDebInfo>:-O3>" "$<$<CONFIG:Debug>:-O1>")

@@ -40,7 +40,7 @@ def draw(rho, exponents):
     upper.plot(rho, exponents[:, 0], linewidth=0.7, color="#10305a", label=r"$\lambda_1$")
     upper.set_ylim(-1.5, None)
     upper.set_ylabel(r"$\lambda_1$, $\lambda_2$ (per unit of time)")
-    upper.legend(loc="lower right", frameon=False)
+    upper.legend(loc="upper left", frameon=False)
     lower.plot(rho, exponents[:, 2], linewidth=0.7, color="#307040")
     lower.set_ylabel(r"$\lambda_3$ (per unit of time)")
     lower.set_xlabel(r"$\rho$ (–)")

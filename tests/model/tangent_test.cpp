@@ -132,6 +132,9 @@ TEST_CASE("tangents of a linear flow are its solutions, forwards and backwards")
         CHECK(e.accepted_steps()[i] < 2000);
         CHECK((first_tangent(e, i) - exact).cwiseAbs().maxCoeff() <= 4e-8);
     }
+    // The sum of the exponents of the flow is its trace, whichever way time goes.
+    const ArrayXd trace = 2 * e.parameter(spiral::growth) + e.parameter(spiral::decay);
+    CHECK((myriad::exponents(e).rowwise().sum() - trace).abs().maxCoeff() <= 4e-8);
 }
 
 TEST_CASE("with fixed steps the tangent is the derivative of the method's own map") {
@@ -205,7 +208,7 @@ TEST_CASE("the largest exponent of Roessler's equations is the one known") {
     REQUIRE(report.count(myriad::status::success) == e.size());
     const estimate largest(myriad::exponents(e).col(0));
     CAPTURE(largest.mean, largest.error);
-    CHECK(largest.error <= 1e-4);
+    CHECK(largest.error <= 1.2e-4);
     CHECK(std::abs(largest.mean - 0.0714) <= 2e-4 + 3 * largest.error);
 }
 
