@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Tangent dynamics: tangents are those of closed forms and differences of trajectories, exponents those that are known, and
-// nothing of the model itself changes.
+// Tangents of smooth flows are those of closed forms, exponents those that are known, and nothing of the model itself
+// changes.
 #include "myriad/model/tangent.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -14,6 +13,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/model/tangent_models.hpp"
+#include "tests/model/tangent_vectors.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/device.hpp"
 
@@ -24,21 +24,6 @@ using compare::same_bits_everywhere;
 using compare::with_tolerance;
 using Eigen::ArrayXd;
 using Eigen::Index;
-
-/// Column i holds tangent vector i of an instance.
-template <class W, class R>
-Eigen::MatrixXd tangents_of(const myriad::ensemble<W, R>& e, Index instance) {
-    Eigen::MatrixXd q(W::n_original, W::n_vectors);
-    for (int i = 0; i < W::n_vectors; ++i)
-        for (int c = 0; c < W::n_original; ++c) q(c, i) = static_cast<double>(e.state(W::tangent(c, i))[instance]);
-    return q;
-}
-
-/// Where the first tangent has got to in one phase, with its length.
-template <class W>
-Eigen::VectorXd first_tangent(const myriad::ensemble<W>& e, Index instance) {
-    return tangents_of(e, instance).col(0) * std::exp(e.accessory(W::growth(0))[instance]);
-}
 
 template <class W, class R>
 double departure_from_orthonormal(const myriad::ensemble<W, R>& e) {
@@ -93,22 +78,6 @@ struct estimate {
         : mean(values.mean()),
           error(std::sqrt((values - mean).square().sum() / static_cast<double>((values.size() - 1) * values.size()))) {}
 };
-
-const myriad::options table_events = [] {
-    myriad::options o = with_tolerance(1e-12);
-    o.events = {{.direction = myriad::direction::falling, .tolerance = 1e-11}, {.tolerance = 1e-11}};
-    return o;
-}();
-
-template <class Model>
-void fill_table(myriad::ensemble<Model>& e) {
-    e.parameter(table::r).setLinSpaced(0.85, 1.0);
-    e.shared(table::amplitude) = 0.1;
-    e.shared(table::drag) = 0.05;
-    e.state(table::x) = ArrayXd::LinSpaced(e.size(), 1, 1.3);
-    e.state(table::v) = ArrayXd::LinSpaced(e.size(), -0.2, 0.1);
-    e.time_domain(0, 8);
-}
 
 }  // namespace
 
@@ -281,108 +250,6 @@ TEST_CASE("left out of the error test, tangents do not change a bit of the model
         }
     }
     if (tests::tests_cpu()) CHECK(same_bits_everywhere(e.accepted_steps(), alone.accepted_steps()));
-}
-
-TEST_CASE("tangents pass impacts on a moving table as the differences of trajectories do") {
-    using W = table_spectrum;
-    myriad::ensemble<W> e(24);
-    fill_table(e);
-    for (int c = 0; c < 2; ++c)  // instances take turns in which direction comes first
-        for (int i = 0; i < 2; ++i)
-            for (Index k = 0; k < e.size(); ++k) e.state(W::tangent(c, i))[k] = (c + i + k) % 2 == 0 ? 1 : 0;
-    // Central differences, d = 1e-5: their error is of the order d^2, and 1e-10, what steps and events leave, over d.
-    const double d = 1e-5;
-    const auto shifted = [&](double sign) {
-        myriad::ensemble<table> alone(e.size());
-        fill_table(alone);
-        for (Index k = 0; k < e.size(); ++k) alone.state(k % 2 == 0 ? table::x : table::v)[k] += sign * d;
-        myriad::solve<myriad::tsitouras_5>(tests::test_device(), alone, table_events);
-        return alone;
-    };
-    const auto up = shifted(1), down = shifted(-1);
-    const auto report = myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, table_events);
-    REQUIRE(report.count(myriad::status::success) == e.size());
-    for (Index k = 0; k < e.size(); ++k) {
-        const auto bounces = e.integer_accessory(table::bounces)[k];
-        CAPTURE(k, bounces);
-        CHECK(bounces >= 2);
-        const auto difference = [&](int c) { return (up.state(c)[k] - down.state(c)[k]) / (2 * d); };
-        const Eigen::Vector2d expected(difference(table::x), difference(table::v));
-        CHECK((first_tangent(e, k) - expected).norm() <= 2e-5 * (1 + expected.norm()));
-        // Areas: an impact takes r^2 of them, drag the rest; exact, but for the errors of steps and events.
-        const double growth = e.accessory(W::growth(0))[k] + e.accessory(W::growth(1))[k];
-        CHECK(std::abs(growth - (2 * bounces * std::log(e.parameter(table::r)[k]) - 0.05 * 8)) <= 1e-8);
-    }
-}
-
-TEST_CASE("hooks and events do with tangents what they do without, at the ends of phases too") {
-    // Of 400 phases many end while an event function is within such a tolerance.
-    myriad::options o = with_tolerance(1e-9);
-    o.events = {{.direction = myriad::direction::falling, .tolerance = 1e-2}, {.tolerance = 1e-2}};
-    o.phase_time = myriad::phase_time::carry_on;
-    o.step = 1e-3;
-    myriad::ensemble<table> alone(48);
-    myriad::ensemble<table_spectrum> e(48);
-    const auto run = [&](auto& instances) {
-        fill_table(instances);
-        instances.shared_integer(table::bounces_allowed) = 3;
-        for (int k = 1; k <= 400; ++k) {
-            instances.t_end() = 0.02 * k;
-            myriad::solve<myriad::tsitouras_5>(tests::test_device(), instances, o);
-        }
-    };
-    run(alone);
-    myriad::initial_tangents(e);
-    o.relative_tolerance = o.absolute_tolerance = myriad::without_tangents<table_spectrum>(1e-9);
-    run(e);
-    CHECK((e.phases_done() == alone.phases_done()).all());
-    CHECK((e.integer_accessory(table::bounces) == alone.integer_accessory(table::bounces)).all());
-    CHECK((e.integer_accessory(table::phases) == alone.integer_accessory(table::phases)).all());
-    CHECK(e.phases_done().minCoeff() < 400);  // some are ended by their hook
-    if (!tests::tests_cpu()) return;
-    for (int c = 0; c < table::n_state; ++c) CHECK(same_bits_everywhere(e.state(c), alone.state(c)));
-    for (int c = 0; c < table::n_accessory; ++c) CHECK(same_bits_everywhere(e.accessory(c), alone.accessory(c)));
-}
-
-TEST_CASE("tangents made orthonormal between phases do not make an event function forget its side") {
-    // It lingers below zero, within its tolerance, while a phase ends, and goes back up: no crossing.
-    using W = myriad::with_tangents<dip>;
-    myriad::ensemble<W> e(4);
-    e.state(dip::x) = 0.995;
-    e.state(dip::w) = 1;
-    myriad::initial_tangents(e);
-    myriad::options o = with_tolerance(1e-10);
-    o.phase_time = myriad::phase_time::carry_on;
-    o.events = {{.direction = myriad::direction::rising, .tolerance = 0.01}};
-    for (const double t_end : {0.97, 2.0}) {
-        e.time_domain(0, t_end);
-        myriad::solve<myriad::cash_karp>(tests::test_device(), e, o);
-    }
-    CHECK((e.state(dip::x) - 0.995).abs().maxCoeff() <= 1e-9);
-    CHECK((e.integer_accessory(dip::crossings) == 0).all());
-}
-
-TEST_CASE("a change of mode and a map at the end of a phase move the tangent") {
-    using W = myriad::with_tangents<gear>;
-    myriad::ensemble<W> e(10);
-    e.state(gear::x) = -1;
-    e.parameter(gear::speed).setLinSpaced(2, 4);
-    e.state(W::tangent(gear::x)) = 1;
-    e.time_domain(0, 1.5);
-    myriad::options o = with_tolerance(1e-9);
-    o.maximum_step = 0.0625;
-    const auto growth_of_phase = [&] {
-        const ArrayXd before = e.accessory(W::growth());
-        myriad::solve<myriad::cash_karp>(tests::test_device(), e, o);
-        return ArrayXd(e.accessory(W::growth()) - before);
-    };
-    e.accessory(W::growth()) = 0;
-    // Twice the speed is twice the distance; then finalise takes x to three times x. Exact up to some roundings.
-    CHECK((growth_of_phase() - (3 * e.parameter(gear::speed)).log()).abs().maxCoeff() <= 1e-14);
-    CHECK((e.state(gear::x) - 1.5 * e.parameter(gear::speed)).abs().maxCoeff() <= 1e-5);  // located to 1e-6
-    CHECK((growth_of_phase() - std::log(3.0)).abs().maxCoeff() <= 1e-14);
-    CHECK((e.accessory(W::time_summed) < 3).any());  // where after_step has ended the phase
-    CHECK((e.t() - 1.5).abs().minCoeff() == 0);
 }
 
 TEST_CASE("phases in one call and in many give the same bits, sums included") {
