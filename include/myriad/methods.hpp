@@ -7,6 +7,8 @@
 #include "myriad/stepper/methods/dense.hpp"
 #include "myriad/stepper/methods/dormand_prince_5.hpp"
 #include "myriad/stepper/methods/dormand_prince_8.hpp"
+#include "myriad/stepper/methods/rodas_5p.hpp"
+#include "myriad/stepper/methods/rosenbrock_23.hpp"
 #include "myriad/stepper/methods/runge_kutta_4.hpp"
 #include "myriad/stepper/methods/tsitouras_5.hpp"
 #include "myriad/stepper/methods/verner_7.hpp"

@@ -18,9 +18,11 @@ MYRIAD_FUNCTION void propose_adaptive_step(integration_state<Model, Method, S>& 
     s.h = select(s.final_step, remaining, copysign(s.data.h_next, remaining));
 }
 
-/// Ends lanes that can make no step: not_finite where that was why their last trial failed.
+/// Ends lanes that can make no step, as not_finite or singular_jacobian where that was why their last trial failed.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION void end_stuck_lanes(integration_state<Model, Method, S>& s, const mask_of<S>& stuck) {
+    if constexpr (solves_linear_systems<Method>)
+        s.end_lanes(stuck & s.last_not_finite & s.last_singular, status::singular_jacobian);  // the first status stands
     s.end_lanes(stuck & s.last_not_finite, status::not_finite);
     s.end_lanes(stuck & !s.last_not_finite, status::step_underflow);
 }
@@ -31,15 +33,17 @@ inline constexpr double least_error_remembered = -13.2877;
 /// Accepts or rejects the trial of every lane and sets `data.h_next`, the elementary (I) controller of the MPGOS package:
 /// factor 0.9 q^(-1/(p+1)) after an accepted and 0.9 q^(-1/p) after a rejected step, with q the largest ratio of error to
 /// tolerance and p the order of the error estimate, kept within the options' limits (Hairer, Norsett, Wanner, Solving
-/// ODE I, II.4, eq. (4.13)); or the one chosen with `controlled`. Lanes whose trial is not finite (or not `valid`) are rejected with the smallest factor.
+/// ODE I, II.4, eq. (4.13)); or the one chosen with `controlled`. Lanes whose trial is not finite (or not `valid`, or
+/// singular) are rejected with the smallest factor.
 /// Lanes that are rejected at the minimum step end. Returns the accepted lanes.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>>& args,
                                         integration_state<Model, Method, S>& s,
-                                        const rk_trial<Method, S, n_state<Model>>& trial, const mask_of<S>& valid) {
+                                        const rk_trial<Method, S, n_state<Model>>& trial, mask_of<S> valid) {
     using C = control_of<S>;
     using R = real_of<C>;
     using mask = mask_of<S>;
+    if constexpr (solves_linear_systems<Method>) valid = valid & !trial.singular;
     const error_norm<S> error = scaled_error<Model, Method>(args, s.data.y, s.h, trial);
     const mask within = valid & error.within;
     const mask accepted = s.running() & within;
@@ -67,6 +71,9 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
         factor = select(within | finite, factor, shrink_limit);
         s.rejected = count_where(rejected, s.rejected);
         s.last_not_finite = select(rejected, !finite, s.last_not_finite);
+        // No Jacobian can be had where the right-hand side itself is not finite.
+        if constexpr (solves_linear_systems<Method>)
+            s.last_singular = select(rejected & !finite, trial.singular & all_finite(trial.k[0]), s.last_singular);
         const mask smallest = rejected & (abs(s.h) <= S(args.minimum_step));
         if (MYRIAD_UNLIKELY(any(smallest))) end_stuck_lanes(s, smallest);
     }

@@ -6,7 +6,7 @@
 #include "myriad/controller/choices.hpp"
 #include "myriad/controller/kind.hpp"
 #include "myriad/ensemble/view.hpp"
-#include "myriad/stepper/explicit_rk.hpp"
+#include "myriad/stepper/step.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -29,23 +29,24 @@ MYRIAD_FUNCTION control_of<S> error_ratio(const S& error, const S& scale) {
 template <class S>
 struct error_norm {
     control_of<S> worst;  // largest ratio of error to tolerance; NaN ratios do not enter
-    mask_of<S> within;  // every ratio is at most one and every new value finite; false for NaN
+    mask_of<S> within;    // every ratio is at most one and every new value finite; false for NaN
 };
 
-/// The largest of the components' ratios of error to max(atol, rtol * max(|y|, |y1|)), or what was chosen instead.
-template <int row, class Model, class Method, class S>
+/// The largest of the components' ratios of `estimate(c)` to max(atol, rtol * max(|y|, |y1|)), or what was chosen instead.
+template <class Model, class Method, class S, class Estimate>
 MYRIAD_FUNCTION error_norm<S> error_over_tolerance(const kernel_arguments<Model, real_of<S>>& args,
-                                            const vec<S, n_state<Model>>& y, const S& h,
-                                            const rk_trial<Method, S, n_state<Model>>& trial) {
+                                                   const vec<S, n_state<Model>>& y, const vec<S, n_state<Model>>& y1,
+                                                   Estimate&& estimate) {
     using C = control_of<S>;
     using R = real_of<C>;
     error_norm<S> norm{C(R(0)), mask_of<S>(true)};
     MYRIAD_UNROLL
     for (int c = 0; c < n_state<Model>; ++c) {
-        const S size = abs(trial.y[c]);
-        const S atol = S(args.absolute_tolerance[c]), rtol = S(args.relative_tolerance[c]), larger_y = larger(abs(y[c]), size);
+        const S size = abs(y1[c]);
+        const S atol = S(args.absolute_tolerance[c]), rtol = S(args.relative_tolerance[c]),
+                larger_y = larger(abs(y[c]), size);
         const S scale = adds_tolerances<Method> ? fma(rtol, larger_y, atol) : larger(atol, rtol * larger_y);
-        const C ratio = error_ratio(error_estimate<Method, row>(h, trial.k, c), scale);
+        const C ratio = error_ratio(estimate(c), scale);
         norm.within = norm.within & (size <= S(largest_of<real_of<S>>));
         if constexpr (averages_errors<Method>) {
             norm.worst = fma(ratio, ratio, norm.worst);
@@ -67,12 +68,14 @@ template <class Model, class Method, class S>
 MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of<S>>& args,
                                            const vec<S, n_state<Model>>& y, const S& h,
                                            const rk_trial<Method, S, n_state<Model>>& trial) {
-    error_norm<S> norm = error_over_tolerance<row_of<Method>::error, Model>(args, y, h, trial);
+    error_norm<S> norm = error_over_tolerance<Model, Method>(
+        args, y, trial.y, [&](int c) MYRIAD_LAMBDA { return error_estimate(h, trial, c); });
     if constexpr (has_coarse_estimate<Method>) {
         using C = control_of<S>;
         using R = real_of<C>;
-        constexpr int coarse_row = row_of<Method>::coarse_error;
-        const C coarse = error_over_tolerance<coarse_row, Model>(args, y, h, trial).worst;
+        const C coarse = error_over_tolerance<Model, Method>(args, y, trial.y, [&](int c) MYRIAD_LAMBDA {
+                             return error_estimate<Method, row_of<Method>::coarse_error>(h, trial.k, c);
+                         }).worst;
         // sqrt(e^2 + 0.01 c^2), without overflow; the estimates of an exact step are both zero
         const C big = larger(norm.worst, C(R(0.1)) * coarse), small = smaller(norm.worst, C(R(0.1)) * coarse);
         const C quotient = select(big > C(R(0)), small / big, C(R(0)));

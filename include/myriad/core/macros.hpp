@@ -16,9 +16,12 @@
 #define MYRIAD_UNROLL _Pragma("unroll 32")
 /// Unrolls the loop of steps that follows, in device code, where constants are loaded anew in every turn.
 #define MYRIAD_UNROLL_BY_FOUR _Pragma("unroll 4")
+/// Keeps the loop that follows a loop, in device code, whose compiler would write it out.
+#define MYRIAD_ROLLED _Pragma("unroll 1")
 #else
 #define MYRIAD_UNROLL
 #define MYRIAD_UNROLL_BY_FOUR
+#define MYRIAD_ROLLED
 #endif
 #define MYRIAD_TARGET cuda_lane
 #define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
@@ -28,6 +31,7 @@
 #define MYRIAD_LAMBDA __attribute__((always_inline))
 #define MYRIAD_FORGET(value) static_cast<void>(value)
 #define MYRIAD_UNROLL_BY_FOUR
+#define MYRIAD_ROLLED
 #if defined(__clang__)
 #define MYRIAD_UNROLL _Pragma("clang loop unroll(full)")
 #else

@@ -189,7 +189,7 @@ private:
     /// the interpolant needs.
     MYRIAD_FUNCTION void complete(step_data<Method, S, n>& step, const S& t1, const mask& wanted) {
         if constexpr (Method::first_same_as_last) {
-            step.slope_end = step.trial.k[Method::stages - 1];
+            step.slope_end = step.trial.slope_end();
         } else {
             step.slope_end = evaluate_rhs<Model>(t1, step.trial.y, s.data);
             s.extra_evaluations = count_where(wanted, s.extra_evaluations, 1 + extra_stages<Method>);

@@ -12,7 +12,7 @@
 #include "myriad/integrator/phase.hpp"
 #include "myriad/integrator/state.hpp"
 #include "myriad/stepper/dense_output.hpp"
-#include "myriad/stepper/explicit_rk.hpp"
+#include "myriad/stepper/step.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -117,7 +117,7 @@ struct integrator {
                 trial_step trial;
                 const S t = fma(S(done + count(static_cast<lane_of<count>>(i))), step, base);
                 trial.k[0] = evaluate_rhs<Model>(t, now, p);
-                explicit_rk_step<Method, Model>(t, step, now, p, trial);
+                take_trial_step<Method, Model>(t, step, now, p, trial);
                 now = trial.y;
             }
             if (MYRIAD_UNLIKELY(any(s.running() & !all_finite(now)))) {
@@ -156,7 +156,7 @@ struct integrator {
         } else {
             trial.k[0] = evaluate_rhs<Model>(s.now(), s.data.y, s.data);
         }
-        explicit_rk_step<Method, Model>(s.now(), s.h, s.data.y, s.data, trial);
+        take_trial_step<Method, Model>(s.now(), s.h, s.data.y, s.data, trial);
     }
 
     /// Accepts or rejects the trial: error, finiteness, and that it does not go beyond an event.
@@ -210,7 +210,7 @@ struct integrator {
             if constexpr (Method::first_same_as_last) {
                 MYRIAD_UNROLL
                 for (int c = 0; c < n; ++c)
-                    s.slope[c] = select(accepted, trial.k[Method::stages - 1][c], s.slope[c]);
+                    s.slope[c] = select(accepted, trial.slope_end()[c], s.slope[c]);
             } else {
                 s.slope_valid = s.slope_valid & !accepted;
                 if constexpr (knows_slope_end) {

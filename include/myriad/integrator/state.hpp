@@ -12,8 +12,8 @@
 #include "myriad/ensemble/view.hpp"
 #include "myriad/model/hooks.hpp"
 #include "myriad/scalar/math.hpp"
-#include "myriad/stepper/explicit_rk.hpp"
 #include "myriad/stepper/methods/dense.hpp"
+#include "myriad/stepper/step.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -104,6 +104,7 @@ struct integration_state {
     S h;               // its length, signed
     mask final_step;   // it ends at t_end
     mask last_not_finite;  // the lane's last rejection was for a value that is not finite
+    mask last_singular;    // and that value came of a singular matrix, if the method solves linear systems
     mask first_step_open;  // the phase's first step is yet to be chosen
     control_memory<Method, S> errors;  // of earlier steps
 

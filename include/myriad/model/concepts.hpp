@@ -71,6 +71,7 @@ MYRIAD_MODEL_DECLARATION(scalar_only)
     template <class Model>                                             \
     inline constexpr bool has_##hook = names_##hook<Model>();
 MYRIAD_HOOK_NAME(rhs)
+MYRIAD_HOOK_NAME(jacobian)
 MYRIAD_HOOK_NAME(events)
 MYRIAD_HOOK_NAME(initialise)
 MYRIAD_HOOK_NAME(after_step)

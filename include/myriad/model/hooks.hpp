@@ -6,6 +6,7 @@
 #include <concepts>
 #include <type_traits>
 
+#include "myriad/core/matrix_loop.hpp"
 #include "myriad/core/status.hpp"
 #include "myriad/model/lane.hpp"
 
@@ -34,6 +35,14 @@ constexpr bool check_hooks() {
         },
         "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
         "rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`");
+    if constexpr (has_jacobian<Model>) {
+        static_assert(
+            requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {
+                { Model::template jacobian<R>(R{}, y, p) } -> std::same_as<matrix<R, n_state<Model>>>;
+            },
+            "jacobian has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::matrix<R, "
+            "n_state> jacobian(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, df_i/dy_j in row i, column j");
+    }
     if constexpr (has_events<Model> && n_event<Model> > 0) {
         static_assert(
             requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {

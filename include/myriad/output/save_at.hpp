@@ -88,7 +88,7 @@ private:
         if (!any(due)) return;
         step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slope_end, {}};
         if constexpr (Method::first_same_as_last) {
-            step.slope_end = trial.k[Method::stages - 1];
+            step.slope_end = trial.slope_end();
         } else if constexpr (interpolates_with_slope_end<Method>) {
             // The slope at the end is the first of the next step, unless a hook changes the state; locating an event may
             // have it already.

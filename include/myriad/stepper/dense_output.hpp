@@ -2,7 +2,7 @@
 // The state inside a step: the method's own interpolant where it has one, the cubic Hermite polynomial otherwise.
 #pragma once
 
-#include "myriad/stepper/explicit_rk.hpp"
+#include "myriad/stepper/step.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -89,7 +89,9 @@ template <class Method, class S, int n>
 MYRIAD_FUNCTION vec<S, n> interpolate(const step_data<Method, S, n>& step, const S& theta) {
     using R = real_of<S>;
     vec<S, n> out;
-    if constexpr (has_own_interpolant<Method>) {
+    if constexpr (rosenbrock_method<Method>) {
+        out = rosenbrock_interpolation(step.y, step.trial, theta);
+    } else if constexpr (has_own_interpolant<Method>) {
         constexpr int degree = Method::interpolant_degree, stages = interpolant_stages<Method>;
         vec<S, stages> weight;
         static_for<0, stages>([&](auto i) MYRIAD_LAMBDA {

@@ -22,6 +22,9 @@ template <class Method, class S, int n>
 struct rk_trial {
     vec<vec<S, n>, Method::stages> k;
     vec<S, n> y;
+
+    /// Of a method whose last stage is the first of the next step.
+    MYRIAD_FUNCTION const vec<S, n>& slope_end() const { return k[Method::stages - 1]; }
 };
 
 /// Whether a method has a second error estimate, of lower order.
@@ -112,6 +115,10 @@ MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<
 template <class Method, int row = row_of<Method>::error, class S, int n>
 MYRIAD_FUNCTION S error_estimate(const S& h, const vec<vec<S, n>, Method::stages>& k, int component) {
     return h * S(first_weight<Method, row, real_of<S>>) * scaled_sum<Method, row>(k, component);
+}
+template <class Method, class S, int n>
+MYRIAD_FUNCTION S error_estimate(const S& h, const rk_trial<Method, S, n>& trial, int component) {
+    return error_estimate<Method>(h, trial.k, component);
 }
 
 /// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given. The new state is summed up stage by stage, so

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// Derivatives of a model's right-hand side: the Jacobian by dual numbers, or the model's own where it has one, and the
+// derivative by time.
+#pragma once
+
+#include "myriad/core/matrix_loop.hpp"
+#include "myriad/model/concepts.hpp"
+#include "myriad/model/lane.hpp"
+#include "myriad/scalar/dual.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// Derivative of the right-hand side in the direction that the derivatives of t and y give.
+template <class Model, class S>
+MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const dual<S>& t, const vec<dual<S>, n_state<Model>>& y,
+                                                              const inputs<Model, S>& p) {
+    const auto f = Model::template rhs<dual<S>>(t, y, p);
+    vec<S, n_state<Model>> out;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_state<Model>; ++c) out[c] = f[c].derivative;
+    return out;
+}
+
+/// y as constants.
+template <class S, int n>
+MYRIAD_FUNCTION vec<dual<S>, n> constants(const vec<S, n>& y) {
+    vec<dual<S>, n> out;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n; ++c) out[c] = dual<S>(y[c]);
+    return out;
+}
+
+/// df/dt.
+template <class Model, class S>
+MYRIAD_FUNCTION vec<S, n_state<Model>> time_derivative(const S& t, const vec<S, n_state<Model>>& y,
+                                                       const inputs<Model, S>& p) {
+    return directional_derivative<Model>(dual<S>(t, S(real_of<S>(1))), constants(y), p);
+}
+
+/// df_i/dy_j in row i and column j, by one evaluation of the right-hand side with dual numbers per column. Where these are
+/// written out (small systems), the compiler computes what they share, the values, once.
+template <class Model, class S>
+MYRIAD_FUNCTION matrix<S, n_state<Model>> dual_jacobian(const S& t, const vec<S, n_state<Model>>& y,
+                                                        const inputs<Model, S>& p) {
+    constexpr int n = n_state<Model>;
+    matrix<S, n> jacobian;
+    matrix_loop<n>::all([&](auto j) MYRIAD_LAMBDA {
+        auto seeded = constants(y);
+        seeded[j].derivative = S(real_of<S>(1));
+        const auto column = directional_derivative<Model>(dual<S>(t), seeded, p);
+        matrix_loop<n>::all([&](auto i) MYRIAD_LAMBDA { jacobian[i][j] = column[i]; });
+    });
+    return jacobian;
+}
+
+/// The model's own Jacobian where it has one, else that by dual numbers.
+template <class Model, class S>
+MYRIAD_FUNCTION matrix<S, n_state<Model>> evaluate_jacobian(const S& t, const vec<S, n_state<Model>>& y,
+                                                            const inputs<Model, S>& p) {
+    if constexpr (has_jacobian<Model>) {
+        return Model::template jacobian<S>(t, y, p);
+    } else {
+        return dual_jacobian<Model>(t, y, p);
+    }
+}
+
+}  // namespace myriad::inline MYRIAD_TARGET

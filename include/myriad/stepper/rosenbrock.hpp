@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+// One trial step of a Rosenbrock method, for stiff systems: Jacobian and time derivative, one LU factorisation, and a
+// linear solve in each stage.
+#pragma once
+
+#include "myriad/core/static_for.hpp"
+#include "myriad/core/vec.hpp"
+#include "myriad/model/jacobian.hpp"
+#include "myriad/scalar/math.hpp"
+#include "myriad/scalar/select.hpp"
+#include "myriad/stepper/explicit_rk.hpp"
+#include "myriad/stepper/lu.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// A method whose coefficients are a rosenbrock_tableau.
+template <class Method>
+concept rosenbrock_method = requires { Method::tableau().coupling; };
+
+/// What a trial step leaves behind: the slope at its start (and at its end, where that is the last stage's), the stages u,
+/// the new state, and the lanes whose matrix was singular, in which all else is worthless.
+template <class Method, class S, int n>
+requires rosenbrock_method<Method>
+struct rk_trial<Method, S, n> {
+    static_assert(Method::embedded_order > 0, "a lane with a singular matrix needs a method that can shorten its step");
+    vec<vec<S, n>, Method::first_same_as_last ? 2 : 1> k;
+    vec<vec<S, n>, Method::stages> u;
+    vec<S, n> y;
+    mask_of<S> singular;
+
+    MYRIAD_FUNCTION const vec<S, n>& slope_end() const { return k[1]; }
+};
+
+// The tableau's entries as constants, which device code may use where it may not call the functions behind them.
+
+enum class rosenbrock_row { argument, coupling, error, dense };
+
+template <class Method>
+constexpr double rosenbrock_coefficient(rosenbrock_row kind, int row, int j) {
+    const auto t = Method::tableau();
+    const auto i = static_cast<std::size_t>(row), stage = static_cast<std::size_t>(j);
+    switch (kind) {
+        case rosenbrock_row::argument: return t.weight(row, j);
+        case rosenbrock_row::coupling: return t.coupling[i][stage];
+        case rosenbrock_row::error: return t.e[stage];
+        default: return t.dense[i][stage];
+    }
+}
+template <class Method, rosenbrock_row kind, int row, int j, class R>
+inline constexpr R rosenbrock_weight = static_cast<R>(rosenbrock_coefficient<Method>(kind, row, j));
+template <class Method, class R>
+inline constexpr R reciprocal_gamma = static_cast<R>(1 / Method::tableau().gamma);
+template <class Method, int i, class R>
+inline constexpr R rosenbrock_time_weight = static_cast<R>(Method::tableau().d[static_cast<std::size_t>(i)]);
+template <class Method>
+inline constexpr int dense_terms = static_cast<int>(Method::tableau().dense.size());
+
+/// First stage whose weight in the argument of stage `row` is not that in the argument before it: where stiffly accurate
+/// methods repeat a row and add to it, its sum is kept.
+template <class Method, int row>
+inline constexpr int first_new_stage = [] {
+    int j = 0;
+    while (j < row - 1 && Method::tableau().weight(row, j) == Method::tableau().weight(row - 1, j)) ++j;
+    return j == row - 1 ? j : 0;
+}();
+
+/// First stage whose weight is not zero.
+template <class Method, rosenbrock_row kind, int row>
+inline constexpr int first_weighted_stage = [] {
+    int j = 0;
+    while (rosenbrock_coefficient<Method>(kind, row, j) == 0) ++j;
+    return j;
+}();
+
+/// sum + sum_j w_j u_j of one component, j from `begin` to `end`; without the operations that weights of zero and one do
+/// not need.
+template <class Method, rosenbrock_row kind, int row, int begin, int end, class S, int n>
+MYRIAD_FUNCTION S add_stages(S sum, const vec<vec<S, n>, Method::stages>& u, int component) {
+    using R = real_of<S>;
+    static_for<begin, end>([&](auto j) MYRIAD_LAMBDA {
+        constexpr R weight = rosenbrock_weight<Method, kind, row, decltype(j)::value, R>;
+        if constexpr (weight == R(1)) {
+            sum = sum + u[j][component];
+        } else if constexpr (weight != R(0)) {
+            sum = fma(S(weight), u[j][component], sum);
+        }
+    });
+    return sum;
+}
+
+/// sum_j w_j u_j of one component, j from 0 to `end`.
+template <class Method, rosenbrock_row kind, int row, int end, class S, int n>
+MYRIAD_FUNCTION S sum_stages(const vec<vec<S, n>, Method::stages>& u, int component) {
+    using R = real_of<S>;
+    constexpr int first = first_weighted_stage<Method, kind, row>;
+    constexpr R weight = rosenbrock_weight<Method, kind, row, first, R>;
+    const S sum = weight == R(1) ? u[first][component] : S(weight) * u[first][component];
+    return add_stages<Method, kind, row, first + 1, end>(sum, u, component);
+}
+
+/// The error estimate of one component.
+template <rosenbrock_method Method, class S, int n>
+MYRIAD_FUNCTION S error_estimate(const S&, const rk_trial<Method, S, n>& trial, int component) {
+    return sum_stages<Method, rosenbrock_row::error, 0, Method::stages>(trial.u, component);
+}
+
+/// Factors of I / (h gamma) - J; false in lanes where it is singular.
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
+                                                  const inputs<Model, S>& p, lu_factors<S, n_state<Model>>& lu) {
+    using loop = matrix_loop<n_state<Model>>;
+    lu.a = evaluate_jacobian<Model>(t, y, p);
+    const S shift = per_h * S(reciprocal_gamma<Method, real_of<S>>);
+    loop::all([&](auto i) MYRIAD_LAMBDA {
+        loop::all([&](auto j) MYRIAD_LAMBDA { lu.a[i][j] = -lu.a[i][j]; });
+        lu.a[i][i] = shift + lu.a[i][i];
+    });
+    return factorise(lu);
+}
+
+/// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given.
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const vec<S, n_state<Model>>& y,
+                                     const inputs<Model, S>& p, rk_trial<Method, S, n_state<Model>>& trial) {
+    using R = real_of<S>;
+    constexpr int n = n_state<Model>;
+    using loop = matrix_loop<n>;
+    const S per_h = S(R(1)) / h;
+    lu_factors<S, n> lu;
+    trial.singular = !factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
+    const vec<S, n> slope_t = time_derivative<Model>(t, y, p);
+
+    vec<S, n> increment, slope = trial.k[0];
+    // The argument of stage `row`, or the new state, into trial.y.
+    const auto advance = [&](auto row) MYRIAD_LAMBDA {
+        constexpr int i = decltype(row)::value, begin = first_new_stage<Method, i>;
+        loop::all([&](auto c) MYRIAD_LAMBDA {
+            if constexpr (begin > 0) {
+                increment[c] = add_stages<Method, rosenbrock_row::argument, i, begin, i>(increment[c], trial.u, c);
+            } else {
+                increment[c] = sum_stages<Method, rosenbrock_row::argument, i, i>(trial.u, c);
+            }
+            trial.y[c] = y[c] + increment[c];
+        });
+    };
+    static_for<0, Method::stages>([&](auto stage) MYRIAD_LAMBDA {
+        constexpr int i = decltype(stage)::value;
+        constexpr R time_weight = rosenbrock_time_weight<Method, i, R>;
+        if constexpr (i > 0) {
+            advance(stage);
+            slope = evaluate_rhs<Model>(fma(S(node<Method, i, R>), h, t), trial.y, p);
+            if constexpr (Method::first_same_as_last && i == Method::stages - 1) trial.k[1] = slope;
+        }
+        loop::all([&](auto c) MYRIAD_LAMBDA {
+            S right = slope[c];
+            if constexpr (i > 0)
+                right = fma(per_h, sum_stages<Method, rosenbrock_row::coupling, i, i>(trial.u, c), right);
+            if constexpr (time_weight != R(0)) right = fma(h * S(time_weight), slope_t[c], right);
+            slope[c] = right;
+        });
+        solve(lu, slope);
+        trial.u[stage] = slope;
+    });
+    advance(constant_index<Method::stages>{});
+}
+
+/// State at t + theta h, 0 <= theta <= 1.
+template <rosenbrock_method Method, class S, int n>
+MYRIAD_FUNCTION vec<S, n> rosenbrock_interpolation(const vec<S, n>& y, const rk_trial<Method, S, n>& trial,
+                                                   const S& theta) {
+    using R = real_of<S>;
+    const S rest = S(R(1)) - theta;
+    vec<S, n> out;
+    matrix_loop<n>::all([&](auto c) MYRIAD_LAMBDA {
+        constexpr int last = dense_terms<Method> - 1;
+        S bend = sum_stages<Method, rosenbrock_row::dense, last, Method::stages>(trial.u, c);
+        static_for<0, last>([&](auto r) MYRIAD_LAMBDA {
+            constexpr int term = last - 1 - decltype(r)::value;
+            bend = add_stages<Method, rosenbrock_row::dense, term, 0, Method::stages>(theta * bend, trial.u, c);
+        });
+        out[c] = fma(theta, fma(rest, bend, trial.y[c] - y[c]), y[c]);
+    });
+    return out;
+}
+
+}  // namespace myriad::inline MYRIAD_TARGET

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// What the loop asks of a method, explicit or implicit: a trial step, and the lanes in which it could not be taken.
+#pragma once
+
+#include "myriad/stepper/explicit_rk.hpp"
+#include "myriad/stepper/rosenbrock.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given.
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const vec<S, n_state<Model>>& y,
+                                     const inputs<Model, S>& p, rk_trial<Method, S, n_state<Model>>& trial) {
+    if constexpr (rosenbrock_method<Method>) {
+        rosenbrock_step<Method, Model>(t, h, y, p, trial);
+    } else {
+        explicit_rk_step<Method, Model>(t, h, y, p, trial);
+    }
+}
+
+/// Whether a method solves linear systems, which may be singular; then its trials say in which lanes.
+template <class Method>
+inline constexpr bool solves_linear_systems = rosenbrock_method<Method>;
+
+}  // namespace myriad::inline MYRIAD_TARGET
