@@ -55,6 +55,19 @@ struct branching : bare {
         return {R(1), y[x]};
     }
 };
+struct with_jacobian : bare {
+    template <class R>
+    MYRIAD_FUNCTION static myriad::matrix<R, n_state> jacobian(auto, const myriad::vec<R, n_state>&, const auto&) {
+        return {};
+    }
+};
+struct large {
+    enum { n_state = 7 };
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 7> rhs(auto, const myriad::vec<R, 7>& y, const auto&) {
+        return y;
+    }
+};
 /// Counts without names are counts as well.
 struct unnamed {
     enum { n_state = 3, n_parameter = 2 };
@@ -68,15 +81,23 @@ TEST_CASE("a complete model is described with every component and hook", "[descr
     CHECK(describe<complete>() ==
           "components: 2 state, 2 parameter, 1 shared, 1 shared integer, 2 accessory, 3 integer accessory, 1 event\n"
           "hooks: rhs, events, initialise, after_step (scalar), after_event, finalise\n"
-          "declares: nothing\n");
+          "declares: nothing\n"
+          "stiff methods: Jacobian by dual numbers, LU factors in registers\n");
 }
 
 TEST_CASE("a bare model is described with its right-hand side alone", "[describe]") {
     CHECK(describe<bare>() ==
           "components: 2 state, 1 parameter, 0 shared, 0 shared integer, 0 accessory, 0 integer accessory, 0 event\n"
           "hooks: rhs\n"
-          "declares: nothing\n");
+          "declares: nothing\n"
+          "stiff methods: Jacobian by dual numbers, LU factors in registers\n");
     CHECK(has(describe<unnamed>(), "components: 3 state, 2 parameter, 0 shared"));
+}
+
+TEST_CASE("what stiff methods make of a model is described", "[describe]") {
+    CHECK(has(describe<with_jacobian>(), "hooks: rhs, jacobian\n"));
+    CHECK(has(describe<with_jacobian>(), "stiff methods: the model's Jacobian, LU factors in registers\n"));
+    CHECK(has(describe<large>(), "stiff methods: Jacobian by dual numbers, LU factors in memory\n"));
 }
 
 TEST_CASE("a model with events alone is described with them", "[describe]") {

@@ -8,9 +8,8 @@
 #include <limits>
 
 #include "myriad/core/error.hpp"
-#include "myriad/ensemble/ensemble.hpp"
+#include "myriad/ensemble/inputs_of.hpp"
 #include "myriad/integrator/options.hpp"
-#include "myriad/model/lane.hpp"
 #include "myriad/scalar/dual.hpp"
 
 namespace myriad::host {
@@ -27,13 +26,7 @@ struct event_resolution {
     vec<R, n_event<Model>> of_start;
 
     event_resolution(ensemble<Model, R>& e, std::int64_t i) {
-        inputs<Model, R> p;
-        for (int c = 0; c < n_parameter<Model>; ++c) p.parameter[c] = e.parameter(c)[i];
-        for (int c = 0; c < n_accessory<Model>; ++c) p.accessory[c] = e.accessory(c)[i];
-        for (int c = 0; c < n_integer_accessory<Model>; ++c) p.integer_accessory[c] = e.integer_accessory(c)[i];
-        if constexpr (n_shared<Model> > 0) p.shared = &e.shared(0);
-        if constexpr (n_shared_integer<Model> > 0) p.shared_integer = &e.shared_integer(0);
-
+        const auto p = inputs_of(e, i);
         const R t = e.t_begin()[i];
         vec<dual<R>, n_state<Model>> y;
         vec<R, n_state<Model>> origin;
@@ -66,9 +59,7 @@ void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_
         const auto tolerance_of = [&](int j) {
             return o.events.empty() ? event_options{}.tolerance : o.events[static_cast<std::size_t>(j)].tolerance;
         };
-        const std::int64_t stride = std::max<std::int64_t>(count / 1024, 1);
-        for (std::int64_t i = 0; i < count; i += stride) {
-            if (e.ended(i)) continue;
+        for_sampled_instances(e, count, [&](std::int64_t i) {
             ++looked_at;
             const event_resolution<Model, R> finest(e, i);
             for (int j = 0; j < n_event<Model>; ++j) {
@@ -77,7 +68,7 @@ void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_
                 ++too_fine[j].instances;
                 if (least > too_fine[j].least) too_fine[j] = {too_fine[j].instances, i, least};
             }
-        }
+        });
         for (int j = 0; j < n_event<Model>; ++j) {
             require(2 * too_fine[j].instances <= looked_at, "the tolerance of event ", j, " is ", tolerance_of(j),
                     ", but rounding changes its function by ", too_fine[j].least, " in instance ", too_fine[j].worst,

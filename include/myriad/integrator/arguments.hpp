@@ -15,6 +15,7 @@
 #include "myriad/ensemble/view.hpp"
 #include "myriad/event/resolution.hpp"
 #include "myriad/integrator/options.hpp"
+#include "myriad/model/jacobian_check.hpp"
 
 namespace myriad::host {
 
@@ -85,6 +86,9 @@ void check_inputs(ensemble<Model, R>& instances, const options& o, std::int64_t 
     check_sample_times(instances, o, count);
     check_event_tolerances(instances, o, count);
     input_check<Model, R>(instances, o, count).run();
+#if !defined(NDEBUG)
+    check_jacobian(instances, count);
+#endif
 }
 
 }  // namespace myriad::host

@@ -5,12 +5,14 @@
 #include <string>
 
 #include "myriad/core/error.hpp"
+#include "myriad/core/matrix_loop.hpp"
 #include "myriad/model/concepts.hpp"
 #include "myriad/model/hooks.hpp"
 
 namespace myriad {
 
-/// A few lines for people: the model's counts of components, its hooks, and its declarations.
+/// A few lines for people: the model's counts of components, its hooks, its declarations, and what methods for stiff
+/// systems make of it.
 template <class Model>
 std::string describe() {
     static_assert(hooks_fit<Model, double>);
@@ -18,6 +20,7 @@ std::string describe() {
     const auto add = [](std::string& to, bool present, const char* name) {
         if (present) to += (to.empty() ? "" : ", ") + std::string(name);
     };
+    add(hooks, has_jacobian<Model>, "jacobian");
     add(hooks, has_events<Model>, "events");
     add(hooks, has_initialise<Model>, "initialise");
     add(hooks, has_after_step<Model>, has_generic_after_step<Model> ? "after_step (generic)" : "after_step (scalar)");
@@ -29,7 +32,9 @@ std::string describe() {
     return message("components: ", n_state<Model>, " state, ", n_parameter<Model>, " parameter, ", n_shared<Model>,
                    " shared, ", n_shared_integer<Model>, " shared integer, ", n_accessory<Model>, " accessory, ",
                    n_integer_accessory<Model>, " integer accessory, ", n_event<Model>, " event\nhooks: ", hooks,
-                   "\ndeclares: ", declares.empty() ? "nothing" : declares, '\n');
+                   "\ndeclares: ", declares.empty() ? "nothing" : declares, "\nstiff methods: ",
+                   has_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers", ", LU factors in ",
+                   matrix_loop<n_state<Model>>::unrolled ? "registers" : "memory", '\n');
 }
 
 }  // namespace myriad

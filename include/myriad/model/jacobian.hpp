@@ -40,27 +40,25 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> time_derivative(const S& t, const vec<S, 
 /// df_i/dy_j in row i and column j, by one evaluation of the right-hand side with dual numbers per column. Where these are
 /// written out (small systems), the compiler computes what they share, the values, once.
 template <class Model, class S>
-MYRIAD_FUNCTION matrix<S, n_state<Model>> dual_jacobian(const S& t, const vec<S, n_state<Model>>& y,
-                                                        const inputs<Model, S>& p) {
+MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
+                                   matrix<S, n_state<Model>>& jacobian) {
     constexpr int n = n_state<Model>;
-    matrix<S, n> jacobian;
     matrix_loop<n>::all([&](auto j) MYRIAD_LAMBDA {
         auto seeded = constants(y);
         seeded[j].derivative = S(real_of<S>(1));
         const auto column = directional_derivative<Model>(dual<S>(t), seeded, p);
         matrix_loop<n>::all([&](auto i) MYRIAD_LAMBDA { jacobian[i][j] = column[i]; });
     });
-    return jacobian;
 }
 
 /// The model's own Jacobian where it has one, else that by dual numbers.
 template <class Model, class S>
-MYRIAD_FUNCTION matrix<S, n_state<Model>> evaluate_jacobian(const S& t, const vec<S, n_state<Model>>& y,
-                                                            const inputs<Model, S>& p) {
+MYRIAD_FUNCTION void evaluate_jacobian(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
+                                       matrix<S, n_state<Model>>& jacobian) {
     if constexpr (has_jacobian<Model>) {
-        return Model::template jacobian<S>(t, y, p);
+        jacobian = Model::template jacobian<S>(t, y, p);
     } else {
-        return dual_jacobian<Model>(t, y, p);
+        dual_jacobian<Model>(t, y, p, jacobian);
     }
 }
 

@@ -109,7 +109,7 @@ template <class Method, class Model, class S>
 MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
                                                   const inputs<Model, S>& p, lu_factors<S, n_state<Model>>& lu) {
     using loop = matrix_loop<n_state<Model>>;
-    lu.a = evaluate_jacobian<Model>(t, y, p);
+    evaluate_jacobian<Model>(t, y, p, lu.a);
     const S shift = per_h * S(reciprocal_gamma<Method, real_of<S>>);
     loop::all([&](auto i) MYRIAD_LAMBDA {
         loop::all([&](auto j) MYRIAD_LAMBDA { lu.a[i][j] = -lu.a[i][j]; });
@@ -156,10 +156,9 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const vec<S, n_stat
             if constexpr (i > 0)
                 right = fma(per_h, sum_stages<Method, rosenbrock_row::coupling, i, i>(trial.u, c), right);
             if constexpr (time_weight != R(0)) right = fma(h * S(time_weight), slope_t[c], right);
-            slope[c] = right;
+            trial.u[stage][c] = right;
         });
-        solve(lu, slope);
-        trial.u[stage] = slope;
+        solve(lu, trial.u[stage]);
     });
     advance(constant_index<Method::stages>{});
 }

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Compares a model's own Jacobian with the one by dual numbers. Host code; it calls the model on some initial states.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "myriad/core/error.hpp"
+#include "myriad/ensemble/inputs_of.hpp"
+#include "myriad/model/jacobian.hpp"
+
+namespace myriad::host {
+
+/// Throws `error` if an entry of the Jacobian differs from the derivative of `rhs` by more than half the digits, in the
+/// scale of its row: terms that cancel may cost that many, and a wrong formula is wrong by more. Looks at the initial
+/// states of a thousand or so instances. Not for models with `initialise`, before which `rhs` cannot be called.
+template <class Model, class R>
+void check_jacobian(ensemble<Model, R>& e, std::int64_t count) {
+    if constexpr (has_jacobian<Model> && !has_initialise<Model>) {
+        constexpr int n = n_state<Model>;
+        for_sampled_instances(e, count, [&](std::int64_t i) {
+            const auto p = inputs_of(e, i);
+            vec<R, n> y;
+            for (int c = 0; c < n; ++c) y[c] = e.state(c)[i];
+            const R t = e.t_begin()[i];
+            matrix<R, n> own, dual;
+            evaluate_jacobian<Model>(t, y, p, own);
+            dual_jacobian<Model>(t, y, p, dual);
+            for (int row = 0; row < n; ++row) {
+                R scale = 0;
+                for (int j = 0; j < n; ++j) scale = std::max(scale, std::abs(dual[row][j]));
+                const R allowed = std::sqrt(std::numeric_limits<R>::epsilon()) * scale;
+                for (int j = 0; j < n; ++j) {
+                    // at the edge of the domain of rhs its derivative may not exist
+                    require(!std::isfinite(dual[row][j]) || std::abs(own[row][j] - dual[row][j]) <= allowed,
+                            "jacobian gives ", own[row][j], " for the derivative of component ", row, " by state ", j,
+                            " at the start of instance ", i, ", but that of rhs is ", dual[row][j],
+                            ": mend the formula (df_i/dy_j stands in row i, column j), or leave out jacobian");
+                }
+            }
+        });
+    }
+}
+
+}  // namespace myriad::host
