@@ -3,7 +3,7 @@
 #pragma once
 
 #include "myriad/core/macros.hpp"
-#include "myriad/core/matrix_loop.hpp"
+#include "myriad/scalar/matrix_loop.hpp"
 #include "myriad/core/status.hpp"
 #include "myriad/core/vec.hpp"
 #include "myriad/scalar/math.hpp"

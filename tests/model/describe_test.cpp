@@ -82,7 +82,7 @@ TEST_CASE("a complete model is described with every component and hook", "[descr
           "components: 2 state, 2 parameter, 1 shared, 1 shared integer, 2 accessory, 3 integer accessory, 1 event\n"
           "hooks: rhs, events, initialise, after_step (scalar), after_event, finalise\n"
           "declares: nothing\n"
-          "stiff methods: Jacobian by dual numbers, LU factors in registers\n");
+          "stiff methods: Jacobian by dual numbers, LU factors on GPUs in registers\n");
 }
 
 TEST_CASE("a bare model is described with its right-hand side alone", "[describe]") {
@@ -90,14 +90,14 @@ TEST_CASE("a bare model is described with its right-hand side alone", "[describe
           "components: 2 state, 1 parameter, 0 shared, 0 shared integer, 0 accessory, 0 integer accessory, 0 event\n"
           "hooks: rhs\n"
           "declares: nothing\n"
-          "stiff methods: Jacobian by dual numbers, LU factors in registers\n");
+          "stiff methods: Jacobian by dual numbers, LU factors on GPUs in registers\n");
     CHECK(has(describe<unnamed>(), "components: 3 state, 2 parameter, 0 shared"));
 }
 
 TEST_CASE("what stiff methods make of a model is described", "[describe]") {
     CHECK(has(describe<with_jacobian>(), "hooks: rhs, jacobian\n"));
-    CHECK(has(describe<with_jacobian>(), "stiff methods: the model's Jacobian, LU factors in registers\n"));
-    CHECK(has(describe<large>(), "stiff methods: Jacobian by dual numbers, LU factors in memory\n"));
+    CHECK(has(describe<with_jacobian>(), "stiff methods: the model's Jacobian, LU factors on GPUs in registers\n"));
+    CHECK(has(describe<large>(), "stiff methods: Jacobian by dual numbers, LU factors on GPUs in local memory\n"));
 }
 
 TEST_CASE("a model with events alone is described with them", "[describe]") {

@@ -1,76 +1,20 @@
 // SPDX-License-Identifier: MIT
 // Order of convergence of whole integrations with fixed steps, through the loop that users call.
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
+#include "tests/stepper/global_order.hpp"
 #include "tests/support/problems.hpp"
-#include "tests/support/device.hpp"
 
 namespace {
 
+using global_order::check_order;
+using global_order::window;
 using myriad::cash_karp;
 using myriad::dormand_prince_5;
 using myriad::dormand_prince_8;
 using myriad::runge_kutta_4;
 using myriad::tsitouras_5;
 using myriad::verner_7;
-
-/// Steps of length h and no other: adaptive methods get tolerances that no error exceeds.
-myriad::options fixed_step(double h) {
-    myriad::options o;
-    o.step = o.minimum_step = o.maximum_step = h;
-    o.relative_tolerance = o.absolute_tolerance = 1e30;
-    return o;
-}
-
-/// Root mean square error at the end of instances that start at different times, so that no symmetry hides an error term.
-template <class Method, class Model, class R = double>
-double end_error(double h, double span) {
-    myriad::ensemble<Model, R> e(16);
-    constexpr int n = Model::n_state;
-    for (std::int64_t i = 0; i < e.size(); ++i) {
-        e.t_begin()[i] = static_cast<R>(0.5 + 0.125 * static_cast<double>(i));
-        e.t_end()[i] = e.t_begin()[i] + static_cast<R>(span);
-        const auto start = Model::exact(e.t_begin()[i]);
-        for (int c = 0; c < n; ++c) e.state(c)[i] = start[c];
-    }
-    const auto report = myriad::solve<Method>(tests::test_device(1), e, fixed_step(h));
-    REQUIRE(report.count(myriad::status::success) == e.size());
-    // the step must be the one asked for, or the order measured is not the method's
-    REQUIRE(report.accepted_steps == e.size() * static_cast<std::int64_t>(std::lround(std::abs(span) / h)));
-    REQUIRE(report.rejected_steps == 0);
-    double squares = 0;
-    for (std::int64_t i = 0; i < e.size(); ++i) {
-        const auto end = Model::exact(static_cast<double>(e.t_end()[i]));
-        for (int c = 0; c < n; ++c) squares += std::pow(static_cast<double>(e.state(c)[i]) - end[c], 2);
-    }
-    return std::sqrt(squares / static_cast<double>(e.size()));
-}
-
-struct window {
-    double below, above;
-};
-
-/// The global error is C h^order (1 + O(h)).
-template <class Method, class Model, class R = double>
-void check_order(double order, double first_h, double span, window allowed = {0.1, 0.1}) {
-    double h = first_h, coarse = end_error<Method, Model, R>(h, span);
-    std::vector<double> slopes;
-    for (int i = 0; i < 3; ++i) {
-        h /= 2;
-        const double fine = end_error<Method, Model, R>(h, span);
-        slopes.push_back(std::log2(coarse / fine));
-        coarse = fine;
-    }
-    CAPTURE(span, first_h, slopes, coarse);
-    // the roundings of N steps add up to about sqrt(N) eps
-    REQUIRE(coarse > 10 * std::sqrt(std::abs(span) / h) * static_cast<double>(std::numeric_limits<R>::epsilon()));
-    CHECK(slopes[2] > order - allowed.below);
-    CHECK(slopes[2] < order + allowed.above);
-}
 
 /// Forwards and backwards, with and without time in the right-hand side.
 template <class Method>

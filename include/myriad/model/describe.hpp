@@ -5,7 +5,7 @@
 #include <string>
 
 #include "myriad/core/error.hpp"
-#include "myriad/core/matrix_loop.hpp"
+#include "myriad/scalar/matrix_loop.hpp"
 #include "myriad/model/concepts.hpp"
 #include "myriad/model/hooks.hpp"
 
@@ -33,8 +33,8 @@ std::string describe() {
                    " shared, ", n_shared_integer<Model>, " shared integer, ", n_accessory<Model>, " accessory, ",
                    n_integer_accessory<Model>, " integer accessory, ", n_event<Model>, " event\nhooks: ", hooks,
                    "\ndeclares: ", declares.empty() ? "nothing" : declares, "\nstiff methods: ",
-                   has_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers", ", LU factors in ",
-                   matrix_loop<n_state<Model>>::unrolled ? "registers" : "memory", '\n');
+                   has_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers", ", LU factors on GPUs in ",
+                   matrix_loop<double, n_state<Model>>::unrolled ? "registers" : "local memory", '\n');
 }
 
 }  // namespace myriad

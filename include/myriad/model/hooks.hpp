@@ -6,7 +6,7 @@
 #include <concepts>
 #include <type_traits>
 
-#include "myriad/core/matrix_loop.hpp"
+#include "myriad/scalar/matrix_loop.hpp"
 #include "myriad/core/status.hpp"
 #include "myriad/model/lane.hpp"
 

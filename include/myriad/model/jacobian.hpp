@@ -3,7 +3,7 @@
 // derivative by time.
 #pragma once
 
-#include "myriad/core/matrix_loop.hpp"
+#include "myriad/scalar/matrix_loop.hpp"
 #include "myriad/model/concepts.hpp"
 #include "myriad/model/lane.hpp"
 #include "myriad/scalar/dual.hpp"
@@ -43,11 +43,11 @@ template <class Model, class S>
 MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                    matrix<S, n_state<Model>>& jacobian) {
     constexpr int n = n_state<Model>;
-    matrix_loop<n>::all([&](auto j) MYRIAD_LAMBDA {
+    matrix_loop<S, n>::all([&](auto j) MYRIAD_LAMBDA {
         auto seeded = constants(y);
         seeded[j].derivative = S(real_of<S>(1));
         const auto column = directional_derivative<Model>(dual<S>(t), seeded, p);
-        matrix_loop<n>::all([&](auto i) MYRIAD_LAMBDA { jacobian[i][j] = column[i]; });
+        matrix_loop<S, n>::all([&](auto i) MYRIAD_LAMBDA { jacobian[i][j] = column[i]; });
     });
 }
 

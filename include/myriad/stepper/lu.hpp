@@ -5,7 +5,7 @@
 
 #include <type_traits>
 
-#include "myriad/core/matrix_loop.hpp"
+#include "myriad/scalar/matrix_loop.hpp"
 #include "myriad/scalar/math.hpp"
 #include "myriad/scalar/select.hpp"
 
@@ -14,6 +14,10 @@ namespace myriad::inline MYRIAD_TARGET {
 /// The number of a row: an integer for one lane, a real (which compares with reals) in each lane of a pack.
 template <class S>
 using row_number = std::conditional_t<lanes_of<S> == 1, int, S>;
+template <class S>
+MYRIAD_FUNCTION row_number<S> row_number_of(int i) {
+    return row_number<S>(static_cast<std::conditional_t<lanes_of<S> == 1, int, real_of<S>>>(i));
+}
 
 /// The matrix A, and after `factorise` its factors: below the diagonal the multipliers, from it on U, whose diagonal holds
 /// the reciprocals of the pivots. In step k row `pivot[k]` was exchanged with row k from column k on (the multipliers stay
@@ -29,13 +33,13 @@ namespace detail {
 /// Calls `swap(i, where)` for the rows i > k that hold the pivot of some lane.
 template <class S, int n, class K, class Swap>
 MYRIAD_FUNCTION void exchange_rows(K k, const row_number<S>& pivot, Swap&& swap) {
-    if constexpr (lanes_of<S> == 1 && !matrix_loop<n>::unrolled) {
+    if constexpr (lanes_of<S> == 1 && !matrix_loop<S, n>::unrolled) {
         if (pivot != k) swap(pivot, true);
     } else {
-        matrix_loop<n>::after(k, [&](auto i) MYRIAD_LAMBDA {
-            const auto where = pivot == row_number<S>(static_cast<int>(i));
+        matrix_loop<S, n>::after(k, [&](auto i) MYRIAD_LAMBDA {
+            const auto where = pivot == row_number_of<S>(i);
             // Lanes mostly agree. Where the loop is written out, the test would cost as much as it saves.
-            if (matrix_loop<n>::unrolled || any(where)) swap(i, where);
+            if (matrix_loop<S, n>::unrolled || any(where)) swap(i, where);
         });
     }
 }
@@ -46,17 +50,17 @@ MYRIAD_FUNCTION void exchange_rows(K k, const row_number<S>& pivot, Swap&& swap)
 template <class S, int n>
 MYRIAD_FUNCTION mask_of<S> factorise(lu_factors<S, n>& lu) {
     using R = real_of<S>;
-    using loop = matrix_loop<n>;
+    using loop = matrix_loop<S, n>;
     auto& a = lu.a;
     mask_of<S> regular = mask_of<S>(true);
     loop::all([&](auto k) MYRIAD_LAMBDA {
         S size = abs(a[k][k]);
-        row_number<S> pivot = row_number<S>(static_cast<int>(k));
+        row_number<S> pivot = row_number_of<S>(k);
         loop::after(k, [&](auto i) MYRIAD_LAMBDA {
             const S other = abs(a[i][k]);
             const auto larger = other > size;
             size = select(larger, other, size);
-            pivot = select(larger, row_number<S>(static_cast<int>(i)), pivot);
+            pivot = select(larger, row_number_of<S>(i), pivot);
         });
         lu.pivot[k] = pivot;
         detail::exchange_rows<S, n>(k, pivot, [&](auto i, const auto& where) MYRIAD_LAMBDA {
@@ -81,7 +85,7 @@ MYRIAD_FUNCTION mask_of<S> factorise(lu_factors<S, n>& lu) {
 /// Solves A x = b with the factors of A; x takes the place of b.
 template <class S, int n>
 MYRIAD_FUNCTION void solve(const lu_factors<S, n>& lu, vec<S, n>& b) {
-    using loop = matrix_loop<n>;
+    using loop = matrix_loop<S, n>;
     const auto& a = lu.a;
     loop::all([&](auto k) MYRIAD_LAMBDA {
         detail::exchange_rows<S, n>(k, lu.pivot[k], [&](auto i, const auto& where) MYRIAD_LAMBDA {

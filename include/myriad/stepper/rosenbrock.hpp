@@ -108,7 +108,7 @@ MYRIAD_FUNCTION S error_estimate(const S&, const rk_trial<Method, S, n>& trial, 
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
                                                   const inputs<Model, S>& p, lu_factors<S, n_state<Model>>& lu) {
-    using loop = matrix_loop<n_state<Model>>;
+    using loop = matrix_loop<S, n_state<Model>>;
     evaluate_jacobian<Model>(t, y, p, lu.a);
     const S shift = per_h * S(reciprocal_gamma<Method, real_of<S>>);
     loop::all([&](auto i) MYRIAD_LAMBDA {
@@ -124,7 +124,7 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const vec<S, n_stat
                                      const inputs<Model, S>& p, rk_trial<Method, S, n_state<Model>>& trial) {
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
-    using loop = matrix_loop<n>;
+    using loop = matrix_loop<S, n>;
     const S per_h = S(R(1)) / h;
     lu_factors<S, n> lu;
     trial.singular = !factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
@@ -170,7 +170,7 @@ MYRIAD_FUNCTION vec<S, n> rosenbrock_interpolation(const vec<S, n>& y, const rk_
     using R = real_of<S>;
     const S rest = S(R(1)) - theta;
     vec<S, n> out;
-    matrix_loop<n>::all([&](auto c) MYRIAD_LAMBDA {
+    matrix_loop<S, n>::all([&](auto c) MYRIAD_LAMBDA {
         constexpr int last = dense_terms<Method> - 1;
         S bend = sum_stages<Method, rosenbrock_row::dense, last, Method::stages>(trial.u, c);
         static_for<0, last>([&](auto r) MYRIAD_LAMBDA {

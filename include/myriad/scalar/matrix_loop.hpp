@@ -5,6 +5,7 @@
 
 #include "myriad/core/static_for.hpp"
 #include "myriad/core/vec.hpp"
+#include "myriad/scalar/select.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -13,13 +14,15 @@ template <class S, int n>
 using matrix = vec<vec<S, n>, n>;
 
 /// Largest matrix held in registers. A GPU thread has 255: factors, stages and right-hand side of a Rosenbrock method in
-/// double precision fit up to here. Pivoted LU alone takes 220 at n = 8, and spills from n = 12.
-inline constexpr int largest_matrix_in_registers = 6;
+/// double precision fit up to 6 (240 registers); pivoted LU alone takes 220 at n = 8, and spills from n = 12. A core has
+/// 16 or 32 for a whole pack, and code that is written out for n = 6 takes it no less time but a minute to compile.
+template <class S>
+inline constexpr int largest_matrix_in_registers = lanes_of<S> == 1 ? 6 : 3;
 
-/// Loops over 0 <= i < n. The index that `f` gets is a `constant_index` where the loop is written out, an int elsewhere.
-template <int n>
+/// Loops over 0 <= i < n, for numbers of kind S. The index that `f` gets is a `constant_index` where the loop is written out, an int elsewhere.
+template <class S, int n>
 struct matrix_loop {
-    static constexpr bool unrolled = n <= largest_matrix_in_registers;
+    static constexpr bool unrolled = n <= largest_matrix_in_registers<S>;
 
     template <class F>
     static MYRIAD_FUNCTION void all(F&& f) {

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+// Stiff methods in the loop: statuses, counts, events, hooks and dense output, large systems, and results that depend on the
+// instance alone.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "myriad/myriad.hpp"
+#include "tests/catch.hpp"
+#include "tests/support/compare.hpp"
+#include "tests/support/device.hpp"
+#include "tests/support/faulty.hpp"
+#include "tests/support/stiff.hpp"
+
+namespace {
+
+using myriad::ensemble;
+using myriad::options;
+using myriad::rodas_5p;
+using myriad::rosenbrock_23;
+using myriad::solve;
+using myriad::status;
+using stiff::growth;
+using stiff::relay;
+using stiff::van_der_pol;
+
+constexpr double pi = 3.14159265358979323846;
+
+/// The rate at which I / (h gamma) - J of `growth` has a pivot of zero: what the method itself computes, 1 / h times the
+/// rounded 1 / gamma.
+template <class Method, class R>
+R singular_rate(R h) {
+    return R(1) / h * static_cast<R>(1 / Method::tableau().gamma);
+}
+
+template <class Method, class R = double>
+void check_singular() {
+    const R h = R(0.125);
+    options o;
+    o.step = static_cast<double>(h);
+    o.relative_tolerance = o.absolute_tolerance = 1e-2;
+    for (const bool may_shorten : {false, true}) {
+        ensemble<growth, R> e(40);
+        e.state(growth::x) = R(1e-3);
+        e.state(growth::y) = R(1);
+        for (std::int64_t i = 0; i < e.size(); ++i) e.parameter(growth::rate)[i] = i % 3 == 1 ? singular_rate<Method, R>(h) : R(-1);
+        e.time_domain(R(0), R(1));
+        o.minimum_step = may_shorten ? 0 : static_cast<double>(h);
+        solve<Method>(tests::test_device(1), e, o);
+        for (std::int64_t i = 0; i < e.size(); ++i) {
+            CAPTURE(i, may_shorten);
+            if (i % 3 != 1 || may_shorten) {
+                CHECK(e.status(i) == status::success);
+                // a step shorter by any factor has a regular matrix
+                if (i % 3 == 1) CHECK(e.rejected_steps()[i] >= 1);
+            } else {
+                CHECK(e.status(i) == status::singular_jacobian);
+                CHECK(e.t()[i] == 0);
+                CHECK(e.state(growth::x)[i] == R(1e-3));
+                CHECK(e.rejected_steps()[i] == 1);
+            }
+        }
+    }
+}
+
+/// The relay with samples: its event times, its states between them, and that every hook was called.
+template <class Method>
+void check_relay(double tolerance, double slack) {
+    ensemble<relay> e(5);
+    e.time_domain(0, 4);
+    options o;
+    o.relative_tolerance = o.absolute_tolerance = tolerance;
+    o.step = 1e-3;
+    o.events = {{myriad::direction::falling, 1e-9, 0}};
+    o.samples = {.states = {relay::y0}, .capacity = 81, .evenly = 81};
+    solve<myriad::dense<Method>>(tests::test_device(1), e, o);
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+        REQUIRE(e.status(i) == status::success);
+        CHECK(e.accessory(relay::raised)[i] == 2);
+        // the slope at both events is -sin(pi/3)
+        CHECK(std::abs(e.accessory(relay::last_event)[i] - 2 * pi / 3) <= (slack * tolerance + 1e-9) / std::sin(pi / 3));
+        CHECK(std::abs(e.state(relay::y0)[i] - (std::cos(4.0) + 2)) <= slack * tolerance);
+        // the largest state is the one at an event or at the start, before the action: hooks see steps, and these end below
+        CHECK(e.accessory(relay::largest)[i] >= 1);
+        CHECK(e.accessory(relay::largest)[i] <= 1.5 + slack * tolerance);
+        CHECK(e.integer_accessory(relay::begun)[i] == 1);
+        CHECK(e.integer_accessory(relay::finished)[i] == 1);
+        const auto t = e.samples().time();
+        const auto y = e.samples().state(relay::y0);
+        for (Eigen::Index k = 0; k < 81; ++k) {
+            const double time = t(i, k), raised = (time > pi / 3) + (time > 2 * pi / 3);
+            CAPTURE(time);
+            CHECK(std::abs(y(i, k) - std::cos(time) - raised) <= slack * tolerance);
+        }
+    }
+}
+
+/// The slowest mode of the rod, exp(-lambda t) sin(j pi / (n + 1)) with lambda = 4 rate sin^2(pi / (2 (n + 1))), and with it
+/// the fastest one, which decays at once.
+template <class Method, int n, class R = double>
+void check_rod(double tolerance) {
+    ensemble<stiff::rod<n>, R> e(19);
+    const double rate = 100, end = 0.5;
+    const double lambda = 4 * rate * std::pow(std::sin(pi / (2 * (n + 1))), 2);
+    e.parameter(0) = static_cast<R>(rate);
+    for (int j = 0; j < n; ++j) {
+        const double slow = std::sin((j + 1) * pi / (n + 1)), fast = std::sin((j + 1) * n * pi / (n + 1));
+        e.state(j) = static_cast<R>(slow + 0.1 * fast);
+    }
+    e.time_domain(R(0), static_cast<R>(end));
+    options o;
+    o.relative_tolerance = o.absolute_tolerance = tolerance;
+    o.step = 1e-3;
+    const auto report = solve<Method>(tests::test_device(1), e, o);
+    REQUIRE(report.count(status::success) == e.size());
+    const double steps = static_cast<double>(e.accepted_steps()[7]);
+    for (int j = 0; j < n; ++j) {
+        const double exact = std::exp(-lambda * end) * std::sin((j + 1) * pi / (n + 1));
+        CAPTURE(n, j, steps);
+        // The matrix exponential of the rod shrinks errors in every norm but the largest component may collect those of all
+        // others: rows of it sum up to one at most. A step's error is below the tolerance, states are at most 1.1.
+        CHECK(std::abs(static_cast<double>(e.state(j)[7]) - exact) <= 1.1 * steps * tolerance);
+    }
+}
+
+ensemble<van_der_pol> oscillators(const std::vector<std::int64_t>& numbers) {
+    ensemble<van_der_pol> e(static_cast<std::int64_t>(numbers.size()));
+    for (std::size_t at = 0; at < numbers.size(); ++at) {
+        const auto i = static_cast<std::int64_t>(at);
+        e.parameter(van_der_pol::eps)[i] = std::pow(10.0, -3.0 * static_cast<double>(numbers[at] % 17) / 16);
+        e.state(van_der_pol::x)[i] = 2;
+        e.state(van_der_pol::v)[i] = 0.01 * static_cast<double>(numbers[at] % 5);
+        e.accessory(van_der_pol::fastest)[i] = 0;
+    }
+    e.time_domain(0, 2);
+    return e;
+}
+
+template <class Method>
+void check_order_of_instances() {
+    std::vector<std::int64_t> order(103);
+    std::iota(order.begin(), order.end(), 0);
+    auto straight = oscillators(order);
+    const options o = compare::with_tolerance(1e-5, 1e-3);
+    solve<Method>(tests::test_device(2), straight, o);
+    std::shuffle(order.begin(), order.end(), std::mt19937(1));
+    auto shuffled = oscillators(order);
+    solve<Method>(tests::test_device(2), shuffled, o);
+    for (std::size_t at = 0; at < order.size(); ++at)
+        CHECK(compare::difference(shuffled, static_cast<std::int64_t>(at), straight, order[at]).empty());
+}
+
+}  // namespace
+
+TEST_CASE("a step with a singular matrix is shortened, and ends as singular_jacobian where it may not be") {
+    check_singular<rosenbrock_23>();
+    check_singular<rodas_5p>();
+    check_singular<rodas_5p, float>();
+}
+
+TEST_CASE("a Jacobian that is infinite while rhs is finite ends as singular_jacobian") {
+    ensemble<stiff::draining> e(9);
+    for (std::int64_t i = 0; i < e.size(); ++i) e.state(0)[i] = i % 2 == 0 ? 0.0 : 1.0;
+    e.time_domain(0, 1);
+    solve<rodas_5p>(tests::test_device(1), e, compare::with_tolerance(1e-6, 1e-2));
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+        if (i % 2 == 0) {
+            CHECK(e.status(i) == status::singular_jacobian);
+            CHECK(e.state(0)[i] == 0);
+        } else {
+            CHECK(e.status(i) == status::success);
+            // y = (1 - t/2)^2, and errors are not magnified: y' falls with y
+            CHECK(std::abs(e.state(0)[i] - 0.25) <= 1e-6 * static_cast<double>(e.accepted_steps()[i]));
+        }
+    }
+}
+
+TEST_CASE("a right-hand side that is not finite ends a stiff method as not_finite, at its last finite state") {
+    ensemble<faulty::domain_fault> e(9);
+    e.state(0) = 0.0;
+    for (std::int64_t i = 0; i < e.size(); ++i) e.parameter(0)[i] = i % 2 == 0 ? 0.5 : 5.0;
+    e.time_domain(0, 1);
+    solve<rosenbrock_23>(tests::test_device(1), e, compare::with_tolerance(1e-6, 1e-2));
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+        CHECK(e.status(i) == (i % 2 == 0 ? status::not_finite : status::success));
+        CHECK(e.state(0)[i] <= (i % 2 == 0 ? 0.5 : 1.0));
+        CHECK(e.state(0)[i] > 0.49);
+    }
+}
+
+TEST_CASE("evaluations of rhs are counted, two a step of rosenbrock_23 and eight of rodas_5p") {
+    auto e = oscillators({0, 8, 16});
+    const options o = compare::with_tolerance(1e-4, 1e-3);
+    solve<rosenbrock_23>(tests::test_device(1), e, o);
+    for (std::int64_t i = 0; i < e.size(); ++i)  // and the first slope, which a step that is rejected keeps
+        CHECK(e.rhs_evaluations()[i] == 2 * (e.accepted_steps()[i] + e.rejected_steps()[i]) + 1);
+    e = oscillators({0, 8, 16});
+    solve<rodas_5p>(tests::test_device(1), e, o);
+    for (std::int64_t i = 0; i < e.size(); ++i)
+        CHECK(e.rhs_evaluations()[i] == 8 * e.accepted_steps()[i] + 7 * e.rejected_steps()[i]);
+}
+
+// Errors of a stiff problem die out, so that the error anywhere is that of a step or two, and at a sample that of the
+// interpolant, whose tolerance nobody checks: a factor for it.
+TEST_CASE("rosenbrock_23 locates events, samples and calls hooks on a stiff problem") { check_relay<rosenbrock_23>(1e-6, 10); }
+TEST_CASE("rodas_5p locates events, samples and calls hooks on a stiff problem") { check_relay<rodas_5p>(1e-6, 10); }
+
+TEST_CASE("stiff methods take systems of seven and of thirty-two equations") {
+    check_rod<rodas_5p, 7>(1e-8);
+    check_rod<rodas_5p, 32>(1e-8);
+    check_rod<rosenbrock_23, 32>(1e-5);
+    check_rod<rosenbrock_23, 32, float>(1e-4);
+}
+
+TEST_CASE("the order of the ensemble changes no bit of a stiff method's results") {
+    check_order_of_instances<rosenbrock_23>();
+    check_order_of_instances<rodas_5p>();
+}
+
+TEST_CASE("the model's own Jacobian gives what the one by dual numbers gives") {
+    const auto run = []<class Model>(ensemble<Model>&& e) {
+        e.state(0) = 1.0;
+        e.state(1) = e.state(2) = 0.0;
+        e.time_domain(0, 40);
+        options o = compare::with_tolerance(1e-8, 1e-6);
+        o.absolute_tolerance = 1e-12;
+        solve<rodas_5p>(tests::test_device(1), e, o);
+        REQUIRE(e.status(0) == status::success);
+        return std::vector<double>{e.state(0)[0], e.state(1)[0], e.state(2)[0], static_cast<double>(e.accepted_steps()[0])};
+    };
+    const auto dual = run(ensemble<stiff::robertson>(1)), own = run(ensemble<stiff::robertson_with_jacobian>(1));
+    // The two differ by rounding: the steps are the same, the results within the roundings of a few hundred of them.
+    CHECK(dual[3] == own[3]);
+    for (std::size_t c = 0; c < 3; ++c)
+        CHECK(std::abs(dual[c] - own[c]) <= dual[3] * 10 * std::numeric_limits<double>::epsilon());
+}
