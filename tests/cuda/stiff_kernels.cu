@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Stiff methods as CUDA kernels: in registers up to six equations, through local memory above, where the stack holds one
+// matrix (8 n^2 bytes), the stages and little else; single precision stays single.
+//
+// limit: integrate_ensemble<chain<2>, rosenbrock_23> stack 0 spill 0 registers 72
+// limit: integrate_ensemble<chain<2>, rodas_5p> stack 0 spill 0 registers 80
+// limit: integrate_ensemble<chain<4>, rosenbrock_23> stack 0 spill 0 registers 136
+// limit: integrate_ensemble<chain<4>, rodas_5p> stack 0 spill 0 registers 168
+// limit: integrate_ensemble<chain<6>, rosenbrock_23> stack 0 spill 0
+// limit: integrate_ensemble<chain<6>, rodas_5p> stack 0 spill 0
+// limit: integrate_ensemble<chain<8>, rosenbrock_23> stack 2400
+// limit: integrate_ensemble<chain<8>, rodas_5p> stack 2400
+// limit: integrate_ensemble<chain<32>, rosenbrock_23> stack 14000
+// limit: integrate_ensemble<chain<32>, rodas_5p> stack 14000
+// forbid: f64 in integrate_ensemble<chain<3>, rosenbrock_23>
+// forbid: f64 in integrate_ensemble<chain<3>, rodas_5p>
+
+#include <myriad/cuda/kernel.cuh>
+#include <myriad/methods.hpp>
+#include <myriad/model.hpp>
+
+/// n populations, each of which feeds on the next one: the Jacobian has two entries in each row.
+template <int n>
+struct chain {
+    enum state { first, n_state = n };
+    enum parameter { rate, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n> rhs(auto, const myriad::vec<R, n>& y, const auto& p) {
+        myriad::vec<R, n> f;
+        MYRIAD_UNROLL
+        for (int i = 0; i < n; ++i) f[i] = p[rate] * (y[(i + 1) % n] * y[i] - y[i]);
+        return f;
+    }
+};
+
+constexpr auto constant = myriad::shared_placement::constant_bank;
+#define INSTANTIATE(n, R)                                                                                 \
+    template __global__ void myriad::integrate_ensemble<chain<n>, myriad::rosenbrock_23, R, constant>(    \
+        const __grid_constant__ myriad::launch_arguments<chain<n>, R, constant>);                         \
+    template __global__ void myriad::integrate_ensemble<chain<n>, myriad::rodas_5p, R, constant>(         \
+        const __grid_constant__ myriad::launch_arguments<chain<n>, R, constant>);
+INSTANTIATE(2, double)
+INSTANTIATE(3, float)
+INSTANTIATE(4, double)
+INSTANTIATE(6, double)
+INSTANTIATE(8, double)
+INSTANTIATE(16, double)
+INSTANTIATE(32, double)
