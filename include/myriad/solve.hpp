@@ -10,6 +10,7 @@
 #include "myriad/backend.hpp"
 #include "myriad/device.hpp"
 #include "myriad/ensemble/ensemble.hpp"
+#include "myriad/ensemble/notes.hpp"
 #include "myriad/ensemble/report.hpp"
 #include "myriad/integrator/arguments.hpp"
 #include "myriad/integrator/options.hpp"
@@ -135,6 +136,8 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     result.records = std::move(prepared.records());
     if (options.counting == counting::on) host::set_work(result, work_before, host::counted_work(instances));
     host::summarise(instances, result, instances.size());
+    host::note_tolerances(result, options);
+    host::note_stiffness<Method>(result, instances, options);
     return result;
 }
 

@@ -182,6 +182,8 @@ public:
         require_results("report");
         if (options_.counting == counting::on) host::set_work(report_, work_before_, host::counted_work(instances_));
         host::summarise(instances_, report_, count_);
+        report_.notes.clear();
+        host::note_tolerances(report_, options_);
         report_.device = where_.name();
         if (engine_) {
             report_.kernel = engine_->facts();

@@ -10,5 +10,5 @@
 
 MYRIAD_INSTANTIATE(problems::timed_circle, STIFF_METHODS)
 MYRIAD_INSTANTIATE_FLOAT(problems::oscillator, STIFF_METHODS)
-MYRIAD_INSTANTIATE(stiff::prothero_robinson, STIFF_METHODS)
+MYRIAD_INSTANTIATE(stiff::prothero_robinson, STIFF_METHODS, myriad::tsitouras_5, myriad::dormand_prince_8)
 MYRIAD_INSTANTIATE(stiff::relay, myriad::dense<myriad::rosenbrock_23>, myriad::dense<myriad::rodas_5p>)

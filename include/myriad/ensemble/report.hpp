@@ -129,6 +129,7 @@ struct report {
     cuda::kernel_facts kernel;  ///< on a GPU: the kernel's registers, block size and shared parameters
     double kernel_seconds = 0;  ///< on a GPU: time of the kernels alone
     phase_records<Model, R> records;
+    std::vector<std::string> notes;  ///< remarks: tolerances that were raised; by `solve`, that the equations are stiff
 
     std::int64_t count(status s) const { return by_status[static_cast<std::size_t>(s)]; }
     /// Instances with a failure status.
@@ -177,6 +178,7 @@ std::ostream& operator<<(std::ostream& out, const report<Model, R>& r) {
         for (const R v : r.first_parameter) out << ' ' << v;
         out << '\n';
     }
+    for (const std::string& note : r.notes) out << "note: " << note << '\n';
     return out;
 }
 

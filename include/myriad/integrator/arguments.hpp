@@ -34,7 +34,7 @@ void describe_options(kernel_arguments<Model, R>& a, const options& o) {
     a.growth_limit = static_cast<R>(o.growth_limit);
     a.shrink_limit = static_cast<R>(o.shrink_limit);
     for (std::size_t c = 0; c < static_cast<std::size_t>(n_state<Model>); ++c) {
-        a.relative_tolerance[c] = static_cast<R>(o.relative_tolerance[c]);
+        a.relative_tolerance[c] = std::max(static_cast<R>(o.relative_tolerance[c]), least_relative_tolerance<R>);
         // not subnormal: a GPU takes its reciprocal
         a.absolute_tolerance[c] = std::max(static_cast<R>(o.absolute_tolerance[c]), std::numeric_limits<R>::min());
     }

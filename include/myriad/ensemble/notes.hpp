@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// What a report remarks beside the figures: tolerances that had to be raised, and signs of stiffness.
+#pragma once
+
+#include <cstdint>
+
+#include "myriad/ensemble/report.hpp"
+#include "myriad/ensemble/stiffness.hpp"
+#include "myriad/integrator/options.hpp"
+
+namespace myriad::host {
+
+/// Remarks if a relative tolerance was below what the precision can reach.
+template <class Model, class R>
+void note_tolerances(report<Model, R>& r, const options& o) {
+    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
+        if (static_cast<R>(o.relative_tolerance[c]) >= least_relative_tolerance<R>) continue;
+        r.notes.push_back(message("relative_tolerance ", o.relative_tolerance[c], " is below what the precision can reach: ",
+                                  least_relative_tolerance<R>, " was used"));
+        return;
+    }
+}
+
+/// Remarks if an explicit method's steps were limited by stability in a tenth or more of the instances looked at. Runs of less
+/// than 200 steps per instance are not worth a remark.
+template <class Method, class Model, class R>
+void note_stiffness(report<Model, R>& r, ensemble<Model, R>& e, const options& o) {
+    if constexpr (Method::embedded_order > 0 && !solves_linear_systems<Method>) {
+        constexpr std::int64_t worthwhile = 200;
+        if (r.accepted_steps + r.rejected_steps < worthwhile * e.size()) return;
+        const stiffness found = find_stiffness<Method>(e, o.maximum_step);
+        if (10 * found.limited < found.looked_at || found.limited == 0) return;
+        r.notes.push_back(message("stability, not accuracy, limits the step in ", found.limited, " of ", found.looked_at,
+                                  " instances looked at (step times fastest rate is up to ", found.share,
+                                  " of the method's limit): the equations are stiff there, and rodas_5p, or rosenbrock_23 "
+                                  "at tolerances above 1e-4, may take far fewer steps"));
+    }
+}
+
+}  // namespace myriad::host
