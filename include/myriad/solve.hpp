@@ -117,7 +117,7 @@ template <class Method, class Model, class R>
 report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
     check_options<Model, Method, R>(options);
     host::require_kernel<Model, Method, R>(where);
-    host::check_inputs(instances, options, instances.size());
+    host::check_inputs<Method>(instances, options, instances.size());
 
     report<Model, R> result;
     host::prepared_arguments<Model, Method, R> prepared(instances, options);

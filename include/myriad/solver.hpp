@@ -100,7 +100,7 @@ public:
                         "restart() and set the instances anew, or download() all of them before");
         }
         uploaded_ = false;
-        host::check_inputs(instances_, options_, wanted);
+        host::check_inputs<Method>(instances_, options_, wanted);
         count_ = wanted;
         uploaded_ = true;
         integrated_ = false;

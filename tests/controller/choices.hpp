@@ -12,4 +12,7 @@ using averaged = myriad::dense<myriad::controlled<myriad::dormand_prince_5, myri
 using automatic = myriad::dense<myriad::controlled<myriad::dormand_prince_5, myriad::automatic_first_step>>;
 using high_order = myriad::dense<myriad::controlled<myriad::dormand_prince_8, myriad::pi_control, myriad::automatic_first_step>>;
 
+using plain = myriad::controlled<myriad::dormand_prince_8, myriad::automatic_first_step>;
+using scaled = myriad::controlled<myriad::dormand_prince_8, myriad::tolerance_per_instance, myriad::automatic_first_step>;
+
 }  // namespace choices

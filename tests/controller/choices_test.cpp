@@ -172,3 +172,37 @@ TEST_CASE("dormand_prince_8 with pi_control and automatic_first_step ends at the
     CHECK(std::abs(e.state(0)[0] - 2.0081497621749485920) <= 300 * 1e-11);
     CHECK(std::abs(e.state(1)[0] + 0.042508875273202146986) <= 300 * 1e-11);
 }
+
+TEST_CASE("with tolerance_per_instance each instance is integrated as by a call with its own tolerances") {
+    using choices::plain;
+    const auto prepare = [] {
+        myriad::ensemble<model> e(5);
+        for (int c = 0; c < 2; ++c) e.state(c) = start[c];
+        e.time_domain(0, t_end);
+        return e;
+    };
+    myriad::options o;
+    o.relative_tolerance = o.absolute_tolerance = 0x1p-30;
+    auto own = prepare();
+    for (std::int64_t i = 0; i < own.size(); ++i) own.tolerance_scale()[i] = std::ldexp(1.0, static_cast<int>(4 * i) - 8);
+    const auto report = myriad::solve<choices::scaled>(tests::test_device(1), own, o);
+    REQUIRE(report.count(myriad::status::success) == own.size());
+    for (std::int64_t i = 0; i < own.size(); ++i) {
+        CAPTURE(i);
+        auto one = prepare();
+        myriad::options scaled = o;
+        scaled.relative_tolerance = scaled.absolute_tolerance = std::ldexp(0x1p-30, static_cast<int>(4 * i) - 8);
+        myriad::solve<plain>(tests::test_device(1), one, scaled);
+        // powers of two: the ratios to the tolerances are the same, but for the size of what single precision can hold
+        CHECK(one.accepted_steps()[i] == own.accepted_steps()[i]);
+        CHECK(one.rejected_steps()[i] == own.rejected_steps()[i]);
+        for (int c = 0; c < 2; ++c) CHECK(std::abs(one.state(c)[i] - own.state(c)[i]) <= 1e-5 * 0x1p-30);
+    }
+    CHECK(own.accepted_steps()[0] > own.accepted_steps()[4]);
+    auto refused = prepare();
+    refused.tolerance_scale()[3] = 0;
+    CHECK_THROWS_WITH(myriad::solve<choices::scaled>(tests::test_device(1), refused, o),
+                      Catch::Matchers::Contains("tolerance_scale is 0 in instance 3"));
+    CHECK_THROWS_WITH(myriad::solve<plain>(tests::test_device(1), own, o),
+                      Catch::Matchers::Contains("tolerance_per_instance"));
+}

@@ -349,3 +349,67 @@ TEST_CASE("one instance that was marked invalid has no samples and takes none fr
         for (int k = 0; k < 9 && i != 7; ++k) CHECK(e.samples().state(1)(i, k) == clean.samples().state(1)(i, k));
     }
 }
+
+TEST_CASE("each instance may have sample times of its own", "[output]") {
+    each_dense_method([]<class Dense, class Method> {
+        for (const double span : {1.0, -1.0}) {
+            auto e = curves(span);
+            options o = compare::with_tolerance(1e-6);
+            o.step = 1.0 / 64;
+            o.samples.states = {curve::u, curve::w};
+            o.samples.capacity = 3;
+            for (std::int64_t i = 0; i < e.size(); ++i)
+                for (const double part : {0.0, 0.25 + 0.03 * static_cast<double>(i), 1.0})
+                    o.samples.times_of_instances.push_back(part == 1 ? e.t_end()[i] : e.t_begin()[i] + part * span);
+            solve<Dense>(tests::test_device(1), e, o);
+            CHECK((e.samples().stored() == 3).all());
+            for (std::int64_t i = 0; i < e.size(); ++i) {
+                for (int k = 0; k < 3; ++k)
+                    CHECK(e.samples().time()(i, k) == o.samples.times_of_instances[static_cast<std::size_t>(3 * i + k)]);
+                // the same as a call with these times for all
+                auto one = curves(span);
+                options common = o;
+                common.samples.times = {o.samples.times_of_instances.begin() + 3 * i,
+                                        o.samples.times_of_instances.begin() + 3 * i + 3};
+                common.samples.times_of_instances.clear();
+                for (std::int64_t j = 0; j < one.size(); ++j) {
+                    one.t_begin()[j] = e.t_begin()[i];
+                    one.t_end()[j] = e.t_end()[i];
+                    for (int c = 0; c < 2; ++c) one.state(c)[j] = curve::exact(e.t_begin()[i])[c];
+                }
+                solve<Dense>(tests::test_device(1), one, common);
+                for (int k = 0; k < 3; ++k) CHECK(one.samples().state(0)(i, k) == e.samples().state(0)(i, k));
+            }
+        }
+    });
+}
+
+TEST_CASE("sample times of instances that do not fit are refused", "[output]") {
+    auto e = curves();
+    options o = compare::with_tolerance(1e-6);
+    o.samples.states = {curve::u};
+    o.samples.capacity = 2;
+    const auto message_of = [&] {
+        try {
+            solve<dense<cash_karp>>(tests::test_device(1), e, o);
+        } catch (const myriad::error& what) {
+            return std::string(what.what());
+        }
+        return std::string();
+    };
+    const auto has = [&](const char* part) { return message_of().find(part) != std::string::npos; };
+    o.samples.times_of_instances.assign(20, 0.5);
+    CHECK(has("has 20 times for 19 instances"));
+    o.samples.times_of_instances.clear();
+    for (std::int64_t i = 0; i < e.size(); ++i)
+        for (const double part : {0.25, 0.5}) o.samples.times_of_instances.push_back(e.t_begin()[i] + part);
+    auto right = o.samples.times_of_instances;
+    o.samples.times_of_instances[7] = o.samples.times_of_instances[6];
+    CHECK(has("instance 3 are not in order at number 1"));
+    o.samples.times_of_instances = right;
+    o.samples.times_of_instances[8] = -3;
+    CHECK(has("instance 4 is integrated from"));
+    o.samples.times_of_instances = right;
+    o.samples.capacity = 1;
+    CHECK(has("samples.capacity is 1"));
+}

@@ -44,7 +44,11 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
     using R = real_of<C>;
     using mask = mask_of<S>;
     if constexpr (solves_linear_systems<Method>) valid = valid & !trial.singular;
-    const error_norm<S> error = scaled_error<Model, Method>(args, s.data.y, s.h, trial);
+    error_norm<S> error = scaled_error<Model, Method>(args, s.data.y, s.h, trial);
+    if constexpr (scales_tolerances<Method>) {
+        error.worst = error_ratio(S(error.worst), s.tolerance_scale);
+        error.within = all_finite(trial.y) & (error.worst <= C(R(1)));
+    }
     const mask within = valid & error.within;
     const mask accepted = s.running() & within;
     constexpr int order = estimate_order<Method>;

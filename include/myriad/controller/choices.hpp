@@ -34,8 +34,14 @@ struct automatic_first_step {
     static constexpr bool chooses_first_step = true;
 };
 
-/// `Method`, an adaptive one, with the chosen controls: `controlled<dormand_prince_8, pi_control, automatic_first_step>`.
-/// Instantiate it where it is wanted, like any method.
+/// Both tolerances are multiplied by `ensemble::tolerance_scale`, which may differ from instance to instance.
+struct tolerance_per_instance {
+    static constexpr bool scales_tolerances = true;
+};
+
+/// `Method`, an adaptive one, with the chosen controls. Instantiate it where it is wanted, like any method, under a name of
+/// its own, because macros take the comma for their own: `using careful = controlled<dormand_prince_8, pi_control>;` and
+/// `MYRIAD_INSTANTIATE(duffing, careful)`.
 template <class Method, class... Choices>
 struct controlled : Method, Choices... {
     static_assert(Method::embedded_order > 0, "the method takes fixed steps and has no step-size control to choose");
@@ -50,5 +56,8 @@ template <class Method>
 inline constexpr bool adds_tolerances = requires { Method::adds_tolerances; };
 template <class Method>
 inline constexpr bool chooses_first_step = requires { Method::chooses_first_step; };
+
+template <class Method>
+inline constexpr bool scales_tolerances = requires { Method::scales_tolerances; };
 
 }  // namespace myriad

@@ -21,6 +21,7 @@ MYRIAD_FUNCTION void choose_first_step(const kernel_arguments<Model, real_of<S>>
     MYRIAD_UNROLL
     for (int c = 0; c < n; ++c) {
         scale[c] = fma(S(args.relative_tolerance[c]), abs(s.data.y[c]), S(args.absolute_tolerance[c]));
+        if constexpr (scales_tolerances<Method>) scale[c] = scale[c] * s.tolerance_scale;
         d0 = larger(abs(s.data.y[c]) / scale[c], d0);
         d1 = larger(abs(s.slope[c]) / scale[c], d1);
     }

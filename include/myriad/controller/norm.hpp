@@ -46,7 +46,10 @@ MYRIAD_FUNCTION error_norm<S> error_over_tolerance(const kernel_arguments<Model,
         const S atol = S(args.absolute_tolerance[c]), rtol = S(args.relative_tolerance[c]),
                 larger_y = larger(abs(y[c]), size);
         const S scale = adds_tolerances<Method> ? fma(rtol, larger_y, atol) : larger(atol, rtol * larger_y);
-        const C ratio = error_ratio(estimate(c), scale);
+        C ratio = error_ratio(estimate(c), scale);
+        // where the worst ratio is changed before it is judged, a NaN must not get lost
+        if constexpr (has_coarse_estimate<Method> || scales_tolerances<Method>)
+            ratio = select(ratio == ratio, ratio, C(infinity_of<R>));
         norm.within = norm.within & (size <= S(largest_of<real_of<S>>));
         if constexpr (averages_errors<Method>) {
             norm.worst = fma(ratio, ratio, norm.worst);
@@ -81,7 +84,6 @@ MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of
         const C quotient = select(big > C(R(0)), small / big, C(R(0)));
         const C length = big * sqrt(fma(quotient, quotient, C(R(1))));
         norm.worst = norm.worst * select(big > C(R(0)), norm.worst / length, C(R(0)));
-        // Every stage that the estimates see is in the new state too, and makes it infinite or NaN.
         norm.within = norm.worst <= C(R(1));
         MYRIAD_UNROLL
         for (int c = 0; c < n_state<Model>; ++c) norm.within = norm.within & is_finite(trial.y[c]);

@@ -42,6 +42,7 @@ void for_each_array(kernel_arguments<Model, R>& a, Visit&& visit) {
     visit_array(a.parameter, n_parameter<Model>, writes_parameters<Model> ? access::update : access::read, kind::input);
     visit_array(a.t_begin, 1, times, kind::input);
     visit_array(a.t_end, 1, times, kind::input);
+    visit_array(a.tolerance_scale, 1, access::read, kind::input);
     visit_array(a.accessory, n_accessory<Model>, access::update, kind::accessory);
     visit_array(a.integer_accessory, n_integer_accessory<Model>, access::update, kind::integer_accessory);
     visit_array(a.t, 1, access::update, kind::bookkeeping);
@@ -55,6 +56,7 @@ void for_each_array(kernel_arguments<Model, R>& a, Visit&& visit) {
     visit_array(a.located, 1, access::update, kind::bookkeeping);
     visit_array(a.evaluations, 1, access::update, kind::bookkeeping);
     const std::int64_t capacity = a.sample.capacity;
+    visit_array(a.sample.own_times, a.sample.count, access::read, kind::input);
     visit_array(a.sample.stored, 1, access::update, kind::samples);
     visit_array(a.sample.time, capacity, access::update, kind::samples);
     visit_array(a.sample.values, host::columns_in(a.sample.column) * capacity, access::update, kind::samples);

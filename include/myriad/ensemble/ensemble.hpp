@@ -76,6 +76,14 @@ public:
         t_end() = t_end_of_all;
     }
 
+    /// What both tolerances are multiplied by in each instance, one until set, for a method
+    /// `controlled<Method, tolerance_per_instance>`. Takes memory from the first call on.
+    map<R> tolerance_scale() {
+        if (!scales_tolerances()) tolerance_scale_ = component_array<R>(1, size_, R(1));
+        return view(tolerance_scale_, 0, "tolerance scale");
+    }
+    bool scales_tolerances() const { return tolerance_scale_.components() > 0; }
+
     /// A parameter that all instances share; NaN until set. With an index beyond the model's: throws `error`.
     template <class C>
     R& shared(C c) { return shared_.component(checked_index(shared_index(c), n_shared<Model>, "shared parameter"))[0]; }
@@ -133,6 +141,7 @@ public:
         a.state = state_.data();
         a.accessory = accessory_.data();
         a.integer_accessory = integer_accessory_.data();
+        a.tolerance_scale = scales_tolerances() ? tolerance_scale_.data() : nullptr;
         a.h_next = h_next_.data();
         a.phase = phase_.data();
         a.side = side_.data();
@@ -219,6 +228,7 @@ private:
     component_array<R> time_{3, size_, unset};  // t_begin, t_end, t
     component_array<R> shared_{n_shared<Model>, 1, unset};
     component_array<std::int32_t> shared_integer_{n_shared_integer<Model>, 1, 0};
+    component_array<R> tolerance_scale_;  // allocated when it is asked for
     component_array<R> h_next_{1, size_, R(0)};
     component_array<std::int32_t> phase_{1, size_, 0};
     component_array<std::int8_t> side_{n_event<Model>, size_, 0};

@@ -29,6 +29,7 @@ public:
                     ": set it with ensemble.shared(...) before solving");
         for (int c = 0; c < n_state<Model>; ++c) check("state", c, ensemble_.state(c).data(), false);
         for (int c = 0; c < n_parameter<Model>; ++c) check("parameter", c, ensemble_.parameter(c).data(), false);
+        if (ensemble_.scales_tolerances()) check_positive_scales();
         check("t_begin", no_component, ensemble_.t_begin().data(), false);
         check("t_end", endless, ensemble_.t_end().data(), may_be_endless());
     }
@@ -42,6 +43,13 @@ private:
         for (const event_options& e : options_.events)
             if (e.stop_after > 0) return true;
         return false;
+    }
+
+    void check_positive_scales() {
+        check("tolerance_scale", no_component, ensemble_.tolerance_scale().data(), false);
+        for (std::int64_t i = 0; i < count_; ++i)
+            require(ensemble_.ended(i) || ensemble_.tolerance_scale()[i] > 0, "tolerance_scale is ",
+                    ensemble_.tolerance_scale()[i], " in instance ", i, " (must be positive): give 1 for the tolerances of the options");
     }
 
     void check(const char* what, int component, const R* values, bool allow_infinite) {
@@ -81,8 +89,27 @@ template <class Model, class R>
 void check_sample_times(const ensemble<Model, R>& e, const options& o, std::int64_t count) {
     const sample_options& samples = o.samples;
     if (samples.empty() || samples.every != 0) return;
-    const std::vector<R> times(samples.times.begin(), samples.times.end());  // as the kernel has them
+    std::vector<R> times(samples.times.begin(), samples.times.end());  // as the kernel has them
+    const std::vector<double>& own = samples.times_of_instances;
+    const auto size = static_cast<std::size_t>(e.size()), per_instance = own.size() / size;
+    if (!own.empty()) {
+        require(own.size() % size == 0, "samples.times_of_instances has ", own.size(), " times for ", size,
+                " instances: give as many for each, those of instance 0 first");
+        require(samples.capacity >= static_cast<std::int64_t>(per_instance) * (o.phases - samples.from_phase),
+                "samples.capacity is ", samples.capacity, ", but the chosen times give ",
+                static_cast<std::int64_t>(per_instance) * (o.phases - samples.from_phase),
+                " samples per instance in this call: raise the capacity");
+    }
     for (std::int64_t i = 0; i < count; ++i) {
+        if (!own.empty()) {
+            const auto first = own.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * per_instance);
+            times.assign(first, first + static_cast<std::ptrdiff_t>(per_instance));
+            const bool falling = times.front() > times.back();
+            for (std::size_t k = 1; k < times.size(); ++k)
+                require(falling ? times[k] < times[k - 1] : times[k] > times[k - 1], "the sample times of instance ", i,
+                        " are not in order at number ", k, " (", times[k], " after ", times[k - 1],
+                        "): give each time once, in the order in which the integration reaches them");
+        }
         const auto begin = static_cast<double>(e.t_begin()[i]), end = static_cast<double>(e.t_end()[i]);
         if (e.ended(i) || std::isnan(begin) || std::isnan(end)) continue;
         if (o.invalid_instances == invalid_instances::mark && !std::isfinite(end - begin)) continue;
@@ -94,7 +121,7 @@ void check_sample_times(const ensemble<Model, R>& e, const options& o, std::int6
         const auto from = static_cast<double>(times.front()), to = static_cast<double>(times.back());
         const bool inside =
             end >= begin ? begin <= from && from <= to && to <= end : begin >= from && from >= to && to >= end;
-        require(inside, "samples.times go from ", from, " to ", to, ", but instance ", i, " is integrated from ", begin,
+        require(inside, "sample times go from ", from, " to ", to, ", but instance ", i, " is integrated from ", begin,
                 " to ", end, ": give times within the domain, in the order in which the integration reaches them");
     }
 }

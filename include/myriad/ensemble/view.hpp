@@ -42,7 +42,8 @@ struct sample_arguments {
     R* time;
     R* values;
     std::int32_t* stored;  // per instance: samples there are
-    const R* times;        // given times, or null: evenly spaced ones
+    const R* times;        // given times, or null: own or evenly spaced ones
+    R* own_times;          // given times of each instance, `count` components, or null
     std::int32_t count;    // number of times per phase
     std::int32_t every;    // accepted steps per sample; 0: by time
     std::int32_t capacity;
@@ -77,6 +78,7 @@ struct kernel_arguments {
     R* parameter;
     R* t_begin;
     R* t_end;
+    R* tolerance_scale;  // null: one
     // per instance, read and written
     R* t;
     R* state;

@@ -56,14 +56,23 @@ public:
         : records_(o.record, o.phases, instances.size()),
           sample_times_(o.samples.times.begin(), o.samples.times.end()) {
         describe_options<Model, Method, R>(arguments_, o);
+        if constexpr (scales_tolerances<Method>) instances.tolerance_scale();
         instances.describe(arguments_, o.counting);
         records_.describe(arguments_.record);
         if (o.samples.empty()) return;
         auto& sample = arguments_.sample;
         instances.describe_samples(sample, o.samples);
         sample.times = sample_times_.empty() ? nullptr : sample_times_.data();
-        sample.count = static_cast<std::int32_t>(sample_times_.empty() ? static_cast<std::size_t>(o.samples.evenly)
-                                                                       : sample_times_.size());
+        const auto& own = o.samples.times_of_instances;
+        const auto size = static_cast<std::size_t>(instances.size());
+        const std::size_t count = !own.empty() ? own.size() / size : sample_times_.size();
+        sample.count = static_cast<std::int32_t>(count > 0 ? count : static_cast<std::size_t>(o.samples.evenly));
+        if (!own.empty()) {
+            own_times_ = component_array<R>(static_cast<int>(count), instances.size(), R(0));
+            for (std::size_t i = 0; i < size; ++i)
+                for (std::size_t k = 0; k < count; ++k) own_times_.data()[k * size + i] = static_cast<R>(own[i * count + k]);
+            sample.own_times = own_times_.data();
+        }
         sample.every = static_cast<std::int32_t>(o.samples.every);
         sample.from_phase = static_cast<std::int32_t>(o.samples.from_phase);
         sample.minimum_spacing = static_cast<R>(o.samples.minimum_spacing);
@@ -78,11 +87,15 @@ private:
     kernel_arguments<Model, R> arguments_{};
     phase_records<Model, R> records_;
     std::vector<R> sample_times_;
+    component_array<R> own_times_;  // sample times of each instance
 };
 
 /// Checks the first `count` instances of an ensemble against the options; throws `error`.
-template <class Model, class R>
+template <class Method, class Model, class R>
 void check_inputs(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
+    require(scales_tolerances<Method> || !instances.scales_tolerances(),
+            "tolerance_scale is set, but the method has the same tolerances for all instances: use controlled<Method, "
+            "tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE");
     check_sample_times(instances, o, count);
     check_event_tolerances(instances, o, count);
     input_check<Model, R>(instances, o, count).run();

@@ -63,13 +63,14 @@ struct record_options {
     bool empty() const { return states.empty() && accessories.empty() && integer_accessories.empty() && !time; }
 };
 
-/// Dense output, for a method `dense<Method>`: states along every trajectory, by exactly one of `evenly`, `times` and
-/// `every`. Samples are appended phase by phase and call by call until the capacity is reached.
+/// Dense output, for a method `dense<Method>`: states along every trajectory, by exactly one of `evenly`, `times`,
+/// `times_of_instances` and `every`. Samples are appended phase by phase and call by call until the capacity is reached.
 struct sample_options {
     std::vector<int> states = {};  ///< components to sample; empty: no samples
     std::int64_t capacity = 0;     ///< samples kept per instance, over all phases and calls
     std::int64_t evenly = 0;  ///< number of evenly spaced times over [t_begin, t_end] in every phase, ends included
     std::vector<double> times = {};  ///< or these times in every phase, in the order in which they are reached
+    std::vector<double> times_of_instances = {};  ///< or own times, as many for each: those of instance 0 first
     std::int64_t every = 0;          ///< or the start of the phase and the end of every n-th accepted step
     double minimum_spacing = 0;      ///< least time between samples by steps
     std::int64_t from_phase = 0;     ///< first phase of the call that is sampled
@@ -144,8 +145,8 @@ namespace host {
 
 inline void check_samples(const sample_options& s, const options& o, int n_state) {
     check_components("samples.states", s.states, n_state);
-    const int ways = (s.evenly != 0) + !s.times.empty() + (s.every != 0);
-    require(ways == 1, "samples names ", ways, " of evenly, times and every: choose exactly one");
+    const int ways = (s.evenly != 0) + !s.times.empty() + !s.times_of_instances.empty() + (s.every != 0);
+    require(ways == 1, "samples names ", ways, " of evenly, times, times_of_instances and every: choose exactly one");
     require(s.capacity > 0 && s.capacity < 2'000'000'000, "samples.capacity is ", s.capacity,
             " (must be positive): give the number of samples to keep per instance");
     require(s.from_phase >= 0 && s.from_phase < o.phases, "samples.from_phase is ", s.from_phase, ", but the call has ",
@@ -166,6 +167,7 @@ inline void check_samples(const sample_options& s, const options& o, int n_state
         require(rising || falling, "samples.times are not in order at number ", k, " (", s.times[k], " after ",
                 s.times[k - 1], "): give each time once, in the order in which the integration reaches them");
     }
+    if (!s.times_of_instances.empty()) return;  // checked where the ensemble's size is known
     const std::int64_t wanted =
         (s.evenly != 0 ? s.evenly : static_cast<std::int64_t>(s.times.size())) * (o.phases - s.from_phase);
     require(s.capacity >= wanted, "samples.capacity is ", s.capacity, ", but the chosen times give ", wanted,
@@ -178,6 +180,7 @@ inline void check_no_samples(const sample_options& s) {
     if (s.capacity != 0) given = "capacity";
     if (s.evenly != 0) given = "evenly";
     if (!s.times.empty()) given = "times";
+    if (!s.times_of_instances.empty()) given = "times_of_instances";
     if (s.every != 0) given = "every";
     if (!(s.minimum_spacing == 0)) given = "minimum_spacing";
     if (s.from_phase != 0) given = "from_phase";

@@ -107,6 +107,7 @@ struct integration_state {
     mask last_singular;    // and that value came of a singular matrix, if the method solves linear systems
     mask first_step_open;  // the phase's first step is yet to be chosen
     control_memory<Method, S> errors;  // of earlier steps
+    S tolerance_scale;  // of the instance, if the method has it
 
     // fixed steps: t = base + done * step, so that no rounding adds up and no step is added
     S base, step;

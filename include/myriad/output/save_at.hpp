@@ -141,6 +141,8 @@ private:
     MYRIAD_FUNCTION R sample_time(int i) const {
         const std::int32_t k = o.index[i];
         if (args.sample.times != nullptr) return args.sample.times[k];
+        if (args.sample.own_times != nullptr)
+            return args.sample.own_times[static_cast<std::int64_t>(k) * args.size + s.instance[i]];
         const R begin = get_lane(o.begin, i), end = get_lane(o.end, i);
         if (k == args.sample.count - 1) return end;
         return fma(static_cast<R>(k) / static_cast<R>(args.sample.count - 1), end - begin, begin);
