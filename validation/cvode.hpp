@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// SUNDIALS CVODE as a reference: Adams methods at tight tolerances, with root finding and restarts. Host code only.
+// SUNDIALS CVODE as a reference: Adams methods, or BDF for stiff systems, at tight tolerances, with root finding and
+// restarts. For SUNDIALS 6 and 7. Host code only.
 #pragma once
 
 #include <cstddef>
+#include <cstdlib>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -10,10 +12,14 @@
 
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
+#include <sundials/sundials_config.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 namespace validation {
+
+/// Which of CVODE's two families of methods: the second for stiff systems.
+enum class multistep { adams, bdf };
 
 /// One solution of dy/dt = f(t, y). Throws std::runtime_error if CVODE fails.
 class cvode {
@@ -21,13 +27,20 @@ public:
     /// Writes f(t, y), or the values of root functions, to its last argument.
     using function = std::function<void(double, const double*, double*)>;
 
-    cvode(std::size_t n, function f, double relative_tolerance, double absolute_tolerance)
+    cvode(std::size_t n, function f, double relative_tolerance, double absolute_tolerance,
+          multistep family = multistep::adams)
         : n_(n), f_(std::move(f)), relative_(relative_tolerance), absolute_(absolute_tolerance) {
+#if SUNDIALS_VERSION_MAJOR >= 7
+        check(SUNContext_Create(SUN_COMM_NULL, &context_), "SUNContext_Create");
+        // it writes every error to stderr, once here and once as the exception
+        check(SUNContext_ClearErrHandlers(context_), "SUNContext_ClearErrHandlers");
+#else
         check(SUNContext_Create(nullptr, &context_), "SUNContext_Create");
+#endif
         y_ = N_VNew_Serial(static_cast<sunindextype>(n), context_);
         matrix_ = SUNDenseMatrix(static_cast<sunindextype>(n), static_cast<sunindextype>(n), context_);
         solver_ = SUNLinSol_Dense(y_, matrix_, context_);
-        memory_ = CVodeCreate(CV_ADAMS, context_);
+        memory_ = CVodeCreate(family == multistep::adams ? CV_ADAMS : CV_BDF, context_);
         if (y_ == nullptr || matrix_ == nullptr || solver_ == nullptr || memory_ == nullptr)
             throw std::runtime_error("CVODE: out of memory");
     }
@@ -52,6 +65,7 @@ public:
         t_ = t;
         for (std::size_t c = 0; c < n_; ++c) data()[c] = y.at(c);
         if (started_) {
+            evaluations_before_ = evaluations();
             check(CVodeReInit(memory_, t, y_), "CVodeReInit");
             return;
         }
@@ -68,10 +82,13 @@ public:
     }
 
     /// Goes on to t_end, or to the next zero of a watched function. True if it is at one.
-    bool advance(double t_end) {
-        // from the side of the present point, so that no step goes beyond t_end
+    bool advance(double t_end) { return advance(t_end, t_end); }
+
+    /// Goes on to t by interpolation, so that no step is shortened for it; but none goes beyond t_end.
+    bool advance(double t, double t_end) {
+        // from the side of the present point
         check(CVodeSetStopTime(memory_, t_end), "CVodeSetStopTime");
-        const int flag = CVode(memory_, t_end, y_, &t_, CV_NORMAL);
+        const int flag = CVode(memory_, t, y_, &t_, CV_NORMAL);
         check(flag, "CVode");
         return flag == CV_ROOT_RETURN;
     }
@@ -85,16 +102,27 @@ public:
         check(CVodeGetRootInfo(memory_, which.data()), "CVodeGetRootInfo");
         return which;
     }
+    /// Evaluations of f so far, those for its Jacobian included.
+    long evaluations() const {
+        long in_steps = 0, in_jacobians = 0;
+        check(CVodeGetNumRhsEvals(memory_, &in_steps), "CVodeGetNumRhsEvals");
+        check(CVodeGetNumLinRhsEvals(memory_, &in_jacobians), "CVodeGetNumLinRhsEvals");
+        return evaluations_before_ + in_steps + in_jacobians;
+    }
 
 private:
     static void check(int flag, const char* what) {
-        if (flag < 0) throw std::runtime_error(std::string(what) + " failed with " + std::to_string(flag));
+        if (flag >= 0) return;
+        char* const name = CVodeGetReturnFlagName(flag);
+        const std::string known = name == nullptr ? "" : name;
+        std::free(name);
+        throw std::runtime_error(std::string(what) + " failed with " + std::to_string(flag) + " (" + known + ")");
     }
-    static int call_f(realtype t, N_Vector y, N_Vector dy, void* self) {
+    static int call_f(sunrealtype t, N_Vector y, N_Vector dy, void* self) {
         static_cast<cvode*>(self)->f_(t, NV_DATA_S(y), NV_DATA_S(dy));
         return 0;
     }
-    static int call_g(realtype t, N_Vector y, realtype* g, void* self) {
+    static int call_g(sunrealtype t, N_Vector y, sunrealtype* g, void* self) {
         static_cast<cvode*>(self)->g_(t, NV_DATA_S(y), g);
         return 0;
     }
@@ -105,6 +133,7 @@ private:
     double relative_, absolute_, t_ = 0;
     std::vector<int> directions_;
     bool started_ = false;
+    long evaluations_before_ = 0;
     SUNContext context_ = nullptr;
     N_Vector y_ = nullptr;
     SUNMatrix matrix_ = nullptr;

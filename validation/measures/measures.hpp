@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// The measures: each compares runs of a problem with its references and adds rows to the report.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "../problem.hpp"
+#include "../report.hpp"
+#include "recorded.hpp"
+
+namespace validation {
+
+enum class extent { whole, quick };
+
+/// What all measures share.
+struct session {
+    myriad::device device;
+    extent how_much;
+    report& rows;
+    recorder* record = nullptr;         // results to keep
+    const recorded* compare = nullptr;  // results of another backend to compare with
+
+    bool quick() const { return how_much == extent::quick; }
+    std::string device_name() const { return device.which() == myriad::device::kind::cpu ? "cpu" : "cuda"; }
+    subject about(const problem& p, const method_entry& m, double setting) const {
+        return {p.name, m.name, m.precision, device_name(), setting};
+    }
+};
+
+/// The best known solution of every instance, by how much it may be wrong, and its conditioning.
+struct references {
+    std::vector<solution> known;
+    std::vector<double> error;  // of the end state, by the difference of two CVODE runs, or 0 for closed forms
+    std::vector<conditioning> conditions;
+};
+
+/// CVODE at two tolerances, and closed forms; compares them with each other.
+references measure_references(session&, const problem&);
+/// Errors of the end, of events, samples, accessories and invariants, and work, over a range of tolerances.
+void measure_tolerances(session&, const problem&, const method_entry&, const references&);
+/// Order and error constant with fixed steps.
+void measure_order(session&, const problem&, const method_entry&, const references&);
+/// Order of the error estimate.
+void measure_estimate(session&, const problem&, const method_entry&);
+/// Error against evaluations and time, beside CVODE and Boost.odeint.
+void measure_work(session&, const problem&, const references&);
+/// Lyapunov exponents and statistics of chaotic solutions.
+void measure_chaos(session&);
+
+// What several measures use ------------------------------------------------------------------------------------------
+
+/// Calls f(i) for every i below count, on all cores; rethrows what it throws.
+template <class F>
+void for_each_in_parallel(std::size_t count, F&& f) {
+    std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic)
+    for (std::size_t i = 0; i < count; ++i) {
+        try {
+            f(i);
+        } catch (...) {
+#pragma omp critical
+            failure = std::current_exception();
+        }
+    }
+    if (failure) std::rethrow_exception(failure);
+}
+
+/// Largest difference of two states; what is NaN in the second is not compared.
+inline double distance(const std::vector<double>& a, const std::vector<double>& b) {
+    double largest = 0;
+    for (std::size_t c = 0; c < a.size() && c < b.size(); ++c) {
+        if (std::isnan(b[c])) continue;
+        const double d = std::abs(a[c] - b[c]);
+        if (!(d <= largest)) largest = d;  // NaN in the first stays
+    }
+    return largest;
+}
+
+inline double median(std::vector<double> values) {
+    if (values.empty()) return unknown;
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return values[values.size() / 2];
+}
+
+/// The problem with event functions that never leave their tolerance, so that no step is cut.
+inline problem without_events(problem p) {
+    for (auto& e : p.events) e.tolerance = 1e300;
+    return p;
+}
+
+/// Steps of length h and no other, for every method: tolerances that no error exceeds.
+inline myriad::options fixed_steps(const problem& p, double h) {
+    myriad::options o;
+    o.step = o.minimum_step = o.maximum_step = h;
+    o.relative_tolerance = o.absolute_tolerance = 1e30;
+    o.events = p.events;
+    return o;
+}
+
+}  // namespace validation

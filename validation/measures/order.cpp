@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Order and error constant with fixed steps, on all instances, for methods with step-size control too. These are the
+// tight checks: a coefficient that is wrong in its fourth digit breaks a low order condition, so that the error falls
+// with the first or second power of the step, or not at all, from where it is a ten-thousandth of what it should be.
+#include <algorithm>
+#include <cmath>
+
+#include "measures.hpp"
+
+namespace validation {
+namespace {
+
+/// Per instance: the Euclidean length of the difference of two end states, and that of all their samples.
+struct differences {
+    std::vector<double> end, samples;
+
+    differences(const std::vector<solution>& a, const std::vector<solution>& b) {
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            double at_end = 0, along = 0;
+            for (std::size_t c = 0; c < a[i].end.size(); ++c) at_end += std::pow(a[i].end[c] - b[i].end[c], 2);
+            for (std::size_t k = 0; k < a[i].samples.size() && k < b[i].samples.size(); ++k)
+                for (std::size_t c = 0; c < a[i].samples[k].size(); ++c)
+                    along += std::pow(a[i].samples[k][c] - b[i].samples[k][c], 2);
+            end.push_back(std::sqrt(at_end));
+            samples.push_back(std::sqrt(along));
+        }
+    }
+};
+
+/// The median over the instances: where a leading error coefficient happens to vanish, an instance says nothing.
+double median_ratio(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (b[i] > 0) ratios.push_back(a[i] / b[i]);
+    return median(ratios);
+}
+
+}  // namespace
+
+void measure_order(session& s, const problem& p, const method_entry& m, const references& r) {
+    if (p.longest_step == 0 || m.precision != "double") return;
+    const problem smooth = without_events(p);  // they would cut steps
+    std::vector<double> growths;
+    for (const conditioning& c : r.conditions) growths.push_back(c.end);
+    const double growth = median(growths), error_of_reference = median(r.error);
+    struct level {
+        double h;
+        std::vector<solution> instances;
+        differences error;
+    };
+    std::vector<level> levels;
+    double h = p.longest_step;
+    for (int k = 0; k < 8; ++k, h /= 2) {
+        myriad::options o = fixed_steps(smooth, h);
+        if (!p.sampled.empty()) o.samples = {.states = p.sampled, .capacity = p.samples, .evenly = p.samples};
+        const outcome run = m.run(smooth, o, s.device);
+        const level now{h, run.instances, {run.instances, r.known}};
+        const double error = median(now.error.end);
+        s.rows.add(s.about(p, m, h), "end state with fixed steps, median", error);
+        // Roundings of n steps add up to about sqrt(n) eps and grow; near that the error tells nothing of the method.
+        // The error of the reference is that of the run at ten times its tolerance, so well above its own.
+        const double steps = p.instances[0].t_end / h;
+        const double floor = std::max(30 * std::sqrt(steps) * eps_double * growth, 3 * error_of_reference);
+        if (!levels.empty() && !(error > floor)) break;
+        levels.push_back(now);
+    }
+    if (levels.size() < 3) {
+        s.rows.add(s.about(p, m, h), "order", unknown, bounds::within(m.order, m.order), "too few steps above rounding");
+        return;
+    }
+    const level &fine = levels.back(), &coarse = levels[levels.size() - 2];
+    const subject about = s.about(p, m, fine.h);
+    const double order = std::log2(median_ratio(coarse.error.end, fine.error.end));
+    s.rows.add(about, "order", order, bounds::within(m.order - 0.2, m.order + 1.2),
+               "error = C h^order (1 + O(h)); above it where C is small against the next term");
+    // The difference of two step sizes tells the error of the finer one, up to a term in h.
+    const differences halving(coarse.instances, fine.instances);
+    s.rows.add(about, "error over its prediction by halved steps",
+               median_ratio(fine.error.end, halving.end) * (std::exp2(order) - 1), bounds::within(0.8, 1.25),
+               "the limit is the reference");
+    if (p.sampled.empty()) return;
+    const double interpolant = m.interpolant_order > 0 ? m.interpolant_order + 1 : 4;
+    const double least = std::min(interpolant, 1.0 * m.order);
+    s.rows.add(about, "order of samples", std::log2(median_ratio(coarse.error.samples, fine.error.samples)),
+               bounds::within(least - 0.3, std::max(interpolant, 1.0 * m.order) + 1.2),
+               "that of the interpolant inside a step, or of the steps, whichever error is larger");
+}
+
+}  // namespace validation

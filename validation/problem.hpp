@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// What a validation problem is, and what is known and computed about it, without the types of its model: so that every
+// measure is written once, for all problems, methods and precisions.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <myriad/core/status.hpp>
+#include <myriad/device.hpp>
+#include <myriad/integrator/options.hpp>
+
+namespace validation {
+
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double eps_double = std::numeric_limits<double>::epsilon();
+inline constexpr double eps_float = std::numeric_limits<float>::epsilon();
+
+/// Where an instance starts, with which parameters, and how long it is followed.
+struct instance {
+    std::vector<double> state, parameter;
+    double t_end = 0;  // from 0
+};
+
+/// The solution of one instance: by CVODE, in closed form, or in quadruple precision. NaN: not known.
+struct solution {
+    std::vector<double> end, accessory;
+    std::vector<int> count;                    // integer accessories
+    std::vector<std::vector<double>> samples;  // by time, then by sampled state
+    long evaluations = 0;
+    double seconds = 0;
+};
+
+/// By how much an error of one step may have grown: the largest |d output / d y_j(t)| max(1, |y_j(t)|), summed over j and
+/// over all t looked at.
+struct conditioning {
+    double end = 0, path = 0, invariant = 0;
+    std::vector<double> accessory;
+};
+
+/// Results of one run of an ensemble, in double whatever it was computed in.
+struct outcome {
+    std::vector<solution> instances;
+    std::vector<myriad::status> status;
+    std::vector<double> accepted, rejected, evaluations, next_step;
+    double seconds = 0;
+    double sum(const std::vector<double>& work) const {
+        double total = 0;
+        for (const double w : work) total += w;
+        return total;
+    }
+};
+
+struct problem;
+
+/// A method in one precision, compiled for a problem's model.
+struct method_entry {
+    std::string name, precision;
+    double eps = eps_double;
+    int order = 0, embedded_order = 0;  // 0: fixed steps
+    int interpolant_order = 0;          // of the method's own interpolant; 0: the cubic Hermite polynomial
+    std::function<outcome(const problem&, const myriad::options&, const myriad::device&)> run;
+
+    bool adaptive() const { return embedded_order > 0; }
+};
+
+/// What a CVODE run is asked for.
+struct accuracy {
+    double tolerance = 1e-13;
+    std::int64_t samples = 0;  // evenly over the domain, ends included
+};
+
+struct problem {
+    std::string name, what;  // what: the equations, and what is spread over the instances
+    std::vector<instance> instances;
+    std::vector<double> shared;
+    std::vector<myriad::event_options> events = {};
+    std::vector<int> event_times = {};  // accessories that are times of events; the others are values
+    int events_per_instance = 0;        // at most, in the bounds
+    std::vector<int> sampled = {};      // states for dense output; empty: none
+    std::int64_t samples = 212;  // over a prime number of intervals, so that they fall inside of steps
+    /// Fixed steps for the measured orders: the longest, from which it is halved. 0: not measured (not smooth, or the
+    /// step is bound by stability).
+    double longest_step = 0;
+    /// Fixed steps of methods without error estimate, in the other measures.
+    double fixed_step = 0.01;
+    /// Whether the error follows the tolerance: no, where stability bounds the step.
+    bool error_follows_tolerance = true;
+    bool stiff = false;
+
+    std::vector<method_entry> methods;
+    std::function<solution(const instance&, const accuracy&)> by_cvode;
+    /// Closed form or quadruple precision, or nothing; what is NaN in it is not known.
+    std::function<solution(const instance&, std::int64_t samples)> exactly = {};
+    /// What `exactly` leaves out of the equations; above 0, CVODE stays the reference and is compared with it.
+    double closed_form_error = 0;
+    std::function<conditioning(const instance&)> conditions;
+    /// All instances by Boost.odeint's controlled Cash-Karp stepper, or nothing.
+    std::function<outcome(const problem&, double tolerance)> by_odeint = {};
+    /// Constants of motion, or nothing.
+    std::function<std::vector<double>(const instance&, const std::vector<double>&)> invariants = {};
+
+    /// The problem's instances so many times over, to measure time with.
+    problem repeated(int times) const {
+        problem p = *this;
+        for (int k = 1; k < times; ++k) p.instances.insert(p.instances.end(), instances.begin(), instances.end());
+        return p;
+    }
+    double event_tolerance() const { return events.empty() ? 0 : events.front().tolerance; }
+};
+
+}  // namespace validation

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// Compiles the kernels of this problem.
+#include <myriad/instantiate.hpp>
+
+#include "../methods.hpp"
+#include "bouncing_ball.hpp"
+
+#define VALIDATION_KERNEL(M) MYRIAD_INSTANTIATE(validation::bouncing_ball, myriad::dense<myriad::M>)
+VALIDATED_METHODS(VALIDATION_KERNEL)
+#define VALIDATION_FLOAT_KERNEL(M) MYRIAD_INSTANTIATE_FLOAT(validation::bouncing_ball, myriad::dense<myriad::M>)
+VALIDATED_FLOAT_METHODS(VALIDATION_FLOAT_KERNEL)

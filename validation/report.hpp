@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// The rows of the report: what was measured, within which bounds it must be and why; and the verdict over all of them.
+#pragma once
+
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "examples/common/csv_file.hpp"
+
+namespace validation {
+
+/// Bounds of a value. NaN is within no bounds but `none`.
+struct bounds {
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
+    double low = -infinite, high = infinite;
+
+    static bounds none() { return {}; }
+    static bounds at_most(double high) { return {-infinite, high}; }
+    static bounds within(double low, double high) { return {low, high}; }
+    bool judged() const { return low > -infinite || high < infinite; }
+    bool holds(double value) const { return !judged() || (value >= low && value <= high); }
+};
+
+/// What a row is about: `setting` is a tolerance or a step, 0 where there is none.
+struct subject {
+    std::string problem, method, precision, device;
+    double setting = 0;
+};
+
+class report {
+public:
+    struct row {
+        subject about;
+        std::string measure;
+        double value;
+        bounds allowed;
+        std::string reason;
+    };
+
+    void add(const subject& about, const std::string& measure, double value, bounds allowed = bounds::none(),
+             const std::string& reason = "") {
+        rows_.push_back({about, measure, value, allowed, reason});
+        if (allowed.holds(value)) return;
+        ++missed_;
+        std::cout << "MISSED: " << about.problem << ", " << about.method << ' ' << about.precision << ", " << about.device
+                  << ", at " << about.setting << ": " << measure << ' ' << std::setprecision(6) << value << " is not within ["
+                  << allowed.low << ", " << allowed.high << "] (" << reason << ")\n";
+    }
+
+    const std::vector<row>& rows() const { return rows_; }
+    int missed() const { return missed_; }
+    int judged() const {
+        int count = 0;
+        for (const row& r : rows_) count += r.allowed.judged();
+        return count;
+    }
+
+    void write(const std::string& path, const std::vector<std::string>& comments) const {
+        examples::csv_file file(path);
+        for (const auto& comment : comments) file.comment(comment);
+        file.row("problem", "method", "precision", "device", "setting", "measure", "value", "low", "high", "verdict", "reason");
+        for (const row& r : rows_)
+            file.row(r.about.problem, r.about.method, r.about.precision, r.about.device, r.about.setting, r.measure, r.value,
+                     r.allowed.low, r.allowed.high,
+                     !r.allowed.judged() ? "" : r.allowed.holds(r.value) ? "within" : "MISSED", '"' + r.reason + '"');
+        file.commit();
+    }
+
+private:
+    std::vector<row> rows_;
+    int missed_ = 0;
+};
+
+}  // namespace validation
