@@ -38,7 +38,7 @@ std::vector<std::string> describe(const myriad::device& device) {
 
 int validate(const arguments& chosen) {
     const auto begin = std::chrono::steady_clock::now();
-    report rows;
+    report rows(std::cout);
     recorder record;
     std::unique_ptr<recorded> compare;
     if (!chosen.compare.empty()) compare = std::make_unique<recorded>(chosen.compare);
@@ -53,6 +53,7 @@ int validate(const arguments& chosen) {
         const auto referred = std::chrono::steady_clock::now();
         for (const method_entry& m : p.methods) {
             measure_tolerances(s, p, m, known);
+            measure_step(s, p, m);
             measure_order(s, p, m, known);
             measure_estimate(s, p, m);
         }

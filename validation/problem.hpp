@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,9 @@ struct problem {
     std::function<solution(const instance&, std::int64_t samples)> exactly = {};
     /// What `exactly` leaves out of the equations; above 0, CVODE stays the reference and is compared with it.
     double closed_form_error = 0;
+    /// The state of the first instance after one step of that length, by method, from published coefficients.
+    std::map<std::string, std::vector<double>> one_step = {};
+    double one_step_length = 0;
     std::function<conditioning(const instance&)> conditions;
     /// All instances by Boost.odeint's controlled Cash-Karp stepper, or nothing.
     std::function<outcome(const problem&, double tolerance)> by_odeint = {};

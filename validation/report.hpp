@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <iomanip>
-#include <iostream>
 #include <limits>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -41,12 +41,15 @@ public:
         std::string reason;
     };
 
+    explicit report(std::ostream& log) : log_(log) {}
+
+    /// Bounds that are missed are told to the log at once.
     void add(const subject& about, const std::string& measure, double value, bounds allowed = bounds::none(),
              const std::string& reason = "") {
         rows_.push_back({about, measure, value, allowed, reason});
         if (allowed.holds(value)) return;
         ++missed_;
-        std::cout << "MISSED: " << about.problem << ", " << about.method << ' ' << about.precision << ", " << about.device
+        log_ << "MISSED: " << about.problem << ", " << about.method << ' ' << about.precision << ", " << about.device
                   << ", at " << about.setting << ": " << measure << ' ' << std::setprecision(6) << value << " is not within ["
                   << allowed.low << ", " << allowed.high << "] (" << reason << ")\n";
     }
@@ -71,6 +74,7 @@ public:
     }
 
 private:
+    std::ostream& log_;
     std::vector<row> rows_;
     int missed_ = 0;
 };

@@ -42,6 +42,8 @@ struct references {
 references measure_references(session&, const problem&);
 /// Errors of the end, of events, samples, accessories and invariants, and work, over a range of tolerances.
 void measure_tolerances(session&, const problem&, const method_entry&, const references&);
+/// One step against the same step from published coefficients.
+void measure_step(session&, const problem&, const method_entry&);
 /// Order and error constant with fixed steps.
 void measure_order(session&, const problem&, const method_entry&, const references&);
 /// Order of the error estimate.

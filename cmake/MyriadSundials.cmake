@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+# Finds SUNDIALS CVODE, version 6 or 7, as the target myriad::sundials: installed, or in a folder with include/ and lib/
+# that SUNDIALS_DIR (its package folder or the folder itself) or CMAKE_PREFIX_PATH names. Not by SUNDIALS' own package,
+# whose targets name files of an installation that a carried copy does not have. Sets myriad_sundials_FOUND.
+
+set(hints "${SUNDIALS_DIR}" "${SUNDIALS_DIR}/../../.." "${SUNDIALS_ROOT}")
+find_path(MYRIAD_SUNDIALS_INCLUDE_DIR NAMES cvode/cvode.h HINTS ${hints} PATH_SUFFIXES include
+          DOC "Directory that holds cvode/cvode.h")
+mark_as_advanced(MYRIAD_SUNDIALS_INCLUDE_DIR)
+set(myriad_sundials_FOUND FALSE)
+set(MYRIAD_SUNDIALS_LIBRARIES)
+if(MYRIAD_SUNDIALS_INCLUDE_DIR)
+    file(STRINGS "${MYRIAD_SUNDIALS_INCLUDE_DIR}/sundials/sundials_config.h" line REGEX "define SUNDIALS_VERSION \"")
+    string(REGEX REPLACE ".*\"(.*)\".*" "\\1" myriad_sundials_VERSION "${line}")
+    set(parts cvode nvecserial sunmatrixdense sunlinsoldense)
+    if(myriad_sundials_VERSION VERSION_GREATER_EQUAL 7)
+        list(APPEND parts core)
+    endif()
+    set(myriad_sundials_FOUND TRUE)
+    foreach(part IN LISTS parts)
+        find_library(MYRIAD_SUNDIALS_${part} NAMES sundials_${part} HINTS ${hints} PATH_SUFFIXES lib)
+        mark_as_advanced(MYRIAD_SUNDIALS_${part})
+        if(NOT MYRIAD_SUNDIALS_${part})
+            set(myriad_sundials_FOUND FALSE)
+        endif()
+        list(APPEND MYRIAD_SUNDIALS_LIBRARIES "${MYRIAD_SUNDIALS_${part}}")
+    endforeach()
+    if(myriad_sundials_VERSION VERSION_LESS 6)
+        set(myriad_sundials_FOUND FALSE)
+    endif()
+endif()
+if(myriad_sundials_FOUND)
+    message(STATUS "SUNDIALS ${myriad_sundials_VERSION}: found")
+    add_library(myriad::sundials INTERFACE IMPORTED GLOBAL)
+    target_include_directories(myriad::sundials INTERFACE "${MYRIAD_SUNDIALS_INCLUDE_DIR}")
+    target_link_libraries(myriad::sundials INTERFACE ${MYRIAD_SUNDIALS_LIBRARIES})
+endif()

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Shows that the measures of order see a wrong coefficient: every one of every method, changed in its fourth digit, must be
+// reported by the very functions that validate the methods, and the methods as they are must not. Kernels on single lanes,
+// compiled here. Exit status 1 if a mutant passes, or a method fails.
+#include <cstdlib>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include <myriad/instantiate.hpp>
+#include <myriad/myriad.hpp>
+
+#include "../measures/measures.hpp"
+#include "../problems/problems.hpp"
+#include "../problems/timed_circle.hpp"
+#include "../runner.hpp"
+
+namespace validation {
+
+constexpr double change = 1e-4;
+
+/// Which coefficient: of the stages (their nodes c are left as they are), of the solution, of the error estimate, a node.
+enum class part { a, b, e, c };
+
+template <class Method, part which, std::size_t i, std::size_t j>
+struct mutated : Method {
+    static constexpr auto tableau() {
+        auto t = Method::tableau();
+        if (which == part::a) t.a[i][j] *= 1 + change;
+        if (which == part::e) t.e[j] *= 1 + change;
+        if (which == part::c) t.c[j] *= 1 + change;
+        if (which == part::b) {
+            t.b[j] *= 1 + change;
+            // there the solution is the argument of the last stage, and stays it
+            if (Method::first_same_as_last) t.a[Method::stages - 1][j] = t.b[j];
+        }
+        return t;
+    }
+};
+
+namespace {
+
+references in_closed_form(const problem& p) {
+    references r;
+    for (const instance& i : p.instances) {
+        r.known.push_back(p.exactly(i, p.samples));
+        r.error.push_back(0);
+        conditioning c;
+        c.end = 10;  // e^2 from the smallest to the largest value of exp(sin s), and some more
+        r.conditions.push_back(c);
+    }
+    return r;
+}
+
+/// Kernels without dense output are enough here, and compile sooner.
+problem not_sampled() {
+    problem p = timed_circle_problem();
+    p.sampled.clear();
+    p.instances.resize(16);
+    return p;
+}
+
+class judge {
+public:
+    /// Measures a method, and says if the verdict is not what it should be.
+    template <class Method>
+    void add(const std::string& method, const std::string& change, bool is_mutant) {
+        std::ostringstream log;
+        report rows(log);
+        session s{myriad::device::cpu(1), extent::whole, rows};
+        const method_entry m = entry<timed_circle, Method>(method.c_str());
+        measure_step(s, problem_, m);
+        measure_order(s, problem_, m, known_);
+        measure_estimate(s, problem_, m);
+        const bool right = (rows.missed() > 0) == is_mutant && rows.judged() > 0;
+        mutants_ += is_mutant;
+        wrong_ += !right;
+        if (!right)
+            std::cout << method << change << (is_mutant ? " is wrong, and nothing was reported\n" : " is reported to be wrong:\n") << log.str();
+    }
+    template <class Method>
+    void add_all(const std::string& name) {
+        add<Method>(name, "", false);
+        [&]<std::size_t... k>(std::index_sequence<k...>) {
+            (add_coefficient<Method, k / Method::stages, k % Method::stages>(name), ...);
+        }(std::make_index_sequence<static_cast<std::size_t>(Method::stages* Method::stages)>{});
+    }
+    int wrong() const { return wrong_; }
+    int mutants() const { return mutants_; }
+
+private:
+    template <class Method, std::size_t i, std::size_t j>
+    void add_coefficient(const std::string& method) {
+        constexpr auto t = Method::tableau();
+        const std::string column = '[' + std::to_string(j) + ']';
+        // the last row of a is b there
+        constexpr bool is_b = Method::first_same_as_last && i + 1 == static_cast<std::size_t>(Method::stages);
+        if constexpr (t.a[i][j] != 0 && !is_b)
+            add<mutated<Method, part::a, i, j>>(method, " with another a[" + std::to_string(i) + ']' + column, true);
+        if constexpr (i == 0 && t.b[j] != 0) add<mutated<Method, part::b, i, j>>(method, " with another b" + column, true);
+        if constexpr (i == 0 && t.e[j] != 0) add<mutated<Method, part::e, i, j>>(method, " with another e" + column, true);
+        if constexpr (i == 0 && t.c[j] != 0) add<mutated<Method, part::c, i, j>>(method, " with another c" + column, true);
+    }
+
+    const problem problem_ = not_sampled();
+    const references known_ = in_closed_form(problem_);
+    int wrong_ = 0, mutants_ = 0;
+};
+
+}  // namespace
+}  // namespace validation
+
+int main() {
+    validation::judge all;
+#define VALIDATION_MUTATE(M) all.add_all<myriad::M>(#M);
+    VALIDATED_METHODS(VALIDATION_MUTATE)
+    std::cout << all.mutants() << " coefficients changed by " << validation::change << " of themselves, one at a time; "
+              << all.wrong() << " verdicts wrong\n";
+    return all.wrong() == 0 && all.mutants() > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

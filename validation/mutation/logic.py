@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Shows that the validation sees a wrong loop: copies the headers, changes one line in each copy, compiles the kernels of
+three problems with it and runs the validation on them, which must fail; with the headers as they are it must pass.
+
+Usage: logic.py --source DIR --work DIR --host LIBRARY --compile "COMMAND" --link "ARGUMENTS" [--only NAME,...]
+Exit status 1 if a changed loop passes, or the unchanged one fails.
+"""
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import shlex
+import shutil
+import subprocess
+import sys
+import time
+
+PROBLEMS = ["bouncing_ball", "kepler", "timed_circle"]
+# name: (header, text, what it becomes). The text must be there, once.
+MUTATIONS = {
+    "swapped_direction": ("event/locator.hpp", "crossed[j] = lanes & (S(args.event[j].direction) * side[j] <= S(R(0)))",
+                          "crossed[j] = lanes & (S(args.event[j].direction) * side[j] >= S(R(0)))"),
+    "lost_action": ("integrator/actions.hpp",
+                    "run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_event(j, lane); });",
+                    "static_cast<void>(j);"),
+    "stale_slope": ("integrator/actions.hpp", "s.slope_valid = s.slope_valid & !changed;", ""),
+    "rejected_step_accepted": ("controller/adaptive.hpp", "const mask accepted = s.running() & within;",
+                               "const mask accepted = s.running() & valid;"),
+    "error_taken_for_less": ("controller/norm.hpp", "return static_cast<control_of<S>>(abs(error) / scale);",
+                             "return static_cast<control_of<S>>(abs(error) / scale * S(0.01));"),
+    "first_slope_for_the_last": ("integrator/integrate.hpp", "select(accepted, trial.k[Method::stages - 1][c], s.slope[c])",
+                                 "select(accepted, trial.k[0][c], s.slope[c])"),
+    "stages_at_the_end_of_the_step": ("stepper/explicit_rk.hpp", "fma(S(node<Method, stage, R>), h, t)", "(t + h)"),
+    "bent_interpolant": ("stepper/dense_output.hpp", "const S middle = S(R(1)) - theta - theta;",
+                         "const S middle = S(R(1)) - theta;"),
+    "short_last_step": ("controller/adaptive.hpp", "s.h = select(s.final_step, remaining,",
+                        "s.h = select(s.final_step, remaining * S(R(0.999)),"),
+    "event_not_redone": ("event/locator.hpp", "accepted = accepted & !crossing;\n        s.located",
+                         "accepted = accepted & crossing;\n        s.located"),
+    "event_counted_twice": ("integrator/actions.hpp", "get_lane(s.data.event_count[j], i)) + 1;",
+                            "get_lane(s.data.event_count[j], i)) + 2;"),
+    "side_forgotten": ("event/locator.hpp", "e.side[j] = select(accepted, seen, e.side[j]);", ""),
+}
+DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_accepted"]
+SECONDS = 120  # an endless loop is found too
+
+
+def prepare(options, name):
+    """The folder with the headers to compile with: a copy with one change."""
+    if name is None:
+        return options.source / "include"
+    header, text, becomes = MUTATIONS[name]
+    folder = options.work / name / "include"
+    shutil.rmtree(options.work / name, ignore_errors=True)
+    shutil.copytree(options.source / "include", folder)
+    path = folder / "myriad" / header
+    content = path.read_text()
+    if content.count(text) != 1:
+        raise SystemExit(f"{name}: {header} has the text {content.count(text)} times, not once; mend the mutation: {text}")
+    path.write_text(content.replace(text, becomes))
+    return folder
+
+
+def examine(options, name):
+    """Builds and runs; returns (is the verdict right, what to say)."""
+    include = prepare(options, name)
+    build = options.work / (name or "unchanged")
+    build.mkdir(parents=True, exist_ok=True)
+    objects = []
+    for problem in PROBLEMS:
+        objects.append(str(build / f"{problem}.o"))
+        command = shlex.split(options.compile) + [
+            f"-I{include}", f"-I{options.source}/backends/openmp", f"-I{options.source}",
+            "-DMYRIAD_SCALAR_LANES", "-O0", "-c", f"{options.source}/validation/problems/{problem}_kernels.cpp", "-o", objects[-1]]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode != 0:
+            return False, f"{name}: does not compile\n{done.stderr[-2000:]}"
+    program = str(build / "validate")
+    link = shlex.split(options.compile) + objects + [str(options.host)] + shlex.split(options.link) + ["-o", program]
+    done = subprocess.run(link, capture_output=True, text=True)
+    if done.returncode != 0:
+        return False, f"{name}: does not link\n{done.stderr[-2000:]}"
+    started = time.monotonic()
+    try:
+        done = subprocess.run([program, "--quick", "--problems", ",".join(PROBLEMS), "--output", str(build)],
+                              capture_output=True, text=True, timeout=SECONDS, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    except subprocess.TimeoutExpired:
+        return name is not None, f"{name or 'unchanged'}: did not end"
+    missed = [line for line in done.stdout.splitlines() if line.startswith("MISSED")]
+    seconds = time.monotonic() - started
+    if name is None:
+        return done.returncode == 0, f"unchanged: exit status {done.returncode} after {seconds:.0f} s\n{done.stdout[-2000:] if done.returncode else ''}"
+    first = missed[0][:150] if missed else done.stderr[-300:]
+    return done.returncode == 1, f"{name}: exit status {done.returncode}, {len(missed)} bounds missed: {first}"
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    for option in ("--source", "--work", "--host"):
+        parser.add_argument(option, type=pathlib.Path, required=True)
+    parser.add_argument("--compile", required=True)
+    parser.add_argument("--link", required=True)
+    parser.add_argument("--only", default=",".join(DEFAULT), help="names, or all")
+    parser.add_argument("--jobs", type=int, default=2)
+    options = parser.parse_args()
+    names = list(MUTATIONS) if options.only == "all" else options.only.split(",")
+    unknown = [name for name in names if name not in MUTATIONS]
+    if unknown:
+        parser.error(f"there is no mutation {unknown[0]}: choose from {', '.join(MUTATIONS)}")
+    wrong = 0
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        for right, text in pool.map(lambda name: examine(options, name), [None] + names):
+            print(("right: " if right else "WRONG: ") + text, flush=True)
+            wrong += not right
+    print(f"{len(names)} changed loops, {wrong} verdicts wrong")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
