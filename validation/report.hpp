@@ -66,10 +66,11 @@ public:
         examples::csv_file file(path);
         for (const auto& comment : comments) file.comment(comment);
         file.row("problem", "method", "precision", "device", "setting", "measure", "value", "low", "high", "verdict", "reason");
+        const auto quoted = [](const std::string& text) { return '"' + text + '"'; };
         for (const row& r : rows_)
-            file.row(r.about.problem, r.about.method, r.about.precision, r.about.device, r.about.setting, r.measure, r.value,
-                     r.allowed.low, r.allowed.high,
-                     !r.allowed.judged() ? "" : r.allowed.holds(r.value) ? "within" : "MISSED", '"' + r.reason + '"');
+            file.row(quoted(r.about.problem), r.about.method, r.about.precision, r.about.device, r.about.setting,
+                     quoted(r.measure), r.value, r.allowed.low, r.allowed.high,
+                     !r.allowed.judged() ? "" : r.allowed.holds(r.value) ? "within" : "MISSED", quoted(r.reason));
         file.commit();
     }
 

@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Draws the pictures of a validation run: error against tolerance, and against work.
+
+Usage: plot.py report.csv FOLDER
+Writes tolerance.png and work.png (where work was measured). Needs numpy and matplotlib.
+"""
+import os
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402
+
+from report import read  # noqa: E402
+
+# Okabe and Ito's colours, which the colour-blind can tell apart, each with a marker of its own.
+STYLES = {"CVODE": ("#000000", "x", ":"), "odeint cash_karp": ("#D55E00", "+", ":"), "runge_kutta_4": ("#999999", "s", "-"),
+          "cash_karp": ("#0072B2", "o", "-"), "tsitouras_5": ("#009E73", "^", "-"), "dormand_prince_5": ("#E69F00", "v", "-"),
+          "verner_7": ("#CC79A7", "D", "-"), "dormand_prince_8": ("#56B4E9", "P", "-")}
+NAMES = {"lorenz": "Lorenz", "duffing": "Duffing", "van_der_pol": "van der Pol", "keller_miksis": "Keller–Miksis",
+         "relief_valve": "relief valve", "heat": "heat conduction", "kepler": "Kepler", "timed_circle": "timed circle",
+         "robertson": "Robertson", "oregonator": "Oregonator"}
+LABELS = {"cash_karp": "Cash–Karp 5(4)", "tsitouras_5": "Tsitouras 5(4)", "runge_kutta_4": "Runge–Kutta 4, fixed steps",
+          "odeint cash_karp": "Boost.odeint, Cash–Karp", "CVODE": "CVODE, Adams", "dormand_prince_5": "Dormand–Prince 5(4)",
+          "verner_7": "Verner 7(6)", "dormand_prince_8": "Dormand–Prince 8(5,3)"}
+
+
+def style(method):
+    color, marker, line = STYLES.get(method, ("#F0E442", "*", "-"))
+    return dict(color=color, marker=marker, linestyle=line, markersize=4, linewidth=1, label=LABELS.get(method, method))
+
+
+def curves(rows, problem, measure):
+    """method: [(setting, value)], by setting."""
+    found = {}
+    for r in rows:
+        if r["problem"] == problem and r["measure"] == measure and r["precision"] == "double":
+            found.setdefault(r["method"], []).append((r["setting"], r["value"]))
+    return {method: sorted(points) for method, points in found.items()}
+
+
+def save(figure, path):
+    figure.savefig(path + ".part", format="png", dpi=170)
+    os.replace(path + ".part", path)
+    pyplot.close(figure)
+
+
+def draw_tolerances(rows, path):
+    problems = [p for p in NAMES if any(len(c) > 2 for c in curves(rows, p, "end state, median").values())]
+    columns = 4
+    figure, axes = pyplot.subplots(-(-len(problems) // columns), columns, figsize=(7.2, 4.1), sharex=True, sharey=True, squeeze=False)
+    drawn = {}
+    for axis, problem in zip(axes.flat, problems):
+        for method, points in curves(rows, problem, "end state, median").items():
+            if len(points) > 2:
+                drawn[method] = axis.loglog(*zip(*points), **style(method))[0]
+        axis.loglog([1e-11, 1e-5], [1e-11, 1e-5], "k--", linewidth=0.6)
+        axis.set_title(NAMES[problem], fontsize=9)
+    for axis in axes.flat[len(problems):]:
+        axis.set_visible(False)
+    axes.flat[0].set_xticks([1e-11, 1e-9, 1e-7, 1e-5])
+    figure.supxlabel("tolerance, relative and absolute", fontsize=9)
+    figure.supylabel("median error at the end", fontsize=9)
+    figure.legend(handles=list(drawn.values()), loc="upper center", ncols=4, frameon=False, fontsize=8)
+    figure.subplots_adjust(left=0.10, right=0.985, bottom=0.12, top=0.86, hspace=0.28, wspace=0.12)
+    save(figure, path)
+
+
+def draw_work(rows, path):
+    problems = [p for p in NAMES if curves(rows, p, "work: median error")]
+    if not problems:
+        return
+    figure, axes = pyplot.subplots(2, len(problems), figsize=(7.2, 5.6), sharey="col", squeeze=False)
+    drawn = {}
+    for column, problem in enumerate(problems):
+        errors = curves(rows, problem, "work: median error")
+        for row, (measure, label) in enumerate((("work: evaluations per instance", "evaluations of f per instance"),
+                                                ("work: time per instance over CVODE's at 1e-6",
+                                                 "time per instance / that of CVODE at $10^{-6}$"))):
+            axis = axes[row][column]
+            for method, work in curves(rows, problem, measure).items():
+                drawn[method] = axis.loglog([w for _, w in work], [e for _, e in errors[method]], **style(method))[0]
+            axis.set_xlabel(label, fontsize=8.5)
+            if column == 0:
+                axis.set_ylabel("median error at the end", fontsize=8.5)
+        axes[0][column].set_title(NAMES[problem], fontsize=9)
+    figure.legend(handles=list(drawn.values()), loc="upper center", ncols=3, frameon=False, fontsize=8)
+    figure.subplots_adjust(left=0.10, right=0.985, bottom=0.09, top=0.85, hspace=0.33, wspace=0.2)
+    save(figure, path)
+
+
+def main(arguments):
+    if len(arguments) != 2:
+        sys.exit(__doc__)
+    pyplot.rcParams.update({"font.family": "serif", "font.serif": ["STIXGeneral", "DejaVu Serif"], "mathtext.fontset": "stix",
+                            "font.size": 8, "axes.linewidth": 0.6, "xtick.direction": "in", "ytick.direction": "in",
+                            "xtick.top": True, "ytick.right": True, "axes.grid": True, "grid.linewidth": 0.3, "grid.alpha": 0.5})
+    _, rows = read(arguments[0])
+    os.makedirs(arguments[1], exist_ok=True)
+    draw_tolerances(rows, os.path.join(arguments[1], "tolerance.png"))
+    draw_work(rows, os.path.join(arguments[1], "work.png"))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Writes the report of a validation run as Markdown, from the rows that the program `validate` has written.
+
+Usage: report.py report.csv MARKDOWN [--images FOLDER] [--command TEXT]
+FOLDER: of the pictures, relative to the Markdown file. Needs nothing but Python's standard library.
+"""
+import argparse
+import csv
+import os
+
+SHOWN = {  # measure: heading of the column
+    "end state, worst": "end state", "event times": "event times", "accessories": "accessories", "samples": "samples",
+    "invariants": "invariants"}
+ORDERS = ["one step against published coefficients", "order", "error over its prediction by halved steps",
+          "order of samples", "order of the error estimate", "exponent of the tolerance in the error"]
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        comments = []
+        lines = []
+        for line in file:
+            (comments if line.startswith("# ") else lines).append(line)
+    rows = list(csv.DictReader(lines))
+    for row in rows:
+        for name in ("setting", "value", "low", "high"):
+            row[name] = float(row[name])
+    return [c[2:].strip() for c in comments], rows
+
+
+def short(value):
+    if value != value:
+        return "nan"
+    if value == 0:
+        return "0"
+    return f"{value:.1e}" if abs(value) < 0.01 or abs(value) >= 1e4 else f"{value:.3g}"
+
+
+def table(head, lines):
+    return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)] + ["| " + " | ".join(line) + " |" for line in lines] + [""]
+
+
+def worst_ratios(rows):
+    """For each problem, method and precision, the largest ratio of error to bound over all tolerances, by measure."""
+    found = {}
+    for row in rows:
+        if row["measure"] not in SHOWN or row["high"] in (float("inf"), 0):
+            continue
+        key = (row["problem"], row["method"], row["precision"])
+        ratio = row["value"] / row["high"]
+        before = found.setdefault(key, {}).get(row["measure"])
+        if before is None or not ratio <= before:
+            found[key][row["measure"]] = ratio
+    return found
+
+
+def write(comments, rows, images, command):
+    judged = [row for row in rows if row["verdict"]]
+    missed = [row for row in judged if row["verdict"] != "within"]
+    out = ["# Validation report", "", "<!-- Written by validation/report.py from report.csv; do not edit. -->", ""]
+    out += [f"**{len(judged)} bounds were checked; " + (f"{len(missed)} were missed.**" if missed else "all were kept.**"), ""]
+    out += [f"* {line}" for line in comments]
+    if command:
+        out += [f"* command: `{command}`"]
+    out += ["", "Every method runs on ensembles of 64 or 65 instances of each problem. What is bounded and why is stated per "
+            "row in `report.csv`; how the references are made, below.", ""]
+    if missed:
+        out += ["## Missed", ""] + table(
+            ["problem", "method", "setting", "measure", "value", "bounds"],
+            [[r["problem"], f'{r["method"]} {r["precision"]}', short(r["setting"]), r["measure"], short(r["value"]),
+              f'{short(r["low"])} to {short(r["high"])}'] for r in missed])
+
+    out += ["## The references, and how far they can be trusted", "",
+            "CVODE (Adams; BDF for stiff problems) at a tolerance of 3e-14 per step, with the model's own right-hand side, root "
+            "finding and a new start after each impact. Its error is estimated by a run at ten times the tolerance, and measured "
+            "where a closed form or a value in quadruple precision is known; where one is, it takes CVODE's place. *Growth* is the "
+            "largest factor by which an error of one step grows until the end, found by disturbing the solution at six times.", ""]
+    problems = list(dict.fromkeys(r["problem"] for r in rows if r["method"] == "CVODE" and r["setting"] == 3e-14))
+
+    def of_reference(problem, measure):
+        values = [r["value"] for r in rows if r["problem"] == problem and r["method"] == "CVODE" and r["measure"] == measure]
+        return short(values[0]) if values else ""
+    out += table(["problem", "growth, largest (median)", "CVODE against itself", "CVODE against closed form or quadruple precision",
+                  "its event times"],
+                 [[p, f'{of_reference(p, "growth of errors, largest")} ({of_reference(p, "growth of errors, median")})',
+                   of_reference(p, "reference against itself at ten times the tolerance"),
+                   of_reference(p, "reference against closed form or quadruple precision"),
+                   of_reference(p, "event times against closed form")] for p in problems])
+    out += ["Where the second column is not far below a method's error, CVODE is the limit: its error is part of the bound there. "
+            "Stiff problems have no method yet; their references are prepared and compared.", ""]
+
+    out += ["## Errors against their bounds", "",
+            "The bound: growth x (accepted steps x (tolerance + rounding) + events x event tolerance) + error of the reference, per "
+            "instance. It holds for any way in which errors of steps may add up, so that it is not tight; the orders below are. "
+            "Shown is the largest ratio of error to bound over all instances and tolerances from 1e-5 to 1e-11 (single precision: "
+            "1e-3 to 1e-5); below 1 is kept. Samples of methods with the Hermite polynomial have no bound from the tolerance.", ""]
+    ratios = worst_ratios(rows)
+    out += table(["problem", "method"] + list(SHOWN.values()),
+                 [[key[0], key[1] + ("" if key[2] == "double" else " (float)")] +
+                  [short(found[m]) if m in found else "" for m in SHOWN] for key, found in ratios.items()])
+    counts = [r for r in rows if r["measure"] == "instances with other event counts"]
+    out += [f"Numbers of events: compared in {len(counts)} runs of an ensemble; instances with another number than the reference: "
+            f"{int(sum(r['value'] for r in counts))}.", ""]
+    if images:
+        out += [f"![Error against tolerance]({images}/tolerance.png)", "",
+                "Median error of the end states against the tolerance; the dashed line is error = tolerance.", ""]
+
+    out += ["## Orders: the tight checks", "",
+            "With fixed steps, for methods with step-size control too; medians over the instances. *One step* is compared with the "
+            "same step from published coefficients in 60 digits.", ""]
+    lines = []
+    for key in dict.fromkeys((r["problem"], r["method"]) for r in rows if r["measure"] in ORDERS):
+        cells = []
+        for measure in ORDERS:
+            here = [r for r in rows if (r["problem"], r["method"], r["measure"]) == (*key, measure)]
+            if not here:
+                cells.append("")
+            elif here[0]["low"] == float("-inf"):
+                cells.append(short(here[0]["value"]))
+            else:
+                cells.append(f'{here[0]["value"]:.2f} [{here[0]["low"]:.3g}, {here[0]["high"]:.3g}]')
+        lines.append([*key] + cells)
+    out += table(["problem", "method", "one step: error", "order", "error / predicted", "order of samples", "order of estimate",
+                  "error ~ tolerance^"], lines)
+
+    chaos = [r for r in rows if "chaotic" in r["problem"] or "28" in r["problem"]]
+    if chaos:
+        out += ["## Chaotic solutions", "", "Only statistics can be compared: four standard errors of the mean over 64 instances are "
+                "allowed.", ""]
+        out += table(["problem", "method", "statistic", "value", "bounds"],
+                     [[r["problem"], r["method"], r["measure"], f'{r["value"]:.5g}',
+                       f'{r["low"]:.5g} to {r["high"]:.5g}' if r["verdict"] and r["low"] > float("-inf") else
+                       (f'at most {short(r["high"])}' if r["verdict"] else "")] for r in chaos if r["measure"] != "failed instances"])
+
+    against = [r for r in rows if r["measure"].startswith("against")]
+    if against:
+        out += ["## Between backends", "", "Adaptive runs on two backends differ by no more than twice the bound of the error; fixed "
+                "steps by roundings.", ""]
+        groups = {}
+        for r in against:
+            groups.setdefault((r["problem"], r["method"], r["precision"]), []).append(r)
+        out += table(["problem", "method", "end state: largest ratio to its bound", "steps: ratio", "instances with other event counts"],
+                     [[k[0], k[1] + ("" if k[2] == "double" else " (float)"),
+                       short(max(r["value"] / r["high"] for r in v if r["measure"].endswith("end state"))),
+                       " to ".join(f"{f(r['value'] for r in v if r['measure'].endswith('steps')):.4f}" for f in (min, max)),
+                       str(int(sum(r["value"] for r in v if r["measure"].endswith("counts"))))] for k, v in groups.items()])
+    if images and any(r["measure"].startswith("work: time") for r in rows):
+        out += ["## Error against work", "", f"![Error against evaluations and against time]({images}/work.png)", "",
+                "One core. Times are relative to CVODE's at a tolerance of 1e-6 in the same run: an ensemble of 1024 instances for Myriad, "
+                "64 one after another for CVODE and for Boost.odeint's controlled Cash-Karp stepper.", ""]
+    return "\n".join(out)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("csv")
+    parser.add_argument("markdown")
+    parser.add_argument("--images", default="")
+    parser.add_argument("--command", default="")
+    options = parser.parse_args()
+    text = write(*read(options.csv), options.images, options.command)
+    with open(options.markdown + ".part", "w", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(options.markdown + ".part", options.markdown)
+
+
+if __name__ == "__main__":
+    main()
