@@ -2,9 +2,11 @@
 // Validates a backend against CVODE, closed forms and quadruple precision, and against another backend's results. Exit
 // status 0 if every bound is kept, 1 if one is missed, 2 for bad arguments and errors.
 #include <chrono>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -30,9 +32,18 @@ struct arguments {
     }
 };
 
+/// The processor, as the system names it.
+std::string processor() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+    return "unknown";
+}
+
 std::vector<std::string> describe(const myriad::device& device) {
     const std::string where = device.which() == myriad::device::kind::cpu ? "CPU backend" : "CUDA backend, " + device.description();
-    return {"Myriad " MYRIAD_VERSION ": " + where, "sources: " MYRIAD_COMMIT,
+    return {"Myriad " MYRIAD_VERSION ": " + where,
+            "processor: " + processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads", "sources: " MYRIAD_COMMIT,
             "host compiler: " MYRIAD_COMPILER ", flags of models: " MYRIAD_FLAGS, "SUNDIALS " SUNDIALS_VERSION};
 }
 

@@ -73,7 +73,7 @@ def write(comments, rows, images, command):
 
     out += ["## The references, and how far they can be trusted", "",
             "CVODE (Adams; BDF for stiff problems) at a tolerance of 3e-14 per step, with the model's own right-hand side, root "
-            "finding and a new start after each impact. Its error is estimated by a run at ten times the tolerance, and measured "
+            "finding and a new start after each impact. Its error is estimated, from above, by the difference to a run at ten times the tolerance, and measured "
             "where a closed form or a value in quadruple precision is known; where one is, it takes CVODE's place. *Growth* is the "
             "largest factor by which an error of one step grows until the end, found by disturbing the solution at six times.", ""]
     problems = list(dict.fromkeys(r["problem"] for r in rows if r["method"] == "CVODE" and r["setting"] == 3e-14))
@@ -94,7 +94,7 @@ def write(comments, rows, images, command):
             "The bound: growth x (accepted steps x (tolerance + rounding) + events x event tolerance) + error of the reference, per "
             "instance. It holds for any way in which errors of steps may add up, so that it is not tight; the orders below are. "
             "Shown is the largest ratio of error to bound over all instances and tolerances from 1e-5 to 1e-11 (single precision: "
-            "1e-3 to 1e-5); below 1 is kept. Samples of methods with the Hermite polynomial have no bound from the tolerance.", ""]
+            "1e-3 to 1e-5); below 1 is kept. For fixed steps: twice the difference to steps half as long, and rounding. Samples of methods with the Hermite polynomial have no bound from the tolerance.", ""]
     ratios = worst_ratios(rows)
     out += table(["problem", "method"] + list(SHOWN.values()),
                  [[key[0], key[1] + ("" if key[2] == "double" else " (float)")] +
@@ -148,7 +148,15 @@ def write(comments, rows, images, command):
     if images and any(r["measure"].startswith("work: time") for r in rows):
         out += ["## Error against work", "", f"![Error against evaluations and against time]({images}/work.png)", "",
                 "One core. Times are relative to CVODE's at a tolerance of 1e-6 in the same run: an ensemble of 1024 instances for Myriad, "
-                "64 one after another for CVODE and for Boost.odeint's controlled Cash-Karp stepper.", ""]
+                "64 one after another for CVODE (Adams with Newton's iteration, a new object for each instance, which its time includes) and "
+                "for Boost.odeint's controlled Cash-Karp stepper. All evaluate the same model's function; evaluations of CVODE include "
+                "those for its Jacobians. The repository's benchmarks, not this, compare speeds.", ""]
+    out += ["## Does it see what is wrong?", "", "`scripts/validate.sh --mutations` changes every coefficient a, b, c and e of every "
+            "method by a ten-thousandth of itself, one at a time, and measures it with the functions behind the table of orders: each "
+            "must be reported (`validation/mutation/coefficients.cpp`; a coefficient of a with its node c left as it is). It then "
+            "compiles the kernels from headers with one line changed (another direction of events, an action lost, a slope kept after "
+            "a jump, a rejected step accepted, and more: `validation/mutation/logic.py`), and each must fail this validation. CI does "
+            "the first part and four of the second.", ""]
     return "\n".join(out)
 
 

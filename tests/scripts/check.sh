@@ -37,6 +37,8 @@ expect "test.sh refuses an unknown option" 2 "Unknown option '--fast'" scripts/t
 expect "test.sh refuses an unknown step" 2 "no step 'gpu'" scripts/test.sh --only ci,gpu
 expect "test.sh refuses --only without steps" 2 '--only needs steps' scripts/test.sh --only
 expect "test.sh refuses a wrong number of jobs" 2 '--jobs needs' scripts/test.sh --jobs 0
+expect "validate.sh --help" 0 'Usage: scripts/validate.sh' scripts/validate.sh --help
+expect "validate.sh refuses an unknown device" 2 "no device 'abacus'" scripts/validate.sh --device abacus
 expect "quickstart.sh --help" 0 'Usage: scripts/quickstart.sh' scripts/quickstart.sh --help
 expect "quickstart.sh refuses an unknown option" 2 "Unknown option 'now'" scripts/quickstart.sh now
 
