@@ -17,18 +17,14 @@ struct heat {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& temperature, const auto& p) {
         myriad::vec<R, points> flux;
-#pragma GCC unroll 1
         for (int i = 0; i < points; ++i) {
             R sum = R(0);
-#pragma GCC unroll 1
             for (int j = 0; j < inner; ++j) sum += p.shared[matrix + i * points + j + 1] * temperature[j];
             flux[i] = p.shared[radius + i] * p.shared[radius + i] * sum;
         }
         myriad::vec<R, n_state> slope;
-#pragma GCC unroll 1
         for (int i = 0; i < inner; ++i) {
             R sum = R(0);
-#pragma GCC unroll 1
             for (int j = 0; j < points; ++j) sum += p.shared[matrix + (i + 1) * points + j] * flux[j];
             slope[i] = p[kappa] * sum / (p.shared[radius + i + 1] * p.shared[radius + i + 1]);
         }
