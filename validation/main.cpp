@@ -11,7 +11,6 @@
 
 #include <CLI/CLI.hpp>
 #include <myriad/myriad.hpp>
-
 #include <sundials/sundials_config.h>
 
 #include "examples/common/command_line.hpp"
@@ -41,10 +40,12 @@ std::string processor() {
 }
 
 std::vector<std::string> describe(const myriad::device& device) {
-    const std::string where = device.which() == myriad::device::kind::cpu ? "CPU backend" : "CUDA backend, " + device.description();
+    const std::string where =
+        device.which() == myriad::device::kind::cpu ? "CPU backend" : "CUDA backend, " + device.description();
     return {"Myriad " MYRIAD_VERSION ": " + where,
-            "processor: " + processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads", "sources: " MYRIAD_COMMIT,
-            "host compiler: " MYRIAD_COMPILER ", flags of models: " MYRIAD_FLAGS, "SUNDIALS " SUNDIALS_VERSION};
+            "processor: " + processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads",
+            "sources: " MYRIAD_COMMIT, "host compiler: " MYRIAD_COMPILER ", flags of models: " MYRIAD_FLAGS,
+            "SUNDIALS " SUNDIALS_VERSION};
 }
 
 int validate(const arguments& chosen) {
@@ -56,9 +57,11 @@ int validate(const arguments& chosen) {
     session s{myriad::device::parse(chosen.device), chosen.quick ? extent::quick : extent::whole, rows};
     if (!chosen.record.empty()) s.record = &record;
     s.compare = compare.get();
+    auto comments = describe(s.device);
 
     for (const problem& p : all_problems()) {
         if (!chosen.wants(p.name)) continue;
+        comments.push_back("problem " + p.name + ": " + p.what);
         const auto start = std::chrono::steady_clock::now();
         const references known = measure_references(s, p);
         const auto referred = std::chrono::steady_clock::now();
@@ -75,7 +78,6 @@ int validate(const arguments& chosen) {
     }
     if (chosen.wants("chaos")) measure_chaos(s);
 
-    const auto comments = describe(s.device);
     rows.write(chosen.output + "/report.csv", comments);
     if (s.record != nullptr) record.write(chosen.record, comments);
     std::cout << rows.judged() << " bounds checked, " << rows.missed() << " missed, in "
@@ -91,9 +93,12 @@ int main(int argc, char** argv) {
     CLI::App app("Validates Myriad against SUNDIALS CVODE, closed forms and quadruple precision");
     app.add_option("--device", chosen.device, examples::device_help())->type_name("NAME")->capture_default_str();
     app.add_option("--output", chosen.output, "Folder for report.csv")->type_name("DIR")->capture_default_str();
-    app.add_option("--record", chosen.record, "Write the results as reference data for other backends")->type_name("FILE");
+    app.add_option("--record", chosen.record, "Write the results as reference data for other backends")
+        ->type_name("FILE");
     app.add_option("--compare", chosen.compare, "Compare with results recorded on another backend")->type_name("FILE");
-    app.add_option("--problems", chosen.problems, "Only these, such as lorenz,kepler,chaos")->delimiter(',')->type_name("NAME");
+    app.add_option("--problems", chosen.problems, "Only these, such as lorenz,kepler,chaos")
+        ->delimiter(',')
+        ->type_name("NAME");
     app.add_flag("--quick", chosen.quick, "Fewer tolerances and shorter statistics");
     try {
         app.parse(argc, argv);

@@ -25,7 +25,8 @@ public:
 
     trajectory(const problem& p, const instance& i) : problem_(&p) {
         for (int c = 0; c < n; ++c) at_.y[c] = i.state[static_cast<std::size_t>(c)];
-        for (int c = 0; c < myriad::n_parameter<Model>; ++c) at_.parameter[c] = i.parameter[static_cast<std::size_t>(c)];
+        for (int c = 0; c < myriad::n_parameter<Model>; ++c)
+            at_.parameter[c] = i.parameter[static_cast<std::size_t>(c)];
         for (int c = 0; c < myriad::n_accessory<Model>; ++c) at_.accessory[c] = unknown;
         for (int c = 0; c < myriad::n_integer_accessory<Model>; ++c) at_.integer_accessory[c] = 0;
         for (int j = 0; j < m; ++j) at_.event_count[j] = 0;
@@ -193,7 +194,8 @@ conditioning conditions_of(const problem& p, const instance& i) {
         c.end = std::max(c.end, end / small);
         c.path = std::max(c.path, *std::max_element(along.begin(), along.end()) / small);
         c.invariant = std::max(c.invariant, invariant / small);
-        for (std::size_t a = 0; a < accessory.size(); ++a) c.accessory[a] = std::max(c.accessory[a], accessory[a] / small);
+        for (std::size_t a = 0; a < accessory.size(); ++a)
+            c.accessory[a] = std::max(c.accessory[a], accessory[a] / small);
     }
     c.path = std::max({c.path, c.end, 1.0});  // an error is at least itself when it is made
     return c;

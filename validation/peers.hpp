@@ -7,7 +7,6 @@
 #include <cstddef>
 
 #include <boost/numeric/odeint.hpp>
-
 #include <myriad/model.hpp>
 #include <myriad/model/lane.hpp>
 
@@ -24,7 +23,8 @@ outcome by_cash_karp_of_odeint(const problem& p, double tolerance) {
     const auto begin = std::chrono::steady_clock::now();
     for (const instance& i : p.instances) {
         myriad::inputs<Model, double> inputs{};
-        for (int c = 0; c < myriad::n_parameter<Model>; ++c) inputs.parameter[c] = i.parameter[static_cast<std::size_t>(c)];
+        for (int c = 0; c < myriad::n_parameter<Model>; ++c)
+            inputs.parameter[c] = i.parameter[static_cast<std::size_t>(c)];
         inputs.shared = p.shared.data();
         long evaluations = 0;
         const auto system = [&](const state& y, state& dy, double t) {
@@ -37,7 +37,8 @@ outcome by_cash_karp_of_odeint(const problem& p, double tolerance) {
         state y;
         for (std::size_t c = 0; c < n; ++c) y[c] = i.state[c];
         odeint::integrate_adaptive(
-            odeint::make_controlled<odeint::runge_kutta_cash_karp54<state>>(tolerance, tolerance), system, y, 0.0, i.t_end, 1e-2);
+            odeint::make_controlled<odeint::runge_kutta_cash_karp54<state>>(tolerance, tolerance), system, y, 0.0,
+            i.t_end, 1e-2);
         solution s;
         s.end.assign(y.begin(), y.end());
         out.instances.push_back(s);

@@ -82,7 +82,7 @@ struct problem {
     std::vector<int> event_times = {};  // accessories that are times of events; the others are values
     int events_per_instance = 0;        // at most, in the bounds
     std::vector<int> sampled = {};      // states for dense output; empty: none
-    std::int64_t samples = 212;  // over a prime number of intervals, so that they fall inside of steps
+    std::int64_t samples = 212;         // over a prime number of intervals, so that they fall inside of steps
     /// Fixed steps for the measured orders: the longest, from which it is halved. 0: not measured (not smooth, or the
     /// step is bound by stability).
     double longest_step = 0;

@@ -50,8 +50,8 @@ public:
         if (allowed.holds(value)) return;
         ++missed_;
         log_ << "MISSED: " << about.problem << ", " << about.method << ' ' << about.precision << ", " << about.device
-                  << ", at " << about.setting << ": " << measure << ' ' << std::setprecision(6) << value << " is not within ["
-                  << allowed.low << ", " << allowed.high << "] (" << reason << ")\n";
+             << ", at " << about.setting << ": " << measure << ' ' << std::setprecision(6) << value
+             << " is not within [" << allowed.low << ", " << allowed.high << "] (" << reason << ")\n";
     }
 
     const std::vector<row>& rows() const { return rows_; }
@@ -65,12 +65,16 @@ public:
     void write(const std::string& path, const std::vector<std::string>& comments) const {
         examples::csv_file file(path);
         for (const auto& comment : comments) file.comment(comment);
-        file.row("problem", "method", "precision", "device", "setting", "measure", "value", "low", "high", "verdict", "reason");
+        file.row("problem", "method", "precision", "device", "setting", "measure", "value", "low", "high", "verdict",
+                 "reason");
         const auto quoted = [](const std::string& text) { return '"' + text + '"'; };
         for (const row& r : rows_)
             file.row(quoted(r.about.problem), r.about.method, r.about.precision, r.about.device, r.about.setting,
                      quoted(r.measure), r.value, r.allowed.low, r.allowed.high,
-                     !r.allowed.judged() ? "" : r.allowed.holds(r.value) ? "within" : "MISSED", quoted(r.reason));
+                     !r.allowed.judged()        ? ""
+                     : r.allowed.holds(r.value) ? "within"
+                                                : "MISSED",
+                     quoted(r.reason));
         file.commit();
     }
 

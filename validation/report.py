@@ -60,11 +60,12 @@ def write(comments, rows, images, command):
     missed = [row for row in judged if row["verdict"] != "within"]
     out = ["# Validation report", "", "<!-- Written by validation/report.py from report.csv; do not edit. -->", ""]
     out += [f"**{len(judged)} bounds were checked; " + (f"{len(missed)} were missed.**" if missed else "all were kept.**"), ""]
-    out += [f"* {line}" for line in comments]
+    out += [f"* {line}" for line in comments if not line.startswith("problem ")]
     if command:
         out += [f"* command: `{command}`"]
     out += ["", "Every method runs on ensembles of 64 or 65 instances of each problem. What is bounded and why is stated per "
             "row in `report.csv`; how the references are made, below.", ""]
+    out += ["## The problems", ""] + [f"* {line[8:]}." for line in comments if line.startswith("problem ")] + [""]
     if missed:
         out += ["## Missed", ""] + table(
             ["problem", "method", "setting", "measure", "value", "bounds"],

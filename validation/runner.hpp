@@ -21,13 +21,15 @@ outcome integrate(const problem& p, const myriad::options& options, const myriad
     myriad::ensemble<Model, R> e(size);
     for (std::int64_t i = 0; i < size; ++i) {
         const instance& from = p.instances[static_cast<std::size_t>(i)];
-        for (int c = 0; c < myriad::n_state<Model>; ++c) e.state(c)[i] = static_cast<R>(from.state[static_cast<std::size_t>(c)]);
+        for (int c = 0; c < myriad::n_state<Model>; ++c)
+            e.state(c)[i] = static_cast<R>(from.state[static_cast<std::size_t>(c)]);
         for (int c = 0; c < myriad::n_parameter<Model>; ++c)
             e.parameter(c)[i] = static_cast<R>(from.parameter[static_cast<std::size_t>(c)]);
         e.t_begin()[i] = 0;
         e.t_end()[i] = static_cast<R>(from.t_end);
     }
-    for (int c = 0; c < myriad::n_shared<Model>; ++c) e.shared(c) = static_cast<R>(p.shared[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < myriad::n_shared<Model>; ++c)
+        e.shared(c) = static_cast<R>(p.shared[static_cast<std::size_t>(c)]);
     const auto report = myriad::solve<Method>(where, e, options);
 
     outcome out;

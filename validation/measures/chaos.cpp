@@ -48,7 +48,8 @@ void measure_lyapunov(session& s) {
         exponents.push_back((e.accessory(lorenz_tangent::growth)[i] - before[i]) / phases);
     const statistic seen(exponents);
     const subject about{"lorenz rho = 28", "tsitouras_5", "double", s.device_name(), 1e-9};
-    s.rows.add(about, "failed instances", static_cast<double>(report.failed()), bounds::at_most(0), "every instance has a solution");
+    s.rows.add(about, "failed instances", static_cast<double>(report.failed()), bounds::at_most(0),
+               "every instance has a solution");
     s.rows.add(about, "largest Lyapunov exponent, standard error", seen.standard_error, bounds::at_most(0.003),
                "a third of a percent, or the comparison says little");
     s.rows.add(about, "largest Lyapunov exponent", seen.mean,
@@ -65,7 +66,9 @@ void measure_maxima(session& s) {
         p.instances.push_back({{-1 + 2 * static_cast<double>(i) / 63, 0}, {0.3}, t_end});
     std::vector<solution> known(size);
     for_each_in_parallel(size, [&](std::size_t i) { known[i] = p.by_cvode(p.instances[i], {1e-9, 0}); });
-    const auto mean_maximum = [](const solution& r) { return r.accessory[duffing::maxima_sum] / r.count[duffing::maxima]; };
+    const auto mean_maximum = [](const solution& r) {
+        return r.accessory[duffing::maxima_sum] / r.count[duffing::maxima];
+    };
     const auto maxima = [](const solution& r) { return 1.0 * r.count[duffing::maxima]; };
     const auto rises = [](const solution& r) { return 1.0 * r.count[duffing::rises]; };
     for (const method_entry& m : p.methods) {

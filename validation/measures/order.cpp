@@ -78,7 +78,8 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
         levels.push_back(now);
     }
     if (levels.size() < 3) {
-        s.rows.add(s.about(p, m, h), "order", unknown, bounds::within(m.order, m.order), "too few steps above rounding");
+        s.rows.add(s.about(p, m, h), "order", unknown, bounds::within(m.order, m.order),
+                   "too few steps above rounding");
         return;
     }
     const level &fine = levels.back(), &coarse = levels[levels.size() - 2];

@@ -91,7 +91,8 @@ public:
             for (const double c : numbers(parts[3])) r.count.push_back(static_cast<int>(c));
             results_[parts[0].substr(0, first)][std::stoul(parts[0].substr(first + 1, last - first - 1))] = r;
         }
-        if (results_.empty()) throw std::runtime_error(path + " holds no results: name a file that --record has written");
+        if (results_.empty())
+            throw std::runtime_error(path + " holds no results: name a file that --record has written");
     }
     /// The results of a run by instance, or null.
     const std::map<std::size_t, recorded_result>* find(const std::string& run) const {

@@ -28,7 +28,8 @@ references measure_references(session& s, const problem& p) {
             to_exact[i] = distance(known.end, exact.end);
             for (const int a : p.event_times) {
                 const auto k = static_cast<std::size_t>(a);
-                if (k < exact.accessory.size()) events[i] = std::max(events[i], std::abs(known.accessory[k] - exact.accessory[k]));
+                if (k < exact.accessory.size())
+                    events[i] = std::max(events[i], std::abs(known.accessory[k] - exact.accessory[k]));
             }
             if (p.closed_form_error == 0) {
                 for (std::size_t c = 0; c < exact.end.size(); ++c) {
@@ -58,8 +59,10 @@ references measure_references(session& s, const problem& p) {
         if (to_exact[i] > 0) growth_there = std::max(growth_there, growth[i]);
     const double allowed =
         std::max(10 * largest(by_itself), 1e4 * fine * std::max(1.0, growth_there)) + p.closed_form_error;
-    s.rows.add(about, "reference against closed form or quadruple precision", largest(to_exact), bounds::at_most(allowed),
-               p.closed_form_error > 0 ? "error of the collocation" : "ten times what CVODE differs by from itself, or ten thousand steps");
+    s.rows.add(about, "reference against closed form or quadruple precision", largest(to_exact),
+               bounds::at_most(allowed),
+               p.closed_form_error > 0 ? "error of the collocation"
+                                       : "ten times what CVODE differs by from itself, or ten thousand steps");
     if (!p.event_times.empty() && largest(events) > 0)
         s.rows.add(about, "event times against closed form", largest(events), bounds::at_most(allowed),
                    "as for the end state");

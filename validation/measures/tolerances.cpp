@@ -22,8 +22,10 @@ struct worst {
     }
 };
 
-constexpr const char* of_tolerance = "growth of errors x (steps x (tolerance + rounding) + events x their tolerance) + error of the reference";
-constexpr const char* of_halving = "twice the difference to half the step + growth of errors x roundings + error of the reference";
+constexpr const char* of_tolerance =
+    "growth of errors x (steps x (tolerance + rounding) + events x their tolerance) + error of the reference";
+constexpr const char* of_halving =
+    "twice the difference to half the step + growth of errors x roundings + error of the reference";
 
 /// The other backend's results, or those it had.
 void compare_backends(session& s, const problem& p, const method_entry& m, double setting, const char* other,
@@ -79,7 +81,8 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
         twice[i] = 2 * std::max(1.0, c.path) * made;
         if (!known.count.empty()) other_counts += is.count != known.count;
         for (std::size_t a = 0; a < known.accessory.size(); ++a) {
-            const bool time = std::find(p.event_times.begin(), p.event_times.end(), static_cast<int>(a)) != p.event_times.end();
+            const bool time =
+                std::find(p.event_times.begin(), p.event_times.end(), static_cast<int>(a)) != p.event_times.end();
             // a time is also rounded itself
             (time ? event : accessory)
                 .add(std::abs(is.accessory[a] - known.accessory[a]),
@@ -87,9 +90,10 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
                          2 * std::abs(is.accessory[a] - half.accessory[a]));
         }
         if (p.invariants) {
-            const auto before = p.invariants(p.instances[i], p.instances[i].state), after = p.invariants(p.instances[i], is.end);
-            invariant.add(distance(after, before),
-                          std::max(1.0, c.invariant) * made + 2 * distance(after, p.invariants(p.instances[i], half.end)));
+            const auto before = p.invariants(p.instances[i], p.instances[i].state),
+                       after = p.invariants(p.instances[i], is.end);
+            invariant.add(distance(after, before), std::max(1.0, c.invariant) * made +
+                                                       2 * distance(after, p.invariants(p.instances[i], half.end)));
         }
     }
     const char* const reason = finer == nullptr ? of_tolerance : of_halving;
@@ -98,9 +102,11 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
     s.rows.add(about, "end state, largest", *std::max_element(errors.begin(), errors.end()));
     s.rows.add(about, "end state, median", median(errors));
     if (!p.event_times.empty()) s.rows.add(about, "event times", event.value, bounds::at_most(event.bound), reason);
-    if (accessory.bound < bounds::infinite) s.rows.add(about, "accessories", accessory.value, bounds::at_most(accessory.bound), reason);
+    if (accessory.bound < bounds::infinite)
+        s.rows.add(about, "accessories", accessory.value, bounds::at_most(accessory.bound), reason);
     if (!r.known[0].count.empty())
-        s.rows.add(about, "instances with other event counts", other_counts, bounds::at_most(0), "no event is near to being missed");
+        s.rows.add(about, "instances with other event counts", other_counts, bounds::at_most(0),
+                   "no event is near to being missed");
     if (p.invariants) s.rows.add(about, "invariants", invariant.value, bounds::at_most(invariant.bound), reason);
     s.rows.add(about, "accepted steps", plain.sum(plain.accepted));
     s.rows.add(about, "rejected steps", plain.sum(plain.rejected));
@@ -172,9 +178,10 @@ void measure_tolerances(session& s, const problem& p, const method_entry& m, con
     const double slope = (logarithms_of_error.back() - logarithms_of_error.front()) /
                          (logarithms_of_tolerance.back() - logarithms_of_tolerance.front());
     const double least = m.order / (m.embedded_order + 1.0), most = (m.order + 1) / (m.embedded_order + 1.0);
-    s.rows.add(s.about(p, m, 0), "exponent of the tolerance in the error", slope, bounds::within(least - 0.2, most + 0.2),
-               "order (or one more, where its error constant is small) over order of the estimate plus one; a fifth for "
-               "errors of one sign that meet errors of the other");
+    s.rows.add(
+        s.about(p, m, 0), "exponent of the tolerance in the error", slope, bounds::within(least - 0.2, most + 0.2),
+        "order (or one more, where its error constant is small) over order of the estimate plus one; a fifth for "
+        "errors of one sign that meet errors of the other");
 }
 
 }  // namespace validation

@@ -49,8 +49,10 @@ void measure_work(session& s, const problem& p, const references& r) {
     std::vector<double> tolerances = {1e-6, 1e-4, 1e-5, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11};
     if (s.quick()) tolerances = {1e-6, 1e-9};
     for (const double tolerance : tolerances) {
-        add("CVODE", tolerance, [&] { return by_cvode(p, tolerance); }, count);
-        add("odeint cash_karp", tolerance, [&] { return p.by_odeint(p, tolerance); }, count);
+        add(
+            "CVODE", tolerance, [&] { return by_cvode(p, tolerance); }, count);
+        add(
+            "odeint cash_karp", tolerance, [&] { return p.by_odeint(p, tolerance); }, count);
     }
     const problem many = p.repeated(times_over);
     for (const method_entry& m : p.methods) {
@@ -63,7 +65,8 @@ void measure_work(session& s, const problem& p, const references& r) {
             } else {
                 o.step = setting = p.fixed_step * 4 / std::exp2(static_cast<double>(k));
             }
-            add(m.name, setting, [&] { return m.run(many, o, myriad::device::cpu(1)); }, count * times_over);
+            add(
+                m.name, setting, [&] { return m.run(many, o, myriad::device::cpu(1)); }, count * times_over);
         }
     }
 }

@@ -77,14 +77,17 @@ public:
         mutants_ += is_mutant;
         wrong_ += !right;
         if (!right)
-            std::cout << method << change << (is_mutant ? " is wrong, and nothing was reported\n" : " is reported to be wrong:\n") << log.str();
+            std::cout << method << change
+                      << (is_mutant ? " is wrong, and nothing was reported\n" : " is reported to be wrong:\n")
+                      << log.str();
     }
     template <class Method>
     void add_all(const std::string& name) {
         add<Method>(name, "", false);
         [&]<std::size_t... k>(std::index_sequence<k...>) {
             (add_coefficient<Method, k / Method::stages, k % Method::stages>(name), ...);
-        }(std::make_index_sequence<static_cast<std::size_t>(Method::stages* Method::stages)>{});
+        }
+        (std::make_index_sequence<static_cast<std::size_t>(Method::stages * Method::stages)>{});
     }
     int wrong() const { return wrong_; }
     int mutants() const { return mutants_; }
@@ -98,9 +101,12 @@ private:
         constexpr bool is_b = Method::first_same_as_last && i + 1 == static_cast<std::size_t>(Method::stages);
         if constexpr (t.a[i][j] != 0 && !is_b)
             add<mutated<Method, part::a, i, j>>(method, " with another a[" + std::to_string(i) + ']' + column, true);
-        if constexpr (i == 0 && t.b[j] != 0) add<mutated<Method, part::b, i, j>>(method, " with another b" + column, true);
-        if constexpr (i == 0 && t.e[j] != 0) add<mutated<Method, part::e, i, j>>(method, " with another e" + column, true);
-        if constexpr (i == 0 && t.c[j] != 0) add<mutated<Method, part::c, i, j>>(method, " with another c" + column, true);
+        if constexpr (i == 0 && t.b[j] != 0)
+            add<mutated<Method, part::b, i, j>>(method, " with another b" + column, true);
+        if constexpr (i == 0 && t.e[j] != 0)
+            add<mutated<Method, part::e, i, j>>(method, " with another e" + column, true);
+        if constexpr (i == 0 && t.c[j] != 0)
+            add<mutated<Method, part::c, i, j>>(method, " with another c" + column, true);
     }
 
     const problem problem_ = not_sampled();

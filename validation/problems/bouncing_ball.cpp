@@ -24,7 +24,8 @@ problem bouncing_ball_problem() {
     p.what = "Balls from rest at height 1 until their twentieth impact; restitution from 0.75 to 0.9; times of impacts";
     for (const double r : spread(0.75, 0.9, 64)) p.instances.push_back({{1, 0}, {r}, 10});
     p.events = {{.direction = myriad::direction::falling, .tolerance = 1e-12, .stop_after = 20}};
-    p.event_times = {bouncing_ball::t_1, bouncing_ball::t_2, bouncing_ball::t_5, bouncing_ball::t_10, bouncing_ball::t_20};
+    p.event_times = {bouncing_ball::t_1, bouncing_ball::t_2, bouncing_ball::t_5, bouncing_ball::t_10,
+                     bouncing_ball::t_20};
     p.events_per_instance = 20;
     p.fixed_step = 0.01;
     p.error_follows_tolerance = false;  // parabolas are integrated exactly

@@ -10,7 +10,9 @@ namespace validation {
 problem duffing_problem() {
     problem p;
     p.name = "duffing";
-    p.what = "Duffing, x'' + k x' - x + x^3 = 0.5 cos 1.2 t, from (0.1, 0) to t = 19, for k = 0.3 to t = 50; k from 0.25 to 0.35; maxima and rises of x";
+    p.what =
+        "Duffing, x'' + k x' - x + x^3 = 0.5 cos 1.2 t, from (0.1, 0) to t = 19, for k = 0.3 to t = 50; k from 0.25 to "
+        "0.35; maxima and rises of x";
     for (const double k : spread(0.25, 0.35, 65)) p.instances.push_back({{0.1, 0}, {k}, 19});
     p.instances[32] = {{0.1, 0}, {0.3}, 50};
     p.shared = {0.5, 1.2};

@@ -53,8 +53,9 @@ std::vector<double> temperature(double kappa, double t) {
 problem heat_problem() {
     problem p;
     p.name = "heat";
-    p.what = "Heat conduction in shells 1 < r < 2 by collocation at 12 Chebyshev points with a shared matrix, to t = 0.1; "
-             "diffusivity from 0.2 to 1";
+    p.what =
+        "Heat conduction in shells 1 < r < 2 by collocation at 12 Chebyshev points with a shared matrix, to t = 0.1; "
+        "diffusivity from 0.2 to 1";
     for (const double kappa : spread(0.2, 1, 64)) p.instances.push_back({temperature(kappa, 0), {kappa}, 0.1});
     p.shared = matrix_and_radii();
     p.sampled = {0, 4, 9};

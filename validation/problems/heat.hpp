@@ -15,7 +15,8 @@ struct heat {
     enum shared { matrix, radius = points * points, n_shared = radius + points };
 
     template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& temperature, const auto& p) {
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& temperature,
+                                                       const auto& p) {
         myriad::vec<R, points> flux;
         for (int i = 0; i < points; ++i) {
             R sum = R(0);

@@ -38,8 +38,9 @@ std::vector<double> bubble(double amplitude_1, double amplitude_2, double freque
 problem keller_miksis_problem() {
     problem p;
     p.name = "keller_miksis";
-    p.what = "Keller-Miksis bubbles of 10 um over one period of the first forcing: 32 with 0.8 bar of 100 to 1000 kHz, 32 with "
-             "0.5 bar of 100 to 1000 kHz and 0.4 bar of 300 kHz; largest and smallest radii";
+    p.what =
+        "Keller-Miksis bubbles of 10 um over one period of the first forcing: 32 with 0.8 bar of 100 to 1000 kHz, 32 "
+        "with 0.5 bar of 100 to 1000 kHz and 0.4 bar of 300 kHz; largest and smallest radii";
     for (const double logarithm : spread(5, 6, 32))
         p.instances.push_back({{1, 0}, bubble(0.8e5, 0, std::pow(10, logarithm), 1e5), 1});
     for (const double logarithm : spread(5, 6, 32))

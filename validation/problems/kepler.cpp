@@ -27,7 +27,9 @@ std::vector<double> orbit(double e, double t) {
 problem kepler_problem() {
     problem p;
     p.name = "kepler";
-    p.what = "Kepler orbits of half-axis 1 from the perihelion to t = 10; eccentricity from 0 to 0.6; passages of the perihelion";
+    p.what =
+        "Kepler orbits of half-axis 1 from the perihelion to t = 10; eccentricity from 0 to 0.6; passages of the "
+        "perihelion";
     for (const double e : spread(0, 0.6, 64))
         p.instances.push_back({{1 - e, 0, 0, std::sqrt((1 + e) / (1 - e))}, {}, 10});
     p.events = {{.direction = myriad::direction::rising, .tolerance = 1e-12}};

@@ -21,9 +21,9 @@ problem robertson_problem();
 problem oregonator_problem();
 
 inline std::vector<problem> all_problems() {
-    return {lorenz_problem(),        duffing_problem(), van_der_pol_problem(), keller_miksis_problem(), relief_valve_problem(),
-            bouncing_ball_problem(), heat_problem(),    kepler_problem(),      timed_circle_problem(),  robertson_problem(),
-            oregonator_problem()};
+    return {lorenz_problem(),       duffing_problem(),       van_der_pol_problem(), keller_miksis_problem(),
+            relief_valve_problem(), bouncing_ball_problem(), heat_problem(),        kepler_problem(),
+            timed_circle_problem(), robertson_problem(),     oregonator_problem()};
 }
 
 /// A solution of which only the end is known, for one instance, and nothing of the others.

@@ -20,7 +20,9 @@ problem robertson_problem() {
         return known_end(i.parameter[robertson::k1] == 0.04,
                          {0.71582706871940509, 9.1855347645577639e-6, 0.28416374574583035});
     };
-    p.invariants = [](const instance&, const std::vector<double>& y) -> std::vector<double> { return {y[0] + y[1] + y[2]}; };
+    p.invariants = [](const instance&, const std::vector<double>& y) -> std::vector<double> {
+        return {y[0] + y[1] + y[2]};
+    };
     complete<robertson>(p);
     return p;
 }
