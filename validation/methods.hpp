@@ -5,9 +5,15 @@
 
 #include <myriad/methods.hpp>
 
-/// Non-stiff problems are integrated with each of these.
+#if defined(MYRIAD_VALIDATE_FEW_METHODS)  // for the sake of compile time: one kernel per problem and method
 #define VALIDATED_METHODS(DO) DO(runge_kutta_4) DO(cash_karp) DO(tsitouras_5)
-/// Stiff problems with each of these; none yet, so that for them only the references are compared with each other.
-#define VALIDATED_STIFF_METHODS(DO)
+#define VALIDATED_STIFF_METHODS(DO) DO(rodas_5p)
+#else
+/// Non-stiff problems are integrated with each of these.
+#define VALIDATED_METHODS(DO) \
+    DO(runge_kutta_4) DO(cash_karp) DO(tsitouras_5) DO(dormand_prince_5) DO(verner_7) DO(dormand_prince_8)
+/// Stiff problems with each of these.
+#define VALIDATED_STIFF_METHODS(DO) DO(rosenbrock_23) DO(rodas_5p)
+#endif
 /// Some problems in single precision too.
 #define VALIDATED_FLOAT_METHODS(DO) DO(tsitouras_5)
