@@ -11,6 +11,7 @@
 
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
+#include "tests/properties/pack_sizes.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/faulty.hpp"
@@ -143,6 +144,27 @@ ensemble<van_der_pol> oscillators(const std::vector<std::int64_t>& numbers) {
     return e;
 }
 
+/// Packs of every size against one lane at a time.
+template <class Method>
+void check_pack_sizes() {
+    std::vector<std::int64_t> all(103);  // no multiple of any number of lanes
+    std::iota(all.begin(), all.end(), 0);
+    const auto run = [&](int batches) {
+        auto e = oscillators(all);
+        const options o = compare::with_tolerance(1e-4, 1e-3);
+        myriad::kernel_arguments<van_der_pol, double> arguments{};
+        myriad::host::describe_options<van_der_pol, Method, double>(arguments, o);
+        e.describe(arguments, o.counting);
+        properties::run_with_packs<van_der_pol, Method, double>(batches, arguments, {});
+        return e;
+    };
+    const auto one_lane = run(0);
+    for (int batches = 1; batches <= 4; ++batches) {
+        INFO("pack of " << batches << " batches");
+        CHECK(compare::difference(run(batches), one_lane).empty());
+    }
+}
+
 template <class Method>
 void check_order_of_instances() {
     std::vector<std::int64_t> order(103);
@@ -240,6 +262,9 @@ TEST_CASE("the order of the ensemble changes no bit of a stiff method's results"
     check_order_of_instances<rosenbrock_23>();
     check_order_of_instances<rodas_5p>();
 }
+
+// + - * / only, so that one lane has no other functions than packs
+TEST_CASE("a stiff method gives the same bits in a scalar lane and in packs of every size") { check_pack_sizes<rodas_5p>(); }
 
 TEST_CASE("the model's own Jacobian gives what the one by dual numbers gives") {
     const auto run = []<class Model>(ensemble<Model>&& e) {
