@@ -100,7 +100,9 @@ TEST_CASE("derivatives by dual numbers are those written out") {
     const double e = 1.3 * std::exp(0.8 * 1.7);
     const double expected[2][2] = {{e * 1.7, e * 0.8}, {-0.4 / 1.7 * 0.6, 0.4 * 0.8 / (1.7 * 1.7) * 0.6}};
     // five roundings or so on each side
-    const auto close = [](double a, double b) { return std::abs(a - b) <= 10 * std::numeric_limits<double>::epsilon() * std::abs(b); };
+    const auto close = [](double a, double b) {
+        return std::abs(a - b) <= 10 * std::numeric_limits<double>::epsilon() * std::abs(b);
+    };
     for (int i = 0; i < 2; ++i)
         for (int c = 0; c < 2; ++c) CHECK(close(j[i][c], expected[i][c]));
     CHECK(close(by_time[0], -0.7 * std::sin(0.6)));

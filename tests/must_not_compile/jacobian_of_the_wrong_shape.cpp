@@ -12,7 +12,8 @@ struct rotation {
         return {s[y], -s[x]};
     }
     template <class R>
-    MYRIAD_FUNCTION static myriad::vec<myriad::vec<R, n_state>, 3> jacobian(auto, const myriad::vec<R, n_state>&, const auto&) {
+    MYRIAD_FUNCTION static myriad::vec<myriad::vec<R, n_state>, 3> jacobian(auto, const myriad::vec<R, n_state>&,
+                                                                            const auto&) {
         return {};
     }
 };

@@ -35,16 +35,19 @@ struct reference {
 /// atol / tolerance of Robertson's components: in the end they are 2e-8, 8e-14 and 1.
 const std::vector<double> robertson_scale{1e-8, 1e-14, 1};
 const reference robertson_40{40, {0.71582706871940509, 9.1855347645577639e-6, 0.28416374574583035}, {1.6, 2.4e-5, 0.9}};
-const reference robertson_1e5{1e5, {0.017865921142099465, 7.2747514684363188e-8, 0.98213400611038585}, {0.07, 1.4e-7, 2.1}};
-const reference robertson_1e11{1e11, {2.08334014970129e-8, 8.333360770334713e-14, 0.9999999791665050}, {1.2e-7, 4.6e-13, 2.1}};
+const reference robertson_1e5{
+    1e5, {0.017865921142099465, 7.2747514684363188e-8, 0.98213400611038585}, {0.07, 1.4e-7, 2.1}};
+const reference robertson_1e11{
+    1e11, {2.08334014970129e-8, 8.333360770334713e-14, 0.9999999791665050}, {1.2e-7, 4.6e-13, 2.1}};
 const reference van_der_pol{2, {1.76323454020344570, -0.835688681677677391}, {2.7, 2.5}};
 
 template <class Method, class Model>
-ensemble<Model> run(const reference& r, double tolerance, const std::vector<double>& start, const std::vector<double>& scale) {
+ensemble<Model> run(const reference& r, double tolerance, const std::vector<double>& start,
+                    const std::vector<double>& scale) {
     ensemble<Model> e(1);
     for (std::size_t c = 0; c < start.size(); ++c) e.state(static_cast<int>(c)) = start[c];
     for (int c = 0; c < myriad::n_accessory<Model>; ++c) e.accessory(c) = 0.0;
-    if constexpr (myriad::n_parameter<Model> > 0) e.parameter(0) = 1e-3;
+    if constexpr (myriad::n_parameter < Model >> 0) e.parameter(0) = 1e-3;
     e.time_domain(0, r.t_end);
     options o;
     o.step = 1e-6;
@@ -68,7 +71,8 @@ void check(const reference& r, const std::vector<double>& tolerances, const std:
         const double steps = static_cast<double>(e.accepted_steps()[0]);
         double worst = 0;
         for (std::size_t c = 0; c < r.end.size(); ++c) {
-            const double error = std::abs(e.state(static_cast<int>(c))[0] - r.end[c]), allowed = r.growth[c] * steps * tolerance;
+            const double error = std::abs(e.state(static_cast<int>(c))[0] - r.end[c]),
+                         allowed = r.growth[c] * steps * tolerance;
             CAPTURE(tolerance, steps, c, error, allowed);
             CHECK(error <= allowed);
             worst = std::max(worst, error / std::abs(r.end[c]));
@@ -97,10 +101,12 @@ void check_sum(const reference& r, double tolerance) {
 }  // namespace
 
 TEST_CASE("rodas_5p ends Robertson's kinetics at their reference values") {
-    for (const auto& r : {robertson_40, robertson_1e5, robertson_1e11}) check_robertson<rodas_5p>(r, {1e-4, 1e-6, 1e-8});
+    for (const auto& r : {robertson_40, robertson_1e5, robertson_1e11})
+        check_robertson<rodas_5p>(r, {1e-4, 1e-6, 1e-8});
 }
 TEST_CASE("rosenbrock_23 ends Robertson's kinetics at their reference values") {
-    for (const auto& r : {robertson_40, robertson_1e5, robertson_1e11}) check_robertson<rosenbrock_23>(r, {1e-3, 1e-5, 1e-7});
+    for (const auto& r : {robertson_40, robertson_1e5, robertson_1e11})
+        check_robertson<rosenbrock_23>(r, {1e-3, 1e-5, 1e-7});
 }
 TEST_CASE("stiff methods keep the sum of Robertson's concentrations") {
     for (const auto& r : {robertson_40, robertson_1e5, robertson_1e11}) {

@@ -50,18 +50,25 @@ using pack_of_float = myriad::pack<float, 1>;
 
 int lanes(kind which) {
     switch (which) {
-        case kind::pack_of_double: return myriad::lanes_of<pack_of_double>;
-        case kind::pack_of_float: return myriad::lanes_of<pack_of_float>;
-        default: return 1;
+        case kind::pack_of_double:
+            return myriad::lanes_of<pack_of_double>;
+        case kind::pack_of_float:
+            return myriad::lanes_of<pack_of_float>;
+        default:
+            return 1;
     }
 }
 
 solutions solve(kind which, const systems& given) {
     switch (which) {
-        case kind::one_double: return solve_any_size<double, kind::one_double>(given);
-        case kind::one_float: return solve_any_size<float, kind::one_float>(given);
-        case kind::pack_of_double: return solve_any_size<pack_of_double, kind::pack_of_double>(given);
-        default: return solve_any_size<pack_of_float, kind::pack_of_float>(given);
+        case kind::one_double:
+            return solve_any_size<double, kind::one_double>(given);
+        case kind::one_float:
+            return solve_any_size<float, kind::one_float>(given);
+        case kind::pack_of_double:
+            return solve_any_size<pack_of_double, kind::pack_of_double>(given);
+        default:
+            return solve_any_size<pack_of_float, kind::pack_of_float>(given);
     }
 }
 

@@ -16,8 +16,8 @@ struct systems {
     std::vector<double> matrix, right;
 };
 struct solutions {
-    std::vector<double> x;     // x[lane * n + row]
-    std::vector<bool> regular; // by lane
+    std::vector<double> x;      // x[lane * n + row]
+    std::vector<bool> regular;  // by lane
 };
 
 constexpr int largest_system = 32;

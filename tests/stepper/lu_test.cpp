@@ -14,11 +14,11 @@
 
 namespace {
 
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 using lu_lanes::kind;
 using lu_lanes::largest_system;
 using lu_lanes::systems;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 constexpr kind all_kinds[] = {kind::one_double, kind::one_float, kind::pack_of_double, kind::pack_of_float};
 
@@ -158,7 +158,8 @@ TEST_CASE("a singular matrix is reported, in its lane alone") {
 }
 
 TEST_CASE("a pack solves each lane as one lane alone does, to the last bit") {
-    for (const auto& [pack, one] : {std::pair{kind::pack_of_double, kind::one_double}, {kind::pack_of_float, kind::one_float}}) {
+    for (const auto& [pack, one] :
+         {std::pair{kind::pack_of_double, kind::one_double}, {kind::pack_of_float, kind::one_float}}) {
         for (int n = 1; n <= largest_system; ++n) {
             if (!lu_lanes::is_compiled(pack, n)) continue;
             const systems all = make(pack, n, random_systems{});

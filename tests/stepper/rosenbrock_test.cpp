@@ -64,7 +64,8 @@ void check_orders_on(double first_h) {
     }
     {
         INFO("error estimate");
-        check_local_order([](double t, double h) { return step(t, h).estimate(); }, Method::embedded_order + 1, first_h);
+        check_local_order([](double t, double h) { return step(t, h).estimate(); }, Method::embedded_order + 1,
+                          first_h);
     }
     {
         INFO("embedded solution");  // the solution less its error estimate; of order three for rosenbrock_23
@@ -76,7 +77,8 @@ void check_orders_on(double first_h) {
             },
             order + 1, first_h);
     }
-    for (const double theta : {0.3, 0.5, 0.7}) {  // nearer to the end the error is that of the solution until h is small
+    for (const double theta :
+         {0.3, 0.5, 0.7}) {  // nearer to the end the error is that of the solution until h is small
         INFO("interpolant at " << theta);
         check_local_order(
             [theta](double t, double h) { return difference(step(t, h).at(theta), Model::exact(t + theta * h)); },
@@ -91,7 +93,8 @@ void check_ends() {
     for (int c = 0; c < step.n; ++c) {
         CHECK(begin[c] == step.start[c]);
         // y + (y1 - y), rounded twice
-        CHECK(std::abs(end[c] - step.trial.y[c]) <= std::numeric_limits<double>::epsilon() * std::abs(step.trial.y[c]) * 2);
+        CHECK(std::abs(end[c] - step.trial.y[c]) <=
+              std::numeric_limits<double>::epsilon() * std::abs(step.trial.y[c]) * 2);
     }
 }
 

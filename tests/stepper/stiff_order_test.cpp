@@ -49,7 +49,8 @@ void check_stiff_order(double rate, double least, double most, double first_h = 
         coarse = fine;
     }
     CAPTURE(rate, slopes, coarse);
-    REQUIRE(coarse > 10 * std::numeric_limits<double>::epsilon());  // the problem forgets the roundings of earlier steps
+    REQUIRE(coarse >
+            10 * std::numeric_limits<double>::epsilon());  // the problem forgets the roundings of earlier steps
     CHECK(slopes[2] > least);
     CHECK(slopes[2] < most);
 }
@@ -58,7 +59,9 @@ void check_stiff_order(double rate, double least, double most, double first_h = 
 
 TEST_CASE("rosenbrock_23 has order two") { check_order<rosenbrock_23, problems::timed_circle>(2, 1.0 / 128, 1); }
 TEST_CASE("rodas_5p has order five") { check_order<rodas_5p, problems::timed_circle>(5, 1.0 / 32, 1); }
-TEST_CASE("rosenbrock_23 has order two in single precision") { check_order<rosenbrock_23, problems::oscillator, float>(2, 0.25, 2, {0.2, 0.2}); }
+TEST_CASE("rosenbrock_23 has order two in single precision") {
+    check_order<rosenbrock_23, problems::oscillator, float>(2, 0.25, 2, {0.2, 0.2});
+}
 
 // Its coefficients magnify rounding some hundred times, which leaves no room for an order in single precision.
 TEST_CASE("rodas_5p keeps a tolerance in single precision") {
@@ -82,7 +85,8 @@ TEST_CASE("rosenbrock_23 keeps order two on Prothero and Robinson's problem, how
 }
 // Stiff order three, for which it was built; other methods of its kind fall to one. The order of the tableau is seen where
 // h times the rate is small, and comes back slowly on the way there.
-TEST_CASE("rodas_5p has order three on Prothero and Robinson's problem where it is very stiff, and five where it is not") {
+TEST_CASE(
+    "rodas_5p has order three on Prothero and Robinson's problem where it is very stiff, and five where it is not") {
     check_stiff_order<rodas_5p>(1.0, 4.9, 5.1);
     check_stiff_order<rodas_5p>(1e2, 4.5, 5.1, 0.125);
     check_stiff_order<rodas_5p>(1e4, 3.0, 3.5);

@@ -3,10 +3,10 @@
 // derivative by time.
 #pragma once
 
-#include "myriad/scalar/matrix_loop.hpp"
 #include "myriad/model/concepts.hpp"
 #include "myriad/model/lane.hpp"
 #include "myriad/scalar/dual.hpp"
+#include "myriad/scalar/matrix_loop.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 

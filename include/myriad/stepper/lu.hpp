@@ -5,8 +5,8 @@
 
 #include <type_traits>
 
-#include "myriad/scalar/matrix_loop.hpp"
 #include "myriad/scalar/math.hpp"
+#include "myriad/scalar/matrix_loop.hpp"
 #include "myriad/scalar/select.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {

@@ -15,7 +15,9 @@ namespace myriad::inline MYRIAD_TARGET {
 
 /// A method whose coefficients are a rosenbrock_tableau.
 template <class Method>
-concept rosenbrock_method = requires { Method::tableau().coupling; };
+concept rosenbrock_method = requires {
+    Method::tableau().coupling;
+};
 
 /// What a trial step leaves behind: the slope at its start (and at its end, where that is the last stage's), the stages u,
 /// the new state, and the lanes whose matrix was singular, in which all else is worthless.
@@ -40,10 +42,14 @@ constexpr double rosenbrock_coefficient(rosenbrock_row kind, int row, int j) {
     const auto t = Method::tableau();
     const auto i = static_cast<std::size_t>(row), stage = static_cast<std::size_t>(j);
     switch (kind) {
-        case rosenbrock_row::argument: return t.weight(row, j);
-        case rosenbrock_row::coupling: return t.coupling[i][stage];
-        case rosenbrock_row::error: return t.e[stage];
-        default: return t.dense[i][stage];
+        case rosenbrock_row::argument:
+            return t.weight(row, j);
+        case rosenbrock_row::coupling:
+            return t.coupling[i][stage];
+        case rosenbrock_row::error:
+            return t.e[stage];
+        default:
+            return t.dense[i][stage];
     }
 }
 template <class Method, rosenbrock_row kind, int row, int j, class R>
@@ -120,8 +126,8 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
 
 /// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given.
 template <class Method, class Model, class S>
-MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const vec<S, n_state<Model>>& y,
-                                     const inputs<Model, S>& p, rk_trial<Method, S, n_state<Model>>& trial) {
+MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
+                                     rk_trial<Method, S, n_state<Model>>& trial) {
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
     using loop = matrix_loop<S, n>;

@@ -29,7 +29,8 @@ struct rosenbrock_tableau {
 
     /// Weight of stage j in the argument of stage `of`, or in the solution (of == stages).
     constexpr double weight(int of, int j) const {
-        return of == stages ? m[static_cast<std::size_t>(j)] : a[static_cast<std::size_t>(of)][static_cast<std::size_t>(j)];
+        return of == stages ? m[static_cast<std::size_t>(j)]
+                            : a[static_cast<std::size_t>(of)][static_cast<std::size_t>(j)];
     }
 };
 
@@ -85,7 +86,8 @@ constexpr bool satisfies_order_conditions(const rosenbrock_tableau<stages, dense
     const column a1 = A(ones), b1 = B(ones), a1_a1 = times(a1, a1), b1_b = B(b1);
     const column row_sums = apply(gamma, ones);
     for (std::size_t i = 0; i < n; ++i)
-        satisfied = satisfied && size_of(a1[i] - t.c[i]) <= 100 * tolerance && size_of(row_sums[i] - t.d[i]) <= 100 * tolerance;
+        satisfied =
+            satisfied && size_of(a1[i] - t.c[i]) <= 100 * tolerance && size_of(row_sums[i] - t.d[i]) <= 100 * tolerance;
     check(ones, 1.0);
     if (order >= 2) check(b1, 1.0 / 2);
     if (order >= 3) check(a1_a1, 1.0 / 3), check(b1_b, 1.0 / 6);

@@ -9,8 +9,8 @@ namespace myriad::inline MYRIAD_TARGET {
 
 /// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given.
 template <class Method, class Model, class S>
-MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const vec<S, n_state<Model>>& y,
-                                     const inputs<Model, S>& p, rk_trial<Method, S, n_state<Model>>& trial) {
+MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
+                                     rk_trial<Method, S, n_state<Model>>& trial) {
     if constexpr (rosenbrock_method<Method>) {
         rosenbrock_step<Method, Model>(t, h, y, p, trial);
     } else {
