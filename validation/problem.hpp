@@ -66,6 +66,11 @@ struct method_entry {
     std::function<outcome(const problem&, const myriad::options&, const myriad::device&)> run;
 
     bool adaptive() const { return embedded_order > 0; }
+    /// Methods of high order reach rounding within few halvings of a step, and take steps in which a function may cross twice.
+    bool takes_long_steps() const { return order >= 7; }
+    /// Samples of the Hermite polynomial know nothing of the tolerance. Those of order seven of dormand_prince_8 are worse than
+    /// its steps where stability limits them: as of other implementations of DOP853, up to a hundred times the tolerance.
+    bool samples_keep_tolerance() const { return interpolant_order > 0 && interpolant_order < 7; }
 };
 
 /// What a CVODE run is asked for.

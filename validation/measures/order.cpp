@@ -62,7 +62,8 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
         differences error;
     };
     std::vector<level> levels;
-    double h = p.longest_step;
+    const std::size_t least_levels = m.takes_long_steps() ? 2 : 3;
+    double h = (m.takes_long_steps() ? 2 : 1) * p.longest_step;
     for (int k = 0; k < 8; ++k, h /= 2) {
         myriad::options o = fixed_steps(smooth, h);
         if (!p.sampled.empty()) o.samples = {.states = p.sampled, .capacity = p.samples, .evenly = p.samples};
@@ -77,7 +78,7 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
         if (!levels.empty() && !(error > floor)) break;
         levels.push_back(now);
     }
-    if (levels.size() < 3) {
+    if (levels.size() < least_levels) {
         s.rows.add(s.about(p, m, h), "order", unknown, bounds::within(m.order, m.order),
                    "too few steps above rounding");
         return;
@@ -85,8 +86,9 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
     const level &fine = levels.back(), &coarse = levels[levels.size() - 2];
     const subject about = s.about(p, m, fine.h);
     const double order = std::log2(median_ratio(coarse.error.end, fine.error.end));
-    s.rows.add(about, "order", order, bounds::within(m.order - 0.2, m.order + 1.2),
-               "error = C h^order (1 + O(h)); above it where C is small against the next term");
+    s.rows.add(about, "order", order,
+               m.takes_long_steps() ? bounds::within(m.order - 0.5, m.order + 2.5) : bounds::within(m.order - 0.2, m.order + 1.2),
+               "error = C h^order (1 + O(h)); above it where C is small against the next terms, h larger for high orders");
     // The difference of two step sizes tells the error of the finer one, up to a term in h.
     const differences halving(coarse.instances, fine.instances);
     s.rows.add(about, "error over its prediction by halved steps",
@@ -96,7 +98,8 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
     const double interpolant = m.interpolant_order > 0 ? m.interpolant_order + 1 : 4;
     const double least = std::min(interpolant, 1.0 * m.order);
     s.rows.add(about, "order of samples", std::log2(median_ratio(coarse.error.samples, fine.error.samples)),
-               bounds::within(least - 0.3, std::max(interpolant, 1.0 * m.order) + 1.2),
+               bounds::within(least - (m.takes_long_steps() ? 0.6 : 0.3),
+                              std::max(interpolant, 1.0 * m.order) + (m.takes_long_steps() ? 2.5 : 1.2)),
                "that of the interpolant inside a step, or of the steps, whichever error is larger");
 }
 

@@ -257,10 +257,14 @@ private:
     /// Time at the end of the trial.
     MYRIAD_FUNCTION S end_time() const {
         S t1;
-        if constexpr (adaptive && compensates_time) {
+        if constexpr (!adaptive) {
+            // the time at which the next step begins, bit for bit, so that it may take over the slope
+            t1 = fma(S(s.done + count(1)), s.step, s.base);
+            if constexpr (has_events<Model>) t1 = select(e.locating, s.now() + s.h, t1);
+        } else if constexpr (compensates_time) {
             t1 = s.data.t + (s.h + s.time_low);
         } else {
-            t1 = s.now() + s.h;
+            t1 = s.data.t + s.h;
         }
         return select(s.final_step, s.data.t_end, t1);
     }
