@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Validates a backend against CVODE, closed forms and quadruple precision, and against another backend's results. Exit
 // status 0 if every bound is kept, 1 if one is missed, 2 for bad arguments and errors.
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iostream>
@@ -83,6 +84,8 @@ int validate(const arguments& chosen) {
     std::cout << rows.judged() << " bounds checked, " << rows.missed() << " missed, in "
               << std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() << " s\n";
     if (rows.judged() == 0) throw std::runtime_error("nothing was checked: --problems names none of the problems");
+    if (compare && compare->found() == 0)
+        throw std::runtime_error(chosen.compare + " holds none of the runs: record it anew with --record");
     return rows.missed() == 0 ? 0 : 1;
 }
 

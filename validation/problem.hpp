@@ -62,6 +62,7 @@ struct method_entry {
     std::string name, precision;
     double eps = eps_double;
     int order = 0, embedded_order = 0;  // 0: fixed steps
+    bool implicit = false;
     int interpolant_order = 0;          // of the method's own interpolant; 0: the cubic Hermite polynomial
     std::function<outcome(const problem&, const myriad::options&, const myriad::device&)> run;
 

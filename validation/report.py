@@ -88,8 +88,7 @@ def write(comments, rows, images, command):
                    of_reference(p, "reference against itself at ten times the tolerance"),
                    of_reference(p, "reference against closed form or quadruple precision"),
                    of_reference(p, "event times against closed form")] for p in problems])
-    out += ["Where the second column is not far below a method's error, CVODE is the limit: its error is part of the bound there. "
-            "Stiff problems have no method yet; their references are prepared and compared.", ""]
+    out += ["Where the second column is not far below a method's error, CVODE is the limit: its error is part of the bound there.", ""]
 
     out += ["## Errors against their bounds", "",
             "The bound: growth x (accepted steps x (tolerance + rounding) + events x event tolerance) + error of the reference, per "
@@ -153,11 +152,11 @@ def write(comments, rows, images, command):
                 "for Boost.odeint's controlled Cash-Karp stepper. All evaluate the same model's function; evaluations of CVODE include "
                 "those for its Jacobians. The repository's benchmarks, not this, compare speeds.", ""]
     out += ["## Does it see what is wrong?", "", "`scripts/validate.sh --mutations` changes every coefficient a, b, c and e of every "
-            "method by a ten-thousandth of itself, one at a time, and measures it with the functions behind the table of orders: each "
+            "explicit method by a ten-thousandth of itself, one at a time, and measures it with the functions behind the table of orders: each "
             "must be reported (`validation/mutation/coefficients.cpp`; a coefficient of a with its node c left as it is). It then "
             "compiles the kernels from headers with one line changed (another direction of events, an action lost, a slope kept after "
             "a jump, a rejected step accepted, and more: `validation/mutation/logic.py`), and each must fail this validation. CI does "
-            "the first part and four of the second.", ""]
+            "the first part for half of the methods, and four of the second.", ""]
     return "\n".join(out)
 
 

@@ -64,6 +64,7 @@ method_entry entry(const char* name) {
     m.precision = std::is_same_v<R, double> ? "double" : "float";
     m.eps = std::is_same_v<R, double> ? eps_double : eps_float;
     m.order = Method::order;
+    m.implicit = myriad::solves_linear_systems<Method>;
     m.embedded_order = myriad::estimate_order<Method>;
     if constexpr (requires { Method::interpolant_order; }) m.interpolant_order = Method::interpolant_order;
     m.run = &integrate<Model, Method, R>;

@@ -2,8 +2,10 @@
 // What reports remark: stiffness that an explicit method ran into, and tolerances below the precision.
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"

@@ -36,7 +36,7 @@ void measure_estimate(session& s, const problem& p, const method_entry& m) {
         h /= 2;
     }
     s.rows.add(s.about(p, m, h), "order of the error estimate", order,
-               m.takes_long_steps() ? bounds::within(m.embedded_order, m.embedded_order + 2)
+               m.takes_long_steps() ? bounds::within(m.embedded_order + 0.2, m.embedded_order + 2)
                                     : bounds::within(m.embedded_order + 0.7, m.embedded_order + 1.3),
                "estimate = C h^(q+1) (1 + O(h)), h larger for high orders");
 }

@@ -39,7 +39,7 @@ double median_ratio(const std::vector<double>& a, const std::vector<double>& b) 
 }  // namespace
 
 void measure_step(session& s, const problem& p, const method_entry& m) {
-    if (p.one_step.empty() || m.precision != "double") return;
+    if (p.one_step.empty() || m.precision != "double" || m.implicit) return;
     problem single = p;
     single.instances.resize(1);
     single.instances[0].t_end = p.one_step_length;
@@ -86,8 +86,11 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
     const level &fine = levels.back(), &coarse = levels[levels.size() - 2];
     const subject about = s.about(p, m, fine.h);
     const double order = std::log2(median_ratio(coarse.error.end, fine.error.end));
+    // Seen with high orders: 6.1 for seven on Duffing's oscillator and 7.4 for eight on van der Pol's, where the error of CVODE
+    // is near; with closed forms, half an order at most.
+    const double below = p.exactly ? 0.5 : 1.2;
     s.rows.add(about, "order", order,
-               m.takes_long_steps() ? bounds::within(m.order - 1.2, m.order + 2.5) : bounds::within(m.order - 0.2, m.order + 1.2),
+               m.takes_long_steps() ? bounds::within(m.order - below, m.order + 2.5) : bounds::within(m.order - 0.2, m.order + 1.2),
                "error = C h^order (1 + O(h)); above it where C is small against the next terms, h larger for high orders");
     // The difference of two step sizes tells the error of the finer one, up to a term in h.
     const differences halving(coarse.instances, fine.instances);
@@ -98,7 +101,7 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
     const double interpolant = m.interpolant_order > 0 ? m.interpolant_order + 1 : 4;
     const double least = std::min(interpolant, 1.0 * m.order);
     s.rows.add(about, "order of samples", std::log2(median_ratio(coarse.error.samples, fine.error.samples)),
-               bounds::within(least - (m.takes_long_steps() ? 1.3 : 0.3),
+               bounds::within(least - (m.takes_long_steps() ? below + 0.1 : 0.3),
                               std::max(interpolant, 1.0 * m.order) + (m.takes_long_steps() ? 2.5 : 1.2)),
                "that of the interpolant inside a step, or of the steps, whichever error is larger");
 }

@@ -97,8 +97,12 @@ public:
     /// The results of a run by instance, or null.
     const std::map<std::size_t, recorded_result>* find(const std::string& run) const {
         const auto found = results_.find(run);
+        found_ += found != results_.end();
         return found == results_.end() ? nullptr : &found->second;
     }
+
+    /// How many runs have been found.
+    int found() const { return found_; }
 
 private:
     static std::vector<double> numbers(const std::string& text) {
@@ -109,6 +113,7 @@ private:
     }
     std::map<std::string, std::map<std::size_t, recorded_result>> results_;
     std::vector<std::string> comments_;
+    mutable int found_ = 0;
 };
 
 }  // namespace validation

@@ -35,8 +35,9 @@ references measure_references(session& s, const problem& p) {
                 for (std::size_t c = 0; c < exact.end.size(); ++c) {
                     if (std::isnan(exact.end[c])) continue;
                     known.end[c] = exact.end[c];
-                    r.error[i] = 0;
                 }
+                const auto open = [](double x) { return std::isnan(x); };
+                if (std::none_of(exact.end.begin(), exact.end.end(), open)) r.error[i] = 0;
                 if (!exact.accessory.empty()) known.accessory = exact.accessory;
                 if (!exact.samples.empty()) {
                     for (std::size_t k = 0; k < known.samples.size(); ++k)

@@ -29,7 +29,7 @@ MUTATIONS = {
                                "const mask accepted = s.running() & valid;"),
     "error_taken_for_less": ("controller/norm.hpp", "return static_cast<control_of<S>>(abs(error) / scale);",
                              "return static_cast<control_of<S>>(abs(error) / scale * S(0.01));"),
-    "first_slope_for_the_last": ("integrator/integrate.hpp", "select(accepted, trial.k[Method::stages - 1][c], s.slope[c])",
+    "first_slope_for_the_last": ("integrator/integrate.hpp", "select(accepted, trial.slope_end()[c], s.slope[c])",
                                  "select(accepted, trial.k[0][c], s.slope[c])"),
     "stages_at_the_end_of_the_step": ("stepper/explicit_rk.hpp", "fma(S(node<Method, stage, R>), h, t)", "(t + h)"),
     "bent_interpolant": ("stepper/dense_output.hpp", "const S middle = S(R(1)) - theta - theta;",

@@ -34,6 +34,7 @@ problem timed_circle_problem() {
     p.one_step = one_step;
     p.one_step_length = one_step_length;
     complete<timed_circle>(p);
+    for (method_entry& m : stiff_methods_for<timed_circle>()) p.methods.push_back(std::move(m));  // for their orders
     return p;
 }
 

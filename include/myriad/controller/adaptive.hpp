@@ -59,7 +59,7 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
         C sum = fma(C(R(Method::exponent_last)), s.errors.last, C(R(Method::exponent_now)) * now);
         if constexpr (Method::exponent_before != 0) sum = fma(C(R(Method::exponent_before)), s.errors.before, sum);
         factor = C(R(0.9)) * fast_exp2(select(within, sum * C(R(-1.0 / (order + 1))), now * C(R(-1.0 / order))));
-        // Steps without any error are forgotten: they would shorten the next ones.
+        // An error of zero counts as 1e-4: less would shorten the next steps for nothing.
         s.errors.before = select(accepted, s.errors.last, s.errors.before);
         s.errors.last = select(accepted, larger(now, C(R(least_error_remembered))), s.errors.last);
     } else {

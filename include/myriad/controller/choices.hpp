@@ -56,7 +56,6 @@ template <class Method>
 inline constexpr bool adds_tolerances = requires { Method::adds_tolerances; };
 template <class Method>
 inline constexpr bool chooses_first_step = requires { Method::chooses_first_step; };
-
 template <class Method>
 inline constexpr bool scales_tolerances = requires { Method::scales_tolerances; };
 

@@ -84,7 +84,7 @@ MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of
         const C quotient = select(big > C(R(0)), small / big, C(R(0)));
         const C length = big * sqrt(fma(quotient, quotient, C(R(1))));
         norm.worst = norm.worst * select(big > C(R(0)), norm.worst / length, C(R(0)));
-        norm.within = norm.worst <= C(R(1));
+        norm.within = (norm.worst <= C(R(1))) & (coarse <= C(largest_of<R>));  // an infinite one says nothing
         MYRIAD_UNROLL
         for (int c = 0; c < n_state<Model>; ++c) norm.within = norm.within & is_finite(trial.y[c]);
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "myriad/core/error.hpp"
 #include "myriad/ensemble/ensemble.hpp"

@@ -78,7 +78,7 @@ struct kernel_arguments {
     R* parameter;
     R* t_begin;
     R* t_end;
-    R* tolerance_scale;  // null: one
+    R* tolerance_scale;  // null for methods without
     // per instance, read and written
     R* t;
     R* state;

@@ -192,7 +192,10 @@ private:
             step.slope_end = step.trial.slope_end();
         } else {
             step.slope_end = evaluate_rhs<Model>(t1, step.trial.y, s.data);
-            s.extra_evaluations = count_where(wanted, s.extra_evaluations, 1 + extra_stages<Method>);
+            s.extra_evaluations = count_where(wanted, s.extra_evaluations);
+        }
+        if constexpr (extra_stages<Method> > 0) {
+            s.extra_evaluations = count_where(wanted, s.extra_evaluations, extra_stages<Method>);
             complete_interpolant<Model>(step, s.data);
         }
     }

@@ -56,7 +56,7 @@ public:
         : records_(o.record, o.phases, instances.size()),
           sample_times_(o.samples.times.begin(), o.samples.times.end()) {
         describe_options<Model, Method, R>(arguments_, o);
-        if constexpr (scales_tolerances<Method>) instances.tolerance_scale();
+        if constexpr (scales_tolerances<Method>) instances.tolerance_scale();  // there from now on
         instances.describe(arguments_, o.counting);
         records_.describe(arguments_.record);
         if (o.samples.empty()) return;

@@ -64,7 +64,7 @@ private:
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
         if constexpr (is_adaptive<Method>) set_lane(s.data.h_next, i, args.h_next[index]);
         if constexpr (scales_tolerances<Method>)
-            set_lane(s.tolerance_scale, i, args.tolerance_scale == nullptr ? R(1) : args.tolerance_scale[index]);
+            set_lane(s.tolerance_scale, i, args.tolerance_scale[index]);
         set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(args.first_index + index));
         if constexpr (m > 0) {
             MYRIAD_UNROLL

@@ -79,6 +79,10 @@ MYRIAD_HOOK_NAME(after_event)
 MYRIAD_HOOK_NAME(finalise)
 #undef MYRIAD_HOOK_NAME
 
+/// Whether a model has a Jacobian of its own. One that a model with tangents has inherited is that of the states without them.
+template <class Model>
+inline constexpr bool gives_jacobian = has_jacobian<Model> && n_tangent<Model> == 0;
+
 /// Checks what can be said of a model without calling it; everything that uses a model starts here.
 template <class Model>
 constexpr bool check_model() {

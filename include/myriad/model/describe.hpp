@@ -20,7 +20,7 @@ std::string describe() {
     const auto add = [](std::string& to, bool present, const char* name) {
         if (present) to += (to.empty() ? "" : ", ") + std::string(name);
     };
-    add(hooks, has_jacobian<Model>, "jacobian");
+    add(hooks, gives_jacobian<Model>, "jacobian");
     add(hooks, has_events<Model>, "events");
     add(hooks, has_initialise<Model>, "initialise");
     add(hooks, has_after_step<Model>, has_generic_after_step<Model> ? "after_step (generic)" : "after_step (scalar)");
@@ -33,7 +33,7 @@ std::string describe() {
                    " shared, ", n_shared_integer<Model>, " shared integer, ", n_accessory<Model>, " accessory, ",
                    n_integer_accessory<Model>, " integer accessory, ", n_event<Model>, " event\nhooks: ", hooks,
                    "\ndeclares: ", declares.empty() ? "nothing" : declares, "\nstiff methods: ",
-                   has_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers", ", LU factors on GPUs in ",
+                   gives_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers", ", LU factors on GPUs in ",
                    matrix_loop<double, n_state<Model>>::unrolled ? "registers" : "local memory", '\n');
 }
 

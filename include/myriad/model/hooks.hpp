@@ -35,7 +35,7 @@ constexpr bool check_hooks() {
         },
         "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
         "rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`");
-    if constexpr (has_jacobian<Model>) {
+    if constexpr (gives_jacobian<Model>) {
         static_assert(
             requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {
                 { Model::template jacobian<R>(R{}, y, p) } -> std::same_as<matrix<R, n_state<Model>>>;

@@ -55,7 +55,7 @@ MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, 
 template <class Model, class S>
 MYRIAD_FUNCTION void evaluate_jacobian(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                        matrix<S, n_state<Model>>& jacobian) {
-    if constexpr (has_jacobian<Model>) {
+    if constexpr (gives_jacobian<Model>) {
         jacobian = Model::template jacobian<S>(t, y, p);
     } else {
         dual_jacobian<Model>(t, y, p, jacobian);

@@ -18,7 +18,7 @@ namespace myriad::host {
 /// states of a thousand or so instances. Not for models with `initialise`, before which `rhs` cannot be called.
 template <class Model, class R>
 void check_jacobian(ensemble<Model, R>& e, std::int64_t count) {
-    if constexpr (has_jacobian<Model> && !has_initialise<Model>) {
+    if constexpr (gives_jacobian<Model> && !has_initialise<Model>) {
         constexpr int n = n_state<Model>;
         for_sampled_instances(e, count, [&](std::int64_t i) {
             const auto p = inputs_of(e, i);

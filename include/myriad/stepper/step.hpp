@@ -12,6 +12,8 @@ template <class Method, class Model, class S>
 MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                      rk_trial<Method, S, n_state<Model>>& trial) {
     if constexpr (rosenbrock_method<Method>) {
+        static_assert(n_tangent<Model> == 0, "stiff methods do not take with_tangents: their Jacobian would need second "
+                                             "derivatives of rhs; use an explicit method");
         rosenbrock_step<Method, Model>(t, h, y, p, trial);
     } else {
         explicit_rk_step<Method, Model>(t, h, y, p, trial);
