@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <myriad/instantiate.hpp>
 #include <myriad/myriad.hpp>
@@ -57,7 +58,9 @@ references in_closed_form(const problem& p) {
 problem not_sampled() {
     problem p = timed_circle_problem();
     p.sampled.clear();
-    p.instances.resize(16);
+    std::vector<instance> some;  // all around, the one that takes the single step first
+    for (std::size_t i = 0; i < p.instances.size(); i += 4) some.push_back(p.instances[i]);
+    p.instances = some;
     return p;
 }
 
