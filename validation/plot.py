@@ -18,13 +18,15 @@ from report import read  # noqa: E402
 # Okabe and Ito's colours, which the colour-blind can tell apart, each with a marker of its own.
 STYLES = {"CVODE": ("#000000", "x", ":"), "odeint cash_karp": ("#D55E00", "+", ":"), "runge_kutta_4": ("#999999", "s", "-"),
           "cash_karp": ("#0072B2", "o", "-"), "tsitouras_5": ("#009E73", "^", "-"), "dormand_prince_5": ("#E69F00", "v", "-"),
-          "verner_7": ("#CC79A7", "D", "-"), "dormand_prince_8": ("#56B4E9", "P", "-")}
+          "verner_7": ("#CC79A7", "D", "-"), "dormand_prince_8": ("#56B4E9", "P", "-"),
+          "rosenbrock_23": ("#000000", "*", "--"), "rodas_5p": ("#D55E00", "h", "--")}
 NAMES = {"lorenz": "Lorenz", "duffing": "Duffing", "van_der_pol": "van der Pol", "keller_miksis": "Keller–Miksis",
          "relief_valve": "relief valve", "heat": "heat conduction", "kepler": "Kepler", "timed_circle": "timed circle",
          "robertson": "Robertson", "oregonator": "Oregonator"}
 LABELS = {"cash_karp": "Cash–Karp 5(4)", "tsitouras_5": "Tsitouras 5(4)", "runge_kutta_4": "Runge–Kutta 4, fixed steps",
           "odeint cash_karp": "Boost.odeint, Cash–Karp", "CVODE": "CVODE, Adams", "dormand_prince_5": "Dormand–Prince 5(4)",
-          "verner_7": "Verner 7(6)", "dormand_prince_8": "Dormand–Prince 8(5,3)"}
+          "verner_7": "Verner 7(6)", "dormand_prince_8": "Dormand–Prince 8(5,3)", "rosenbrock_23": "Rosenbrock 2(3)",
+          "rodas_5p": "Rodas 5P"}
 
 
 def style(method):
@@ -50,7 +52,9 @@ def save(figure, path):
 def draw_tolerances(rows, path):
     problems = [p for p in NAMES if any(len(c) > 2 for c in curves(rows, p, "end state, median").values())]
     columns = 4
-    figure, axes = pyplot.subplots(-(-len(problems) // columns), columns, figsize=(7.2, 4.1), sharex=True, sharey=True, squeeze=False)
+    rows_of_axes = -(-len(problems) // columns)
+    height = 0.9 + 1.6 * rows_of_axes
+    figure, axes = pyplot.subplots(rows_of_axes, columns, figsize=(7.2, height), sharex=True, sharey=True, squeeze=False)
     drawn = {}
     for axis, problem in zip(axes.flat, problems):
         for method, points in curves(rows, problem, "end state, median").items():
@@ -60,11 +64,13 @@ def draw_tolerances(rows, path):
         axis.set_title(NAMES[problem], fontsize=9)
     for axis in axes.flat[len(problems):]:
         axis.set_visible(False)
+    for axis in axes.flat[max(0, len(problems) - columns):len(problems)]:
+        axis.tick_params(labelbottom=True)
     axes.flat[0].set_xticks([1e-11, 1e-9, 1e-7, 1e-5])
     figure.supxlabel("tolerance, relative and absolute", fontsize=9)
     figure.supylabel("median error at the end", fontsize=9)
     figure.legend(handles=list(drawn.values()), loc="upper center", ncols=4, frameon=False, fontsize=8)
-    figure.subplots_adjust(left=0.10, right=0.985, bottom=0.12, top=0.86, hspace=0.28, wspace=0.12)
+    figure.subplots_adjust(left=0.10, right=0.985, bottom=0.5 / height, top=1 - 0.7 / height, hspace=0.28, wspace=0.12)
     save(figure, path)
 
 
