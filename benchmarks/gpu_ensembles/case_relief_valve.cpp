@@ -1,48 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The case relief_valve: events, impacts and rest.
-#include <limits>
-
 #include "cases.hpp"
-#include "models.hpp"
 #include "reference.hpp"
+#include "sweeps.hpp"
 
 namespace gpu_ensembles {
 namespace {
 
-using model = relief_valve;
-
-void fill(myriad::ensemble<model>& instances) {
-    instances.parameter(model::q) = Eigen::ArrayXd::LinSpaced(instances.size(), 0.2, 10);
-    instances.shared(model::kappa) = 1.25;
-    instances.shared(model::delta) = 10;
-    instances.shared(model::beta) = 20;
-    instances.shared(model::restitution) = 0.8;
-    instances.shared(model::rest_band) = 1e-6;
-    instances.time_domain(0, std::numeric_limits<double>::infinity());
-}
-
-void start(myriad::ensemble<model>& instances) {
-    instances.state(model::y) = 0.2;
-    instances.state(model::v) = 0;
-    instances.state(model::u) = 0;
-    for (const auto c : {model::lowest, model::highest, model::rest_at}) instances.accessory(c) = 0.2;
-    instances.integer_accessory(model::steps_at_rest) = 0;
-}
-
-problem<model> sixty_four_phases() {
-    return {{.phases = 64,
-             .relative_tolerance = 1e-10,
-             .absolute_tolerance = 1e-10,
-             .step = 1e-2,
-             .minimum_step = 1e-12,
-             .maximum_step = 1e6,
-             .max_steps = 1'000'000,
-             .events = {{.direction = myriad::direction::falling, .tolerance = 1e-6, .stop_after = 1},
-                        {.direction = myriad::direction::falling, .tolerance = 1e-6}},
-             .accumulation_limit = 25},  // fewer than the steps after which a valve is at rest
-            &fill,
-            &start};
-}
+problem<relief_valve> sixty_four_phases() { return {valve_options(64, 1e-10, 1e-6), &fill_valves, &start_valves}; }
 
 std::vector<measurement> measure(std::int64_t size, const measure_options& how) {
     const auto what = sixty_four_phases();
@@ -66,6 +31,7 @@ benchmark_case relief_valve_case() {
 }
 
 std::vector<check_value> check_relief_valve(const myriad::device& device) {
+    using model = relief_valve;
     const auto what = sixty_four_phases();
     myriad::ensemble<model> instances(1);
     what.fill(instances);

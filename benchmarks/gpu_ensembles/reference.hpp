@@ -17,8 +17,20 @@ namespace gpu_ensembles {
 
 /// Instances that are compared, spread evenly over the ensemble, both ends included.
 inline constexpr std::int64_t compared = 64;
-inline std::int64_t compared_instance(std::int64_t number, std::int64_t size) {
-    return number * (size - 1) / (compared - 1);
+inline std::int64_t compared_instance(std::int64_t number, std::int64_t size, std::int64_t count = compared) {
+    return number * (size - 1) / std::max<std::int64_t>(count - 1, 1);
+}
+
+/// `count` instances, spread evenly over the `size` of a problem, at their start.
+template <class Model>
+myriad::ensemble<Model> spread_instances(const problem<Model>& what, std::int64_t size, std::int64_t count = compared) {
+    myriad::ensemble<Model> all(size), few(count);
+    what.fill(all);
+    what.fill(few);  // what all instances share
+    for (int c = 0; c < myriad::n_parameter<Model>; ++c)
+        for (std::int64_t k = 0; k < count; ++k) few.parameter(c)[k] = all.parameter(c)[compared_instance(k, size, count)];
+    what.start(few);
+    return few;
 }
 
 using exact_state = std::array<long double, 3>;
@@ -61,15 +73,8 @@ inline void set_errors(measurement& m, std::vector<double> errors) {
 /// in its worst component, over max(1, |value|); NaN if they ended differently.
 template <class Method, class Model>
 std::vector<double> differences_from_cpu(const problem<Model>& what, std::int64_t size, const myriad::device& device) {
-    myriad::ensemble<Model> all(size);
-    what.fill(all);
     const auto integrated_on = [&](const myriad::device& where) {
-        myriad::ensemble<Model> few(compared);
-        what.fill(few);  // what all instances share
-        for (int c = 0; c < myriad::n_parameter<Model>; ++c)
-            for (std::int64_t k = 0; k < compared; ++k)
-                few.parameter(c)[k] = all.parameter(c)[compared_instance(k, size)];
-        what.start(few);
+        auto few = spread_instances(what, size);
         myriad::options options = what.options;
         options.phases = 1;
         myriad::solve<Method>(where, few, options);
