@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: MIT
+// Compiles the kernels of the Keller-Miksis bubble for methods of order five.
+#include <myriad/instantiate.hpp>
+
+#include "models.hpp"
+
+MYRIAD_INSTANTIATE(methods::keller_miksis, myriad::cash_karp, myriad::dormand_prince_5, myriad::tsitouras_5, methods::tsitouras_5_pi)

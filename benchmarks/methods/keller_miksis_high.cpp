@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+// Compiles the kernels of the Keller-Miksis bubble for methods of orders seven and eight.
+#include <myriad/instantiate.hpp>
+
+#include "models.hpp"
+
+MYRIAD_INSTANTIATE(methods::keller_miksis, myriad::verner_7, myriad::dormand_prince_8, methods::dormand_prince_8_pi,
+                   methods::dormand_prince_8_rms)
