@@ -28,7 +28,8 @@ myriad::ensemble<Model> spread_instances(const problem<Model>& what, std::int64_
     what.fill(all);
     what.fill(few);  // what all instances share
     for (int c = 0; c < myriad::n_parameter<Model>; ++c)
-        for (std::int64_t k = 0; k < count; ++k) few.parameter(c)[k] = all.parameter(c)[compared_instance(k, size, count)];
+        for (std::int64_t k = 0; k < count; ++k)
+            few.parameter(c)[k] = all.parameter(c)[compared_instance(k, size, count)];
     what.start(few);
     return few;
 }

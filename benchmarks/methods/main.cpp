@@ -39,8 +39,10 @@ std::vector<choice> all_cases() {
     const auto explicit_methods = [](const auto& study) {
         return choice{study.name, [study](const settings& s, const output& o) { return run_explicit(study, s, o); }};
     };
-    return {explicit_methods(keller_miksis_study()), explicit_methods(relief_valve_study()),
-            explicit_methods(closely_watched_valve_study()), {robertson_study().name, run_robertson}};
+    return {explicit_methods(keller_miksis_study()),
+            explicit_methods(relief_valve_study()),
+            explicit_methods(closely_watched_valve_study()),
+            {robertson_study().name, run_robertson}};
 }
 
 bool run_chosen(const std::vector<std::string>& names, const settings& chosen, const std::string& device,
@@ -62,12 +64,12 @@ bool run_chosen(const std::vector<std::string>& names, const settings& chosen, c
             "; host compiler " __VERSION__ "; double precision, work counted");
     comment(std::string("milliseconds: median of ") + std::to_string(chosen.repetitions) + " runs, " +
             (on_gpu ? "of the kernel" : "of processor time, comparable within this table only"));
-    line("case", "method", "device", "instances", "tolerance", "milliseconds", "accepted", "rejected", "rhs_evaluations",
-         "median_error", "largest_error", "failed", "astray");
+    line("case", "method", "device", "instances", "tolerance", "milliseconds", "accepted", "rejected",
+         "rhs_evaluations", "median_error", "largest_error", "failed", "astray");
     const output out{comment, [&](const row& r) {
-                         line(r.study, r.method, chosen.device.name(), r.instances, r.tolerance,
-                              r.milliseconds, r.accepted, r.rejected, r.evaluations, r.error.median, r.error.largest,
-                              r.failed, r.error.astray);
+                         line(r.study, r.method, chosen.device.name(), r.instances, r.tolerance, r.milliseconds,
+                              r.accepted, r.rejected, r.evaluations, r.error.median, r.error.largest, r.failed,
+                              r.error.astray);
                      }};
     bool right = true;
     for (const choice& c : all_cases())

@@ -47,8 +47,8 @@ inline constexpr std::int64_t compared = 256;  // instances compared with the re
 
 /// One method at one tolerance. The first run warms up and gives counts, errors and the complaint.
 template <class Method, class Model>
-row measure(const study<Model>& of, const named<Method>& method, double tolerance, std::int64_t size, const settings& chosen,
-            const myriad::ensemble<Model>& reference, std::string& complaint) {
+row measure(const study<Model>& of, const named<Method>& method, double tolerance, std::int64_t size,
+            const settings& chosen, const myriad::ensemble<Model>& reference, std::string& complaint) {
     const auto what = of.at(tolerance);
     myriad::solver<Model, Method> solver(chosen.device, size, what.options);
     what.fill(solver.instances());

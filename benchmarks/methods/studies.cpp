@@ -67,7 +67,9 @@ void start_reactions(myriad::ensemble<robertson>& instances) {
 problem<robertson> reactions(double tolerance) {
     std::vector<double> absolute = concentrations;
     for (double& a : absolute) a *= tolerance;
-    return {{.relative_tolerance = tolerance, .absolute_tolerance = absolute, .step = 1e-6}, &fill_reactions, &start_reactions};
+    return {{.relative_tolerance = tolerance, .absolute_tolerance = absolute, .step = 1e-6},
+            &fill_reactions,
+            &start_reactions};
 }
 
 /// The columns of the Jacobian sum up to zero, and then so do the stages, but for rounding: that of each addition to the
@@ -79,9 +81,11 @@ std::string wrong_reactions(const myriad::ensemble<robertson>& e, double toleran
     double excess = 0, least = 0;
     for (std::int64_t i = 0; i < e.size(); ++i) {
         const double a = e.state(robertson::a)[i], b = e.state(robertson::b)[i], c = e.state(robertson::c)[i];
-        const double allowed = (300 + 1.5 * static_cast<double>(e.accepted_steps()[i])) * std::numeric_limits<double>::epsilon();
+        const double allowed =
+            (300 + 1.5 * static_cast<double>(e.accepted_steps()[i])) * std::numeric_limits<double>::epsilon();
         excess = std::max(excess, std::fabs(a + b + c - 1) / allowed);
-        for (const auto& [value, scale] : {std::pair(a, concentrations[0]), std::pair(b, concentrations[1]), std::pair(c, concentrations[2])})
+        for (const auto& [value, scale] :
+             {std::pair(a, concentrations[0]), std::pair(b, concentrations[1]), std::pair(c, concentrations[2])})
             least = std::min(least, value / (tolerance * scale));
     }
     if (!(excess <= 1)) what << " a sum is off by " << excess << " times what rounding allows";
@@ -100,26 +104,28 @@ study<keller_miksis> keller_miksis_study() {
             .reference = "dormand_prince_8",
             .reference_tolerance = 1e-14,
             .scale = {1, 1},
-            .at = [](double tolerance) {
-                return problem<keller_miksis>{gpu_ensembles::bubble_options(periods, tolerance),
-                                              &gpu_ensembles::fill_bubbles, &gpu_ensembles::start_bubbles};
-            },
+            .at =
+                [](double tolerance) {
+                    return problem<keller_miksis>{gpu_ensembles::bubble_options(periods, tolerance),
+                                                  &gpu_ensembles::fill_bubbles, &gpu_ensembles::start_bubbles};
+                },
             .complaint = [](const auto& e, double) { return unexpected_failures(e, myriad::status::success); }};
 }
 
 study<relief_valve> relief_valve_study() {
-    return {.name = "relief_valve",
-            .work = std::to_string(sections) +
-                    " phases between falls of the velocity through zero, with impacts, from (0.2, 0, 0), q = "
-                    "linspace(0.2, 10, N), events to the tolerance of steps",
-            .on_cpu = 1024,
-            .on_gpu = 30720,
-            .tolerances = six_to_twelve,
-            .reference = "dormand_prince_8",
-            .reference_tolerance = 1e-14,
-            .scale = {1, 1, 1},
-            .at = &valves,
-            .complaint = [](const auto& e, double) { return unexpected_failures(e, myriad::status::event_accumulation); }};
+    return {
+        .name = "relief_valve",
+        .work = std::to_string(sections) +
+                " phases between falls of the velocity through zero, with impacts, from (0.2, 0, 0), q = "
+                "linspace(0.2, 10, N), events to the tolerance of steps",
+        .on_cpu = 1024,
+        .on_gpu = 30720,
+        .tolerances = six_to_twelve,
+        .reference = "dormand_prince_8",
+        .reference_tolerance = 1e-14,
+        .scale = {1, 1, 1},
+        .at = &valves,
+        .complaint = [](const auto& e, double) { return unexpected_failures(e, myriad::status::event_accumulation); }};
 }
 
 study<relief_valve> closely_watched_valve_study() {
@@ -136,8 +142,9 @@ study<relief_valve> closely_watched_valve_study() {
 
 study<robertson> robertson_study() {
     return {.name = "robertson",
-            .work = "from (1, 0, 0) to t = 1e5, rate constants (0.04, 3e7, 1e4) each times 0.1 to 10, absolute tolerances "
-                    "(1e-8, 1e-14, 1) times the relative one",
+            .work =
+                "from (1, 0, 0) to t = 1e5, rate constants (0.04, 3e7, 1e4) each times 0.1 to 10, absolute tolerances "
+                "(1e-8, 1e-14, 1) times the relative one",
             .on_cpu = 1024,
             .on_gpu = 1'000'000,
             .tolerances = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12},
