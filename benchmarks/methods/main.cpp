@@ -62,7 +62,7 @@ bool run_chosen(const std::vector<std::string>& names, const settings& chosen, c
     const bool on_gpu = chosen.device.which() == myriad::device::kind::cuda;
     comment("device: " + chosen.device.name() + (on_gpu ? " (" + chosen.device.description() + ")" : "") +
             "; host compiler " __VERSION__ "; double precision, work counted");
-    comment(std::string("milliseconds: median of ") + std::to_string(chosen.repetitions) + " runs, " +
+    comment(std::string("milliseconds: shortest of ") + std::to_string(chosen.repetitions) + " runs, " +
             (on_gpu ? "of the kernel" : "of processor time, comparable within this table only"));
     line("case", "method", "device", "instances", "tolerance", "milliseconds", "accepted", "rejected",
          "rhs_evaluations", "median_error", "largest_error", "failed", "astray");

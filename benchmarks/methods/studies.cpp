@@ -145,7 +145,7 @@ study<robertson> robertson_study() {
             .work =
                 "from (1, 0, 0) to t = 1e5, rate constants (0.04, 3e7, 1e4) each times 0.1 to 10, absolute tolerances "
                 "(1e-8, 1e-14, 1) times the relative one",
-            .on_cpu = 1024,
+            .on_cpu = 10000,
             .on_gpu = 1'000'000,
             .tolerances = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12},
             .reference = "rodas_5p",
