@@ -8,14 +8,15 @@ source scripts/lib.sh
 
 usage() {
     cat <<'END'
-Usage: scripts/gpu.sh [--tests] [--sanitize] [--bench] [--deps DIR] [--output DIR] [--jobs N] [--help]
+Usage: scripts/gpu.sh [--tests] [--sanitize] [--bench] [--methods] [--deps DIR] [--output DIR] [--jobs N] [--help]
 
 Needs nvcc, cmake, ninja, g++, Eigen, Catch2, Boost and a GPU. Nothing is installed and nothing fetched.
-Without --tests, --sanitize or --bench: all three, in this order.
+Without --tests, --sanitize, --bench or --methods: the first three, in this order.
 
   --tests        the test programs on the GPU, then those of the solver on the CPU too
   --sanitize     compute-sanitizer memcheck and racecheck on small cases
   --bench        the benchmark, as CSV, and a table of registers, stack and spills per kernel
+  --methods      the methods beside each other, as CSV; its kernels take minutes to compile
   --deps DIR     folder with the headers of what is not installed: DIR/xsimd, DIR/CLI (default: .deps, if it is there)
   --output DIR   where logs and CSV files go (default: results/gpu)
   --jobs N       processes at a time (default: number of cores)
@@ -29,7 +30,7 @@ parts=()
 while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
-        --tests | --sanitize | --bench) parts+=("${1#--}") ;;
+        --tests | --sanitize | --bench | --methods) parts+=("${1#--}") ;;
         --deps | --output | --jobs)
             (($# > 1)) || usage_error "$1 needs a value"
             case $1 in --deps) deps=$2 ;; --output) output=$2 ;; --jobs) jobs=$2 ;; esac
@@ -54,6 +55,7 @@ cmake --preset cuda "${options[@]}" >"$output/configure.log" 2>&1 || { tail -30 
 targets=()
 if wants tests || wants sanitize; then targets+=(check_gpu); fi
 if wants bench; then targets+=(gpu_ensembles several_gpus); fi
+if wants methods; then targets+=(methods); fi
 cmake --build --preset cuda --parallel "$jobs" --target "${targets[@]}" -- -k 0 >"$output/build.log" 2>&1 || {
     grep -E "error|FAILED" "$output/build.log" | head -40 || true
     failed+=(build)
@@ -101,6 +103,10 @@ if wants bench; then
     cuobjdump --dump-resource-usage build/cuda/benchmarks/gpu_ensembles/gpu_ensembles 2>/dev/null | c++filt |
         sed -nE '/Function/{s/.*Function (void )?//;s/\(.*//;h};/REG:/{s/.*(REG:[0-9]+).*(STACK:[0-9]+).*(LOCAL:[0-9]+).*/\1 \2 \3/;G;s/\n/  /p}' |
         tee "$output/kernels.txt" || failed+=(kernels)
+fi
+
+if wants methods; then
+    build/cuda/benchmarks/methods/methods --device cuda --output "$output/methods.csv" || failed+=(methods)
 fi
 
 if ((${#failed[@]})); then

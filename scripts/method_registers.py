@@ -77,15 +77,15 @@ def main():
     arguments.include = [str(ROOT / "include"), str(ROOT / "backends" / "cuda")]
     arguments.system_include = [arguments.eigen]
     try:
-        text = Path(arguments.into).read_text(encoding="utf-8") if arguments.into else None
         version = subprocess.run([arguments.nvcc, "--version"], capture_output=True, text=True, check=True).stdout
         release = re.search(r"V([\d.]+)", version)
         lines = [f"nvcc {release.group(1) if release else '?'}, {arguments.arch}, double precision:", ""]
         lines += table(arguments, "double") + ["", "Single precision:", ""] + table(arguments, "float")
-        if text is None:
-            print("\n".join(lines))
+        if arguments.into:
+            file = Path(arguments.into)
+            file.write_text(replaced(file.read_text(encoding="utf-8"), lines), encoding="utf-8")
         else:
-            Path(arguments.into).write_text(replaced(text, lines), encoding="utf-8")
+            print("\n".join(lines))
     except (OSError, RuntimeError, subprocess.CalledProcessError) as error:
         print(error, file=sys.stderr)
         return 2

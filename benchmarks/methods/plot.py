@@ -61,7 +61,10 @@ def kind_of(table):
 
 
 def cost_at(rows, error, cost):
-    """The cost at a median error, between two measured points straight in the logarithms; None outside of them."""
+    """The cost of a median error or a smaller one: that of the loosest tolerance if it is small enough, else between two
+    measured points straight in the logarithms; None if it was not reached."""
+    if rows[0]["median_error"] <= error:
+        return cost(rows[0])
     for one, other in zip(rows, rows[1:]):
         high, low = one["median_error"], other["median_error"]
         if low <= error <= high and low < high:
@@ -97,7 +100,7 @@ def draw(tables, case):
             shortest = min(milliseconds(row) for row in rows)
             panels.append(("time on the CPU over the shortest", table, lambda row, s=shortest: milliseconds(row) / s))
         else:
-            count = f"{rows[0]['instances']:,.0f}".replace(",", "\N{THIN SPACE}")
+            count = f"{rows[0]['instances']:,.0f}".replace(",", " ")
             panels.append((f"time on the GPU, {count} instances (ms)", table, milliseconds))
     figure, axes = pyplot.subplots(1, len(panels), sharey=True, figsize=(4.2 * len(panels), 4.2), layout="constrained")
     for axis, (label, table, cost) in zip(axes, panels):
@@ -123,9 +126,10 @@ def draw(tables, case):
 
 
 def equal_error(tables, case):
-    """Lines of the table of times at equal median error, over that of the fastest."""
+    """Lines of the table of times at equal median error, over that of the fastest: of errors that some method had."""
+    measured = [rows for (name, _), rows in tables[0].items() if name == case]
     wanted = [e for e in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
-              if any(cost_at(rows, e, milliseconds) for (name, _), rows in tables[0].items() if name == case)]
+              if any(rows[-1]["median_error"] <= e <= rows[0]["median_error"] for rows in measured)]
     lines = ["| method | " + " | ".join(f"{e:.0e}".replace("e-0", "e-") for e in wanted) + " |",
              "|---" * (1 + len(wanted)) + "|"]
     for method in methods_of(tables[0], case):
