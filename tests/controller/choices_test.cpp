@@ -203,6 +203,10 @@ TEST_CASE("with tolerance_per_instance each instance is integrated as by a call 
     refused.tolerance_scale()[3] = 0;
     CHECK_THROWS_WITH(myriad::solve<choices::scaled>(tests::test_device(1), refused, o),
                       Catch::Matchers::Contains("tolerance_scale is 0 in instance 3"));
+    o.invalid_instances = myriad::invalid_instances::mark;
+    const auto marked = myriad::solve<choices::scaled>(tests::test_device(1), refused, o);
+    CHECK(marked.count(myriad::status::invalid_input) == 1);
+    CHECK(marked.count(myriad::status::success) == refused.size() - 1);
     CHECK_THROWS_WITH(myriad::solve<plain>(tests::test_device(1), own, o),
                       Catch::Matchers::Contains("tolerance_per_instance"));
 }

@@ -132,6 +132,12 @@ TEST_CASE("pow of a base zero or negative keeps a finite derivative") {
     REQUIRE(myriad::pow(zero, 1.0).derivative == 1);
     REQUIRE(myriad::pow(dual<double>(-2, 1), 3.0).derivative == 12);
     REQUIRE(myriad::pow(dual<double>(-2, 1), 2).derivative == -4);
+    // an exponent that is a dual number, but a constant, as R(2) is in a model
+    REQUIRE(myriad::pow(zero, dual<double>(2)).derivative == 0);
+    REQUIRE(myriad::pow(zero, dual<double>(1)).derivative == 1);
+    REQUIRE(myriad::pow(dual<double>(-2, 1), dual<double>(3)).derivative == 12);
+    REQUIRE(myriad::pow(zero, dual<double>(0)).derivative == 0);
+    REQUIRE(myriad::pow(zero, 0.0).derivative == 0);
 }
 
 TEST_CASE("comparisons look at values alone, and select takes values with their derivatives") {

@@ -36,7 +36,7 @@ struct single_step {
         myriad::take_trial_step<Method, Model>(t, h, start, p, trial);
     }
     state at(double theta) const {
-        const myriad::step_data<Method, double, n> step{t, h, start, trial, {}};
+        const myriad::step_data<Method, double, n> step{t, h, start, trial, {}, {}};
         return myriad::interpolate(step, theta);
     }
     state estimate() const {

@@ -45,6 +45,8 @@ struct tolerance_per_instance {
 template <class Method, class... Choices>
 struct controlled : Method, Choices... {
     static_assert(Method::embedded_order > 0, "the method takes fixed steps and has no step-size control to choose");
+    static_assert((0 + ... + int(requires { Choices::exponent_last; })) + int(requires { Method::exponent_last; }) <= 1,
+                  "a method has one controller: choose pi_control or pid_control");
 };
 
 /// Whether a method's control knows the errors of earlier steps.

@@ -48,9 +48,13 @@ private:
 
     void check_positive_scales() {
         check("tolerance_scale", no_component, ensemble_.tolerance_scale().data(), false);
-        for (std::int64_t i = 0; i < count_; ++i)
-            require(ensemble_.ended(i) || ensemble_.tolerance_scale()[i] > 0, "tolerance_scale is ",
-                    ensemble_.tolerance_scale()[i], " in instance ", i, " (must be positive): give 1 for the tolerances of the options");
+        for (std::int64_t i = 0; i < count_; ++i) {
+            if (ensemble_.ended(i) || ensemble_.tolerance_scale()[i] > 0) continue;
+            require(options_.invalid_instances == invalid_instances::mark, "tolerance_scale is ",
+                    ensemble_.tolerance_scale()[i], " in instance ", i,
+                    " (must be positive): give 1 for the tolerances of the options");
+            ensemble_.mark_invalid(i);
+        }
     }
 
     void check(const char* what, int component, const R* values, bool allow_infinite) {

@@ -36,21 +36,28 @@ double real_stability_limit() {
     return x;
 }
 
-/// What the fastest mode of an instance is to its next step, h lambda, if that mode decays; 0 if it does not.
+/// The step that an instance would take next, signed: no longer than its domain.
+template <class Model, class R>
+double step_of(const ensemble<Model, R>& e, std::int64_t i) {
+    const double h = static_cast<double>(e.next_step()[i]);
+    const double domain = std::abs(static_cast<double>(e.t_end()[i]) - static_cast<double>(e.t_begin()[i]));
+    return std::copysign(std::min(std::abs(h), domain), h);
+}
+
+/// What the fastest mode of an instance is to its next step, h lambda, if that mode decays without turning round more than it
+/// decays; 0 if not.
 template <class Model, class R>
 double fastest_decay(ensemble<Model, R>& e, std::int64_t i) {
     constexpr int n = n_state<Model>;
     const auto p = inputs_of(e, i);
     const R t = e.t()[i];
     vec<R, n> y, v;
-    double size = 0;
     for (int c = 0; c < n; ++c) {
         y[c] = e.state(c)[i];
-        size = std::max(size, static_cast<double>(std::abs(y[c])));
         v[c] = R(1) / static_cast<R>(c + 1);  // no mode is likely to be orthogonal to it
     }
     const auto f = evaluate_rhs<Model>(t, y, p);
-    const double step = std::sqrt(static_cast<double>(epsilon_of<R>)) * (size > 0 ? size : 1);
+    const double root = std::sqrt(static_cast<double>(epsilon_of<R>));
     const auto length = [](const vec<R, n>& x) {
         double sum = 0;
         for (int c = 0; c < n; ++c) sum += static_cast<double>(x[c]) * static_cast<double>(x[c]);
@@ -61,11 +68,16 @@ double fastest_decay(ensemble<Model, R>& e, std::int64_t i) {
     double logarithms = 0, along = 0;
     for (int k = 0; k < iterations; ++k) {
         const double scale = 1 / length(v);
-        vec<R, n> moved;
+        double step = std::numeric_limits<double>::infinity();  // no component moves by more than root of its size
         for (int c = 0; c < n; ++c) {
             v[c] = static_cast<R>(static_cast<double>(v[c]) * scale);
-            moved[c] = static_cast<R>(static_cast<double>(y[c]) + step * static_cast<double>(v[c]));
+            const double size = y[c] == R(0) ? 1 : std::abs(static_cast<double>(y[c]));
+            if (std::abs(static_cast<double>(v[c])) > 1e-6)
+                step = std::min(step, root * size / std::abs(static_cast<double>(v[c])));
         }
+        vec<R, n> moved;
+        for (int c = 0; c < n; ++c)
+            moved[c] = static_cast<R>(static_cast<double>(y[c]) + step * static_cast<double>(v[c]));
         const auto f_moved = evaluate_rhs<Model>(t, moved, p);
         along = 0;
         vec<R, n> product;
@@ -78,7 +90,7 @@ double fastest_decay(ensemble<Model, R>& e, std::int64_t i) {
         if (!(length(v) > 0)) return 0;
     }
     const double rate = std::exp(logarithms / (iterations - settling));
-    const double h = static_cast<double>(e.next_step()[i]);
+    const double h = step_of(e, i);
     const bool decays = h * along < 0 && std::abs(along) > 0.7 * rate;
     return decays ? std::abs(h) * rate : 0;
 }
@@ -97,7 +109,7 @@ stiffness find_stiffness(ensemble<Model, R>& e, double maximum_step) {
     const double limit = real_stability_limit<Method>();
     const std::int64_t stride = std::max<std::int64_t>(e.size() / 64, 1);
     for (std::int64_t i = 0; i < e.size(); i += stride) {
-        const double h = std::abs(static_cast<double>(e.next_step()[i]));
+        const double h = std::abs(step_of(e, i));
         if (!std::isfinite(h) || h >= maximum_step) continue;
         ++found.looked_at;
         const double share = fastest_decay(e, i) / limit;

@@ -260,7 +260,7 @@ private:
         if constexpr (!adaptive) {
             // the time at which the next step begins, bit for bit, so that it may take over the slope
             t1 = fma(S(s.done + count(1)), s.step, s.base);
-            if constexpr (has_events<Model>) t1 = select(e.locating, s.now() + s.h, t1);
+            if constexpr (has_events<Model>) t1 = select(s.h == s.step, t1, s.now() + s.h);  // a step redone to an event
         } else if constexpr (compensates_time) {
             t1 = s.data.t + (s.h + s.time_low);
         } else {

@@ -239,11 +239,12 @@ struct functions<dual<S>> {
         return D(f::log10(x.value), constant(log10_e) * x.derivative / x.value);
     }
 
-    // y x^(y - 1) rather than y x^y / x, which is NaN at x = 0.
+    // y x^(y - 1) rather than y x^y / x, which is NaN at x = 0; and x^0 is constant there too.
     template <class B>
     static MYRIAD_FUNCTION D pow_of_base(const D& x, const B& exponent) {
         const S y = to_kind<S>(exponent);
-        return D(f::pow(x.value, y), y * f::pow(x.value, y - constant(real(1))) * x.derivative);
+        const S slope = y * f::pow(x.value, y - constant(real(1)));
+        return D(f::pow(x.value, y), select(y == constant(real(0)), y, slope) * x.derivative);
     }
     template <class A>
     static MYRIAD_FUNCTION D pow_of_exponent(const A& base, const D& y) {
@@ -253,7 +254,9 @@ struct functions<dual<S>> {
     }
     static MYRIAD_FUNCTION D pow(const D& x, const D& y) {
         const D of_base = pow_of_base(x, y.value);
-        return D(of_base.value, of_base.derivative + of_base.value * f::log(x.value) * y.derivative);
+        // The logarithm of a base that is not positive must not spoil a constant exponent.
+        const S of_exponent = of_base.value * f::log(x.value) * y.derivative;
+        return D(of_base.value, of_base.derivative + select(y.derivative == constant(real(0)), y.derivative, of_exponent));
     }
     static MYRIAD_FUNCTION D atan2(const D& y, const D& x) {
         const S square = x.value * x.value + y.value * y.value;

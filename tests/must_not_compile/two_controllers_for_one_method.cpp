@@ -1,0 +1,8 @@
+// expect: a method has one controller: choose pi_control or pid_control
+// SPDX-License-Identifier: MIT
+// They would both say how long the next step is.
+#include <myriad/methods.hpp>
+
+using both = myriad::controlled<myriad::cash_karp, myriad::pi_control, myriad::pid_control>;
+
+int main() { return both::stages; }
