@@ -4,4 +4,5 @@
 
 #include "models.hpp"
 
-MYRIAD_INSTANTIATE(methods::relief_valve, myriad::cash_karp, myriad::dormand_prince_5, myriad::tsitouras_5, methods::tsitouras_5_pi)
+MYRIAD_INSTANTIATE(methods::relief_valve, myriad::cash_karp, myriad::dormand_prince_5, myriad::tsitouras_5,
+                   methods::tsitouras_5_pi)
