@@ -413,10 +413,10 @@ TEST_CASE("samples by a method without dense output are refused", "[input]") {
 TEST_CASE("no way, or two ways, of choosing samples is refused", "[input]") {
     options o = sampled();
     o.samples.evenly = 0;
-    options_refused<dense<cash_karp>>(o, {"samples names 0 of evenly, times and every", "exactly one"});
+    options_refused<dense<cash_karp>>(o, {"samples names 0 of evenly, times, times_of_instances and every", "exactly one"});
     o = sampled();
     o.samples.every = 3;
-    options_refused<dense<cash_karp>>(o, {"samples names 2 of evenly, times and every", "exactly one"});
+    options_refused<dense<cash_karp>>(o, {"samples names 2 of evenly, times, times_of_instances and every", "exactly one"});
     o.samples.times = {0.5};
     options_refused<dense<cash_karp>>(o, {"samples names 3 of"});
 }
@@ -461,7 +461,7 @@ TEST_CASE("sample times outside the domain, unordered or not finite are refused"
     options o = sampled();
     o.samples.evenly = 0;
     o.samples.times = {0.5, 0.25};
-    options_refused<dense<cash_karp>>(o, {"sample times go from 0.5 to 0.25", "instance 0", "from 0 to 1", "order"});
+    options_refused<dense<cash_karp>>(o, {"samples.times go from 0.5 to 0.25", "instance 0", "from 0 to 1", "order"});
     o.samples.times = {0.25, 0.75, 0.5};
     options_refused<dense<cash_karp>>(o, {"samples.times are not in order at number 2", "0.5 after 0.75"});
     o.samples.times = {0.25, 0.25};
@@ -469,9 +469,9 @@ TEST_CASE("sample times outside the domain, unordered or not finite are refused"
     o.samples.times = {0.25, nan};
     options_refused<dense<cash_karp>>(o, {"samples.times[1] is nan", "must be finite"});
     o.samples.times = {-0.25, 0.5};
-    options_refused<dense<cash_karp>>(o, {"sample times go from -0.25 to 0.5", "instance 0", "within the domain"});
+    options_refused<dense<cash_karp>>(o, {"samples.times go from -0.25 to 0.5", "instance 0", "within the domain"});
     o.samples.times = {0.5, 1.25};
-    options_refused<dense<cash_karp>>(o, {"sample times go from 0.5 to 1.25", "within the domain"});
+    options_refused<dense<cash_karp>>(o, {"samples.times go from 0.5 to 1.25", "within the domain"});
 
     auto e = good_decays();
     e.t_end()[3] = 0.375;

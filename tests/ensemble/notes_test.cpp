@@ -56,6 +56,9 @@ TEST_CASE("the report does not remark stiffness where accuracy limits the step, 
     const auto accurate = follow<myriad::tsitouras_5>(1, 30, fine);
     CHECK(accurate.accepted_steps > 40 * 200);
     CHECK(accurate.notes.empty());
+    myriad::options silent = o;
+    silent.advice = myriad::advice::off;
+    CHECK(follow<myriad::tsitouras_5>(1e4, 1, silent).notes.empty());
     myriad::options bounded = o;
     bounded.maximum_step = 1e-4;
     CHECK(follow<myriad::tsitouras_5>(1e4, 1, bounded).notes.empty());

@@ -35,6 +35,7 @@ ensemble<Model> oscillators(std::int64_t size = 9) {
 template <class Model, class Method>
 auto count(options o, int threads = 1) {
     auto e = oscillators<Model>();
+    o.advice = myriad::advice::off;
     counted::take();
     auto r = solve<Method>(tests::test_device(threads), e, o);
     const std::int64_t evaluations = counted::take();
@@ -55,6 +56,7 @@ auto count(options o, int threads = 1) {
 options rough_start() {
     options o = with_tolerance(1e-9);
     o.step = 10;
+    o.advice = myriad::advice::off;  // its evaluations are not the integration's
     return o;
 }
 

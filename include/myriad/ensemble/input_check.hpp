@@ -126,7 +126,7 @@ void check_sample_times(const ensemble<Model, R>& e, const options& o, std::int6
         const auto from = static_cast<double>(times.front()), to = static_cast<double>(times.back());
         const bool inside =
             end >= begin ? begin <= from && from <= to && to <= end : begin >= from && from >= to && to >= end;
-        require(inside, "sample times go from ", from, " to ", to, ", but instance ", i, " is integrated from ", begin,
+        require(inside, own.empty() ? "samples.times go from " : "samples.times_of_instances go from ", from, " to ", to, ", but instance ", i, " is integrated from ", begin,
                 " to ", end, ": give times within the domain, in the order in which the integration reaches them");
     }
 }

@@ -27,6 +27,7 @@ template <class Method, class Model, class R>
 void note_stiffness(report<Model, R>& r, ensemble<Model, R>& e, const options& o) {
     if constexpr (Method::embedded_order > 0 && !solves_linear_systems<Method>) {
         constexpr std::int64_t worthwhile = 200;
+        if (o.advice == advice::off) return;
         if (r.accepted_steps + r.rejected_steps < worthwhile * e.size()) return;
         const stiffness found = find_stiffness<Method>(e, o.maximum_step);
         if (2 * found.limited < found.looked_at || found.limited == 0) return;

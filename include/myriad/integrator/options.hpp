@@ -47,6 +47,8 @@ enum class phase_time { restart, carry_on };
 enum class phase_step { restart, carry_on };
 /// Whether work is counted per instance (32 bytes each).
 enum class counting { off, on };
+/// Whether `solve` looks for stiffness afterwards, with some evaluations of rhs on the host.
+enum class advice { off, on };
 /// What to do with instances whose state, parameters or times are not finite: refuse the call, or mark them
 /// `invalid_input` and run the others.
 enum class invalid_instances { refuse, mark };
@@ -105,6 +107,7 @@ struct options {
     record_options record = {};
     sample_options samples = {};
     myriad::counting counting = myriad::counting::on;
+    myriad::advice advice = myriad::advice::on;
     myriad::invalid_instances invalid_instances = myriad::invalid_instances::refuse;
 
     std::int64_t block_size = 0;  ///< CUDA threads per block; 0: what fills the multiprocessors best
