@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include <myriad/myriad.hpp>
+#include "tests/event/methods.hpp"
 #include "tests/support/device.hpp"
-
-#define ALL_METHODS myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4, myriad::dormand_prince_8
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include <myriad/instantiate.hpp>
 
-#define ALL_METHODS myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4, myriad::dormand_prince_8
+#include "methods.hpp"
 
 MYRIAD_INSTANTIATE(wave, ALL_METHODS)
 MYRIAD_INSTANTIATE(gate, ALL_METHODS)

@@ -4,5 +4,7 @@
 
 #include <myriad/instantiate.hpp>
 
-MYRIAD_INSTANTIATE(watch, myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4, myriad::dormand_prince_8)
+#include "methods.hpp"
+
+MYRIAD_INSTANTIATE(watch, ALL_ORDERS)
 MYRIAD_INSTANTIATE_FLOAT(watch, myriad::cash_karp)

@@ -12,6 +12,7 @@
 
 #include <myriad/myriad.hpp>
 
+#include "tests/event/methods.hpp"
 #include "tests/event/watch.hpp"
 #include "tests/support/device.hpp"
 
@@ -135,4 +136,3 @@ void solve_unchecked(myriad::ensemble<watch, R>& e, const myriad::options& o) {
 
 }  // namespace watching
 
-#define ALL_METHODS myriad::cash_karp, myriad::tsitouras_5, myriad::runge_kutta_4, myriad::dormand_prince_8
