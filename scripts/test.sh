@@ -7,15 +7,16 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/lib.sh
 
 all_steps=(ci cuda strict clang asan tsan)
+usual_steps=(ci cuda asan tsan)
 
 usage() {
     cat <<'END'
-Usage: scripts/test.sh [--quick] [--only STEP,...] [--jobs N] [--help]
+Usage: scripts/test.sh [--quick] [--all] [--only STEP,...] [--jobs N] [--help]
 
 Installs the packages that are missing (as root or with sudo), builds and runs the tests.
 Its last line is "N passed, N failed"; the exit status is 0 if none failed.
 
-Steps, in this order:
+Steps, in this order, of which strict and clang run only if asked for, to keep the usual run below 30 minutes on two cores:
   ci      g++, release, warnings are errors: all tests, examples, benchmarks, validation
   cuda    all kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
           both backends runs without a GPU (skipped without nvcc)
@@ -26,18 +27,20 @@ Steps, in this order:
 
 Options:
   --quick          only ci
+  --all            all of them
   --only STEP,...  only these
   --jobs N         processes at a time (default: number of cores)
   --help           this text
 END
 }
 
-steps=("${all_steps[@]}")
+steps=("${usual_steps[@]}")
 jobs=$(nproc)
 while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
         --quick) steps=(ci) ;;
+        --all) steps=("${all_steps[@]}") ;;
         --only)
             (($# > 1)) || usage_error "--only needs steps: ${all_steps[*]}"
             IFS=, read -r -a wanted <<<"$2"

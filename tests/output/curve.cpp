@@ -7,7 +7,9 @@
 MYRIAD_INSTANTIATE(output::curve, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(output::curve, myriad::dense<myriad::runge_kutta_4>, myriad::dense<myriad::cash_karp>,
                    myriad::dense<myriad::tsitouras_5>)
-MYRIAD_INSTANTIATE(output::curve, myriad::dense<myriad::dormand_prince_5>, myriad::dense<myriad::verner_7>,
-                   myriad::dense<myriad::dormand_prince_8>)
+MYRIAD_INSTANTIATE(output::curve, myriad::dense<myriad::dormand_prince_8>)
+#if defined(MYRIAD_NIGHTLY)
+MYRIAD_INSTANTIATE(output::curve, myriad::dense<myriad::dormand_prince_5>, myriad::dense<myriad::verner_7>)
+#endif
 MYRIAD_INSTANTIATE_FLOAT(output::curve, myriad::dense<myriad::runge_kutta_4>, myriad::dense<myriad::cash_karp>,
                          myriad::dense<myriad::tsitouras_5>)
