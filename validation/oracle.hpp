@@ -60,7 +60,7 @@ public:
     /// Follows the solution over the given times, and calls `visit(k)` at each while it lasts. Returns evaluations of rhs.
     template <class Visit>
     long follow(const std::vector<double>& times, double tolerance, Visit&& visit) {
-        const auto load = [this](const double* y) {
+        const auto load = [](const double* y) {
             myriad::vec<double, n> values;
             std::copy(y, y + n, &values[0]);
             return values;

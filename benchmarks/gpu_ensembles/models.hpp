@@ -38,18 +38,17 @@ struct keller_miksis {
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& u, const auto& p) {
-        using myriad::cospi, myriad::exp2, myriad::log2, myriad::sinpi;
-        const R first = 2.0 * t, second = 2.0 * p[C11] * t + p[C12];
-        const R inverse = 1.0 / u[y];
-        // CUDA's pow has a slow path, which costs a stack frame and half of the speed; this has none, and loses a digit
-        // only where the radius changes by orders of magnitude.
-        const R power = exp2(-p[C10] * log2(u[y]));
+        using myriad::powr, myriad::reciprocal, myriad::sincospi;
+        // None of these has a branch, so that they overlap; the angles wait for nothing but the time.
+        const auto first = sincospi(R(2.0 * t)), second = sincospi(R(2.0 * p[C11] * t + p[C12]));
+        const R inverse = reciprocal(u[y]);
+        const R power = powr(u[y], -p[C10]);
         const R numerator = (p[C0] + p[C1] * u[v]) * power - p[C2] * (1.0 + p[C9] * u[v]) - p[C3] * inverse -
                             p[C4] * u[v] * inverse - (1.5 - 0.5 * p[C9] * u[v]) * u[v] * u[v] -
-                            (p[C5] * sinpi(first) + p[C6] * sinpi(second)) * (1.0 + p[C9] * u[v]) -
-                            u[y] * (p[C7] * cospi(first) + p[C8] * cospi(second));
+                            (p[C5] * first.sine + p[C6] * second.sine) * (1.0 + p[C9] * u[v]) -
+                            u[y] * (p[C7] * first.cosine + p[C8] * second.cosine);
         const R denominator = u[y] - p[C9] * u[y] * u[v] + p[C4] * p[C9];
-        return {u[v], numerator / denominator};
+        return {u[v], numerator * reciprocal(denominator)};
     }
 
     MYRIAD_FUNCTION static void initialise(auto& lane) { lane.accessory[y_max] = lane.y[y]; }

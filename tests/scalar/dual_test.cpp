@@ -77,6 +77,13 @@ void check_derivative(const char* name, F f, G g, double x) {
     }
 
 wide sinpi(wide x) { return std::sin(3.14159265358979323846264338327950288L * x); }
+struct both {
+    wide sine, cosine;
+};
+both sincos(wide x) { return {std::sin(x), std::cos(x)}; }
+both sincospi(wide x) { return {sinpi(x), std::cos(3.14159265358979323846264338327950288L * x)}; }
+wide powr(wide x, wide y) { return std::pow(x, y); }
+wide reciprocal(wide x) { return 1 / x; }
 wide cospi(wide x) { return std::cos(3.14159265358979323846264338327950288L * x); }
 
 }  // namespace
@@ -94,6 +101,9 @@ TEST_CASE("derivatives of elementary functions agree with differences"){
                 CHECK_DERIVATIVE(tan(x), 0.3, -1.2) CHECK_DERIVATIVE(asin(x), 0.3, -0.8)
                     CHECK_DERIVATIVE(acos(x), 0.3, -0.8) CHECK_DERIVATIVE(atan(x), 0.3, -5.0)
                         CHECK_DERIVATIVE(sinpi(x), 0.3, -1.2) CHECK_DERIVATIVE(cospi(x), 0.3, -1.2)
+                        CHECK_DERIVATIVE(sincos(x).sine, 0.3, -2.0) CHECK_DERIVATIVE(sincos(x).cosine, 0.3, -2.0)
+                        CHECK_DERIVATIVE(sincospi(x).sine, 0.3, -1.2) CHECK_DERIVATIVE(sincospi(x).cosine, 0.3, -1.2)
+                        CHECK_DERIVATIVE(reciprocal(x), 0.3, -2.0) CHECK_DERIVATIVE(powr(x, 1.4), 0.3, 4.0)
                             CHECK_DERIVATIVE(sinh(x), 0.3, -2.0) CHECK_DERIVATIVE(cosh(x), 0.3, -2.0)
                                 CHECK_DERIVATIVE(tanh(x), 0.3, -2.0) CHECK_DERIVATIVE(exp(x), 0.3, -2.0)
                                     CHECK_DERIVATIVE(exp2(x), 0.3, -2.0) CHECK_DERIVATIVE(log(x), 0.3, 20.0)

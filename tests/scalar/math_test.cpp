@@ -14,38 +14,18 @@
 
 #include "myriad/scalar/pack.hpp"
 #include "tests/catch.hpp"
+#include "tests/scalar/ulp.hpp"
 
 namespace {
 
 using myriad::pack;
-
-template <class T>
-using wider = std::conditional_t<std::is_same_v<T, double>, long double, double>;
+using namespace tests;
 
 template <class T>
 bool same_bits(T a, T b) {
     if (std::isnan(a) && std::isnan(b)) return true;
     using bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
     return std::bit_cast<bits>(a) == std::bit_cast<bits>(b);
-}
-
-/// |got - wanted| in units of the last place of `wanted`, which for subnormal ones is that of the smallest normal number.
-template <class T>
-double error_in_ulp(T got, wider<T> wanted) {
-    if (std::isnan(got) || std::isnan(wanted)) return std::isnan(got) && std::isnan(wanted) ? 0 : 1e30;
-    const T rounded = static_cast<T>(wanted);
-    if (std::isinf(got) || std::isinf(rounded)) return got == rounded ? 0 : 1e30;
-    const wider<T> scale = std::fmax(std::fabs(wanted), static_cast<wider<T>>(std::numeric_limits<T>::min()));
-    const wider<T> ulp = std::ldexp(wider<T>(1), std::ilogb(scale) - (std::numeric_limits<T>::digits - 1));
-    return static_cast<double>(std::fabs(static_cast<wider<T>>(got) - wanted) / ulp);
-}
-
-// sin(pi x) in the wider type, with the reduction made before pi is rounded.
-template <class W>
-W wide_sinpi(W x) {
-    const W half_turn = x - 2 * std::round(x / 2);
-    const W folded = half_turn > W(0.5) ? 1 - half_turn : half_turn < W(-0.5) ? -1 - half_turn : half_turn;
-    return std::sin(W(3.14159265358979323846264338327950288L) * folded);
 }
 
 // One function: how to call it, its name in messages, the scalar and the wide version.
@@ -74,7 +54,7 @@ FUNCTION(asin, std::asin(x))
 FUNCTION(acos, std::acos(x))
 FUNCTION(atan, std::atan(x))
 FUNCTION(sinpi, wide_sinpi(x))
-FUNCTION(cospi, wide_sinpi(std::fabs(x - 2 * std::round(x / 2)) - W(0.5)) * W(-1))
+FUNCTION(cospi, wide_cospi(x))
 FUNCTION(sinh, std::sinh(x))
 FUNCTION(cosh, std::cosh(x))
 FUNCTION(tanh, std::tanh(x))
@@ -83,6 +63,26 @@ FUNCTION(exp2, std::exp2(x))
 FUNCTION(log, std::log(x))
 FUNCTION(log2, std::log2(x))
 FUNCTION(log10, std::log10(x))
+FUNCTION(reciprocal, 1 / x)
+#undef FUNCTION
+
+// The two results of one call, as functions of their own.
+#define FUNCTION(name, call, member, wide_expression) \
+    struct name##_function {                          \
+        static constexpr const char* text = #name;    \
+        template <class S>                            \
+        static S of(const S& x) {                     \
+            return myriad::call(x).member;            \
+        }                                             \
+        template <class W>                            \
+        static W wide(W x) {                          \
+            return wide_expression;                   \
+        }                                             \
+    };
+FUNCTION(sine_of_both, sincos, sine, std::sin(x))
+FUNCTION(cosine_of_both, sincos, cosine, std::cos(x))
+FUNCTION(sine_of_both_pi, sincospi, sine, wide_sinpi(x))
+FUNCTION(cosine_of_both_pi, sincospi, cosine, wide_cospi(x))
 #undef FUNCTION
 
 #define FUNCTION(name, wide_expression)            \
@@ -104,6 +104,7 @@ FUNCTION(copysign, std::copysign(x, y))
 FUNCTION(atan2, std::atan2(x, y))
 FUNCTION(hypot, std::hypot(x, y))
 FUNCTION(pow, std::pow(x, y))
+FUNCTION(powr, std::pow(x, y))
 #undef FUNCTION
 
 // The one place where a function is called with a kind of number: otherwise each test would compile all of them again.
@@ -135,6 +136,7 @@ void for_unary_functions(Check check) {
     check(log_function{});
     check(log2_function{});
     check(log10_function{});
+    check(reciprocal_function{});
 }
 template <class Check>
 void for_binary_functions(Check check) {
@@ -446,6 +448,103 @@ TEST_CASE("pow of packs keeps its accuracy where the result is huge or tiny") {
             }
             CAPTURE(sizeof(T), y);
             CHECK(worst <= 1.5 + std::fabs(y) / 80);
+        }
+    };
+    of_type(double{});
+    of_type(float{});
+}
+
+TEST_CASE("sincos and sincospi are accurate to the documented ulps, in packs and plain numbers") {
+    const auto of_type = []<class T>(T) {
+        const auto check = [](auto f, double bound, double range) {
+            using F = decltype(f);
+            CAPTURE(F::text, sizeof(T), range);
+            CHECK(worst_error<T, F>(-range, range, spacing::linear) <= bound);
+            std::mt19937_64 random(31);
+            std::uniform_real_distribution<double> distribution(-range, range);
+            double worst = 0;
+            for (int k = 0; k < 4000; ++k) {
+                const T x = static_cast<T>(distribution(random));
+                worst = std::fmax(worst, error_in_ulp<T>(F::of(x), F::wide(static_cast<wider<T>>(x))));
+            }
+            CHECK(worst <= bound);
+        };
+        for (const double range : {0.8, 60.0, 1e4, 1e6}) {
+            if (range > myriad::detail::trigonometry_constants<T>::limit) continue;
+            check(sine_of_both_function{}, 2.5, range);
+            check(cosine_of_both_function{}, 2.5, range);
+        }
+        for (const double range : {0.5, 3.0, 1000.0}) {
+            check(sine_of_both_pi_function{}, 2, range);
+            check(cosine_of_both_pi_function{}, 2, range);
+        }
+    };
+    of_type(double{});
+    of_type(float{});
+}
+
+TEST_CASE("sincos and sincospi are NaN, and not wrong, beyond their range") {
+    const auto of_type = []<class T>(T) {
+        const T angle = std::is_same_v<T, double> ? T(0x1.0p31) : T(0x1.0p17);
+        const T half_turns = std::is_same_v<T, double> ? T(0x1.8p50) : T(0x1.8p21);
+        for (const T x : {angle, half_turns, -half_turns, std::numeric_limits<T>::infinity(),
+                          std::numeric_limits<T>::quiet_NaN()}) {
+            CHECK(std::isnan(myriad::sincos(x).sine));
+            CHECK(std::isnan(get_lane(myriad::sincos(pack<T, 1>(x)).cosine, 0)));
+            if (std::fabs(x) == angle) continue;
+            CHECK(std::isnan(myriad::sincospi(x).cosine));
+            CHECK(std::isnan(get_lane(myriad::sincospi(pack<T, 1>(x)).sine, 0)));
+        }
+    };
+    of_type(double{});
+    of_type(float{});
+}
+
+TEST_CASE("powr errs by at most 1.2 + |y| / 5 ulps, in packs and plain numbers, with the same bits") {
+    const auto of_type = []<class T>(T) {
+        using P = pack<T, 2>;
+        std::mt19937_64 random(37);
+        const double decades = std::is_same_v<T, double> ? 250 : 30;
+        for (const double y : {0.5, 1.0 / 3, 1.4, -1.4, 2.0, 4.2, -4.2, -7.0, 13.7, 99.5}) {
+            std::uniform_real_distribution<double> far(-1, 1), near(-0.3, 0.3);
+            const double reach = decades / std::fmax(1, std::fabs(y));
+            double worst = 0;
+            for (int k = 0; k < 8000; k += P::lanes) {
+                P x;
+                for (int i = 0; i < P::lanes; ++i)
+                    set_lane(x, i, static_cast<T>(std::pow(10.0, k % 3 == 0 ? near(random) : reach * far(random))));
+                P result;
+                evaluate<powr_function>(result, x, P(static_cast<T>(y)));
+                for (int i = 0; i < P::lanes; ++i) {
+                    const auto wanted =
+                        std::pow(static_cast<wider<T>>(get_lane(x, i)), static_cast<wider<T>>(static_cast<T>(y)));
+                    worst = std::fmax(worst, error_in_ulp<T>(get_lane(result, i), wanted));
+                    CHECK(same_bits(get_lane(result, i), myriad::powr(get_lane(x, i), static_cast<T>(y))));
+                }
+            }
+            CAPTURE(sizeof(T), y);
+            CHECK(worst <= (MYRIAD_FUSED ? 1.2 + std::fabs(y) / 5 : 1.5 + std::fabs(y) / 2));
+        }
+    };
+    of_type(double{});
+    of_type(float{});
+}
+
+TEST_CASE("powr of zero, infinity, negative numbers and beyond the range is that of IEEE 754") {
+    const auto of_type = []<class T>(T) {
+        using limits = std::numeric_limits<T>;
+        const T inf = limits::infinity(), nan = limits::quiet_NaN(), big = limits::max() / 4, small = limits::min() * 4;
+        struct {
+            T x, y, wanted;
+        } const cases[] = {
+            {0, 2, 0},       {0, T(0.25), 0}, {0, -2, inf},     {0, T(-0.25), inf}, {inf, T(0.5), inf}, {inf, T(-0.5), 0},
+            {0, 0, nan},     {inf, 0, nan},   {-1, 2, nan},     {-inf, 2, nan},     {nan, 2, nan},      {2, nan, nan},
+            {3, 0, 1},       {1, 5000, 1},    {big, 2, inf},    {big, -2, 0},       {small, 2, 0},      {small, -2, inf},
+            {2, T(1e30), inf}, {2, T(-1e30), 0}, {limits::denorm_min(), T(0.5), 0}, {big, 1, big},   {small, 1, small}};
+        for (const auto& c : cases) {
+            CAPTURE(sizeof(T), c.x, c.y);
+            CHECK(same_bits(myriad::powr(c.x, c.y), c.wanted));
+            CHECK(same_bits(get_lane(myriad::powr(pack<T, 1>(c.x), pack<T, 1>(c.y)), 0), c.wanted));
         }
     };
     of_type(double{});

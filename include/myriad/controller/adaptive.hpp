@@ -83,7 +83,8 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
     }
     S size = smaller(larger(abs(s.h) * S(factor), S(args.minimum_step)), S(args.maximum_step));
     // A step cut short by the end of the domain says little about the step size that goes on from there.
-    size = select(accepted & s.final_step, larger(size, abs(s.data.h_next)), size);
+    const mask ends = accepted & s.final_step;
+    if (MYRIAD_UNLIKELY(any(ends))) size = select(ends, larger(size, abs(s.data.h_next)), size);
     s.data.h_next = select(s.running(), copysign(size, s.h), s.data.h_next);
     return accepted;
 }

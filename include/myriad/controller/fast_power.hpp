@@ -91,7 +91,9 @@ MYRIAD_FUNCTION S part_by_part(const S& x, Part&& part) {
 template <class S>
 MYRIAD_FUNCTION S fast_log2(const S& x) {
 #if defined(__CUDA_ARCH__)
-    return static_cast<S>(::__log2f(static_cast<float>(x)));
+    float y;  // without the instructions that subnormal numbers take
+    asm("lg2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(static_cast<float>(x)));
+    return static_cast<S>(y);
 #else
     return detail::part_by_part(x, []<class B>(const B& part, auto&& multiply_add) MYRIAD_LAMBDA {
         using I = typename detail::integers_beside<S, B>::type;
@@ -104,7 +106,9 @@ MYRIAD_FUNCTION S fast_log2(const S& x) {
 template <class S>
 MYRIAD_FUNCTION S fast_exp2(const S& z) {
 #if defined(__CUDA_ARCH__)
-    return static_cast<S>(::exp2f(static_cast<float>(z)));
+    float y;
+    asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(static_cast<float>(z)));
+    return static_cast<S>(y);
 #else
     return detail::part_by_part(z, []<class B>(const B& part, auto&& multiply_add) MYRIAD_LAMBDA {
         using I = typename detail::integers_beside<S, B>::type;

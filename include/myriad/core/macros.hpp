@@ -8,6 +8,8 @@
 /// and on its own helpers, so that no copy of them is shared between files compiled for different instruction sets.
 #define MYRIAD_FUNCTION __host__ __device__ __forceinline__
 #define MYRIAD_LAMBDA
+/// A constant at namespace scope that device code reads from constant memory, as an operand of its instructions.
+#define MYRIAD_CONSTANT_MEMORY __constant__
 /// Hides from the compiler that a pointer or index is the same as before, so that it computes addresses anew instead of
 /// keeping them in registers through the loop.
 #define MYRIAD_FORGET(value) asm volatile("" : "+l"(value))
@@ -29,6 +31,7 @@
 #define MYRIAD_FUNCTION inline __attribute__((always_inline))
 /// The same for a lambda, between its parameters and its body.
 #define MYRIAD_LAMBDA __attribute__((always_inline))
+#define MYRIAD_CONSTANT_MEMORY inline constexpr
 #define MYRIAD_FORGET(value) static_cast<void>(value)
 #define MYRIAD_UNROLL_BY_FOUR
 #define MYRIAD_ROLLED
@@ -47,6 +50,13 @@
 #else
 #define MYRIAD_TARGET openmp_generic
 #endif
+#endif
+
+// Whether the target has a fused multiply-add; then fma uses it for every kind of number.
+#if defined(__FMA__) || defined(__AVX512F__) || defined(__ARM_FEATURE_FMA) || defined(__CUDA_ARCH__)
+#define MYRIAD_FUSED 1
+#else
+#define MYRIAD_FUSED 0
 #endif
 
 // Code of the kernel body lives in `namespace myriad::inline MYRIAD_TARGET`, so that every mangled name carries the

@@ -105,7 +105,7 @@ struct kernel_arguments {
     std::int32_t max_steps;
     R step;  // fixed step, or first step of an adaptive method
     R minimum_step, maximum_step;
-    R growth_limit, shrink_limit;
+    float growth_limit, shrink_limit;  // as precise as step-size control is in CUDA threads
     R relative_tolerance[n_state<Model>];
     R absolute_tolerance[n_state<Model>];
     event_arguments<R> event[at_least_one(n_event<Model>)];

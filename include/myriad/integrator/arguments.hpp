@@ -31,8 +31,8 @@ void describe_options(kernel_arguments<Model, R>& a, const options& o) {
     a.minimum_step = static_cast<R>(o.minimum_step);
     a.maximum_step = static_cast<R>(o.maximum_step);
     if (Method::embedded_order > 0 && a.step > 0) a.step = std::clamp(a.step, a.minimum_step, a.maximum_step);
-    a.growth_limit = static_cast<R>(o.growth_limit);
-    a.shrink_limit = static_cast<R>(o.shrink_limit);
+    a.growth_limit = static_cast<float>(o.growth_limit);
+    a.shrink_limit = static_cast<float>(o.shrink_limit);
     for (std::size_t c = 0; c < static_cast<std::size_t>(n_state<Model>); ++c) {
         a.relative_tolerance[c] = std::max(static_cast<R>(o.relative_tolerance[c]), least_relative_tolerance<R>);
         // not subnormal: a GPU takes its reciprocal

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 // g++ 12 takes the deliberately unset registers of its own AVX-512 intrinsics for a mistake (GCC bug 105593).
@@ -17,6 +18,7 @@
 #endif
 
 #include "myriad/core/macros.hpp"
+#include "myriad/scalar/arithmetic.hpp"
 #include "myriad/scalar/math.hpp"
 
 // Repeats a statement for i = 0, 1, ... of a pack's batches. Not a loop: g++ unrolls those after it has optimised all else,
@@ -107,10 +109,6 @@ MYRIAD_FUNCTION xsimd::batch<To> bits_as(const xsimd::batch<From>& x) {
     return xsimd::batch<To>(__builtin_bit_cast(to_register, static_cast<from_register>(x)));
 }
 
-// Adding this rounds to a whole number and leaves its last bits in the last bits of the sum.
-template <class T>
-inline constexpr T round_to_whole = sizeof(T) == sizeof(double) ? T(0x1.8p52) : T(0x1.8p23);
-
 /// a * b + c, a * b - c and c - a * b with one rounding where the target can (MYRIAD_FUSED). xsimd 8 has no such thing for
 /// AVX-512: it writes a * b + c and leaves the rest to the compiler.
 #if defined(__AVX512F__)
@@ -137,15 +135,33 @@ MYRIAD_FUSED_OPERATION(multiply_subtract, fms, _mm512_fmsub)
 MYRIAD_FUSED_OPERATION(subtract_product, fnma, _mm512_fnmadd)
 #undef MYRIAD_FUSED_OPERATION
 
-/// c0 + c1 x + c2 x^2 + ... by Horner's rule.
 template <class T>
-MYRIAD_FUNCTION xsimd::batch<T> polynomial(const xsimd::batch<T>&, T c0) {
-    return xsimd::batch<T>(c0);
-}
-template <class T, class... More>
-MYRIAD_FUNCTION xsimd::batch<T> polynomial(const xsimd::batch<T>& x, T c0, More... more) {
-    return multiply_add(x, polynomial(x, more...), xsimd::batch<T>(c0));
-}
+struct arithmetic<xsimd::batch<T>> {
+    using real = T;
+    using B = xsimd::batch<T>;
+    using mask = xsimd::batch_bool<T>;
+    using bits = xsimd::batch<typename arithmetic<T>::bits>;
+
+    static MYRIAD_FUNCTION B multiply_add(const B& a, const B& b, const B& c) { return detail::multiply_add(a, b, c); }
+    static MYRIAD_FUNCTION B multiply_subtract(const B& a, const B& b, const B& c) {
+        return detail::multiply_subtract(a, b, c);
+    }
+    static MYRIAD_FUNCTION B subtract_product(const B& a, const B& b, const B& c) {
+        return detail::subtract_product(a, b, c);
+    }
+    static MYRIAD_FUNCTION B select(const mask& m, const B& a, const B& b) { return xsimd::select(m, a, b); }
+    static MYRIAD_FUNCTION B abs(const B& x) { return xsimd::abs(x); }
+    static MYRIAD_FUNCTION B floor(const B& x) { return xsimd::floor(x); }
+    static MYRIAD_FUNCTION bits to_bits(const B& x) { return bits_as<typename arithmetic<T>::bits>(x); }
+    static MYRIAD_FUNCTION B from_bits(const bits& b) { return bits_as<T>(b); }
+    static MYRIAD_FUNCTION mask are_set(const bits& b, typename arithmetic<T>::bits which) {
+        return mask_cast<T>((b & bits(which)) != bits(typename arithmetic<T>::bits{0}));
+    }
+    static MYRIAD_FUNCTION B reciprocal(const B& x) { return B(T(1)) / x; }
+    static MYRIAD_FUNCTION mask is_finite_from(T least, const B& x) {
+        return (x >= B(least)) & (x <= B(std::numeric_limits<T>::max()));
+    }
+};
 
 }  // namespace detail
 }  // namespace myriad::inline MYRIAD_TARGET

@@ -218,6 +218,21 @@ struct functions<dual<S>> {
         return D(f::cospi(x.value), -constant(pi) * x.derivative * f::sinpi(x.value));
     }
 
+    static MYRIAD_FUNCTION void sincos(const D& x, D& sine, D& cosine) {
+        f::sincos(x.value, sine.value, cosine.value);
+        sine.derivative = x.derivative * cosine.value;
+        cosine.derivative = -x.derivative * sine.value;
+    }
+    static MYRIAD_FUNCTION void sincospi(const D& x, D& sine, D& cosine) {
+        f::sincospi(x.value, sine.value, cosine.value);
+        sine.derivative = constant(pi) * x.derivative * cosine.value;
+        cosine.derivative = -constant(pi) * x.derivative * sine.value;
+    }
+    static MYRIAD_FUNCTION D reciprocal(const D& x) {
+        const S r = f::reciprocal(x.value);
+        return D(r, -x.derivative * r * r);
+    }
+
     static MYRIAD_FUNCTION D sinh(const D& x) { return D(f::sinh(x.value), x.derivative * f::cosh(x.value)); }
     static MYRIAD_FUNCTION D cosh(const D& x) { return D(f::cosh(x.value), x.derivative * f::sinh(x.value)); }
     static MYRIAD_FUNCTION D tanh(const D& x) {
@@ -245,6 +260,11 @@ struct functions<dual<S>> {
         const S y = to_kind<S>(exponent);
         const S slope = y * f::pow(x.value, y - constant(real(1)));
         return D(f::pow(x.value, y), select(y == constant(real(0)), y, slope) * x.derivative);
+    }
+    template <class B>
+    static MYRIAD_FUNCTION D powr(const D& x, const B& exponent) {
+        const S y = to_kind<S>(exponent);
+        return D(f::powr(x.value, y), y * f::powr(x.value, y - constant(real(1))) * x.derivative);
     }
     template <class A>
     static MYRIAD_FUNCTION D pow_of_exponent(const A& base, const D& y) {

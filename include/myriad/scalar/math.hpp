@@ -10,14 +10,9 @@
 #include <type_traits>
 
 #include "myriad/core/macros.hpp"
+#include "myriad/scalar/exponential.hpp"
 #include "myriad/scalar/select.hpp"
-
-// Whether the target has a fused multiply-add; then fma uses it for every kind of number.
-#if defined(__FMA__) || defined(__AVX512F__) || defined(__ARM_FEATURE_FMA)
-#define MYRIAD_FUSED 1
-#else
-#define MYRIAD_FUSED 0
-#endif
+#include "myriad/scalar/trigonometry.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -27,9 +22,6 @@ concept real_kind = (kind_rank<S> > 0) || std::floating_point<S>;
 
 namespace detail {
 
-/// The elementary functions of one kind of number; every kind specialises it.
-template <class S>
-struct functions;
 
 template <std::floating_point T>
 struct functions<T> {
@@ -56,6 +48,9 @@ struct functions<T> {
     static MYRIAD_FUNCTION T log2(T x) { return std::log2(x); }
     static MYRIAD_FUNCTION T log10(T x) { return std::log10(x); }
     static MYRIAD_FUNCTION T pow(T x, T y) { return std::pow(x, y); }
+    static MYRIAD_FUNCTION T powr(T x, T y) { return exponential<T>::powr(x, y); }
+    static MYRIAD_FUNCTION void sincos(T x, T& sine, T& cosine) { trigonometry<T>::sincos(x, sine, cosine); }
+    static MYRIAD_FUNCTION void sincospi(T x, T& sine, T& cosine) { trigonometry<T>::sincospi(x, sine, cosine); }
     static MYRIAD_FUNCTION T atan2(T y, T x) { return std::atan2(y, x); }
     static MYRIAD_FUNCTION T hypot(T x, T y) { return std::hypot(x, y); }
     static MYRIAD_FUNCTION T copysign(T x, T sign) { return std::copysign(x, sign); }
@@ -73,6 +68,17 @@ struct functions<T> {
     static MYRIAD_FUNCTION T fma(T a, T b, T c) { return std::fma(a, b, c); }
     static MYRIAD_FUNCTION T sinpi(T x) { return ::sinpi(x); }
     static MYRIAD_FUNCTION T cospi(T x) { return ::cospi(x); }
+    static MYRIAD_FUNCTION T reciprocal(T x) {
+        T r;
+        if constexpr (sizeof(T) == sizeof(double)) {
+            asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(r) : "d"(x));  // to about 2^-20
+            const T error = fma(-x, r, T(1));
+            return fma(fma(error, error, error), r, r);
+        } else {
+            asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(x));
+            return r;
+        }
+    }
 #else
     // In the operand order of the x86 instructions, so that packs and plain reals agree in signed zeros too.
     static MYRIAD_FUNCTION T min(T a, T b) { return b != b || a < b ? a : b; }
@@ -84,6 +90,7 @@ struct functions<T> {
         return a * b + c;  // std::fma would emulate, 50 times slower and unlike the packs
 #endif
     }
+    static MYRIAD_FUNCTION T reciprocal(T x) { return T(1) / x; }
     static MYRIAD_FUNCTION T sinpi(T x) {
         const T turn = T(2) * std::round(T(0.5) * x);
         const T half = x - turn;  // exact, in [-1, 1]
@@ -128,7 +135,31 @@ MYRIAD_UNARY(exp2)
 MYRIAD_UNARY(log)
 MYRIAD_UNARY(log2)
 MYRIAD_UNARY(log10)
+/// 1 / x, on GPUs without the slow path of a division: within 1 ulp for normal x with a normal result; not finite for zero,
+/// and NaN, not zero, for infinity.
+MYRIAD_UNARY(reciprocal)
 #undef MYRIAD_UNARY
+
+template <class S>
+struct sine_and_cosine {
+    S sine, cosine;
+};
+/// Sine and cosine of the same angle for about the price of one: of x up to 2^30 (float 2^16) in radians (2^20 and 2^13 where
+/// the target has no fused multiply-add), `const auto [sine, cosine] = sincos(x)`, and of pi x up to 2^50 (float 2^21). NaN beyond, so that no branch keeps what
+/// else a right-hand side computes from overlapping it; sin and cos know no such limit. Largest errors in ulp: see
+/// pack_math.hpp.
+template <real_kind S>
+MYRIAD_FUNCTION sine_and_cosine<S> sincos(const S& x) {
+    sine_and_cosine<S> both;
+    detail::functions<S>::sincos(x, both.sine, both.cosine);
+    return both;
+}
+template <real_kind S>
+MYRIAD_FUNCTION sine_and_cosine<S> sincospi(const S& x) {
+    sine_and_cosine<S> both;
+    detail::functions<S>::sincospi(x, both.sine, both.cosine);
+    return both;
+}
 
 /// Neither infinite nor NaN, as a mask.
 template <real_kind S>
@@ -172,6 +203,20 @@ template <class A, class B, class C>
 requires real_kind<common_kind<common_kind<A, B>, C>> MYRIAD_FUNCTION auto fma(const A& a, const B& b, const C& c) {
     using S = common_kind<common_kind<A, B>, C>;
     return detail::functions<S>::fma(detail::to_kind<S>(a), detail::to_kind<S>(b), detail::to_kind<S>(c));
+}
+
+/// x to the power y for x >= 0, without a branch, in about half of the time of pow: NaN for negative x, and for powr(0, 0)
+/// and powr(inf, 0), as in IEEE 754; numbers below the smallest normal one count as zero. The error is at most 1.2 + |y| / 5
+/// ulps (1.5 + |y| / 2 where the target has no fused multiply-add). The exponent may not be a dual number.
+template <class A, class B>
+requires real_kind<common_kind<A, B>> MYRIAD_FUNCTION common_kind<A, B> powr(const A& x, const B& y) {
+    using S = common_kind<A, B>;
+    static_assert(kind_rank<B> != 2, "powr has no derivative by its exponent: use pow");
+    if constexpr (kind_rank<A> == 2) {
+        return detail::functions<S>::powr(x, y);
+    } else {
+        return detail::functions<S>::powr(detail::to_kind<S>(x), detail::to_kind<S>(y));
+    }
 }
 
 /// x to the power y. A whole number of type int multiplies, `pow(x, 3)` is x * x * x, with half an ulp of error per product

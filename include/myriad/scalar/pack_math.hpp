@@ -22,10 +22,10 @@
 
 #include "myriad/core/macros.hpp"
 #include "myriad/scalar/batch.hpp"
+#include "myriad/scalar/exponential.hpp"
 #include "myriad/scalar/math.hpp"
 #include "myriad/scalar/pack.hpp"
-#include "myriad/scalar/pack_exponential.hpp"
-#include "myriad/scalar/pack_trigonometry.hpp"
+#include "myriad/scalar/trigonometry.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 namespace detail {
@@ -80,6 +80,7 @@ struct functions<pack<T, batches>> {
     }
     MYRIAD_UNARY(sqrt, xsimd::sqrt(x.parts[i]))
     MYRIAD_UNARY(abs, xsimd::abs(x.parts[i]))
+    MYRIAD_UNARY(reciprocal, xsimd::batch<T>(T(1)) / x.parts[i])
     // Without SSE4.1, xsimd's loses the sign of zero, which the bit puts back.
     MYRIAD_UNARY(floor, xsimd::floor(x.parts[i]) | (x.parts[i] & xsimd::batch<T>(-T(0))))
     MYRIAD_UNARY(round, xsimd::round(x.parts[i]))
@@ -89,18 +90,18 @@ struct functions<pack<T, batches>> {
     MYRIAD_UNARY(sinh, xsimd::sinh(x.parts[i]))
     MYRIAD_UNARY(cosh, xsimd::cosh(x.parts[i]))
     MYRIAD_UNARY(tanh, xsimd::tanh(x.parts[i]))
-    MYRIAD_UNARY(exp, exponential<T>::exp(x.parts[i]))
-    MYRIAD_UNARY(exp2, exponential<T>::exp2(x.parts[i]))
-    MYRIAD_UNARY_WITH_REDO(sin, trigonometry<T>::sin(x.parts[i]), !(abs(x) <= S(trigonometry_constants<T>::limit)))
-    MYRIAD_UNARY_WITH_REDO(cos, trigonometry<T>::cos(x.parts[i]), !(abs(x) <= S(trigonometry_constants<T>::limit)))
-    MYRIAD_UNARY_WITH_REDO(tan, trigonometry<T>::tan(x.parts[i]), !(abs(x) <= S(trigonometry_constants<T>::limit)))
-    MYRIAD_UNARY_WITH_REDO(sinpi, trigonometry<T>::sinpi(x.parts[i]), !(abs(x) <= S(largest_half_turns)))
-    MYRIAD_UNARY_WITH_REDO(cospi, trigonometry<T>::cospi(x.parts[i]), !(abs(x) <= S(largest_half_turns)))
-    MYRIAD_UNARY_WITH_REDO(cbrt, xsimd::copysign(exponential<T>::cbrt(xsimd::abs(x.parts[i])), x.parts[i]),
+    MYRIAD_UNARY(exp, exponential<xsimd::batch<T>>::exp(x.parts[i]))
+    MYRIAD_UNARY(exp2, exponential<xsimd::batch<T>>::exp2(x.parts[i]))
+    MYRIAD_UNARY_WITH_REDO(sin, trigonometry<xsimd::batch<T>>::sin(x.parts[i]), !(abs(x) <= S(trigonometry_constants<T>::limit)))
+    MYRIAD_UNARY_WITH_REDO(cos, trigonometry<xsimd::batch<T>>::cos(x.parts[i]), !(abs(x) <= S(trigonometry_constants<T>::limit)))
+    MYRIAD_UNARY_WITH_REDO(tan, trigonometry<xsimd::batch<T>>::tan(x.parts[i]), !(abs(x) <= S(trigonometry_constants<T>::limit)))
+    MYRIAD_UNARY_WITH_REDO(sinpi, trigonometry<xsimd::batch<T>>::sinpi(x.parts[i]), !(abs(x) <= S(trigonometry<T>::half_turn_limit)))
+    MYRIAD_UNARY_WITH_REDO(cospi, trigonometry<xsimd::batch<T>>::cospi(x.parts[i]), !(abs(x) <= S(trigonometry<T>::half_turn_limit)))
+    MYRIAD_UNARY_WITH_REDO(cbrt, xsimd::copysign(exponential<xsimd::batch<T>>::cbrt(xsimd::abs(x.parts[i])), x.parts[i]),
                            !(abs(x) >= S(smallest_normal) && is_finite(x)))
-    MYRIAD_UNARY_WITH_REDO(log, exponential<T>::log(x.parts[i]), x < S(smallest_normal))
-    MYRIAD_UNARY_WITH_REDO(log2, exponential<T>::log2(x.parts[i]), x < S(smallest_normal))
-    MYRIAD_UNARY_WITH_REDO(log10, exponential<T>::log10(x.parts[i]), x < S(smallest_normal))
+    MYRIAD_UNARY_WITH_REDO(log, exponential<xsimd::batch<T>>::log(x.parts[i]), x < S(smallest_normal))
+    MYRIAD_UNARY_WITH_REDO(log2, exponential<xsimd::batch<T>>::log2(x.parts[i]), x < S(smallest_normal))
+    MYRIAD_UNARY_WITH_REDO(log10, exponential<xsimd::batch<T>>::log10(x.parts[i]), x < S(smallest_normal))
 #undef MYRIAD_UNARY_WITH_REDO
 #undef MYRIAD_UNARY
 
@@ -133,11 +134,23 @@ struct functions<pack<T, batches>> {
     static MYRIAD_FUNCTION S pow(const S& x, const S& y) {
         S result;
         mask unfinished;
-        MYRIAD_EACH_BATCH(unfinished.parts[i] = exponential<T>::pow(result.parts[i], x.parts[i], y.parts[i]));
+        MYRIAD_EACH_BATCH(unfinished.parts[i] = exponential<xsimd::batch<T>>::pow(result.parts[i], x.parts[i], y.parts[i]));
         return with_lanes_redone<scalar_pow>(result, unfinished, x, y);
     }
 #undef MYRIAD_SCALAR_UNARY
 #undef MYRIAD_SCALAR_BINARY
+
+    static MYRIAD_FUNCTION S powr(const S& x, const S& y) {
+        S result;
+        MYRIAD_EACH_BATCH(result.parts[i] = exponential<xsimd::batch<T>>::powr(x.parts[i], y.parts[i]));
+        return result;
+    }
+    static MYRIAD_FUNCTION void sincos(const S& x, S& sine, S& cosine) {
+        MYRIAD_EACH_BATCH(trigonometry<xsimd::batch<T>>::sincos(x.parts[i], sine.parts[i], cosine.parts[i]));
+    }
+    static MYRIAD_FUNCTION void sincospi(const S& x, S& sine, S& cosine) {
+        MYRIAD_EACH_BATCH(trigonometry<xsimd::batch<T>>::sincospi(x.parts[i], sine.parts[i], cosine.parts[i]));
+    }
 
     static MYRIAD_FUNCTION S fma(const S& a, const S& b, const S& c) {
         S result;
@@ -149,7 +162,6 @@ struct functions<pack<T, batches>> {
 private:
     static constexpr bool is_double = sizeof(T) == sizeof(double);
     static constexpr T smallest_normal = std::numeric_limits<T>::min();
-    static constexpr T largest_half_turns = is_double ? T(0x1p50) : T(0x1p21);
     static constexpr T smallest_root = is_double ? T(0x1p-480L) : T(0x1p-50);
     static constexpr T largest_root = is_double ? T(0x1p500L) : T(0x1p60);
 };

@@ -2,6 +2,8 @@
 // One trial step of an explicit Runge-Kutta method, unrolled from its tableau: stages, new state, error estimate.
 #pragma once
 
+#include <cstdint>
+
 #include "myriad/core/static_for.hpp"
 #include "myriad/core/vec.hpp"
 #include "myriad/model/lane.hpp"
@@ -76,6 +78,40 @@ inline constexpr R relative_weight =
 template <class Method, int i, class R>
 inline constexpr R node = static_cast<R>(Method::tableau().c[static_cast<std::size_t>(i)]);
 
+// A GPU's instruction can carry a number whose lower half is zero; of others it takes two more to load one, and one if the
+// number is in constant memory.
+template <class R>
+constexpr bool is_short(R x) {
+    if constexpr (sizeof(R) == sizeof(double)) return (__builtin_bit_cast(std::uint64_t, x) & 0xffffffff) == 0;
+    return true;
+}
+template <class Method, int row, int j, class R>
+inline constexpr bool is_short_weight = is_short(relative_weight<Method, row, j, R>);
+template <class Method, int row, class R>
+inline constexpr bool is_short_first = is_short(first_weight<Method, row, R>);
+template <class Method, int row, int j, class R>
+MYRIAD_CONSTANT_MEMORY R kept_weight = relative_weight<Method, row, j, R>;
+template <class Method, int row, class R>
+MYRIAD_CONSTANT_MEMORY R kept_first = first_weight<Method, row, R>;
+
+/// The same numbers as operands.
+template <class Method, int row, int j, class R>
+MYRIAD_FUNCTION R weight_operand() {
+    if constexpr (is_short_weight<Method, row, j, R>) {
+        return relative_weight<Method, row, j, R>;
+    } else {
+        return kept_weight<Method, row, j, R>;
+    }
+}
+template <class Method, int row, class R>
+MYRIAD_FUNCTION R first_operand() {
+    if constexpr (is_short_first<Method, row, R>) {
+        return first_weight<Method, row, R>;
+    } else {
+        return kept_first<Method, row, R>;
+    }
+}
+
 /// sum += weight * k with the relative weight of stage j, without the operations that a weight of zero or one does not
 /// need.
 template <class Method, int row, int j, class S>
@@ -84,7 +120,7 @@ MYRIAD_FUNCTION void add_weighted(S& sum, const S& k) {
     if constexpr (relative_weight<Method, row, j, R> == R(1)) {
         sum = sum + k;
     } else if constexpr (relative_weight<Method, row, j, R> != R(0)) {
-        sum = fma(S(relative_weight<Method, row, j, R>), k, sum);
+        sum = fma(S(weight_operand<Method, row, j, R>()), k, sum);
     }
 }
 
@@ -104,7 +140,7 @@ MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int compon
 /// y + h * sum_j w_j k_j with the weights of `row`: a stage's argument or the new state.
 template <class Method, int row, class S, int n>
 MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<S, n>, Method::stages>& k) {
-    const S scale = h * S(first_weight<Method, row, real_of<S>>);
+    const S scale = h * S(first_operand<Method, row, real_of<S>>());
     vec<S, n> out;
     MYRIAD_UNROLL
     for (int c = 0; c < n; ++c) out[c] = fma(scale, scaled_sum<Method, row>(k, c), y[c]);
@@ -114,7 +150,7 @@ MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<
 /// The error estimate h * sum_j e_j k_j of one component.
 template <class Method, int row = row_of<Method>::error, class S, int n>
 MYRIAD_FUNCTION S error_estimate(const S& h, const vec<vec<S, n>, Method::stages>& k, int component) {
-    return h * S(first_weight<Method, row, real_of<S>>) * scaled_sum<Method, row>(k, component);
+    return h * S(first_operand<Method, row, real_of<S>>()) * scaled_sum<Method, row>(k, component);
 }
 template <class Method, class S, int n>
 MYRIAD_FUNCTION S error_estimate(const S& h, const rk_trial<Method, S, n>& trial, int component) {
@@ -150,7 +186,7 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const vec<S, n_sta
         if constexpr (!Method::first_same_as_last) add_stage(i);
     });
     if constexpr (!Method::first_same_as_last) {
-        const S scale = h * S(first_weight<Method, last, R>);
+        const S scale = h * S(first_operand<Method, last, R>());
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) trial.y[c] = fma(scale, sum[c], y[c]);
     }
