@@ -21,6 +21,7 @@ struct run_options {
     bool (*progress)(void* context, std::int64_t begun) = nullptr;  ///< returns whether to go on
     void* context = nullptr;
     std::int64_t count = 0;  ///< instances to integrate, the first ones; 0: all
+    myriad::schedule schedule = myriad::schedule::automatic;
 };
 
 /// How a run used its lanes.
@@ -46,6 +47,7 @@ struct kernel_facts {
     std::int64_t local_bytes = 0;   ///< per thread: stack frame and spilled registers
     std::int64_t shared_bytes = 0;  ///< of shared memory per block
     myriad::shared_placement shared_placement = myriad::shared_placement::constant_bank;
+    myriad::schedule schedule = myriad::schedule::in_order;  ///< of the last call of `integrate`
     int blocks_per_multiprocessor = 0;  ///< that run at the same time, of the size that fills it best
 };
 
@@ -53,6 +55,7 @@ struct engine_options {
     int device = 0;
     std::int64_t block_size = 0;
     myriad::shared_placement shared_placement = myriad::shared_placement::automatic;
+    myriad::schedule schedule = myriad::schedule::automatic;
 };
 
 /// Work on a device that other work may wait for.

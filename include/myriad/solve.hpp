@@ -50,10 +50,11 @@ void require_kernel(const device& where) {
 }
 
 template <class Model, class Method, class R>
-void solve_on_cpu(const device& where, const kernel_arguments<Model, R>& arguments, progress_relay& relay,
+void solve_on_cpu(const device& where, const options& o, const kernel_arguments<Model, R>& arguments, progress_relay& relay,
                   report<Model, R>& result) {
     run_options how;
     how.threads = where.threads();
+    how.schedule = o.schedule;
     how.progress = &progress_relay::call;
     how.context = &relay;
     const run_statistics used = openmp::run<Model, Method, R>(arguments, how);
@@ -74,7 +75,7 @@ void solve_on_cuda(const device& where, const options& o, kernel_arguments<Model
     for_each_record(arguments.record, add);
 
     std::unique_ptr<cuda::engine<Model, R>> engines[2];
-    const cuda::engine_options how{where.number(), o.block_size, o.shared_placement};
+    const cuda::engine_options how{where.number(), o.block_size, o.shared_placement, o.schedule};
     engines[0] = cuda::make_engine<Model, Method, R>(how);
     const std::int64_t size = arguments.size;
     std::int64_t chunk = o.chunk_size;
@@ -125,7 +126,7 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     host::progress_relay relay{options.progress, instances.size(), nullptr};
     const auto begin = std::chrono::steady_clock::now();
     if (where.which() == device::kind::cpu) {
-        host::solve_on_cpu<Model, Method, R>(where, prepared.get(), relay, result);
+        host::solve_on_cpu<Model, Method, R>(where, options, prepared.get(), relay, result);
     } else {
         host::solve_on_cuda<Model, Method, R>(where, options, prepared.get(), relay, result);
     }

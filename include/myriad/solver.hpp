@@ -49,7 +49,7 @@ public:
           prepared_(instances_, options_) {
         host::require_kernel<Model, Method, R>(where);
         if (where.which() == device::kind::cpu) return;
-        engine_ = cuda::make_engine<Model, Method, R>({where.number(), options_.block_size, options_.shared_placement});
+        engine_ = cuda::make_engine<Model, Method, R>({where.number(), options_.block_size, options_.shared_placement, options_.schedule});
         engine_->reserve(prepared_.get(), capacity);
         const auto pin = [&](auto* array, std::int64_t components_of_it, array_access, array_kind) {
             engine_->pin(array, static_cast<std::size_t>(components_of_it * capacity) * sizeof(*array));
@@ -132,6 +132,7 @@ public:
         prepared_.records().clear();
         run_options how;
         how.threads = where_.threads();
+        how.schedule = options_.schedule;
         how.count = count_;
         const auto begin = std::chrono::steady_clock::now();
         const run_statistics used = openmp::run<Model, Method, R>(arguments, how);

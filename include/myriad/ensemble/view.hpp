@@ -98,8 +98,13 @@ struct kernel_arguments {
 
     shared_parameters<R> shared;
 
+    // what a schedule by cost needs, or null
+    std::uint32_t* cost;         // trial steps of each instance's last phase, 0 if it has ended; written
+    const std::uint32_t* order;  // the instances in the order in which they are to be taken
+
     // options
     std::int32_t phases;
+    std::int32_t first_phase;  // phases of this call that are done already
     bool carry_time;  // a phase goes on from where the last one ended, instead of from t_begin
     bool carry_step;  // and with its step size
     std::int32_t max_steps;

@@ -49,6 +49,17 @@ enum class phase_step { restart, carry_on };
 enum class counting { off, on };
 /// Whether `solve` looks for stiffness afterwards, with some evaluations of rhs on the host.
 enum class advice { off, on };
+/// The order in which instances are integrated. Their results do not depend on it, bit for bit; the time does where they cost
+/// differently. `in_order`: by index, dealt out in advance. `dynamic`: by index, each lane taking the next one when it is
+/// done with its last. `by_cost`: dynamic in the first phase, whose steps are counted; the other phases after sorting by that
+/// count, so that instances side by side in a warp cost the same (a solver sorts by the last call's counts as long as the
+/// instances stay on the GPU). `automatic`: on the CPU dynamic; on a GPU by_cost for step-size control or events, four phases
+/// or more and instances enough to fill it, else in_order.
+enum class schedule : std::uint8_t { automatic, in_order, dynamic, by_cost };
+constexpr const char* name_of(schedule s) {
+    constexpr const char* names[] = {"automatic", "in_order", "dynamic", "by_cost"};
+    return names[static_cast<int>(s)];
+}
 /// What to do with instances whose state, parameters or times are not finite: refuse the call, or mark them
 /// `invalid_input` and run the others.
 enum class invalid_instances { refuse, mark };
@@ -110,6 +121,7 @@ struct options {
     myriad::advice advice = myriad::advice::on;
     myriad::invalid_instances invalid_instances = myriad::invalid_instances::refuse;
 
+    myriad::schedule schedule = myriad::schedule::automatic;
     std::int64_t block_size = 0;  ///< CUDA threads per block; 0: what fills the multiprocessors best
     std::int64_t chunk_size = 0;  ///< instances on a GPU at a time; 0: what its memory allows
     myriad::shared_placement shared_placement = myriad::shared_placement::automatic;
@@ -243,8 +255,8 @@ void check_options(const options& o) {
             " (must be at least 1): give the largest factor from one step to the next, such as 5");
     require(o.shrink_limit > 0 && o.shrink_limit < 1, "shrink_limit is ", o.shrink_limit,
             " (must be between 0 and 1): give the smallest factor from one step to the next, such as 0.1");
-    require(static_cast<R>(o.shrink_limit) < R(1), "shrink_limit is ", o.shrink_limit,
-            ", which is 1 in single precision: give a smaller value, such as 0.1");
+    require(static_cast<float>(o.shrink_limit) < 1, "shrink_limit is ", o.shrink_limit,
+            ", which is 1 in single precision, that of step-size control: give a smaller value, such as 0.1");
     // Fixed steps are counted in the state's own kind of number, exact up to its mantissa.
     check_count("max_steps", o.max_steps, 1, std::numeric_limits<R>::digits > 31 ? 2'000'000'000 : 16'000'000);
     require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event<Model>), "events has ",
@@ -259,6 +271,8 @@ void check_options(const options& o) {
         require(d >= -1 && d <= 1, "event direction is ", d, " (must be falling, either or rising)");
     }
     check_count("sub_samples", o.sub_samples, 1, 10'000);
+    require(o.schedule <= schedule::by_cost, "schedule is ", static_cast<int>(o.schedule),
+            ", which is none: choose automatic, in_order, dynamic or by_cost");
     check_count("accumulation_limit", o.accumulation_limit, 1, 1'000'000'000);
     require(o.block_size >= 0 && o.block_size <= 1024 && o.block_size % 32 == 0, "block_size is ", o.block_size,
             " (must be a multiple of 32 up to 1024, or 0 to choose by itself)");

@@ -70,7 +70,7 @@ private:
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) set_lane(e.side[j], i, static_cast<R>(at(args.side, j, i)));
         }
-        s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases;
+        s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases - args.first_phase;
     }
 
     MYRIAD_FUNCTION void load_time_domain(int i) {
@@ -235,9 +235,11 @@ private:
             args.phase[index] += 1;
         }
         --s.phases_left[i];
+        if (args.cost != nullptr) args.cost[index] = static_cast<std::uint32_t>(s.turn - s.phase_start[i]);
         if (failed || s.instance_over[i]) {
             args.ended[index] = 1;
             s.phases_left[i] = 0;
+            if (args.cost != nullptr) args.cost[index] = 0;
         }
     }
 

@@ -10,6 +10,7 @@
 
 #include "myriad/backend.hpp"
 #include "myriad/cuda/check.cuh"
+#include "myriad/cuda/cost_order.cuh"
 #include "myriad/cuda/launch.cuh"
 #include "myriad/cuda/resources.cuh"
 
@@ -21,7 +22,7 @@ class chunk_engine final : public engine<Model, R> {
 
 public:
     explicit chunk_engine(const engine_options& options)
-        : device_(options.device), while_starting_(std::in_place, options.device), launcher_(options.device, options) {
+        : device_(options.device), wanted_schedule_(options.schedule), while_starting_(std::in_place, options.device), launcher_(options.device, options) {
         while_starting_.reset();
     }
     ~chunk_engine() override {
@@ -51,6 +52,7 @@ public:
         const current_device here(device_);
         first_ = first;
         count_ = count;
+        costs_known_ = false;
         reserve(host, count);
         arguments from = host;
         const bool fresh_samples = !has_samples(host);
@@ -80,8 +82,12 @@ public:
             array = on_device;
         });
         prepare_sample_times(now.sample);
+        const schedule how = schedule_for(now);
+        if (how == schedule::by_cost) by_cost_.reserve(count_);
+        if (how != schedule::in_order) queue_.reserve(sizeof(unsigned long long));
+        launcher_.note(how);
         MYRIAD_CUDA(cudaEventRecord(begun_.get(), stream_.get()));
-        launcher_.launch(now, stream_.get());
+        launch(now, how);
         MYRIAD_CUDA(cudaEventRecord(done_.get(), stream_.get()));
     }
 
@@ -148,6 +154,39 @@ public:
     }
 
 private:
+    /// What `automatic` means here. Costs differ where steps are chosen or events end phases; sorting pays if most of the work
+    /// is yet to come.
+    schedule schedule_for(const arguments& now) const {
+        if (wanted_schedule_ == schedule::by_cost && count_ > cost_order::most) return schedule::dynamic;
+        if (wanted_schedule_ != schedule::automatic) return wanted_schedule_;
+        constexpr bool costs_differ = is_adaptive<Method> || has_events<Model> || has_after_step<Model>;
+        const bool pays = now.phases >= 4 && count_ > launcher_.least_threads() && count_ <= cost_order::most;
+        return costs_differ && pays ? schedule::by_cost : schedule::in_order;
+    }
+
+    void launch(arguments& now, schedule how) {
+        if (how == schedule::in_order) return launcher_.launch(now, nullptr, stream_.get());
+        if (how == schedule::dynamic) return launch_with_queue(now);
+        now.cost = by_cost_.cost();
+        if (!costs_known_) {
+            const std::int32_t phases = now.phases;
+            now.phases = 1;
+            launch_with_queue(now);
+            now.phases = phases;
+            now.first_phase = 1;
+            costs_known_ = true;
+        }
+        if (now.first_phase == now.phases) return;
+        by_cost_.sort(count_, stream_.get());
+        now.order = by_cost_.order();
+        launcher_.launch(now, nullptr, stream_.get());
+    }
+    void launch_with_queue(const arguments& now) {
+        auto* const queue = static_cast<unsigned long long*>(queue_.data());
+        MYRIAD_CUDA(cudaMemsetAsync(queue, 0, sizeof *queue, stream_.get()));
+        launcher_.launch(now, queue, stream_.get());
+    }
+
     template <class T>
     static std::size_t bytes_of(const T*, std::int64_t values) {
         return static_cast<std::size_t>(values) * sizeof(T);
@@ -239,9 +278,12 @@ private:
     }
 
     int device_;
+    schedule wanted_schedule_;
+    bool costs_known_ = false;  // of the chunk that is on the device
     std::optional<current_device> while_starting_;  // the members below are made on this device
     kernel_launcher<Model, Method, R> launcher_;
-    device_memory memory_, records_, sample_times_, shared_;
+    device_memory memory_, records_, sample_times_, shared_, queue_;
+    cost_order by_cost_;
     pinned_memory pinned_;
     stream stream_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, mark_{event::kind::plain};

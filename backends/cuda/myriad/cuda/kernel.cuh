@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The CUDA kernel: one thread takes one instance through the loop. What varies is only where the threads find the
-// parameters that all instances share.
+// The CUDA kernel: one thread takes one instance through the loop, or one after the other. What varies is only where the
+// threads find the parameters that all instances share.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,28 @@
 
 namespace myriad::inline MYRIAD_TARGET {
 
-/// A supply of one instance, the thread's own.
-class own_instance {
+/// A thread's supply of instances: its own one, by the thread's number; then, if there is a queue, whichever is next.
+class thread_instances {
 public:
-    MYRIAD_FUNCTION explicit own_instance(std::int64_t index) : index_(index) {}
+    __device__ __forceinline__ thread_instances(std::int64_t size, const std::uint32_t* order, unsigned long long* queue)
+        : size_(size), order_(order), queue_(queue) {}
 
-    MYRIAD_FUNCTION std::int64_t next() {
-        const std::int64_t given = index_;
-        index_ = -1;
-        return given;
+    __device__ __forceinline__ std::int64_t next() {
+        std::int64_t place = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+        if (has_begun_) {
+            if (queue_ == nullptr) return -1;
+            place = static_cast<std::int64_t>(gridDim.x) * blockDim.x + static_cast<std::int64_t>(atomicAdd(queue_, 1ull));
+        }
+        has_begun_ = true;
+        if (place >= size_) return -1;
+        return order_ != nullptr ? order_[place] : place;
     }
 
 private:
-    std::int64_t index_;
+    std::int64_t size_;
+    const std::uint32_t* order_;
+    unsigned long long* queue_;
+    bool has_begun_ = false;
 };
 
 template <class Model, class R>
@@ -43,10 +52,12 @@ constexpr int max_block_size() {
 template <class Model, class R, shared_placement placement>
 struct launch_arguments {
     kernel_arguments<Model, R> ensemble;
+    unsigned long long* queue;  // instances taken beyond the first one of each thread; null: there are no others
 };
 template <class Model, class R>
 struct launch_arguments<Model, R, shared_placement::constant_bank> {
     kernel_arguments<Model, R> ensemble;
+    unsigned long long* queue;
     R shared[at_least_one(n_shared<Model>)];
     std::int32_t shared_integer[at_least_one(n_shared_integer<Model>)];
 };
@@ -65,17 +76,15 @@ __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parame
     return {real, integer};
 }
 
-/// Integrates instance `blockIdx.x * blockDim.x + threadIdx.x`.
+/// Integrates the instances that its threads' supplies hand out.
 template <class Model, class Method, class R, shared_placement placement>
 __global__ void __launch_bounds__(max_block_size<Model>())
     integrate_ensemble(const __grid_constant__ launch_arguments<Model, R, placement> arguments) {
     shared_parameters<R> shared = arguments.ensemble.shared;
     if constexpr (placement == shared_placement::constant_bank) shared = {arguments.shared, arguments.shared_integer};
     if constexpr (placement == shared_placement::shared_memory) shared = stage_shared<Model, R>(shared);
-    const std::int64_t index = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
-    if (index >= arguments.ensemble.size) return;
-    own_instance instance(index);
-    integrate<Model, Method, R>(arguments.ensemble, shared, instance);
+    thread_instances instances(arguments.ensemble.size, arguments.ensemble.order, arguments.queue);
+    integrate<Model, Method, R>(arguments.ensemble, shared, instances);
 }
 
 }  // namespace myriad::inline MYRIAD_TARGET

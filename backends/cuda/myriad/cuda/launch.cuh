@@ -48,6 +48,9 @@ public:
     }
 
     const kernel_facts& facts() const { return facts_; }
+    /// Threads that keep every warp scheduler of the GPU busy with one warp.
+    std::int64_t least_threads() const { return std::int64_t{128} * multiprocessors_; }
+    void note(schedule how) { facts_.schedule = how; }
 
     /// Keeps the shared parameters of launches from the constant bank; `shared` is on the host.
     void set_shared(const shared_parameters<R>& shared) {
@@ -57,20 +60,22 @@ public:
         }
     }
 
-    /// Launches the kernel on device pointers.
-    void launch(const kernel_arguments<Model, R>& arguments, cudaStream_t where) {
+    /// Launches the kernel on device pointers. With a queue, which is zero, no more threads than run at the same time.
+    void launch(const kernel_arguments<Model, R>& arguments, unsigned long long* queue, cudaStream_t where) {
         const int block = facts_.block_size = block_for(arguments.size);
-        const auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
+        auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
+        if (queue != nullptr) blocks = std::min(blocks, blocks_at_once(block));
         if (facts_.shared_placement == place::constant_bank) {
             if constexpr (is_compiled<Model, R>(place::constant_bank)) {
                 constants_.ensemble = arguments;
+                constants_.queue = queue;
                 run<place::constant_bank>(constants_, blocks, block, where);
             }
         } else if constexpr (!is_compiled<Model, R>(place::constant_bank)) {
             if (facts_.shared_placement == place::shared_memory) {
-                run<place::shared_memory>({arguments}, blocks, block, where);
+                run<place::shared_memory>({arguments, queue}, blocks, block, where);
             } else {
-                run<place::cache>({arguments}, blocks, block, where);
+                run<place::cache>({arguments, queue}, blocks, block, where);
             }
         }
     }
@@ -134,6 +139,11 @@ private:
         MYRIAD_CUDA(cudaGetDevice(&device));
         MYRIAD_CUDA(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, device));
         chosen_by_user_ = wanted > 0;
+    }
+
+    unsigned blocks_at_once(int block) const {
+        const int per_multiprocessor = std::max(facts_.blocks_per_multiprocessor * chosen_block_ / block, 1);
+        return static_cast<unsigned>(per_multiprocessor * multiprocessors_);
     }
 
     /// Ensembles too small to fill the GPU are spread over all its multiprocessors, one warp per block if need be.

@@ -6,10 +6,12 @@
 #include <atomic>
 #include <cstdint>
 #include <type_traits>
+#include <vector>
 
 #include <omp.h>
 
 #include "myriad/backend.hpp"
+#include "myriad/ensemble/cost_order.hpp"
 #include "myriad/scalar/pack.hpp"
 // the loop comes after the packs, whose functions it calls
 #include "myriad/integrator/integrate.hpp"
@@ -57,12 +59,15 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
     const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
     run_statistics used{0, lanes_of<S>, threads};
     const std::int64_t count = options.count > 0 ? options.count : arguments.size;
-    const std::int64_t chunk = std::clamp<std::int64_t>(count / (64 * threads), 1, 64);
+    // In order, every thread has one chunk of its own.
+    const std::int64_t chunk = options.schedule == schedule::in_order
+                                   ? (count + threads - 1) / threads
+                                   : std::clamp<std::int64_t>(count / (64 * threads), 1, 64);
     std::atomic<std::int64_t> begun{0};
     std::atomic<std::int64_t> turns{0};
 #pragma omp parallel num_threads(threads)
     {
-        chunked_instances instances(begun, count, chunk, options, omp_get_thread_num() == 0);
+        chunked_instances instances(begun, count, chunk, arguments.order, options, omp_get_thread_num() == 0);
         turns += integrate<Model, Method, S>(arguments, arguments.shared, instances);
     }
     used.lane_turns = turns.load() * used.lanes;
@@ -75,7 +80,24 @@ namespace myriad::openmp {
 
 template <class Model, class Method, class R>
 run_statistics run(const kernel_arguments<Model, R>& arguments, const run_options& options) {
-    return run_packs<Model, Method, R, default_batches<Model, Method>()>(arguments, options);
+    constexpr int batches = default_batches<Model, Method>();
+    if (options.schedule != schedule::by_cost || arguments.phases == 1)
+        return run_packs<Model, Method, R, batches>(arguments, options);
+    const std::int64_t count = options.count > 0 ? options.count : arguments.size;
+    std::vector<std::uint32_t> cost(static_cast<std::size_t>(arguments.size));
+    kernel_arguments<Model, R> now = arguments;
+    now.cost = cost.data();
+    now.phases = 1;
+    run_options silent = options;  // progress is that of the main part
+    silent.progress = nullptr;
+    const run_statistics first = run_packs<Model, Method, R, batches>(now, silent);
+    const std::vector<std::uint32_t> order = order_by_cost(cost.data(), count);
+    now = arguments;
+    now.first_phase = 1;
+    now.order = order.data();
+    run_statistics used = run_packs<Model, Method, R, batches>(now, options);
+    used.lane_turns += first.lane_turns;
+    return used;
 }
 
 }  // namespace myriad::openmp
