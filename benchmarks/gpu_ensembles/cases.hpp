@@ -25,6 +25,9 @@ struct benchmark_case {
 std::vector<benchmark_case> lorenz_cases();
 benchmark_case keller_miksis_case();
 benchmark_case relief_valve_case();
+/// Both by methods of higher order.
+std::vector<benchmark_case> method_cases();
+benchmark_case schedule_case();
 
 /// A value that the package of the paper gives, for the same work.
 struct check_value {

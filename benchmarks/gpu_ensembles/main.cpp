@@ -118,6 +118,8 @@ std::vector<benchmark_case> all_cases() {
     std::vector<benchmark_case> all = lorenz_cases();
     all.push_back(keller_miksis_case());
     all.push_back(relief_valve_case());
+    for (benchmark_case& what : method_cases()) all.push_back(std::move(what));
+    all.push_back(schedule_case());
     return all;
 }
 

@@ -59,6 +59,8 @@ struct keller_miksis {
     }
 };
 
+using dormand_prince_8_pi = myriad::controlled<myriad::dormand_prince_8, myriad::pi_control>;
+
 /// The valve of the benchmark on CPUs.
 using relief_valve = cpu_peers::relief_valve_model;
 

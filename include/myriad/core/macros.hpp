@@ -14,6 +14,9 @@
 /// keeping them in registers through the loop.
 #define MYRIAD_FORGET(value) asm volatile("" : "+l"(value))
 #if defined(__CUDA_ARCH__)
+/// Where the threads of a warp that parted ways go on together; all that have not ended come by. The compiler's own points for
+/// that are not enough: threads that took instances one by one were seen to go on alone for good.
+#define MYRIAD_REJOIN __syncwarp()
 /// Unrolls the loop that follows; in device code only up to 32 turns, so that large states stay loops.
 #define MYRIAD_UNROLL _Pragma("unroll 32")
 /// Unrolls the loop of steps that follows, in device code, where constants are loaded anew in every turn.
@@ -21,6 +24,7 @@
 /// Keeps the loop that follows a loop, in device code, whose compiler would write it out.
 #define MYRIAD_ROLLED _Pragma("unroll 1")
 #else
+#define MYRIAD_REJOIN static_cast<void>(0)
 #define MYRIAD_UNROLL
 #define MYRIAD_UNROLL_BY_FOUR
 #define MYRIAD_ROLLED
@@ -33,6 +37,7 @@
 #define MYRIAD_LAMBDA __attribute__((always_inline))
 #define MYRIAD_CONSTANT_MEMORY inline constexpr
 #define MYRIAD_FORGET(value) static_cast<void>(value)
+#define MYRIAD_REJOIN static_cast<void>(0)
 #define MYRIAD_UNROLL_BY_FOUR
 #define MYRIAD_ROLLED
 #if defined(__clang__)

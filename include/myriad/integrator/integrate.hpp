@@ -37,6 +37,7 @@ struct integrator {
     MYRIAD_FUNCTION void run(Source& source, const shared_parameters<R>& shared) {
         clear(shared);
         while (fill_lanes(source)) {
+            MYRIAD_REJOIN;
             if constexpr (runs_freely) run_freely();
             trial_step trial;
             propose_step();

@@ -157,11 +157,11 @@ private:
     /// What `automatic` means here. Costs differ where steps are chosen or events end phases; sorting pays if most of the work
     /// is yet to come.
     schedule schedule_for(const arguments& now) const {
+        if constexpr (!costs_differ<Model, Method>) return schedule::in_order;
         if (wanted_schedule_ == schedule::by_cost && count_ > cost_order::most) return schedule::dynamic;
         if (wanted_schedule_ != schedule::automatic) return wanted_schedule_;
-        constexpr bool costs_differ = is_adaptive<Method> || has_events<Model> || has_after_step<Model>;
         const bool pays = now.phases >= 4 && count_ > launcher_.least_threads() && count_ <= cost_order::most;
-        return costs_differ && pays ? schedule::by_cost : schedule::in_order;
+        return pays ? schedule::by_cost : schedule::in_order;
     }
 
     void launch(arguments& now, schedule how) {

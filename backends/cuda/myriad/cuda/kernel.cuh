@@ -4,15 +4,38 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "myriad/integrator/integrate.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
-/// A thread's supply of instances: its own one, by the thread's number; then, if there is a queue, whichever is next.
-class thread_instances {
+/// Whether instances may differ in cost: where steps are chosen, or something ends phases. Other kernels take them in order.
+template <class Model, class Method>
+inline constexpr bool costs_differ = is_adaptive<Method> || has_events<Model> || has_after_step<Model>;
+
+/// A thread's supply of one instance, by the thread's number.
+class own_instance {
 public:
-    __device__ __forceinline__ thread_instances(std::int64_t size, const std::uint32_t* order, unsigned long long* queue)
+    __device__ __forceinline__ own_instance(const std::int64_t size, const std::uint32_t*, unsigned long long*)
+        : index_(static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x) {
+        if (index_ >= size) index_ = -1;
+    }
+
+    __device__ __forceinline__ std::int64_t next() {
+        const std::int64_t given = index_;
+        index_ = -1;
+        return given;
+    }
+
+private:
+    std::int64_t index_;
+};
+
+/// A supply of that one, and then, if there is a queue, of whichever is next.
+class queued_instances {
+public:
+    __device__ __forceinline__ queued_instances(std::int64_t size, const std::uint32_t* order, unsigned long long* queue)
         : size_(size), order_(order), queue_(queue) {}
 
     __device__ __forceinline__ std::int64_t next() {
@@ -83,7 +106,8 @@ __global__ void __launch_bounds__(max_block_size<Model>())
     shared_parameters<R> shared = arguments.ensemble.shared;
     if constexpr (placement == shared_placement::constant_bank) shared = {arguments.shared, arguments.shared_integer};
     if constexpr (placement == shared_placement::shared_memory) shared = stage_shared<Model, R>(shared);
-    thread_instances instances(arguments.ensemble.size, arguments.ensemble.order, arguments.queue);
+    using supply = std::conditional_t<costs_differ<Model, Method>, queued_instances, own_instance>;
+    supply instances(arguments.ensemble.size, arguments.ensemble.order, arguments.queue);
     integrate<Model, Method, R>(arguments.ensemble, shared, instances);
 }
 
