@@ -85,6 +85,40 @@ TEMPLATE_TEST_CASE("sincos and sincospi err by at most 2.5 and 2 ulps on the dev
     }
 }
 
+TEMPLATE_TEST_CASE("sqrt is rounded correctly on the device, and special values are those of the standard", "", double, float) {
+    using R = TestType;
+    using limits = std::numeric_limits<R>;
+    std::vector<R> x = spread<R>(sizeof(R) == 8 ? -307 : -37, sizeof(R) == 8 ? 308 : 38, true);
+    const std::vector<R> near_one = spread<R>(0.25, 4, false);
+    x.insert(x.end(), near_one.begin(), near_one.end());
+    // squares, and their neighbours, whose roots lie next to where rounding turns
+    for (int k = 1; k < 2000; ++k) {
+        const R square = static_cast<R>(k) * static_cast<R>(k);
+        x.insert(x.end(), {square, std::nextafter(square, limits::max()), std::nextafter(square, R(0))});
+    }
+    if (sizeof(R) == 8)  // float subnormals count as zero on some devices
+        x.insert(x.end(), {limits::denorm_min(), 3 * limits::denorm_min(), limits::min() / 2});
+    x.insert(x.end(), {R(0), -R(0), limits::min(), limits::max()});
+    const auto all = evaluate<R>(x, 1);
+    std::int64_t wrong = 0;
+    for (std::int64_t i = 0; i < all.size(); ++i) {
+        const R got = all.accessory(values::root)[i], wanted = std::sqrt(x[static_cast<std::size_t>(i)]);
+        if (got == wanted && std::signbit(got) == std::signbit(wanted)) continue;
+        ++wrong;
+        CAPTURE(x[static_cast<std::size_t>(i)], got, wanted);
+        CHECK(got == wanted);
+    }
+    CHECK(wrong == 0);
+    CHECK(std::isnan(evaluate<R>({R(-1)}, 1).accessory(values::root)[0]));
+    CHECK(std::isnan(evaluate<R>({-limits::min()}, 1).accessory(values::root)[0]));
+}
+
+TEST_CASE("min and max choose on the device") {
+    const auto all = evaluate<double>({-1, 0, 1, 2, 3}, 1);
+    CHECK((all.accessory(values::smaller) == Eigen::ArrayXd{{-1, 0, 1, 1, 1}}).all());
+    CHECK((all.accessory(values::larger) == Eigen::ArrayXd{{1, 1, 1, 2, 3}}).all());
+}
+
 TEST_CASE("powr of zero, infinity, negative numbers and beyond the range is that of IEEE 754 on the device") {
     const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
     const std::vector<double> x{0, 1e200, 1e-200, std::numeric_limits<double>::denorm_min(), 2};

@@ -9,7 +9,7 @@ namespace function_values {
 struct values {
     enum state { unused, n_state };
     enum parameter { x, y, n_parameter };
-    enum accessory { power, inverse, sine, cosine, sine_pi, cosine_pi, n_accessory };
+    enum accessory { power, inverse, sine, cosine, sine_pi, cosine_pi, root, smaller, larger, n_accessory };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto&) {
@@ -24,6 +24,9 @@ struct values {
         lane.accessory[cosine] = both.cosine;
         lane.accessory[sine_pi] = both_pi.sine;
         lane.accessory[cosine_pi] = both_pi.cosine;
+        lane.accessory[root] = myriad::sqrt(angle);
+        lane.accessory[smaller] = myriad::min(angle, lane.parameter[y]);
+        lane.accessory[larger] = myriad::max(angle, lane.parameter[y]);
     }
 };
 
