@@ -101,6 +101,13 @@ slowest_files() {
         sed -nE 's|CMakeFiles/[^/]*\.dir/||; s|^|   slow to compile: |; 1,3p'
 }
 
+# Registers, stack and spills of every kernel that the tests compile, as they found them.
+kernel_table() {
+    sed -nE 's/^(.*): ([0-9]+) registers, stack ([0-9]+), spill ([0-9]+).*/\2 \3 \4 \1/p' build/cuda/Testing/Temporary/LastTest.log |
+        sed -E 's/myriad:://g; s/, \(shared_placement\)1>$/>/' | sort -u -k4 |
+        awk 'BEGIN { print "   registers stack spill kernel" } { printf "   %9s %5s %5s", $1, $2, $3; $1 = $2 = $3 = ""; print substr($0, 3) }'
+}
+
 # run_tests STEP PRESET [CTEST ARGUMENT...]: sets `result` and adds to the counts.
 run_tests() {
     local step=$1 preset=$2 log=build/$2/tests-$1.log status=0 counts
@@ -133,6 +140,7 @@ run_step() {
             fi
             if build_kernels; then
                 run_tests cuda cuda --label-regex '^(cuda|solver|without_gpu)$'
+                kernel_table
             else
                 failed=$((failed + 1)) result="build failed"
             fi ;;

@@ -5,10 +5,10 @@
 
 #include <concepts>
 #include <cstdint>
-#include <limits>
 #include <type_traits>
 
 #include "myriad/core/macros.hpp"
+#include "myriad/scalar/select.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 namespace detail {
@@ -43,7 +43,7 @@ struct arithmetic<T> {
     static MYRIAD_FUNCTION T reciprocal(T x) { return functions<T>::reciprocal(x); }
     /// Whether x is at least `least` and finite, both positive: by the bits, which are off the floating-point pipe.
     static MYRIAD_FUNCTION bool is_finite_from(T least, T x) {
-        const bits from = to_bits(least), last = to_bits(std::numeric_limits<T>::max());
+        const bits from = to_bits(least), last = to_bits(largest_of<T>);
         return to_bits(x) - from <= last - from;
     }
 };

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "myriad/core/macros.hpp"
 #include "myriad/scalar/arithmetic.hpp"
@@ -87,7 +86,7 @@ struct exponential {
     }
     /// 0 below the range, infinity above it, NaN for NaN.
     static MYRIAD_FUNCTION B within(const B& value, const B& x, T smallest, T largest) {
-        const B bounded = A::select(x <= B(largest), value, x * B(std::numeric_limits<T>::max()));
+        const B bounded = A::select(x <= B(largest), value, x * B(largest_of<T>));
         return A::select(x < B(smallest), B(T(0)), bounded);
     }
     struct reduced {
@@ -132,7 +131,7 @@ struct exponential {
         return f - (half_square - inner);
     }
     static MYRIAD_FUNCTION B finite_or_same(const B& value, const B& x) {
-        return A::select(x <= B(std::numeric_limits<T>::max()), value, x + x);
+        return A::select(x <= B(largest_of<T>), value, x + x);
     }
     static MYRIAD_FUNCTION B log(const B& x) {
         const scaled parts = split(x);
@@ -225,15 +224,15 @@ struct exponential {
         const B logarithm = A::multiply_add(s, B(constants::two_log2_e), small);
         const B of_exponent = y * parts.exponent;
         const B lost = product_error(y, parts.exponent, of_exponent);
-        const mask usual = A::is_finite_from(std::numeric_limits<T>::min(), x);
+        const mask usual = A::is_finite_from(smallest_normal_of<T>, x);
         // of other x only the sign of the power matters
-        const B unusual = A::select(x >= B(T(0)), y * (x - one), B(std::numeric_limits<T>::quiet_NaN()));
+        const B unusual = A::select(x >= B(T(0)), y * (x - one), B(nan_of<T>));
         const B power = A::select(usual, A::multiply_add(y, logarithm, of_exponent), unusual);
         const B shifted = power + B(round_to_whole<T>);
         const B exponent = shifted - B(round_to_whole<T>);
         const B rest = A::multiply_add(y, logarithm, of_exponent - exponent) + lost;
         const B result = scaled_exp(rest * B(constants::ln_2), shifted);
-        const B beyond = A::select(power < B(T(0)), B(T(0)), power * B(std::numeric_limits<T>::infinity()));
+        const B beyond = A::select(power < B(T(0)), B(T(0)), power * B(infinity_of<T>));
         return A::select(usual & (power >= B(constants::exp2_smallest)) & (power <= B(constants::exp2_largest)), result, beyond);
     }
 
@@ -252,7 +251,7 @@ struct exponential {
         const mask even = A::floor(half_y) == half_y;
         const B sign = A::select(even, B(T(0)), x & B(-T(0)));
         const mask usual =
-            (base >= B(std::numeric_limits<T>::min())) & (base <= B(std::numeric_limits<T>::max()));
+            (base >= B(smallest_normal_of<T>)) & (base <= B(largest_of<T>));
         const mask in_range =
             (exponent >= B(constants::exp_smallest)) & (exponent <= B(constants::exp_largest));
         const mask real = (A::floor(y) == y) | (x > B(T(0)));

@@ -36,13 +36,18 @@ using integer_of = typename scalar_traits<S>::integer;
 template <class S>
 inline constexpr int lanes_of = scalar_traits<S>::lanes;
 
-/// Spacing of the numbers next to one, the largest finite number, and infinity.
+/// Spacing of the numbers next to one, the largest finite and the smallest normal number, infinity and NaN; device code may
+/// not call the functions behind them.
 template <class R>
 inline constexpr R epsilon_of = std::numeric_limits<R>::epsilon();
 template <class R>
 inline constexpr R largest_of = std::numeric_limits<R>::max();
 template <class R>
+inline constexpr R smallest_normal_of = std::numeric_limits<R>::min();
+template <class R>
 inline constexpr R infinity_of = std::numeric_limits<R>::infinity();
+template <class R>
+inline constexpr R nan_of = std::numeric_limits<R>::quiet_NaN();
 
 template <class T>
 concept plain_number = std::is_arithmetic_v<T>;

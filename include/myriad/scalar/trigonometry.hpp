@@ -5,7 +5,6 @@
 // reduction serves every lane up to `limit`, and what lies beyond is left to the caller.
 #pragma once
 
-#include <limits>
 
 #include "myriad/core/macros.hpp"
 #include "myriad/scalar/arithmetic.hpp"
@@ -164,7 +163,7 @@ private:
 
     template <class Mask>
     static MYRIAD_FUNCTION void both(angle a, const Mask& within, const B& x, B& sine_of_x, B& cosine_of_x) {
-        a.rest = A::select(within, a.rest, B(std::numeric_limits<T>::quiet_NaN()));
+        a.rest = A::select(within, a.rest, B(nan_of<T>));
         sine_of_x = sine(a, x);
         cosine_of_x = cosine(a);
     }

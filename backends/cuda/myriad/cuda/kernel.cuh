@@ -39,7 +39,9 @@ public:
         : size_(size), order_(order), queue_(queue) {}
 
     __device__ __forceinline__ std::int64_t next() {
-        std::int64_t place = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+        std::int64_t block = blockIdx.x;
+        MYRIAD_FORGET(block);  // else the place waits in registers through the loop
+        std::int64_t place = block * blockDim.x + threadIdx.x;
         if (has_begun_) {
             if (queue_ == nullptr) return -1;
             place = static_cast<std::int64_t>(gridDim.x) * blockDim.x + static_cast<std::int64_t>(atomicAdd(queue_, 1ull));

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// The kernels of the benchmarks, with budgets of what the compiler reports: one that grows past its own lets fewer threads
+// run at the same time (65536 registers per multiprocessor, in steps of eight per thread) or begins to spill.
+//
+// limit: integrate_ensemble<lorenz_with<eight_thirds>, runge_kutta_4> registers 56 stack 0 spill 0
+// limit: integrate_ensemble<lorenz_with<eight_thirds>, tsitouras_5> registers 72 stack 0 spill 0
+// limit: integrate_ensemble<keller_miksis, cash_karp> registers 128 stack 0 spill 0
+// limit: integrate_ensemble<keller_miksis, verner_7> registers 128 stack 0 spill 0
+// limit: integrate_ensemble<keller_miksis, dormand_prince_8> registers 168 stack 0 spill 0
+// limit: integrate_ensemble<relief_valve_model, cash_karp> registers 184 stack 0 spill 0
+// limit: integrate_ensemble<relief_valve_model, verner_7> registers 224 stack 0 spill 0
+// limit: integrate_ensemble<relief_valve_model, dormand_prince_8> registers 224 stack 0 spill 0
+#include <myriad/cuda/kernel.cuh>
+#include <myriad/methods.hpp>
+
+#include "benchmarks/gpu_ensembles/models.hpp"
+
+constexpr auto constant = myriad::shared_placement::constant_bank;
+
+#define KERNEL(Model, Method)                                                                                      \
+    template __global__ void myriad::integrate_ensemble<gpu_ensembles::Model, myriad::Method, double, constant>( \
+        const __grid_constant__ myriad::launch_arguments<gpu_ensembles::Model, double, constant>);
+KERNEL(lorenz, runge_kutta_4)
+KERNEL(lorenz, tsitouras_5)
+KERNEL(keller_miksis, cash_karp)
+KERNEL(keller_miksis, verner_7)
+KERNEL(keller_miksis, dormand_prince_8)
+KERNEL(relief_valve, cash_karp)
+KERNEL(relief_valve, verner_7)
+KERNEL(relief_valve, dormand_prince_8)
