@@ -14,6 +14,15 @@ namespace cpu_peers {
 struct implementation {
     std::string name, group;
     implementation_function run;
+    /// Floating-point instructions per step of one SIMD batch; 0: not counted.
+    double instructions_per_step = 0;
+};
+
+/// What is compared at equal achieved error: who costs least for a given median error.
+struct contest {
+    int phases = 0;  ///< horizon: few, since chaos lets errors grow until they say nothing of the method
+    /// The first is the one that others are compared with. One whose function is null was not built.
+    std::vector<implementation> contenders = {};
 };
 
 struct benchmark_case {
@@ -21,6 +30,7 @@ struct benchmark_case {
     std::string work;        ///< what is integrated, for the header
     std::string difference;  ///< what max_difference compares
     double allowed_difference;
+    double tolerance, event_tolerance;  ///< of the table of times
     int components, parameters;
     std::int64_t instances;
     int phases;
@@ -29,6 +39,7 @@ struct benchmark_case {
     void (*fill)(std::int64_t instances, double* parameters, double* states);
     implementation_function reference;
     std::vector<implementation> implementations;
+    contest at_equal_error = {};
 };
 
 benchmark_case lorenz_rk4();

@@ -40,13 +40,18 @@ std::string tidy(const std::string& text) {
 
 std::string compiler() { return CPU_PEERS_COMPILER; }
 
+std::string instruction_set() {
+    const std::string target = lorenz::instruction_set();  // such as openmp_avx512
+    return target.substr(target.find('_') + 1);
+}
+
 std::vector<std::string> describe_machine() {
     return {"compiler: " CPU_PEERS_COMPILER " (" __VERSION__ ")",
             "flags of Myriad's models and of packs_as_models: " + tidy(CPU_PEERS_MODEL_FLAGS),
             "flags of all peers: " + tidy(CPU_PEERS_PEER_FLAGS) +
                 " (contraction is allowed, so that they are not held back)",
             "CPU: " + cpu_name(),
-            std::string("instruction set of models: ") + lorenz::instruction_set(),
+            "instruction set of models: " + instruction_set(),
             "commit: " + commit()};
 }
 

@@ -1,77 +1,34 @@
 // SPDX-License-Identifier: MIT
 // Times the implementations of a case in turns, so that a disturbance meets all of them, and compares them within each
-// turn. CPU time and not the clock on the wall, which on shared cores shows above all how busy the others are.
+// turn. CPU time, since on shared cores the clock on the wall shows above all how busy the others are.
 #include "measure.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "fma_rate.hpp"
+#include "sweep_data.hpp"
 
 namespace cpu_peers {
 namespace {
 
-/// The arrays of one sweep, with room for the results of one run.
-class sweep_data {
-public:
-    sweep_data(const benchmark_case& what, std::int64_t instances, int phases, int threads)
-        : start_(size(what.components, instances)), parameters_(size(what.parameters, instances)),
-          states_(start_.size()), accepted_(size(1, instances)),
-          endings_(size(1, instances)), sweep_{instances,      phases,           threads,        parameters_.data(),
-                                               states_.data(), accepted_.data(), endings_.data()} {
-        what.fill(instances, parameters_.data(), start_.data());
-    }
-
-    outcome run(implementation_function how) {
-        states_ = start_;
-        std::fill(endings_.begin(), endings_.end(), ending::failed);
-        return how(sweep_);
-    }
-    const std::vector<double>& states() const { return states_; }
-    const std::vector<std::int64_t>& accepted() const { return accepted_; }
-    const std::vector<ending>& endings() const { return endings_; }
-
-private:
-    static std::size_t size(int components, std::int64_t instances) {
-        return static_cast<std::size_t>(components) * static_cast<std::size_t>(instances);
-    }
-
-    std::vector<double> start_, parameters_, states_;
-    std::vector<std::int64_t> accepted_;
-    std::vector<ending> endings_;
-    sweep sweep_;
+/// Of every repetition, for one implementation.
+struct times {
+    std::vector<double> cpu, wall;  // milliseconds
 };
 
-// Enough to cover a sweep's range, few enough for long double.
-constexpr std::int64_t compared_instances = 64;
-
-void compare(const benchmark_case& what, const std::vector<implementation>& chosen, int threads,
-             std::vector<measurement>& results) {
-    sweep_data data(what, compared_instances, what.compared_phases, threads);
-    data.run(what.reference);
-    const std::vector<double> reference = data.states();
-    const std::vector<ending> reference_endings = data.endings();
-    for (std::size_t j = 0; j < chosen.size(); ++j) {
-        data.run(chosen[j].run);
-        double largest = 0;
-        for (std::size_t i = 0; i < compared_instances; ++i) {
-            if (reference_endings[i] != ending::completed || data.endings()[i] != ending::completed) continue;
-            ++results[j].compared;
-            for (std::size_t c = 0; c < static_cast<std::size_t>(what.components); ++c) {
-                const std::size_t at = c * compared_instances + i;
-                const double difference =
-                    std::fabs(data.states()[at] - reference[at]) / std::fmax(1, std::fabs(reference[at]));
-                if (!(difference <= largest) && !std::isnan(largest)) largest = difference;  // NaN stays
-            }
-        }
-        results[j].difference = largest;
-    }
-}
-
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
+std::vector<double> quotients(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> result = a;
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] /= b[i];
+    return result;
 }
 
 }  // namespace
+
+std::int64_t instances_of(const benchmark_case& what, const measure_options& options) {
+    if (options.instances > 0) return options.instances;
+    return std::max(static_cast<std::int64_t>(options.instances_scale * static_cast<double>(what.instances)),
+                    std::int64_t{1});
+}
 
 std::vector<measurement> measure(const benchmark_case& what, const measure_options& options) {
     std::vector<implementation> chosen;
@@ -81,35 +38,51 @@ std::vector<measurement> measure(const benchmark_case& what, const measure_optio
     }
     std::vector<measurement> results(chosen.size());
     if (chosen.empty()) return results;
-    compare(what, chosen, options.threads, results);
+    reference_results reference(what, what.compared_phases, options.threads);
+    const bool counts_instructions =
+        std::any_of(chosen.begin(), chosen.end(), [](const auto& i) { return i.instructions_per_step > 0; });
 
-    const auto instances = std::max(
-        static_cast<std::int64_t>(options.instances_scale * static_cast<double>(what.instances)), std::int64_t{1});
-    sweep_data data(what, instances, what.phases, options.threads);
-    std::vector<std::vector<double>> milliseconds(chosen.size());
+    sweep_data data(what, instances_of(what, options), what.phases, options.threads);
+    std::vector<times> taken(chosen.size());
+    std::vector<double> fma_per_ms;
     for (int repetition = 0; repetition < options.repetitions + 1; ++repetition) {
+        if (counts_instructions && repetition > 0) fma_per_ms.push_back(1e-3 * fma_rate(options.threads));
         for (std::size_t j = 0; j < chosen.size(); ++j) {
             const outcome o = data.run(chosen[j].run);
             if (repetition > 0) {
-                milliseconds[j].push_back(1e3 * o.cpu_seconds / options.threads);
+                taken[j].cpu.push_back(1e3 * o.cpu_seconds / options.threads);
+                taken[j].wall.push_back(1e3 * o.wall_seconds);
                 continue;
             }
             // The first one warms up, and says what was done.
             measurement& m = results[j];
             m.implementation = chosen[j].name;
-            m.instances = instances;
+            m.instances = data.work().instances;
             m.idle_share = o.idle_share;
-            for (const std::int64_t n : data.accepted()) m.accepted_steps += n;
-            for (const ending e : data.endings()) ++m.by_ending[static_cast<int>(e)];
+            m.accepted_steps = data.accepted_steps();
+            for (int e = 0; e < ending_count; ++e) m.by_ending[e] = data.count(static_cast<ending>(e));
         }
     }
     const auto odeint = std::find_if(chosen.begin(), chosen.end(), [](const auto& i) { return i.name == "odeint"; });
     for (std::size_t j = 0; j < chosen.size(); ++j) {
-        results[j].milliseconds = median(milliseconds[j]);
-        if (odeint == chosen.end()) continue;
-        std::vector<double> ratios = milliseconds[static_cast<std::size_t>(odeint - chosen.begin())];
-        for (std::size_t r = 0; r < ratios.size(); ++r) ratios[r] /= milliseconds[j][r];
-        results[j].ratio_to_odeint = median(ratios);
+        measurement& m = results[j];
+        const auto difference = reference.to(chosen[j].run, what.tolerance, what.event_tolerance);
+        m.difference = difference.largest;
+        m.median_difference = difference.median;
+        m.compared = difference.compared;
+        m.milliseconds = median(taken[j].cpu);
+        m.wall_milliseconds = *std::min_element(taken[j].wall.begin(), taken[j].wall.end());
+        if (odeint != chosen.end())
+            m.ratio_to_odeint =
+                median(quotients(taken[static_cast<std::size_t>(odeint - chosen.begin())].cpu, taken[j].cpu));
+        if (chosen[j].instructions_per_step > 0) {
+            const double issued = chosen[j].instructions_per_step * static_cast<double>(m.accepted_steps) /
+                                  (fma_lanes() * options.threads);
+            std::vector<double> milliseconds_of_fma = fma_per_ms;
+            for (double& rate : milliseconds_of_fma) rate = issued / rate;
+            m.fma_per_nanosecond = 1e-6 * median(fma_per_ms);
+            m.fma_peak_share = median(quotients(milliseconds_of_fma, taken[j].cpu));
+        }
     }
     return results;
 }

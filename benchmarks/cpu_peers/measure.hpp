@@ -10,6 +10,7 @@
 namespace cpu_peers {
 
 struct measure_options {
+    std::int64_t instances = 0;  ///< 0: as many as the case has, times instances_scale
     double instances_scale = 1;
     int repetitions = 7;
     int threads = 1;
@@ -22,13 +23,21 @@ struct measurement {
     std::string implementation;
     std::int64_t instances = 0, accepted_steps = 0;
     std::int64_t by_ending[ending_count] = {};
-    double milliseconds = 0;  ///< CPU time over threads, median of the repetitions
+    double milliseconds = 0;       ///< CPU time over threads, median of the repetitions
+    double wall_milliseconds = 0;  ///< by the clock on the wall, shortest of the repetitions
     /// Median of odeint's time over this one's in the same repetition; 0 if odeint did not run.
     double ratio_to_odeint = 0;
     double idle_share = 0;
-    double difference = 0;      ///< largest, see benchmark_case::difference
-    std::int64_t compared = 0;  ///< instances of which it is
+    /// Median of the rate of floating-point instructions over that of fused multiply-adds in the same repetition; 0 where
+    /// the instructions are not counted.
+    double fma_peak_share = 0;
+    double fma_per_nanosecond = 0;                 ///< that rate, of one core and batch; 0 where it was not measured
+    double difference = 0, median_difference = 0;  ///< see benchmark_case::difference
+    std::int64_t compared = 0;                     ///< instances of which it is
 };
+
+/// The number of instances that the options ask for.
+std::int64_t instances_of(const benchmark_case& what, const measure_options& options);
 
 std::vector<measurement> measure(const benchmark_case& what, const measure_options& options);
 

@@ -11,6 +11,12 @@
 
 namespace cpu_peers {
 
+/// `run`, or null if the kernel it needs was not compiled.
+template <class Method, class Model>
+implementation_function if_compiled(implementation_function run) {
+    return myriad::host::if_defined(&myriad::openmp::run<Model, Method, double>) != nullptr ? run : nullptr;
+}
+
 /// Integrates the sweep with the given options; `prepare(ensemble)` sets what is not a state or parameter.
 template <class Method, class Model, class Prepare>
 outcome run_myriad(const sweep& work, const myriad::options& options, Prepare&& prepare) {

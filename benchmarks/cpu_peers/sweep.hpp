@@ -18,6 +18,8 @@ struct sweep {
     std::int64_t instances;
     int phases;
     int threads;
+    double tolerance;        ///< of steps, relative and absolute; 0: fixed steps
+    double event_tolerance;  ///< of event functions; 0: there are none
     const double* parameters;
     double* states;          ///< at the start on entry, at the end on return
     std::int64_t* accepted;  ///< accepted steps of each instance
@@ -27,26 +29,30 @@ struct sweep {
 /// What a run took: the integration alone, without the setting up of arrays.
 struct outcome {
     double cpu_seconds = 0;  ///< of all threads
-    int lanes = 1;           ///< instances side by side in one thread
-    double idle_share = 0;   ///< share of lane steps in which the lane had nothing to do
+    double wall_seconds = 0;
+    int lanes = 1;          ///< instances side by side in one thread
+    double idle_share = 0;  ///< share of lane steps in which the lane had nothing to do
 };
 
 using implementation_function = outcome (*)(const sweep&);
 
-/// CPU time of this process in seconds.
-inline double cpu_clock() {
+/// Seconds on one of the system's clocks.
+inline double seconds_of(clockid_t clock) {
     timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    clock_gettime(clock, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
+/// CPU time of this process in seconds.
+inline double cpu_clock() { return seconds_of(CLOCK_PROCESS_CPUTIME_ID); }
 
 /// Times the integration.
 template <class Integration>
 outcome timed(Integration&& integration) {
-    const double begin = cpu_clock();
+    const double cpu_begin = cpu_clock(), wall_begin = seconds_of(CLOCK_MONOTONIC);
     integration();
     outcome result;
-    result.cpu_seconds = cpu_clock() - begin;
+    result.cpu_seconds = cpu_clock() - cpu_begin;
+    result.wall_seconds = seconds_of(CLOCK_MONOTONIC) - wall_begin;
     return result;
 }
 

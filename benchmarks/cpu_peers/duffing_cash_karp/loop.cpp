@@ -12,7 +12,8 @@ outcome run_loop(const sweep& work) {
             slopes(t, u[0], u[1], k, du[0], du[1]);
         };
         for (int phase = 0; phase < work.phases; ++phase)
-            if (!integrate_phase(f, y, period, tolerance, accepted, [](const double(&)[n]) {})) return ending::failed;
+            if (!integrate_phase(f, y, period, work.tolerance, accepted, [](const double(&)[n]) {}))
+                return ending::failed;
         return ending::completed;
     });
 }

@@ -6,7 +6,7 @@
 
 namespace cpu_peers {
 
-/// x' = v, v' = x - x^3 - k v + B cos t.
+/// x' = v, v' = x (1 - x^2) - k v + B cos t.
 struct duffing_model {
     enum state { x, v, n_state };
     enum parameter { k, n_parameter };
@@ -14,8 +14,9 @@ struct duffing_model {
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
-        using myriad::cos;
-        return {y[v], y[x] - y[x] * y[x] * y[x] - p[k] * y[v] + p.shared[B] * cos(t)};
+        using myriad::cos, myriad::fma;
+        const R linear = fma(-p[k], y[v], p.shared[B] * cos(t));
+        return {y[v], fma(y[x], fma(-y[x], y[x], R(1)), linear)};
     }
 };
 

@@ -34,7 +34,7 @@ using state_of = std::array<T, n>;
 }  // namespace
 
 outcome run_odeint(const sweep& work) {
-    return run<boost::numeric::odeint::runge_kutta_cash_karp54<state_of<double>>>(work, tolerance);
+    return run<boost::numeric::odeint::runge_kutta_cash_karp54<state_of<double>>>(work, work.tolerance);
 }
 outcome run_reference(const sweep& work) {
     using R = long double;

@@ -11,17 +11,20 @@
 namespace cpu_peers {
 namespace {
 
+using dormand_prince_8_pi = myriad::controlled<myriad::dormand_prince_8, myriad::pi_control>;
+
 using model = keller_miksis_model;
 
+template <class Method>
 outcome run(const sweep& work) {
-    return run_myriad<myriad::cash_karp, model>(work,
-                                                {.phases = work.phases,
-                                                 .relative_tolerance = keller_miksis::tolerance,
-                                                 .absolute_tolerance = keller_miksis::tolerance,
-                                                 .step = keller_miksis::first_step,
-                                                 .minimum_step = 1e-12,
-                                                 .maximum_step = 1e6},
-                                                [](auto& instances) { instances.time_domain(0, 1); });
+    return run_myriad<Method, model>(work,
+                                     {.phases = work.phases,
+                                      .relative_tolerance = work.tolerance,
+                                      .absolute_tolerance = work.tolerance,
+                                      .step = keller_miksis::first_step,
+                                      .minimum_step = 1e-12,
+                                      .maximum_step = 1e6},
+                                     [](auto& instances) { instances.time_domain(0, 1); });
 }
 
 // Water at 25 C, a gas bubble of 10 um, driven at f1 with 1.5 bar and not driven at f2. SI units.
@@ -67,6 +70,8 @@ benchmark_case keller_miksis_cash_karp() {
                 "logspace(20 kHz, 1000 kHz, N) at 1.5 bar, start (1, 0), largest radius kept",
             .difference = "state after 1 phase (some instances are chaotic), against order 8 in long double at 1e-16",
             .allowed_difference = 1e-8,
+            .tolerance = 1e-10,
+            .event_tolerance = 0,
             .components = 2,
             .parameters = model::n_parameter,
             .instances = 1024,
@@ -76,7 +81,15 @@ benchmark_case keller_miksis_cash_karp() {
             .reference = keller_miksis::run_reference,
             .implementations = {{"odeint", "odeint", keller_miksis::run_odeint},
                                 {"loop", "loop", keller_miksis::run_loop},
-                                {"myriad", "myriad", run}}};
+                                {"myriad", "myriad", run<myriad::cash_karp>}},
+            .at_equal_error = {
+                .phases = 2,
+                .contenders = {{"cvode_adams", "cvode", keller_miksis::run_cvode},
+                               {"odeint", "odeint", keller_miksis::run_odeint},
+                               {"cash_karp", "myriad", run<myriad::cash_karp>},
+                               {"verner_7", "myriad", if_compiled<myriad::verner_7, model>(run<myriad::verner_7>)},
+                               {"dormand_prince_8 pi", "myriad",
+                                if_compiled<dormand_prince_8_pi, model>(run<dormand_prince_8_pi>)}}}};
 }
 
 }  // namespace cpu_peers

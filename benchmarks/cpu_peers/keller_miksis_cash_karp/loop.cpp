@@ -15,7 +15,7 @@ outcome run_loop(const sweep& work) {
         for (int phase = 0; phase < work.phases; ++phase) {
             double y_max = y[0];
             const auto keep_largest = [&](const double(&u)[n]) { y_max = std::max(y_max, u[0]); };
-            if (!integrate_phase(f, y, 1.0, tolerance, accepted, keep_largest)) return ending::failed;
+            if (!integrate_phase(f, y, 1.0, work.tolerance, accepted, keep_largest)) return ending::failed;
             asm volatile("" : : "x"(y_max));  // a result, though nothing here reads it
         }
         return ending::completed;

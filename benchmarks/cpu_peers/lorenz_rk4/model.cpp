@@ -14,6 +14,5 @@ MYRIAD_INSTANTIATE(cpu_peers::lorenz_model, myriad::runge_kutta_4)
 namespace cpu_peers::lorenz {
 
 const char* instruction_set() { return CPU_PEERS_TEXT(MYRIAD_TARGET); }
-int lanes_per_batch() { return myriad::pack<double, 1>::lanes; }
 
 }  // namespace cpu_peers::lorenz

@@ -21,7 +21,9 @@ struct point {
 
 template <class S>
 MYRIAD_FUNCTION point<S> slopes_at(const point<S>& u, const S& p) {
-    return {{10.0 * (u.c[1] - u.c[0]), p * u.c[0] - u.c[1] - u.c[0] * u.c[2], u.c[0] * u.c[1] - 8.0 / 3.0 * u.c[2]}};
+    using myriad::fma;
+    return {
+        {S(10.0) * (u.c[1] - u.c[0]), fma(u.c[0], p - u.c[2], -u.c[1]), fma(u.c[0], u.c[1], -(S(8.0 / 3) * u.c[2]))}};
 }
 
 template <class S>

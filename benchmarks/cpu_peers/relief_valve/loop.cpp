@@ -9,7 +9,7 @@ namespace {
 
 /// The root of the cubic Hermite polynomial through value and slope at both ends of a step, in fractions of the step, for
 /// g_start > 0 > g_end; 0, for no guess, where g_start is not positive.
-double hermite_root(double g_start, double d_start, double g_end, double d_end, double h) {
+double hermite_root(double g_start, double d_start, double g_end, double d_end, double h, double allowed) {
     if (!(g_start > 0)) return 0;
     double low = 0, high = 1, g_low = g_start, g_high = g_end, x = 0;
     int same_side = 0;
@@ -18,7 +18,7 @@ double hermite_root(double g_start, double d_start, double g_end, double d_end, 
         const double rest = 1 - x, difference = g_end - g_start;
         const double g =
             g_start + x * (difference - rest * (h * (x * d_end - rest * d_start) + (1 - 2 * x) * difference));
-        if (std::fabs(g) <= 0.1 * event_tolerance) break;
+        if (std::fabs(g) <= 0.1 * allowed) break;
         if (g < 0) {
             if (same_side < 0) g_low *= 0.5;
             high = x;
@@ -44,7 +44,7 @@ outcome run_loop(const sweep& work) {
         };
         ending how = ending::completed;
         valve<double> memory;
-        memory.begin(y, event_tolerance);
+        memory.begin(y, work.event_tolerance);
         trial<n> step;
         for (int phase = 0; phase < work.phases && how == ending::completed; ++phase) {
             memory.begin_phase(y);
@@ -52,7 +52,7 @@ outcome run_loop(const sweep& work) {
             f(0, y, step.k[0]);
             for (std::int64_t trials = 0;; ++trials) {
                 if (trials == most_steps) return ending::failed;
-                const double worst = cash_karp_step(f, 0, h, y, tolerance, step), tried = h;
+                const double worst = cash_karp_step(f, 0, h, y, work.tolerance, step), tried = h;
                 h = next_step(tried, worst, worst <= 1);
                 if (!(worst <= 1)) {
                     if (tried <= 1e-12) return ending::failed;
@@ -64,13 +64,13 @@ outcome run_loop(const sweep& work) {
                     double length = tried, end[n], first[n] = {};
                     for (int e = 0; e < events; ++e) {
                         if (!crossed[e]) continue;
-                        const double guess =
-                            tried * hermite_root(value(e, y), slope(e, y), value(e, step.y), slope(e, step.y), tried);
+                        const double guess = tried * hermite_root(value(e, y), slope(e, y), value(e, step.y),
+                                                                  slope(e, step.y), tried, work.event_tolerance);
                         trial<n> again;
                         for (int c = 0; c < n; ++c) again.k[0][c] = step.k[0][c];
-                        const double found = locate(e, y, tried, value(e, step.y), event_tolerance, guess, end,
+                        const double found = locate(e, y, tried, value(e, step.y), work.event_tolerance, guess, end,
                                                     [&](double l, double* to) {
-                                                        cash_karp_step(f, 0, l, y, tolerance, again);
+                                                        cash_karp_step(f, 0, l, y, work.tolerance, again);
                                                         for (int c = 0; c < n; ++c) to[c] = again.y[c];
                                                     });
                         if (found >= length) continue;

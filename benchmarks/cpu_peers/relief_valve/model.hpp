@@ -15,12 +15,14 @@ struct relief_valve_model {
     enum accessory { lowest, highest, rest_at, n_accessory };
     enum integer_accessory { steps_at_rest, n_integer_accessory };
     enum event { section, seat, n_event };
+    static constexpr int pack_batches =
+        2;  // not one, the default with events, since there are hundreds of steps between them
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
-        using myriad::sqrt;
-        return {s[v], -p.shared[kappa] * s[v] - (s[y] + p.shared[delta]) + s[u],
-                p.shared[beta] * (p[q] - s[y] * sqrt(s[u]))};
+        using myriad::fma, myriad::sqrt;
+        return {s[v], fma(R(-p.shared[kappa]), s[v], s[u] - (s[y] + p.shared[delta])),
+                p.shared[beta] * fma(-s[y], sqrt(s[u]), p[q])};
     }
 
     template <class R>

@@ -67,7 +67,8 @@ outcome run(const sweep& work, T allowed, T allowed_event) {
 }  // namespace
 
 outcome run_odeint(const sweep& work) {
-    return run<boost::numeric::odeint::runge_kutta_cash_karp54<state_of<double>>>(work, tolerance, event_tolerance);
+    return run<boost::numeric::odeint::runge_kutta_cash_karp54<state_of<double>>>(work, work.tolerance,
+                                                                                  work.event_tolerance);
 }
 outcome run_reference(const sweep& work) {
     using R = long double;

@@ -20,10 +20,11 @@
 namespace myriad::inline MYRIAD_TARGET {
 
 /// SIMD batches per pack: enough independent work to hide the latency of a batch, few enough that the stages of a large
-/// state stay in the first-level cache, and one where events make lanes part ways at every step. Measured on a Zen 4
-/// with AVX-512, CPU time per step and instance: Lorenz with RK4 2.8, 1.6, 1.5, 1.9 ns with 1 to 4 batches; Duffing with
-/// Cash-Karp 14.1, 13.2, 13.5, 14.0 without and 18.8, 20.6, -, 34.6 with two events. A model may choose by `static
-/// constexpr int pack_batches = 2;`.
+/// state stay in the first-level cache, and one where events make lanes part ways at every step. Measured on a Zen 4, CPU
+/// time per step and instance with 1, 2, 3, 4 batches: Lorenz with RK4 -, 1.35, 1.46, 1.40 ns with AVX-512, whose 32
+/// registers hold two batches, and -, 2.38, 2.10, 2.07 with AVX2, whose 16 hold none; Duffing with Cash-Karp 14.1, 13.2,
+/// 13.5, 14.0 and 23.7, 19.0, 18.6, -; with events every 5 steps 46, 48, 76, - and 63, 71, 78, -. A model may choose by
+/// `static constexpr int pack_batches = 2;`, as where events are rare.
 template <class Model, class Method>
 constexpr int default_batches() {
 #if defined(MYRIAD_SCALAR_LANES)  // with sanitizers, which take minutes to compile the kernel of a pack
@@ -38,7 +39,8 @@ constexpr int default_batches() {
     } else if constexpr (has_events<Model> || n_state<Model> > 16) {
         return 1;
     } else {
-        return is_adaptive<Method> || n_state<Model> > 4 ? 2 : 3;
+        constexpr bool two_fit = pack<double, 1>::lanes == 8;  // AVX-512
+        return two_fit || is_adaptive<Method> || n_state<Model> > 4 ? 2 : 3;
     }
 }
 

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+// Compiles the kernels of the Keller-Miksis bubble for methods of orders seven and eight.
+#include <myriad/instantiate.hpp>
+
+#include "model.hpp"
+
+using dormand_prince_8_pi = myriad::controlled<myriad::dormand_prince_8, myriad::pi_control>;
+MYRIAD_INSTANTIATE(cpu_peers::keller_miksis_model, myriad::verner_7, dormand_prince_8_pi)
