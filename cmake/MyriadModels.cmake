@@ -4,7 +4,8 @@
 include_guard(GLOBAL)
 include(CheckCXXCompilerFlag)
 
-set(MYRIAD_ARCH "" CACHE STRING "Instruction set of model files, as in -march=; empty: the compiler's own")
+set(MYRIAD_ARCH "" CACHE STRING
+    "Instruction set of model files, as in -march=, or a list of which a program takes what the CPU has; empty: the compiler's own")
 # Off by default: with contraction at the compiler's choice, results were measured to depend on the pack size. The library
 # writes its fused multiply-adds itself.
 set(MYRIAD_FP_CONTRACT off CACHE STRING
@@ -12,21 +13,26 @@ set(MYRIAD_FP_CONTRACT off CACHE STRING
 set_property(CACHE MYRIAD_ARCH PROPERTY STRINGS native x86-64-v4 x86-64-v3 x86-64-v2)
 set_property(CACHE MYRIAD_FP_CONTRACT PROPERTY STRINGS fast off)
 
-# Sets the variable `result` to the flags of model files. -ffast-math is never among them: NaN must stay visible.
+# myriad_model_flags(<result> [<arch>]) sets the variable to the flags of model files for one instruction set, by default the
+# last of MYRIAD_ARCH. -ffast-math is never among them: NaN must stay visible.
 function(myriad_model_flags result)
+    set(arch ${ARGN})
+    if(NOT arch AND MYRIAD_ARCH)
+        list(GET MYRIAD_ARCH -1 arch)
+    endif()
     if(NOT MYRIAD_FP_CONTRACT MATCHES "^(fast|off)$")
         message(FATAL_ERROR "MYRIAD_FP_CONTRACT is ${MYRIAD_FP_CONTRACT} (must be fast or off)")
     endif()
     set(flags)
-    if(MYRIAD_ARCH)
-        string(MAKE_C_IDENTIFIER "MYRIAD_HAS_ARCH_${MYRIAD_ARCH}" check)
+    if(arch)
+        string(MAKE_C_IDENTIFIER "MYRIAD_HAS_ARCH_${arch}" check)
         set(CMAKE_REQUIRED_QUIET ON)
-        check_cxx_compiler_flag("-march=${MYRIAD_ARCH}" ${check})
+        check_cxx_compiler_flag("-march=${arch}" ${check})
         if(NOT ${check})
             message(FATAL_ERROR "MYRIAD_ARCH is ${MYRIAD_ARCH}, and ${CMAKE_CXX_COMPILER} does not know "
-                                "-march=${MYRIAD_ARCH}: give native, x86-64-v3, or nothing for the compiler's own instruction set")
+                                "-march=${arch}: give native, x86-64-v3, or nothing for the compiler's own instruction set")
         endif()
-        list(APPEND flags "-march=${MYRIAD_ARCH}")
+        list(APPEND flags "-march=${arch}")
     else()
         get_property(told GLOBAL PROPERTY MYRIAD_ARCH_TOLD)
         if(NOT told)
@@ -47,8 +53,26 @@ function(myriad_model_flags result)
     set(${result} "${flags}" PARENT_SCOPE)
 endfunction()
 
+# Adds one file with the flags for one instruction set.
+function(myriad_add_model_source target file arch)
+    target_sources(${target} PRIVATE "${file}")
+    get_property(known SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY MYRIAD_MODEL)
+    if(known)
+        return()
+    endif()
+    myriad_model_flags(flags ${arch})
+    set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY MYRIAD_MODEL TRUE)
+    set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS ${flags})
+    # A unity file or a precompiled header would mix these flags with those of other files.
+    set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+    set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
 # myriad_add_models(<target> [CPU_ONLY] <file>...) adds model files, those with MYRIAD_INSTANTIATE, to a target of the same
-# directory. Such a file includes no Eigen. Links myriad::openmp and, if the CUDA backend is on, compiles each file for GPUs
+# directory. Such a file includes no Eigen. With a list of instruction sets in MYRIAD_ARCH it is compiled once for each, and
+# may then define nothing but the kernels; of x86-64-v2, -v3 and -v4 each at most once, since two that are told apart by
+# nothing else (SSE2, AVX2, AVX-512) would define the same kernel. Only with optimisation are the standard library's inline
+# functions inlined, of which the linker else keeps one for all instruction sets. Links myriad::openmp and, if the CUDA backend is on, compiles each file for GPUs
 # too, unless CPU_ONLY is given, and links myriad::cuda.
 function(myriad_add_models target)
     cmake_parse_arguments(PARSE_ARGV 1 arg "CPU_ONLY" "" "")
@@ -61,23 +85,23 @@ function(myriad_add_models target)
         message(FATAL_ERROR "myriad_add_models(${target} ...): a linker takes no models out of a static library, as nothing "
                             "refers to them by name; make ${target} an OBJECT library, or add the models to the program")
     endif()
-    myriad_model_flags(flags)
+    list(LENGTH MYRIAD_ARCH sets)
     foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
         cmake_path(ABSOLUTE_PATH file NORMALIZE)
-        target_sources(${target} PRIVATE "${file}")
-        get_property(known SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY MYRIAD_MODEL)
-        if(NOT known)
-            set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY MYRIAD_MODEL TRUE)
-            set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS ${flags})
-            # A unity file or a precompiled header would mix these flags with those of other files.
-            set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
-            set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
+        string(SHA256 unique "${file}")
+        string(SUBSTRING "${unique}" 0 8 unique)
+        cmake_path(GET file STEM stem)
+        if(sets LESS_EQUAL 1)
+            myriad_add_model_source(${target} "${file}" "${MYRIAD_ARCH}")
+        else()
+            foreach(arch IN LISTS MYRIAD_ARCH)
+                set(twin "${CMAKE_CURRENT_BINARY_DIR}/${arch}/${stem}_${unique}.cpp")
+                file(CONFIGURE OUTPUT "${twin}" CONTENT "#include \"${file}\"\n")
+                myriad_add_model_source(${target} "${twin}" "${arch}")
+            endforeach()
         endif()
         if(TARGET myriad::cuda AND NOT arg_CPU_ONLY)
             # The same file once more, under a name that nvcc takes for CUDA.
-            string(SHA256 unique "${file}")
-            string(SUBSTRING "${unique}" 0 8 unique)
-            cmake_path(GET file STEM stem)
             set(twin "${CMAKE_CURRENT_BINARY_DIR}/cuda/${stem}_${unique}.cu")
             file(CONFIGURE OUTPUT "${twin}" CONTENT "#include \"${file}\"\n")
             target_sources(${target} PRIVATE "${twin}")

@@ -14,7 +14,7 @@ namespace cpu_peers {
 /// `run`, or null if the kernel it needs was not compiled.
 template <class Method, class Model>
 implementation_function if_compiled(implementation_function run) {
-    return myriad::host::if_defined(&myriad::openmp::run<Model, Method, double>) != nullptr ? run : nullptr;
+    return myriad::host::choose_cpu_kernel<Model, Method, double>().run != nullptr ? run : nullptr;
 }
 
 /// Integrates the sweep with the given options; `prepare(ensemble)` sets what is not a state or parameter.

@@ -29,13 +29,21 @@ struct run_statistics {
     std::int64_t lane_turns = 0;  ///< trial steps times lanes, those of idle lanes included; 0: not counted
     int lanes = 1;                ///< instances side by side in one pack, or CUDA threads in a block
     int threads = 1;
+    const char* instruction_set = "";  ///< of the CPU's kernel
 };
 
 // Everything below is weak, so that a program that names a method nobody instantiated, or a backend it was built without,
 // gets a readable error instead of one by the linker.
 namespace openmp {
-template <class Model, class Method, class R>
-__attribute__((weak)) run_statistics run(const kernel_arguments<Model, R>& arguments, const run_options& options);
+
+/// What a kernel for CPUs was compiled for; in the order of preference, the best first.
+enum class instruction_set { avx512, avx2, sse2, generic };
+
+/// The kernel for one instruction set. A program may hold several (MYRIAD_ARCH as a list), of which host code chooses
+/// one by the CPU it runs on: cpu_kernel.hpp.
+template <instruction_set set, class Model, class Method, class R>
+__attribute__((weak)) run_statistics run_on(const kernel_arguments<Model, R>& arguments, const run_options& options);
+
 }  // namespace openmp
 
 namespace cuda {

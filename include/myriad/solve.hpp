@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "myriad/backend.hpp"
+#include "myriad/cpu_kernel.hpp"
 #include "myriad/device.hpp"
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/notes.hpp"
@@ -41,12 +42,14 @@ struct progress_relay {
 template <class Model, class Method, class R>
 void require_kernel(const device& where) {
     const bool on_cpu = where.which() == device::kind::cpu;
-    require(on_cpu ? if_defined(&openmp::run<Model, Method, R>) != nullptr
-                   : if_defined(&cuda::make_engine<Model, Method, R>) != nullptr,
-            "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
-            ", or its source file was not linked: write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for "
-            "float) in the model's source file, and name that file in myriad_add_models for the program or an OBJECT library",
-            on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
+    require(
+        on_cpu ? choose_cpu_kernel<Model, Method, R>().run != nullptr
+               : if_defined(&cuda::make_engine<Model, Method, R>) != nullptr,
+        "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
+        ", or its source file was not linked: write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for "
+        "float) in the model's source file, and name that file in myriad_add_models for the program or an OBJECT "
+        "library",
+        on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
 }
 
 template <class Model, class Method, class R>
@@ -61,6 +64,7 @@ void solve_on_cpu(const device& where, const options& o, const kernel_arguments<
     result.lane_turns = used.lane_turns;
     result.lanes = used.lanes;
     result.threads = used.threads;
+    result.instruction_set = used.instruction_set;
 }
 
 /// Chunk by chunk on two engines in turns, so that one's transfers overlap the other's work.

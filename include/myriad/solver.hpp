@@ -140,6 +140,7 @@ public:
         report_.lane_turns += used.lane_turns;
         report_.lanes = used.lanes;
         report_.threads = used.threads;
+        report_.instruction_set = used.instruction_set;
     }
 
     /// Brings everything back that a kernel may have written.

@@ -48,12 +48,16 @@
 #define MYRIAD_BACKEND_HEADER "myriad/openmp/run.hpp"
 #if defined(__AVX512F__)
 #define MYRIAD_TARGET openmp_avx512
+#define MYRIAD_INSTRUCTION_SET avx512
 #elif defined(__AVX2__)
 #define MYRIAD_TARGET openmp_avx2
+#define MYRIAD_INSTRUCTION_SET avx2
 #elif defined(__x86_64__)
 #define MYRIAD_TARGET openmp_sse2
+#define MYRIAD_INSTRUCTION_SET sse2
 #else
 #define MYRIAD_TARGET openmp_generic
+#define MYRIAD_INSTRUCTION_SET generic
 #endif
 #endif
 

@@ -124,10 +124,11 @@ struct report {
     std::int64_t lane_turns = 0;  ///< trial steps times lanes, idle lanes included
     int lanes = 1;
     int threads = 1;
-    double seconds = 0;         ///< wall time of the integration, on a GPU with its transfers
-    std::string device;         ///< its name, as in device::parse
-    cuda::kernel_facts kernel;  ///< on a GPU: the kernel's registers, block size and shared parameters
-    double kernel_seconds = 0;  ///< on a GPU: time of the kernels alone
+    double seconds = 0;           ///< wall time of the integration, on a GPU with its transfers
+    std::string device;           ///< its name, as in device::parse
+    std::string instruction_set;  ///< on the CPU: avx512, avx2, sse2 or generic, as the kernel was compiled for
+    cuda::kernel_facts kernel;    ///< on a GPU: the kernel's registers, block size and shared parameters
+    double kernel_seconds = 0;    ///< on a GPU: time of the kernels alone
     phase_records<Model, R> records;
     std::vector<std::string> notes;  ///< remarks: tolerances that were raised; by `solve`, that the equations are stiff
 
@@ -164,7 +165,7 @@ std::ostream& operator<<(std::ostream& out, const report<Model, R>& r) {
             << " threads per block, shared parameters in " << name_of(r.kernel.shared_placement) << '\n';
     } else {
         out << r.threads << (r.threads == 1 ? " thread of " : " threads of ") << r.lanes
-            << (r.lanes == 1 ? " lane" : " lanes") << '\n';
+            << (r.lanes == 1 ? " lane, " : " lanes, ") << r.instruction_set << '\n';
     }
     if (r.accepted_steps + r.rejected_steps > 0) {
         out << r.accepted_steps << " steps accepted, " << r.rejected_steps << " rejected, " << r.located_steps
@@ -192,7 +193,8 @@ std::array<std::int64_t, 4> counted_work(const ensemble<Model, R>& e) {
 }
 
 template <class Model, class R>
-void set_work(report<Model, R>& r, const std::array<std::int64_t, 4>& before, const std::array<std::int64_t, 4>& after) {
+void set_work(report<Model, R>& r, const std::array<std::int64_t, 4>& before,
+              const std::array<std::int64_t, 4>& after) {
     r.accepted_steps = after[0] - before[0];
     r.rejected_steps = after[1] - before[1];
     r.located_steps = after[2] - before[2];

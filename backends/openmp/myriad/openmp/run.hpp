@@ -6,12 +6,10 @@
 #include <atomic>
 #include <cstdint>
 #include <type_traits>
-#include <vector>
 
 #include <omp.h>
 
 #include "myriad/backend.hpp"
-#include "myriad/ensemble/cost_order.hpp"
 #include "myriad/scalar/pack.hpp"
 // the loop comes after the packs, whose functions it calls
 #include "myriad/integrator/integrate.hpp"
@@ -80,31 +78,17 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
 
 namespace myriad::openmp {
 
-template <class Model, class Method, class R>
-run_statistics run(const kernel_arguments<Model, R>& arguments, const run_options& options) {
-    constexpr int batches = default_batches<Model, Method>();
-    if (options.schedule != schedule::by_cost || arguments.phases == 1)
-        return run_packs<Model, Method, R, batches>(arguments, options);
-    const std::int64_t count = options.count > 0 ? options.count : arguments.size;
-    std::vector<std::uint32_t> cost(static_cast<std::size_t>(arguments.size));
-    kernel_arguments<Model, R> now = arguments;
-    now.cost = cost.data();
-    now.phases = 1;
-    run_options silent = options;  // progress is that of the main part
-    silent.progress = nullptr;
-    const run_statistics first = run_packs<Model, Method, R, batches>(now, silent);
-    const std::vector<std::uint32_t> order = order_by_cost(cost.data(), count);
-    now = arguments;
-    now.first_phase = 1;
-    now.order = order.data();
-    run_statistics used = run_packs<Model, Method, R, batches>(now, options);
-    used.lane_turns += first.lane_turns;
-    return used;
+template <instruction_set set, class Model, class Method, class R>
+run_statistics run_on(const kernel_arguments<Model, R>& arguments, const run_options& options) {
+    static_assert(set == instruction_set::MYRIAD_INSTRUCTION_SET,
+                  "kernels for another instruction set need other flags");
+    return run_packs<Model, Method, R, default_batches<Model, Method>()>(arguments, options);
 }
 
 }  // namespace myriad::openmp
 
 /// Compiles the kernel of one model, method and real type.
-#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                                 \
-    template myriad::run_statistics myriad::openmp::run<Model, Method, R>(const myriad::kernel_arguments<Model, R>&, \
-                                                                          const myriad::run_options&);
+#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                   \
+    template myriad::run_statistics                                                                    \
+    myriad::openmp::run_on<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET, Model, Method, R>( \
+        const myriad::kernel_arguments<Model, R>&, const myriad::run_options&);

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// Chooses, among the instruction sets that a kernel was compiled for, the best that the CPU has. Host code, which is itself
+// compiled for every CPU.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "myriad/backend.hpp"
+#include "myriad/core/error.hpp"
+#include "myriad/ensemble/cost_order.hpp"
+
+namespace myriad {
+namespace host {
+
+inline constexpr openmp::instruction_set all_instruction_sets[] = {
+    openmp::instruction_set::avx512, openmp::instruction_set::avx2, openmp::instruction_set::sse2,
+    openmp::instruction_set::generic};
+
+inline const char* name_of(openmp::instruction_set set) {
+    switch (set) {
+        case openmp::instruction_set::avx512:
+            return "avx512";
+        case openmp::instruction_set::avx2:
+            return "avx2";
+        case openmp::instruction_set::sse2:
+            return "sse2";
+        case openmp::instruction_set::generic:
+            return "generic";
+    }
+    return "unknown";
+}
+
+/// Whether this CPU has what compilers use with -march=x86-64-v4, -v3 or for any x86-64.
+inline bool cpu_has(openmp::instruction_set set) {
+#if defined(__x86_64__)
+    switch (set) {
+        case openmp::instruction_set::avx512:
+            return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                   __builtin_cpu_supports("avx512vl");
+        case openmp::instruction_set::avx2:
+            return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
+        default:
+            return true;
+    }
+#else
+    return set == openmp::instruction_set::generic;
+#endif
+}
+
+/// A kernel for the CPU; null where it was not compiled.
+template <class Model, class R>
+struct cpu_kernel {
+    run_statistics (*run)(const kernel_arguments<Model, R>&, const run_options&) = nullptr;
+    openmp::instruction_set set = openmp::instruction_set::generic;
+};
+
+template <class Model, class Method, class R>
+cpu_kernel<Model, R> compiled_kernel(openmp::instruction_set set) {
+    using openmp::instruction_set, openmp::run_on;
+    switch (set) {
+        case instruction_set::avx512:
+            return {if_defined(&run_on<instruction_set::avx512, Model, Method, R>), set};
+        case instruction_set::avx2:
+            return {if_defined(&run_on<instruction_set::avx2, Model, Method, R>), set};
+        case instruction_set::sse2:
+            return {if_defined(&run_on<instruction_set::sse2, Model, Method, R>), set};
+        case instruction_set::generic:
+            return {if_defined(&run_on<instruction_set::generic, Model, Method, R>), set};
+    }
+    return {};
+}
+
+/// The kernel for the best instruction set that it was compiled for and that the CPU has, or for the one that the
+/// environment variable MYRIAD_INSTRUCTION_SET names; null where it was compiled for none. Throws `error` if the CPU has
+/// none of them, or not the one named.
+template <class Model, class Method, class R>
+cpu_kernel<Model, R> choose_cpu_kernel() {
+    const char* const variable = std::getenv("MYRIAD_INSTRUCTION_SET");
+    const std::string_view wanted = variable == nullptr ? "" : variable;
+    std::string compiled_for;
+    for (const openmp::instruction_set set : all_instruction_sets) {
+        const auto kernel = compiled_kernel<Model, Method, R>(set);
+        if (kernel.run == nullptr) continue;
+        if (cpu_has(set) && (wanted.empty() || wanted == name_of(set))) return kernel;
+        compiled_for += (compiled_for.empty() ? "" : ", ") + std::string(name_of(set));
+    }
+    require(compiled_for.empty() || wanted.empty(), "MYRIAD_INSTRUCTION_SET is \"", wanted,
+            "\", but this model was compiled for ", compiled_for,
+            ": name one of these that the CPU has, or unset the variable");
+    require(compiled_for.empty(), "this model was compiled for ", compiled_for,
+            ", which this CPU lacks: build it with -DMYRIAD_ARCH=x86-64-v2, or for several instruction sets with "
+            "-DMYRIAD_ARCH=\"x86-64-v2;x86-64-v3;x86-64-v4\"");
+    return {};
+}
+
+/// The first phase counts the steps, by which the instances are sorted for the others.
+template <class Model, class R>
+run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_arguments<Model, R>& arguments,
+                           const run_options& options) {
+    const std::int64_t count = options.count > 0 ? options.count : arguments.size;
+    std::vector<std::uint32_t> cost(static_cast<std::size_t>(arguments.size));
+    kernel_arguments<Model, R> now = arguments;
+    now.cost = cost.data();
+    now.phases = 1;
+    run_options silent = options;  // progress is that of the main part
+    silent.progress = nullptr;
+    const run_statistics first = kernel.run(now, silent);
+    const std::vector<std::uint32_t> order = order_by_cost(cost.data(), count);
+    now = arguments;
+    now.first_phase = 1;
+    now.order = order.data();
+    run_statistics used = kernel.run(now, options);
+    used.lane_turns += first.lane_turns;
+    return used;
+}
+
+}  // namespace host
+
+namespace openmp {
+
+/// Integrates on the CPU with the kernel that fits it. Throws `error` if there is none.
+template <class Model, class Method, class R>
+run_statistics run(const kernel_arguments<Model, R>& arguments, const run_options& options) {
+    const auto kernel = host::choose_cpu_kernel<Model, Method, R>();
+    require(kernel.run != nullptr, "this model was not instantiated for this method and real type");
+    run_statistics used{};
+    if (options.schedule == schedule::by_cost && arguments.phases > 1) {
+        used = host::run_by_cost(kernel, arguments, options);
+    } else {
+        used = kernel.run(arguments, options);
+    }
+    used.instruction_set = host::name_of(kernel.set);
+    return used;
+}
+
+}  // namespace openmp
+}  // namespace myriad
