@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "myriad/core/weak.hpp"
 #include "myriad/ensemble/arrays.hpp"
 #include "myriad/ensemble/view.hpp"
 #include "myriad/integrator/options.hpp"
@@ -64,7 +65,12 @@ struct engine_options {
     std::int64_t block_size = 0;
     myriad::shared_placement shared_placement = myriad::shared_placement::automatic;
     myriad::schedule schedule = myriad::schedule::automatic;
+
+    bool operator==(const engine_options&) const = default;
 };
+
+/// Whether instances have a past: what they need to go on is copied, or is known to be zero.
+enum class past { none, kept };
 
 /// Work on a device that other work may wait for.
 class work {
@@ -79,8 +85,9 @@ protected:
     work& operator=(const work&) = delete;
 };
 
-/// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and copies
-/// from or to host memory that is not pinned, return before the work is done; work is done in the order in which it was asked for.
+/// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and uploads
+/// of host memory that is not pinned, return before the work is done; work is done in the order in which it was asked for.
+/// What is downloaded is on the host after the next `wait`, not before.
 /// Arguments are the host's, for the whole ensemble; `first` and `count` say which of its instances are meant. Errors of
 /// the device, those of earlier work too, are thrown as `error`.
 template <class Model, class R>
@@ -89,7 +96,8 @@ public:
     /// Takes device memory for chunks of `count` instances; larger ones take more when they come.
     virtual void reserve(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
     /// Copies the chunk to the device.
-    virtual void upload(const kernel_arguments<Model, R>& host, std::int64_t first, std::int64_t count) = 0;
+    virtual void upload(const kernel_arguments<Model, R>& host, std::int64_t first, std::int64_t count,
+                        past of_instances = past::kept) = 0;
     /// Integrates the chunk that was uploaded last, with the options of `host`, which must have asked for the same arrays.
     virtual void integrate(const kernel_arguments<Model, R>& host) = 0;
     /// Copies what kernels write back to where it was uploaded from, and the records of the last call to `host.record`.
@@ -103,9 +111,20 @@ public:
     virtual bool idle() = 0;
     /// Seconds that the device took for the last `integrate`; waits for it.
     virtual double kernel_seconds() = 0;
+    /// The same as two times on a clock that some engine of the device has started.
+    struct interval {
+        double begin, end;
+    };
+    virtual interval kernel_interval(void* clock) = 0;
+    virtual void* start_clock() = 0;
     virtual kernel_facts facts() const = 0;
+    /// Instances that the device works on at the same time.
+    virtual std::int64_t full_load() const = 0;
     /// Instances of an ensemble for which the device has memory left, when it holds `bytes` for each.
     virtual std::int64_t affordable(std::int64_t bytes) const = 0;
+
+    /// Gives device memory back, if there is more than `bytes`. Nothing may be under way.
+    virtual void shrink(std::size_t bytes) = 0;
 
     /// Keeps host memory in place, so that it is copied at full speed and while the host does other things. Pinned until
     /// the engine is destroyed, which must happen before the memory is released.
@@ -127,15 +146,4 @@ struct device_facts {
 __attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_none);
 
 }  // namespace cuda
-
-namespace host {
-
-/// A weak function's address, which is null if nobody has defined it. (g++ takes the address of any function for not null.)
-template <class F>
-F* if_defined(F* function) {
-    asm("" : "+r"(function));
-    return function;
-}
-
-}  // namespace host
 }  // namespace myriad

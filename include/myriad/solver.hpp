@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -99,16 +98,28 @@ public:
                         "downloaded: "
                         "restart() and set the instances anew, or download() all of them before");
         }
-        uploaded_ = false;
-        host::check_inputs<Method>(instances_, options_, wanted);
+        uploaded_ = downloadable_ = false;
+        host::check_uses<Method>(instances_, options_, wanted);
+        host::input_check<Model, R> data(instances_, options_, wanted);
+        const auto copy = [&] {
+            if (engine_)
+                engine_->upload(prepared_.get(), 0, wanted,
+                                instances_.untouched() ? cuda::past::none : cuda::past::kept);
+        };
+        if (options_.invalid_instances == invalid_instances::mark) {  // which changes what is copied
+            data.run();
+            copy();
+        } else {
+            copy();
+            data.run();  // while it is copied
+        }
         count_ = wanted;
-        uploaded_ = true;
+        uploaded_ = downloadable_ = true;
         integrated_ = false;
         results_ = held::on_host;
         report_ = {};
         prepared_.records().clear();
-        work_before_ = host::counted_work(instances_);
-        if (engine_) engine_->upload(prepared_.get(), 0, count_);
+        work_before_ = counted_work();
     }
 
     /// Integrates `phases` phases (0: as the options say). With records, the number is that of the options; they are those
@@ -120,10 +131,11 @@ public:
         require(phases == 0 || phases == options_.phases || (options_.record.empty() && options_.samples.empty()),
                 "integrate asks for ", phases, " phases, but records and samples were laid out for ", options_.phases,
                 ": give that number in the options");
-        check_options<Model, Method, R>(with_phases(phases));
+        if (phases != 0) host::check_count("phases", phases, 1, 1'000'000'000);
         auto& arguments = prepared_.get();
         arguments.phases = static_cast<std::int32_t>(phases > 0 ? phases : options_.phases);
         results_ = held::on_device;
+        instances_.touch();
         if (engine_) {
             engine_->integrate(arguments);
             integrated_ = true;
@@ -145,14 +157,14 @@ public:
 
     /// Brings everything back that a kernel may have written.
     void download() {
-        require(count_ > 0, "download has no instances to bring: call upload first");
+        require(downloadable_, "download has no instances to bring: call upload first");
         if (engine_) engine_->download(prepared_.get());
         results_ = held::on_host;
     }
     /// The same, but of states and accessories only those that are named. What the others on the host are then is not said:
     /// their old values on a GPU, the new ones on the CPU.
     void download(const components& chosen) {
-        require(count_ > 0, "download has no instances to bring: call upload first");
+        require(downloadable_, "download has no instances to bring: call upload first");
         host::check_components("components.states", chosen.states, n_state<Model>);
         host::check_components("components.accessories", chosen.accessories, n_accessory<Model>);
         host::check_components("components.integer_accessories", chosen.integer_accessories,
@@ -182,7 +194,7 @@ public:
     const myriad::report<Model, R>& report() {
         wait();
         require_results("report");
-        if (options_.counting == counting::on) host::set_work(report_, work_before_, host::counted_work(instances_));
+        host::set_work(report_, work_before_, counted_work());
         host::summarise(instances_, report_, count_);
         report_.notes.clear();
         host::note_tolerances(report_, options_);
@@ -218,10 +230,8 @@ private:
         check_options<Model, Method, R>(o);
         return o;
     }
-    options with_phases(std::int64_t phases) const {
-        options o = options_;
-        if (phases != 0) o.phases = phases;
-        return o;
+    host::work_count counted_work() const {
+        return options_.counting == counting::on ? host::counted_work(instances_, count_) : host::work_count{};
     }
     static bool is_chosen(void* context, array_kind kind, std::int64_t component) {
         const auto& chosen = *static_cast<const components*>(context);
@@ -245,10 +255,11 @@ private:
     ensemble<Model, R> instances_;
     host::prepared_arguments<Model, Method, R> prepared_;
     std::int64_t count_ = 0;
-    bool uploaded_ = false;  // and not handed out to be set since
+    bool uploaded_ = false;      // and not handed out to be set since
+    bool downloadable_ = false;  // uploaded, and found fine
     held results_ = held::on_host;
     bool integrated_ = false;
-    std::array<std::int64_t, 4> work_before_{};
+    host::work_count work_before_{};
     myriad::report<Model, R> report_;
     std::unique_ptr<cuda::engine<Model, R>> engine_;  // destroyed first: it holds on to the memory above
 };

@@ -632,7 +632,7 @@ TEST_CASE("unknown devices are refused by name, with those there are", "[input]"
     for (const char* name : {"gpu", "", "CPU", "cpus", "auto:2", " cpu"}) {
         INFO(name);
         refused([&] { device::parse(name); },
-                {("\"" + std::string(name) + "\"").c_str(), "unknown", "auto, cpu, cpu:THREADS, cuda or cuda:NUMBER"});
+                {myriad::message('"', name, '"').c_str(), "unknown", "auto, cpu, cpu:THREADS, cuda or cuda:NUMBER"});
     }
     refused([] { device::parse("cpu:5000"); }, {"5000 threads", "must be from 1 to 4096"});
     refused([] { device::cpu(-1); }, {"-1 threads", "must be from 1 to 4096", "0 for all cores"});

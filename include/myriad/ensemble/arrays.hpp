@@ -13,7 +13,8 @@ namespace myriad {
 /// How a kernel uses an array.
 enum class array_access { read, update, write };
 
-/// What an array holds, for those who want only some.
+/// What an array holds, for those who want only some. Bookkeeping is what an instance needs to go on in a later call, and all
+/// zero before the first.
 enum class array_kind { state, accessory, integer_accessory, input, bookkeeping, samples, records };
 
 namespace host {
@@ -29,7 +30,8 @@ constexpr int columns_in(const std::int16_t (&column)[n]) {
 
 /// Calls `visit(pointer, components, access, kind)` for every array of the ensemble that is there, the pointer by
 /// reference: component c of instance i is at `pointer[c * size + i]`. A model's parameters and times are written only if it
-/// declares so.
+/// declares so. In this order, so that what is only read, what is set and read, and bookkeeping are side by side where a
+/// backend copies them.
 template <class Model, class R, class Visit>
 void for_each_array(kernel_arguments<Model, R>& a, Visit&& visit) {
     using access = array_access;
@@ -38,11 +40,13 @@ void for_each_array(kernel_arguments<Model, R>& a, Visit&& visit) {
         if (array != nullptr && components > 0) visit(array, components, how, what);
     };
     constexpr access times = writes_time_domain<Model> ? access::update : access::read;
-    visit_array(a.state, n_state<Model>, access::update, kind::state);
-    visit_array(a.parameter, n_parameter<Model>, writes_parameters<Model> ? access::update : access::read, kind::input);
+    const std::int64_t capacity = a.sample.capacity;
+    visit_array(a.tolerance_scale, 1, access::read, kind::input);
+    visit_array(a.sample.own_times, a.sample.count, access::read, kind::input);
     visit_array(a.t_begin, 1, times, kind::input);
     visit_array(a.t_end, 1, times, kind::input);
-    visit_array(a.tolerance_scale, 1, access::read, kind::input);
+    visit_array(a.parameter, n_parameter<Model>, writes_parameters<Model> ? access::update : access::read, kind::input);
+    visit_array(a.state, n_state<Model>, access::update, kind::state);
     visit_array(a.accessory, n_accessory<Model>, access::update, kind::accessory);
     visit_array(a.integer_accessory, n_integer_accessory<Model>, access::update, kind::integer_accessory);
     visit_array(a.t, 1, access::update, kind::bookkeeping);
@@ -55,8 +59,6 @@ void for_each_array(kernel_arguments<Model, R>& a, Visit&& visit) {
     visit_array(a.rejected, 1, access::update, kind::bookkeeping);
     visit_array(a.located, 1, access::update, kind::bookkeeping);
     visit_array(a.evaluations, 1, access::update, kind::bookkeeping);
-    const std::int64_t capacity = a.sample.capacity;
-    visit_array(a.sample.own_times, a.sample.count, access::read, kind::input);
     visit_array(a.sample.stored, 1, access::update, kind::samples);
     visit_array(a.sample.time, capacity, access::update, kind::samples);
     visit_array(a.sample.values, host::columns_in(a.sample.column) * capacity, access::update, kind::samples);

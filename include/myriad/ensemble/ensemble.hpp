@@ -72,8 +72,8 @@ public:
     const_map<R> t_end() const { return view(time_, 1, "time"); }
     /// The same domain for all instances.
     void time_domain(R t_begin_of_all, R t_end_of_all) {
-        t_begin() = t_begin_of_all;
-        t_end() = t_end_of_all;
+        time_.fill_component(0, t_begin_of_all);
+        time_.fill_component(1, t_end_of_all);
     }
 
     /// What both tolerances are multiplied by in each instance, one until set, for a method
@@ -122,6 +122,8 @@ public:
     /// Forgets all phases done: the next call starts every instance afresh, failed ones too, from the states, parameters
     /// and accessories it then has.
     void restart() {
+        if (untouched_) return;
+        untouched_ = true;
         h_next_.fill(R(0));
         phase_.fill(0);
         side_.fill(0);
@@ -130,6 +132,12 @@ public:
         if (counted()) work_.fill(0);
         samples_.clear();
     }
+
+    /// Whether no instance was integrated or marked since the construction or the last restart: what is kept from call to
+    /// call (steps, phases, sides, counters, samples) is zero.
+    bool untouched() const { return untouched_; }
+    /// To be called before a kernel is.
+    void touch() { untouched_ = false; }
 
     /// Fills in the pointers of a kernel's arguments.
     void describe(kernel_arguments<Model, R>& a, counting count) {
@@ -168,6 +176,7 @@ public:
 
     /// Marks an instance as one that cannot be integrated.
     void mark_invalid(std::int64_t i) {
+        touch();
         ended_.data()[i] = 1;
         status_.data()[i] = status::invalid_input;
     }
@@ -236,6 +245,7 @@ private:
     component_array<myriad::status> status_{1, size_, status::not_started};
     trajectory_samples<Model, R> samples_;
     component_array<std::int64_t> work_;  // allocated by the first call that counts
+    bool untouched_ = true;
 };
 
 }  // namespace myriad

@@ -3,13 +3,13 @@
 // library's own and not Eigen's, whose alignment depends on compiler flags.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <new>
 
 #include "myriad/core/error.hpp"
+#include "myriad/core/parallel.hpp"
 
 namespace myriad {
 
@@ -20,9 +20,8 @@ public:
     component_array() = default;
     component_array(int components, std::int64_t size, T value)
         : size_(size), data_(allocate(static_cast<std::size_t>(components), static_cast<std::size_t>(size))) {
-        std::uninitialized_fill_n(data_.get(), static_cast<std::size_t>(components) * static_cast<std::size_t>(size),
-                                  value);
         components_ = components;
+        fill(value);
     }
     component_array(component_array&&) noexcept = default;
     component_array& operator=(component_array&&) noexcept = default;
@@ -34,11 +33,17 @@ public:
     T* component(int c) { return data_.get() + c * size_; }
     const T* component(int c) const { return data_.get() + c * size_; }
     /// Sets every value.
-    void fill(T value) {
-        std::fill_n(data_.get(), static_cast<std::size_t>(components_) * static_cast<std::size_t>(size_), value);
-    }
+    void fill(T value) { fill(data_.get(), components_ * size_, value); }
+    /// Sets every value of component c.
+    void fill_component(int c, T value) { fill(component(c), size_, value); }
 
 private:
+    static void fill(T* values, std::int64_t count, T value) {
+        constexpr std::int64_t grain = 262'144 / static_cast<std::int64_t>(sizeof(T));
+        host::in_parallel(count, grain, [=](std::int64_t first, std::int64_t last) {
+            std::uninitialized_fill(values + first, values + last, value);
+        });
+    }
     static constexpr std::align_val_t alignment{4096};
     struct release {
         void operator()(T* p) const { ::operator delete(p, alignment); }

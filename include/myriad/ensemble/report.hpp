@@ -2,9 +2,13 @@
 // What a call to solve did: how the instances ended, the first that failed with its inputs, the work, the records.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <limits>
+#include <mutex>
+#include <numeric>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -13,6 +17,7 @@
 
 #include "myriad/backend.hpp"
 #include "myriad/core/error.hpp"
+#include "myriad/core/parallel.hpp"
 #include "myriad/core/status.hpp"
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/layout.hpp"
@@ -185,42 +190,99 @@ std::ostream& operator<<(std::ostream& out, const report<Model, R>& r) {
 
 namespace host {
 
-/// The work that an ensemble has counted so far: accepted, rejected and located steps, evaluations.
+/// Accepted, rejected and located steps, evaluations.
+using work_count = std::array<std::int64_t, 4>;
+
+/// The work that `count` instances from `first` on have counted so far.
 template <class Model, class R>
-std::array<std::int64_t, 4> counted_work(const ensemble<Model, R>& e) {
-    if (!e.counted()) return {};
-    return {e.accepted_steps().sum(), e.rejected_steps().sum(), e.located_steps().sum(), e.rhs_evaluations().sum()};
+work_count counted_work(const ensemble<Model, R>& e, std::int64_t count, std::int64_t first = 0) {
+    work_count work{};
+    if (!e.counted() || e.untouched()) return work;
+    const std::int64_t* const counters[] = {e.accepted_steps().data(), e.rejected_steps().data(), e.located_steps().data(),
+                                            e.rhs_evaluations().data()};
+    for (std::size_t c = 0; c < work.size(); ++c) {
+        std::atomic<std::int64_t> sum{0};
+        const std::int64_t* const values = counters[c] + first;
+        in_parallel(count, 32'768, [&](std::int64_t begin, std::int64_t end) {
+            sum += std::accumulate(values + begin, values + end, std::int64_t{0});
+        });
+        work[c] = sum;
+    }
+    return work;
 }
 
 template <class Model, class R>
-void set_work(report<Model, R>& r, const std::array<std::int64_t, 4>& before,
-              const std::array<std::int64_t, 4>& after) {
+void set_work(report<Model, R>& r, const work_count& before, const work_count& after) {
     r.accepted_steps = after[0] - before[0];
     r.rejected_steps = after[1] - before[1];
     r.located_steps = after[2] - before[2];
     r.rhs_evaluations = after[3] - before[3];
 }
 
+/// How many of `count` statuses there are of each, and the first failure or `count`.
+class status_count_of {
+public:
+    status_count_of(const status* statuses, std::int64_t count) : first_failed_(count) {
+        in_parallel(count, 262'144, [&](std::int64_t begin, std::int64_t end) { add(statuses, begin, end); });
+    }
+    const std::array<std::int64_t, status_count>& by_status() const { return by_status_; }
+    std::int64_t first_failed() const { return first_failed_; }
+
+private:
+    void add(const status* statuses, std::int64_t begin, std::int64_t end) {
+        std::array<std::int64_t, status_count> found{};
+        std::int64_t failed = end;
+        for (constexpr std::int64_t block = 4096; begin < end; begin += block) {
+            const std::int64_t size = std::min(block, end - begin);
+            // Most blocks are all the same, which vector instructions see at once.
+            const status first = statuses[begin];
+            bool all_same = true;
+            for (std::int64_t i = begin; i < begin + size; ++i) all_same &= statuses[i] == first;
+            if (all_same && !is_failure(first)) {
+                found[static_cast<std::size_t>(first)] += size;
+                continue;
+            }
+            for (std::int64_t i = begin; i < begin + size; ++i) {
+                ++found[static_cast<std::size_t>(statuses[i])];
+                if (is_failure(statuses[i])) failed = std::min(failed, i);
+            }
+        }
+        const std::lock_guard lock(mutex_);
+        for (std::size_t s = 0; s < found.size(); ++s) by_status_[s] += found[s];
+        if (failed < end) first_failed_ = std::min(first_failed_, failed);
+    }
+
+    std::mutex mutex_;
+    std::array<std::int64_t, status_count> by_status_{};
+    std::int64_t first_failed_;
+};
+
+/// Adds how instances [first, first + count) ended; called in the order of instances.
+template <class Model, class R>
+void add_summary(const ensemble<Model, R>& e, report<Model, R>& r, std::int64_t first, std::int64_t count) {
+    const status_count_of found(e.statuses() + first, count);
+    r.instances += count;
+    for (std::size_t s = 0; s < r.by_status.size(); ++s) r.by_status[s] += found.by_status()[s];
+    if (r.first_failed >= 0 || found.first_failed() == count) return;
+    const std::int64_t i = first + found.first_failed();
+    r.first_failed = i;
+    r.first_status = e.statuses()[i];
+    r.first_t = e.t()[i];
+    r.first_t_begin = e.t_begin()[i];
+    r.first_t_end = e.t_end()[i];
+    r.first_state.clear();
+    r.first_parameter.clear();
+    for (int c = 0; c < n_state<Model>; ++c) r.first_state.push_back(e.state(c)[i]);
+    for (int c = 0; c < n_parameter<Model>; ++c) r.first_parameter.push_back(e.parameter(c)[i]);
+}
+
 /// How the first `count` instances ended.
 template <class Model, class R>
 void summarise(const ensemble<Model, R>& e, report<Model, R>& r, std::int64_t count) {
-    r.instances = count;
+    r.instances = 0;
     r.by_status = {};
     r.first_failed = -1;
-    for (std::int64_t i = 0; i < count; ++i) {
-        const status s = e.statuses()[i];
-        ++r.by_status[static_cast<std::size_t>(s)];
-        if (r.first_failed >= 0 || !is_failure(s)) continue;
-        r.first_failed = i;
-        r.first_status = s;
-        r.first_t = e.t()[i];
-        r.first_t_begin = e.t_begin()[i];
-        r.first_t_end = e.t_end()[i];
-        r.first_state.clear();
-        r.first_parameter.clear();
-        for (int c = 0; c < n_state<Model>; ++c) r.first_state.push_back(e.state(c)[i]);
-        for (int c = 0; c < n_parameter<Model>; ++c) r.first_parameter.push_back(e.parameter(c)[i]);
-    }
+    add_summary(e, r, 0, count);
 }
 
 }  // namespace host

@@ -58,6 +58,7 @@ public:
         describe_options<Model, Method, R>(arguments_, o);
         if constexpr (scales_tolerances<Method>) instances.tolerance_scale();  // there from now on
         instances.describe(arguments_, o.counting);
+        if constexpr (Method::embedded_order == 0) arguments_.h_next = nullptr;  // fixed steps leave none to go on with
         records_.describe(arguments_.record);
         if (o.samples.empty()) return;
         auto& sample = arguments_.sample;
@@ -90,18 +91,25 @@ private:
     component_array<R> own_times_;  // sample times of each instance
 };
 
-/// Checks the first `count` instances of an ensemble against the options; throws `error`.
+/// Checks what the options say of the first `count` instances: sample times, event tolerances, and a model's own Jacobian in
+/// builds with assertions. Throws `error`.
 template <class Method, class Model, class R>
-void check_inputs(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
+void check_uses(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
     require(scales_tolerances<Method> || !instances.scales_tolerances(),
             "tolerance_scale is set, but the method has the same tolerances for all instances: use controlled<Method, "
             "tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE");
     check_sample_times(instances, o, count);
     check_event_tolerances(instances, o, count);
-    input_check<Model, R>(instances, o, count).run();
 #if !defined(NDEBUG)
     check_jacobian(instances, count);
 #endif
+}
+
+/// Checks the first `count` instances of an ensemble against the options, and their data; throws `error`.
+template <class Method, class Model, class R>
+void check_inputs(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
+    check_uses<Method>(instances, o, count);
+    input_check<Model, R>(instances, o, count).run();
 }
 
 }  // namespace myriad::host

@@ -7,12 +7,14 @@
 #include <cstdint>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "myriad/backend.hpp"
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/cost_order.cuh"
 #include "myriad/cuda/launch.cuh"
 #include "myriad/cuda/resources.cuh"
+#include "myriad/cuda/transfers.cuh"
 
 namespace myriad::cuda {
 
@@ -48,23 +50,36 @@ public:
         grow(records_, bytes_for(count, records), per_instance);
     }
 
-    void upload(const arguments& host, std::int64_t first, std::int64_t count) override {
+    void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances) override {
         const current_device here(device_);
+        staged_.finish_download();
         first_ = first;
         count_ = count;
         costs_known_ = false;
         reserve(host, count);
         arguments from = host;
-        const bool fresh_samples = !has_samples(host);
+        const bool fresh_samples = of_instances == past::none || !has_samples(host);
+        row_list list;
+        std::byte *zeros = nullptr, *end_of_zeros = nullptr;
         walk(from, [&](auto*& source, auto* target, std::int64_t components, array_access, array_kind kind) {
-            if (kind == array_kind::samples && fresh_samples) {
+            if (kind == array_kind::bookkeeping && of_instances == past::none) {
+                auto* const begin = reinterpret_cast<std::byte*>(target);
+                if (zeros == nullptr) zeros = begin;
+                end_of_zeros = begin + bytes_of(target, components * count_);
+            } else if (kind == array_kind::samples && fresh_samples) {
                 clear(target, components);
             } else {
-                for_each_row(source, host.size, target, components, [&](const auto* s, auto* t, std::size_t size) {
-                    MYRIAD_CUDA(cudaMemcpyAsync(t, s, size, cudaMemcpyHostToDevice, stream_.get()));
-                });
+                list.push_back(rows_of(source, host.size, target, components));
             }
         });
+        // They lie side by side.
+        if (zeros != nullptr)
+            MYRIAD_CUDA(cudaMemsetAsync(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
+        if (copies_directly(list)) {
+            copy_directly(list, cudaMemcpyHostToDevice, stream_.get());
+        } else {
+            staged_.upload(list, stream_.get());
+        }
         launcher_.set_shared(host.shared);
         if (launcher_.facts().shared_placement != shared_placement::constant_bank) upload_shared(host.shared);
     }
@@ -72,6 +87,7 @@ public:
     void integrate(const arguments& host) override {
         require(count_ > 0, "nothing was uploaded yet: call upload before integrate");
         const current_device here(device_);
+        staged_.finish_asking();
         arguments now = host;
         walk(now, [](auto*& array, auto* on_device, std::int64_t, array_access, array_kind) { array = on_device; });
         now.size = count_;
@@ -94,26 +110,38 @@ public:
     void download(const arguments& host, bool (*wanted)(void*, array_kind, std::int64_t), void* context) override {
         require(count_ > 0, "nothing was uploaded yet: call upload before download");
         const current_device here(device_);
-        const auto copy = [&](auto* target, std::int64_t size, const auto* source, std::int64_t components,
-                              array_kind kind) {
-            const auto one = [&](auto* t, const auto* s, std::size_t bytes) {
-                MYRIAD_CUDA(cudaMemcpyAsync(t, s, bytes, cudaMemcpyDeviceToHost, stream_.get()));
-            };
-            if (wanted == nullptr && count_ == size) return one(target, source, bytes_of(source, components * count_));
+        row_list list;
+        const auto add = [&](auto* target, auto* source, std::int64_t components, array_kind kind) {
+            if (wanted == nullptr) {
+                list.push_back(rows_of(target, host.size, source, components));
+                return;
+            }
             for (std::int64_t c = 0; c < components; ++c)
-                if (wanted == nullptr || wanted(context, kind, c))
-                    one(target + c * size + first_, source + c * count_, bytes_of(source, count_));
+                if (wanted(context, kind, c))
+                    list.push_back(rows_of(target + c * host.size, host.size, source + c * count_, 1));
         };
         arguments to = host;
         walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access access, array_kind kind) {
-            if (access != array_access::read) copy(target, host.size, source, components, kind);
+            if (access != array_access::read) add(target, source, components, kind);
         });
+        row_list of_arrays = std::exchange(list, {});
         walk_records(to.record, [&](auto*& target, auto* source, std::int64_t components, array_access,
-                                    array_kind kind) { copy(target, host.size, source, components, kind); });
+                                    array_kind kind) { add(target, source, components, kind); });
+        // Records have memory of their own, which may be before that of the arrays.
+        const bool after = records_.data() > memory_.data();
+        row_list& lower = after ? of_arrays : list;
+        const row_list& upper = after ? list : of_arrays;
+        lower.insert(lower.end(), upper.begin(), upper.end());
+        if (copies_directly(lower)) {
+            copy_directly(lower, cudaMemcpyDeviceToHost, stream_.get());
+        } else {
+            staged_.begin_download(lower, stream_.get());
+        }
     }
 
     void wait() override {
         const current_device here(device_);
+        staged_.finish_download();
         check(cudaStreamSynchronize(stream_.get()), "the integration on the GPU");
     }
     bool idle() override {
@@ -140,7 +168,34 @@ public:
         MYRIAD_CUDA(cudaEventElapsedTime(&milliseconds, begun_.get(), done_.get()));
         return 1e-3 * static_cast<double>(milliseconds);
     }
+    typename engine<Model, R>::interval kernel_interval(void* clock) override {
+        const current_device here(device_);
+        check(cudaEventSynchronize(done_.get()), "the integration on the GPU");
+        const auto seconds = [&](const event& e) {
+            float milliseconds = 0;
+            MYRIAD_CUDA(cudaEventElapsedTime(&milliseconds, static_cast<cudaEvent_t>(clock), e.get()));
+            return 1e-3 * static_cast<double>(milliseconds);
+        };
+        return {seconds(begun_), seconds(done_)};
+    }
+    void* start_clock() override {
+        const current_device here(device_);
+        MYRIAD_CUDA(cudaEventRecord(clock_.get(), stream_.get()));
+        return clock_.get();
+    }
     kernel_facts facts() const override { return launcher_.facts(); }
+    std::int64_t full_load() const override {
+        int multiprocessors = 0;
+        MYRIAD_CUDA(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device_));
+        const kernel_facts all = facts();
+        return std::int64_t{multiprocessors} * all.blocks_per_multiprocessor * all.block_size;
+    }
+    void shrink(std::size_t bytes) override {
+        const current_device here(device_);
+        if (memory_.bytes() + records_.bytes() + sample_times_.bytes() <= bytes) return;
+        count_ = 0;
+        for (device_memory* const memory : {&memory_, &records_, &sample_times_}) memory->release();
+    }
 
     std::int64_t affordable(std::int64_t bytes) const override {
         const current_device here(device_);
@@ -193,7 +248,8 @@ private:
     }
     /// Bytes of an array, rounded up so that the next one begins where memory transactions do.
     static std::size_t padded(std::int64_t values, std::size_t element) {
-        return (static_cast<std::size_t>(values) * element + 255) / 256 * 256;
+        constexpr std::size_t unit = staged_transfer::padding;
+        return (static_cast<std::size_t>(values) * element + unit - 1) / unit * unit;
     }
 
     /// Calls `visit(pointer, on the device, components, access, kind)` for every array.
@@ -217,12 +273,15 @@ private:
         };
     }
 
-    /// Calls `copy(host, device, bytes)` for the chunk's part of each component, or for all of them at once.
-    template <class T, class Copy>
-    void for_each_row(const T* host, std::int64_t size, T* device, std::int64_t components, Copy&& copy) const {
-        if (count_ == size) return copy(host, device, bytes_of(device, components * count_));
-        for (std::int64_t c = 0; c < components; ++c)
-            copy(host + c * size + first_, device + c * count_, bytes_of(device, count_));
+    template <class T>
+    array_rows rows_of(T* host, std::int64_t size, T* device, std::int64_t components) const {
+        return {reinterpret_cast<std::byte*>(host + first_), reinterpret_cast<std::byte*>(device),
+                bytes_of(host, count_), static_cast<std::size_t>(components), bytes_of(host, size)};
+    }
+    /// Pinned memory, unless there is so little to copy that the number of copies counts.
+    bool copies_directly(const row_list& list) const {
+        constexpr std::size_t little = 65'536;
+        return !pinned_.empty() && cuda::bytes_of(list) > little;
     }
 
     /// NaN for reals, as nothing was written there, and 0 for integers.
@@ -242,7 +301,7 @@ private:
     /// What all arrays that `each` goes over take, for `count` instances.
     template <class Each>
     static std::size_t bytes_for(std::int64_t count, Each&& each) {
-        std::size_t bytes = 0;
+        std::size_t bytes = staged_transfer::padding;  // so that no copy goes from one allocation on to another
         each([&](auto* array, std::int64_t components, array_access, array_kind) {
             bytes += padded(components * count, sizeof(*array));
         });
@@ -286,7 +345,8 @@ private:
     cost_order by_cost_;
     pinned_memory pinned_;
     stream stream_;
-    event begun_{event::kind::timed}, done_{event::kind::timed}, mark_{event::kind::plain};
+    event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};
+    staged_transfer staged_;
     shared_parameters<R> shared_on_device_{};
     std::int64_t first_ = 0, count_ = 0;
 };

@@ -39,9 +39,7 @@ public:
     /// that are held for instances already.
     void reserve(std::size_t bytes, std::size_t per_instance = 0, std::size_t held = 0) {
         if (bytes <= bytes_) return;
-        MYRIAD_CUDA(cudaFree(data_));
-        data_ = nullptr;
-        bytes_ = 0;
+        release();
         const cudaError_t status = cudaMalloc(&data_, bytes);
         if (status == cudaErrorMemoryAllocation) {
             cudaGetLastError();
@@ -52,8 +50,8 @@ public:
                 const auto fits = static_cast<std::int64_t>(0.9 * static_cast<double>(free + held) /
                                                             static_cast<double>(per_instance));
                 advice = message(": integrate fewer instances at a time, with a solver's capacity of at most ", fits,
-                                 " or, as solve works on two chunks at a time, an options::chunk_size of at most ",
-                                 fits / 2);
+                                 " or, as solve works on three chunks at a time, an options::chunk_size of at most ",
+                                 fits / 3);
             }
             throw error(message("out of device memory: ", static_cast<double>(bytes) / 1e9, " GB are wanted and ",
                                 static_cast<double>(free) / 1e9, " of ", static_cast<double>(total) / 1e9,
@@ -61,6 +59,11 @@ public:
         }
         check(status, "cudaMalloc");
         bytes_ = bytes;
+    }
+    void release() {
+        MYRIAD_CUDA(cudaFree(data_));
+        data_ = nullptr;
+        bytes_ = 0;
     }
     void* data() const { return data_; }
     std::size_t bytes() const { return bytes_; }
@@ -85,6 +88,7 @@ public:
         MYRIAD_CUDA(cudaHostRegister(memory, bytes, cudaHostRegisterPortable));
         pinned_.push_back(memory);
     }
+    bool empty() const { return pinned_.empty(); }
 
 private:
     std::vector<void*> pinned_;

@@ -11,16 +11,22 @@
 
 namespace myriad::cuda {
 
-// Weak, and so in every model's object file: the linker keeps one.
-__attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_none) {
+/// How many there are; none: `why_none` says why.
+inline int count_devices(std::string& why_none) {
     int count = 0;
     const cudaError_t status = cudaGetDeviceCount(&count);
     if (status != cudaSuccess) {
         cudaGetLastError();
         why_none = message(cudaGetErrorString(status), " (", cudaGetErrorName(status), ")");
-        return {};
+        return 0;
     }
     if (count == 0) why_none = "the driver finds no GPU";
+    return count;
+}
+
+// Weak, and so in every model's object file: the linker keeps one.
+__attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_none) {
+    const int count = count_devices(why_none);
     std::vector<device_facts> found;
     for (int i = 0; i < count; ++i) {
         cudaDeviceProp properties{};
@@ -34,10 +40,10 @@ __attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_no
 template <class Model, class Method, class R>
 std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options) {
     std::string why_none;
-    const std::size_t count = list_devices(why_none).size();
+    const int count = count_devices(why_none);
     require(count > 0, "device \"cuda:", options.device, "\" is not available: ", why_none,
             "; use \"cpu\" or \"auto\"");
-    require(options.device >= 0 && static_cast<std::size_t>(options.device) < count, "device \"cuda:", options.device,
+    require(options.device >= 0 && options.device < count, "device \"cuda:", options.device,
             "\" does not exist: this machine has ", count, " (numbered from 0)");
     return std::make_unique<chunk_engine<Model, Method, R>>(options);
 }

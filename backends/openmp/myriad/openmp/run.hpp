@@ -14,6 +14,7 @@
 // the loop comes after the packs, whose functions it calls
 #include "myriad/integrator/integrate.hpp"
 #include "myriad/openmp/instances.hpp"
+#include "myriad/openmp/parts.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// `solve` on a GPU: chunk by chunk, so that the host prepares one, others are copied, and one is integrated at the same time.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "myriad/backend.hpp"
+#include "myriad/device.hpp"
+#include "myriad/ensemble/ensemble.hpp"
+#include "myriad/ensemble/input_check.hpp"
+#include "myriad/ensemble/report.hpp"
+#include "myriad/integrator/options.hpp"
+#include "myriad/progress_relay.hpp"
+
+namespace myriad::host {
+
+/// Chunks under way at a time: one is copied in, one is integrated, one is copied out.
+inline constexpr std::size_t chunks_at_a_time = 3;
+/// Ensembles of fewer instances are not worth several.
+inline constexpr std::int64_t worth_chunks = 131'072;
+
+/// Engines between two calls of `solve`, since making one takes longer than integrating a small ensemble.
+template <class Model, class Method, class R>
+class idle_engines {
+    using engine = std::unique_ptr<cuda::engine<Model, R>>;
+
+public:
+    static engine take(const cuda::engine_options& how) {
+        {
+            idle_engines& all = instance();
+            const std::lock_guard lock(all.mutex_);
+            const auto found = std::find_if(all.idle_.begin(), all.idle_.end(), [&](const auto& e) { return e.first == how; });
+            if (found != all.idle_.end()) {
+                engine taken = std::move(found->second);
+                all.idle_.erase(found);
+                return taken;
+            }
+        }
+        return cuda::make_engine<Model, Method, R>(how);
+    }
+    /// Only for engines that have finished without an error. Large memory is given back.
+    static void give(const cuda::engine_options& how, engine e) {
+        constexpr std::size_t memory_of_each = std::size_t{64} << 20;
+        e->shrink(memory_of_each);
+        idle_engines& all = instance();
+        const std::lock_guard lock(all.mutex_);
+        all.idle_.emplace_back(how, std::move(e));
+        if (all.idle_.size() > chunks_at_a_time) all.idle_.pop_front();
+    }
+
+private:
+    /// Never destroyed: when a program ends, CUDA may be gone first.
+    static idle_engines& instance() {
+        static idle_engines* const all = new idle_engines;
+        return *all;
+    }
+
+    std::mutex mutex_;
+    std::deque<std::pair<cuda::engine_options, engine>> idle_;
+};
+
+/// One call of `solve` on a GPU.
+template <class Model, class Method, class R>
+class chunked_solve {
+    using engine = cuda::engine<Model, R>;
+    using engines = idle_engines<Model, Method, R>;
+
+public:
+    chunked_solve(const device& where, const options& o, ensemble<Model, R>& instances, kernel_arguments<Model, R>& arguments,
+                  input_check<Model, R>& check, progress_relay& relay, report<Model, R>& result)
+        : options_(o), instances_(instances), arguments_(arguments), check_(check), relay_(relay), result_(result),
+          how_{where.number(), o.block_size, o.shared_placement}, size_(instances.size()),
+          checked_(size_ <= worth_chunks ? size_ : 0),
+          past_(instances.untouched() ? cuda::past::none : cuda::past::kept) {}
+
+    /// Nothing is written to the ensemble before all of it is checked.
+    void run() {
+        engines_.push_back(engines::take(how_));
+        clock_ = engines_.front()->start_clock();
+        const std::int64_t chunk = chunk_size();
+        for (std::int64_t turn = 0; begun_ < size_ && !relay_.failure; ++turn) {
+            if (under_way_.size() == chunks_at_a_time) finish_oldest();
+            if (relay_.failure) break;
+            const auto number = static_cast<std::size_t>(turn) % chunks_at_a_time;
+            if (number == engines_.size()) engines_.push_back(engines::take(how_));
+            begin(*engines_[number], std::min(chunk, size_ - begun_));
+        }
+        while (!under_way_.empty()) finish_oldest();
+        if (options_.counting == counting::on) set_work(result_, work_before_, work_after_);
+        result_.kernel = engines_.front()->facts();
+        for (auto& e : engines_) engines::give(how_, std::move(e));
+    }
+
+private:
+    struct part {
+        cuda::engine<Model, R>* worker;
+        std::int64_t first, count;
+    };
+
+    /// As many chunks as overlap most of the transfers, each with enough to do for the GPU and for the bus.
+    std::int64_t chunk_size() const {
+        if (options_.chunk_size > 0) return std::min(options_.chunk_size, size_);
+        std::int64_t memory = 0, copied = 0;  // bytes per instance
+        const auto add = [&](auto* array, std::int64_t components, array_access access, array_kind) {
+            const auto bytes = components * static_cast<std::int64_t>(sizeof(*array));
+            memory += bytes;
+            copied += access == array_access::update ? 2 * bytes : bytes;
+        };
+        for_each_array(arguments_, add);
+        for_each_record(arguments_.record, add);
+        constexpr std::int64_t most_chunks = 16, worthwhile_bytes = std::int64_t{8} << 20, all_memory_has = std::int64_t{64} << 20;
+        const std::int64_t least =
+            std::max({worth_chunks, 2 * engines_.front()->full_load(), worthwhile_bytes / copied});
+        const std::int64_t chunks = std::clamp(size_ / least, std::int64_t{1}, most_chunks);
+        const std::int64_t chunk = (size_ + chunks - 1) / chunks;
+        const std::int64_t at_a_time = std::min(chunks, static_cast<std::int64_t>(chunks_at_a_time));
+        if (at_a_time * chunk * memory <= all_memory_has) return chunk;
+        const std::int64_t fits = engines_.front()->affordable(memory);
+        return fits >= at_a_time * chunk
+                   ? chunk
+                   : std::clamp(fits / static_cast<std::int64_t>(chunks_at_a_time), std::int64_t{1}, chunk);
+    }
+
+    /// Sees to it that the data of `count` more instances are fine, or marked.
+    void check(std::int64_t count) {
+        if (checked_ >= begun_ + count) return;
+        if (check_.passes(begun_, count)) {
+            checked_ = begun_ + count;
+            return;
+        }
+        check_.run();
+        checked_ = size_;
+        past_ = cuda::past::kept;  // some are marked
+    }
+
+    void begin(engine& worker, std::int64_t count) {
+        check(count);
+        if (past_ == cuda::past::kept) add_work(work_before_, begun_, count);
+        worker.upload(arguments_, begun_, count, past_);
+        worker.integrate(arguments_);
+        worker.download(arguments_);
+        under_way_.push_back({&worker, begun_, count});
+        begun_ += count;
+    }
+
+    void finish_oldest() {
+        check(size_ - begun_);
+        instances_.touch();
+        const part p = under_way_.front();
+        under_way_.pop_front();
+        p.worker->wait();
+        // Kernels may overlap: a new one fills the places that the one before leaves.
+        const auto [from, to] = p.worker->kernel_interval(clock_);
+        result_.kernel_seconds += std::max(0.0, to - std::max(from, kernels_until_));
+        kernels_until_ = std::max(kernels_until_, to);
+        add_work(work_after_, p.first, p.count);
+        add_summary(instances_, result_, p.first, p.count);
+        progress_relay::call(&relay_, p.first + p.count);
+    }
+
+    void add_work(work_count& sum, std::int64_t first, std::int64_t count) const {
+        if (options_.counting == counting::off) return;
+        const work_count work = counted_work(instances_, count, first);
+        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += work[c];
+    }
+
+    const options& options_;
+    ensemble<Model, R>& instances_;
+    kernel_arguments<Model, R>& arguments_;
+    input_check<Model, R>& check_;
+    progress_relay& relay_;
+    report<Model, R>& result_;
+    cuda::engine_options how_;
+    std::int64_t size_, checked_, begun_ = 0;  // the first instances that are fine, and those that were begun
+    cuda::past past_;
+    std::vector<std::unique_ptr<engine>> engines_;
+    std::deque<part> under_way_;
+    void* clock_ = nullptr;
+    double kernels_until_ = 0;
+    work_count work_before_{}, work_after_{};
+};
+
+}  // namespace myriad::host
