@@ -236,9 +236,10 @@ private:
             const std::int64_t size = std::min(block, end - begin);
             // Most blocks are all the same, which vector instructions see at once.
             const status first = statuses[begin];
-            bool all_same = true;
-            for (std::int64_t i = begin; i < begin + size; ++i) all_same &= statuses[i] == first;
-            if (all_same && !is_failure(first)) {
+            unsigned char differs = 0;
+            for (std::int64_t i = begin; i < begin + size; ++i)
+                differs |= static_cast<unsigned char>(static_cast<unsigned char>(statuses[i]) ^ static_cast<unsigned char>(first));
+            if (differs == 0 && !is_failure(first)) {
                 found[static_cast<std::size_t>(first)] += size;
                 continue;
             }
