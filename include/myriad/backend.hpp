@@ -93,7 +93,7 @@ protected:
 template <class Model, class R>
 class engine : public work {
 public:
-    /// Takes device memory for chunks of `count` instances; larger ones take more when they come.
+    /// Takes the memory for chunks of `count` instances; larger ones take more when they come.
     virtual void reserve(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
     /// Copies the chunk to the device.
     virtual void upload(const kernel_arguments<Model, R>& host, std::int64_t first, std::int64_t count,
@@ -123,8 +123,8 @@ public:
     /// Instances of an ensemble for which the device has memory left, when it holds `bytes` for each.
     virtual std::int64_t affordable(std::int64_t bytes) const = 0;
 
-    /// Gives device memory back, if there is more than `bytes`. Nothing may be under way.
-    virtual void shrink(std::size_t bytes) = 0;
+    /// Gives device memory back, if it is more than a small part of all that the device has. Nothing may be under way.
+    virtual void rest() = 0;
 
     /// Keeps host memory in place, so that it is copied at full speed and while the host does other things. Pinned until
     /// the engine is destroyed, which must happen before the memory is released.

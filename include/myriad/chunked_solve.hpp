@@ -45,10 +45,9 @@ public:
         }
         return cuda::make_engine<Model, Method, R>(how);
     }
-    /// Only for engines that have finished without an error. Large memory is given back.
+    /// Only for engines that have finished without an error.
     static void give(const cuda::engine_options& how, engine e) {
-        constexpr std::size_t memory_of_each = std::size_t{64} << 20;
-        e->shrink(memory_of_each);
+        e->rest();
         idle_engines& all = instance();
         const std::lock_guard lock(all.mutex_);
         all.idle_.emplace_back(how, std::move(e));
@@ -85,12 +84,13 @@ public:
         engines_.push_back(engines::take(how_));
         clock_ = engines_.front()->start_clock();
         const std::int64_t chunk = chunk_size();
-        for (std::int64_t turn = 0; begun_ < size_ && !relay_.failure; ++turn) {
-            if (under_way_.size() == chunks_at_a_time) finish_oldest();
+        while (engines_.size() < chunks_at_a_time && static_cast<std::int64_t>(engines_.size()) * chunk < size_)
+            engines_.push_back(engines::take(how_));
+        for (auto& e : engines_) e->reserve(arguments_, chunk);
+        for (std::size_t turn = 0; begun_ < size_; turn = (turn + 1) % engines_.size()) {
+            if (under_way_.size() == engines_.size()) finish_oldest();
             if (relay_.failure) break;
-            const auto number = static_cast<std::size_t>(turn) % chunks_at_a_time;
-            if (number == engines_.size()) engines_.push_back(engines::take(how_));
-            begin(*engines_[number], std::min(chunk, size_ - begun_));
+            begin(*engines_[turn], std::min(chunk, size_ - begun_));
         }
         while (!under_way_.empty()) finish_oldest();
         if (options_.counting == counting::on) set_work(result_, work_before_, work_after_);

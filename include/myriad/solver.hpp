@@ -48,13 +48,14 @@ public:
           prepared_(instances_, options_) {
         host::require_kernel<Model, Method, R>(where);
         if (where.which() == device::kind::cpu) return;
-        engine_ = cuda::make_engine<Model, Method, R>({where.number(), options_.block_size, options_.shared_placement, options_.schedule});
-        engine_->reserve(prepared_.get(), capacity);
+        engine_ = cuda::make_engine<Model, Method, R>(
+            {where.number(), options_.block_size, options_.shared_placement, options_.schedule});
         const auto pin = [&](auto* array, std::int64_t components_of_it, array_access, array_kind) {
             engine_->pin(array, static_cast<std::size_t>(components_of_it * capacity) * sizeof(*array));
         };
         for_each_array(prepared_.get(), pin);
         for_each_record(prepared_.get().record, pin);
+        engine_->reserve(prepared_.get(), capacity);
     }
     solver(const solver&) = delete;
     solver& operator=(const solver&) = delete;

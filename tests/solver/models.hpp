@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Models for the tests of solvers and backends: one with everything that a kernel copies in and out, one whose shared
-// parameters are a matrix.
+// parameters are a matrix, one that costs next to nothing.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -65,6 +65,24 @@ struct heat {
             slope[i] = p[rate] * sum;
         }
         return slope;
+    }
+};
+
+/// x' = speed, for ensembles so large that they are worth several chunks. Counts the phases in which it got beyond a limit,
+/// and there ends the instance.
+struct drift {
+    enum state { x, n_state };
+    enum parameter { speed, n_parameter };
+    enum accessory { limit, n_accessory };
+    enum integer_accessory { phases, n_integer_accessory };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto& p) {
+        return myriad::vec<R, n_state>{R(p[speed])};
+    }
+    MYRIAD_FUNCTION static void initialise(auto& lane) { ++lane.integer_accessory[phases]; }
+    MYRIAD_FUNCTION static myriad::action after_step(auto& lane) {
+        return lane.y[x] > lane.accessory[limit] ? myriad::action::end_instance : myriad::action::proceed;
     }
 };
 

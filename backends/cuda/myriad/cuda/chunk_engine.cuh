@@ -48,6 +48,7 @@ public:
         records(add);
         grow(memory_, bytes_for(count, arrays), per_instance);
         grow(records_, bytes_for(count, records), per_instance);
+        if (pinned_.empty()) staged_.reserve(memory_.bytes() + records_.bytes());
     }
 
     void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances) override {
@@ -190,11 +191,16 @@ public:
         const kernel_facts all = facts();
         return std::int64_t{multiprocessors} * all.blocks_per_multiprocessor * all.block_size;
     }
-    void shrink(std::size_t bytes) override {
+    void rest() override {
         const current_device here(device_);
-        if (memory_.bytes() + records_.bytes() + sample_times_.bytes() <= bytes) return;
+        const std::size_t held = memory_.bytes() + records_.bytes(), always_fine = std::size_t{32} << 20;
+        if (held <= always_fine) return;
+        std::size_t free = 0, total = 0;
+        MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
+        if (held <= total / 256) return;
         count_ = 0;
-        for (device_memory* const memory : {&memory_, &records_, &sample_times_}) memory->release();
+        memory_.release();
+        records_.release();
     }
 
     std::int64_t affordable(std::int64_t bytes) const override {

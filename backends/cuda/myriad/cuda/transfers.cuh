@@ -54,6 +54,10 @@ public:
     /// Arrays begin at multiples of it; what is between them is copied along.
     static constexpr std::size_t padding = 256;
 
+    /// Takes the pinned memory for transfers of so many bytes, since that waits for all work of the device.
+    void reserve(std::size_t bytes) {
+        for (std::size_t i = 0; i < (bytes > largest ? buffers : 1); ++i) buffers_[i].make_room(std::min(bytes, largest));
+    }
     /// The host's memory is free on return.
     void upload(const row_list& list, cudaStream_t stream) {
         finish_download();

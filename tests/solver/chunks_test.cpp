@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+// Ensembles that a GPU takes in several chunks, three at a time: no bit depends on it, and what is refused is refused as a
+// whole. On the CPU the same holds of one loop over all.
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/catch.hpp"
+#include "tests/ensemble/refusal.hpp"
+#include "tests/solver/fill.hpp"
+
+using namespace solving;
+using myriad::runge_kutta_4;
+using myriad::status;
+using tests::test_device;
+using drifts = myriad::ensemble<drift>;
+
+namespace {
+
+constexpr std::int64_t size = 400'003;  // more than are checked at once, and no multiple of a chunk
+
+/// Every thousandth instance ends itself in its second phase.
+void fill(drifts& e) {
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+        e.parameter(drift::speed)(i) = static_cast<double>(i % 1000);
+        e.t_begin()(i) = 0;
+        e.t_end()(i) = 1 + 0.25 * static_cast<double>(i % 3);
+    }
+    e.state(drift::x) = Eigen::ArrayXd::LinSpaced(e.size(), 0, 1);
+    e.accessory(drift::limit) = 1500;
+    e.integer_accessory(drift::phases) = 0;
+}
+
+drifts filled(std::int64_t count = size) {
+    drifts e(count);
+    fill(e);
+    return e;
+}
+
+myriad::options quarter_steps(std::int64_t chunk) {
+    myriad::options o;
+    o.step = 0.25;
+    o.phases = 2;
+    o.chunk_size = chunk;
+    return o;
+}
+
+bool same(const drifts& a, const drifts& b) {
+    bool all = same_bits(a.state(0), b.state(0)) && same_bits(a.t(), b.t()) && same_bits(a.next_step(), b.next_step()) &&
+               same_bits(a.phases_done(), b.phases_done()) && same_bits(a.accepted_steps(), b.accepted_steps()) &&
+               same_bits(a.integer_accessory(0), b.integer_accessory(0)) && same_bits(a.accessory(0), b.accessory(0)) &&
+               same_bits(a.rhs_evaluations(), b.rhs_evaluations());
+    for (std::int64_t i = 0; i < a.size(); ++i) all = all && a.status(i) == b.status(i) && a.ended(i) == b.ended(i);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("chunks of a large ensemble, chosen or not, change no bit and no figure of the report") {
+    auto whole = filled();
+    auto o = quarter_steps(size);
+    o.record = {.from_phase = 1, .states = {drift::x}, .integer_accessories = {drift::phases}, .time = true};
+    const auto expected = myriad::solve<runge_kutta_4>(test_device(), whole, o);
+    CHECK(expected.instances == size);
+    CHECK(expected.count(status::stopped_by_user) > 0);
+    for (const std::int64_t chunk : {std::int64_t{0}, std::int64_t{33'333}, std::int64_t{150'000}, size - 1}) {
+        auto parts = filled();
+        o.chunk_size = chunk;
+        const auto report = myriad::solve<runge_kutta_4>(test_device(), parts, o);
+        INFO("chunk_size " << chunk);
+        CHECK(same(parts, whole));
+        CHECK(report.instances == size);
+        CHECK(report.by_status == expected.by_status);
+        CHECK(report.accepted_steps == expected.accepted_steps);
+        CHECK(report.rhs_evaluations == expected.rhs_evaluations);
+        CHECK(same_bits(report.records.state(drift::x), expected.records.state(drift::x)));
+        CHECK(same_bits(report.records.time(), expected.records.time()));
+        CHECK(same_bits(report.records.integer_accessory(drift::phases), expected.records.integer_accessory(drift::phases)));
+    }
+}
+
+TEST_CASE("chunks go on from an earlier call, with the work of this call in the report") {
+    auto at_once = filled(), twice = filled();
+    auto o = quarter_steps(60'000);
+    o.phases = 4;
+    const auto expected = myriad::solve<runge_kutta_4>(test_device(), at_once, o);
+    o.phases = 2;
+    const auto first = myriad::solve<runge_kutta_4>(test_device(), twice, o);
+    const auto second = myriad::solve<runge_kutta_4>(test_device(), twice, o);
+    CHECK(same(twice, at_once));
+    CHECK(first.accepted_steps + second.accepted_steps == expected.accepted_steps);
+    CHECK(second.accepted_steps > 0);
+    CHECK(second.accepted_steps < first.accepted_steps);  // some have ended
+}
+
+TEST_CASE("bad input in the last chunk is refused, and leaves all chunks as they were") {
+    for (const std::int64_t bad : {std::int64_t{0}, std::int64_t{200'000}, size - 1}) {
+        auto e = filled();
+        const auto before = filled();
+        e.parameter(drift::speed)(bad) = std::numeric_limits<double>::quiet_NaN();
+        refused([&] { myriad::solve<runge_kutta_4>(test_device(), e, quarter_steps(20'000)); },
+                {"parameter 0 is not finite in 1 of 400003 instances", myriad::message("instance ", bad, ' ').c_str()});
+        CHECK((e.state(drift::x) == before.state(drift::x)).all());
+        CHECK(e.phases_done().maxCoeff() == 0);
+        CHECK(e.status(0) == status::not_started);
+        CHECK(e.untouched());
+        e.parameter(drift::speed)(bad) = 1;
+        CHECK(myriad::solve<runge_kutta_4>(test_device(), e, quarter_steps(20'000)).failed() == 0);
+    }
+}
+
+TEST_CASE("bad input in the last chunk is marked, and all others run as if it were not there") {
+    auto o = quarter_steps(20'000);
+    auto clean = filled();
+    myriad::solve<runge_kutta_4>(test_device(), clean, o);
+    o.invalid_instances = myriad::invalid_instances::mark;
+    auto e = filled();
+    const std::int64_t bad[] = {5, 210'000, size - 1};
+    for (const std::int64_t i : bad) e.state(drift::x)(i) = std::numeric_limits<double>::infinity();
+    const auto report = myriad::solve<runge_kutta_4>(test_device(), e, o);
+    CHECK(report.count(status::invalid_input) == 3);
+    CHECK(report.first_failed == 5);
+    for (const std::int64_t i : bad) {
+        CHECK(e.status(i) == status::invalid_input);
+        CHECK(e.phases_done()(i) == 0);
+        CHECK(e.accepted_steps()(i) == 0);
+    }
+    std::int64_t different = 0;
+    for (std::int64_t i = 0; i < size; ++i)
+        different += e.state(drift::x)(i) != clean.state(drift::x)(i) || e.status(i) != clean.status(i) ||
+                     e.t()(i) != clean.t()(i);
+    CHECK(different == 3);
+}
+
+TEST_CASE("a restarted ensemble gives the bits of a new one, on engines that were used before") {
+    auto fresh = filled(), used = filled();
+    myriad::options o = quarter_steps(0);
+    o.chunk_size = 100'000;
+    myriad::solve<runge_kutta_4>(test_device(), fresh, o);
+    myriad::solve<myriad::cash_karp>(test_device(), used, o);  // leaves next steps behind
+    used.restart();
+    fill(used);
+    myriad::solve<runge_kutta_4>(test_device(), used, o);
+    CHECK(same(used, fresh));
+    auto small = filled(10);
+    auto small_after = filled(10);
+    myriad::solve<runge_kutta_4>(test_device(), small, quarter_steps(10));
+    myriad::solve<runge_kutta_4>(test_device(), small_after, quarter_steps(3));
+    CHECK(same(small, small_after));
+}
+
+TEST_CASE("progress of chunks rises to the total, and an exception of it ends the work after what is under way") {
+    if (tests::tests_cpu()) return;  // where it is told otherwise
+    auto o = quarter_steps(50'000);
+    std::vector<std::int64_t> told;
+    o.progress = [&](std::int64_t now, std::int64_t all) {
+        CHECK(all == size);
+        told.push_back(now);
+    };
+    auto e = filled();
+    myriad::solve<runge_kutta_4>(test_device(), e, o);
+    CHECK(told.size() == 9);
+    CHECK(told.front() == 50'000);
+    CHECK(told.back() == size);
+    CHECK(std::is_sorted(told.begin(), told.end()));
+    o.progress = [](std::int64_t, std::int64_t) { throw std::runtime_error("enough"); };
+    auto part = filled();
+    CHECK_THROWS_AS(myriad::solve<runge_kutta_4>(test_device(), part, o), std::runtime_error);
+    CHECK(part.status(0) == status::success);
+    CHECK(part.status(49'000) == status::success);
+    CHECK(part.status(size - 1) == status::not_started);
+    o.progress = nullptr;
+    myriad::solve<runge_kutta_4>(test_device(), part = filled(), o);
+    CHECK(same(part, e));
+}
+
+TEST_CASE("a large solver's arrays come and go row by row where it holds more than it is asked for") {
+    const auto expected = [] {
+        auto e = filled(30'000);
+        myriad::solve<runge_kutta_4>(test_device(), e, quarter_steps(0));
+        return e;
+    }();
+    myriad::solver<drift, runge_kutta_4> s(test_device(), 70'000, quarter_steps(0));
+    fill(s.instances());
+    s.instances().state(drift::x).head(30'000) = Eigen::ArrayXd::LinSpaced(30'000, 0, 1);
+    s.upload(30'000);
+    s.integrate();
+    s.download();
+    CHECK(same_bits(Eigen::ArrayXd(s.instances().state(drift::x).head(30'000)), Eigen::ArrayXd(expected.state(drift::x))));
+    CHECK(s.instances().phases_done()(29'999) == expected.phases_done()(29'999));
+    CHECK(s.instances().phases_done()(30'000) == 0);
+    CHECK(s.instances().integer_accessory(drift::phases)(29'999) == expected.integer_accessory(drift::phases)(29'999));
+    CHECK(s.instances().integer_accessory(drift::phases)(30'000) == 0);
+    CHECK(s.report().accepted_steps == expected.accepted_steps().sum());
+}
