@@ -6,12 +6,14 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
 
 #include "myriad/backend.hpp"
+#include "myriad/core/background.hpp"
 #include "myriad/device.hpp"
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/input_check.hpp"
@@ -21,7 +23,7 @@
 
 namespace myriad::host {
 
-/// Chunks under way at a time: one is copied in, one is integrated, one is copied out.
+/// Chunks under way at a time: one is copied in, one is integrated, one is copied out by a thread of its own.
 inline constexpr std::size_t chunks_at_a_time = 3;
 /// Ensembles of fewer instances are not worth several.
 inline constexpr std::int64_t worth_chunks = 131'072;
@@ -87,12 +89,16 @@ public:
         while (engines_.size() < chunks_at_a_time && static_cast<std::int64_t>(engines_.size()) * chunk < size_)
             engines_.push_back(engines::take(how_));
         for (auto& e : engines_) e->reserve(arguments_, chunk);
-        for (std::size_t turn = 0; begun_ < size_; turn = (turn + 1) % engines_.size()) {
-            if (under_way_.size() == engines_.size()) finish_oldest();
-            if (relay_.failure) break;
-            begin(*engines_[turn], std::min(chunk, size_ - begun_));
+        for (auto& e : engines_) begin(*e, chunk);
+        check(size_ - begun_);
+        instances_.touch();
+        for (part& p : under_way_) bring_back(p);
+        while (!under_way_.empty()) {
+            engine& free = wait_for_oldest();
+            if (begun_ == size_ || relay_.failure) continue;
+            begin(free, chunk);
+            bring_back(under_way_.back());
         }
-        while (!under_way_.empty()) finish_oldest();
         if (options_.counting == counting::on) set_work(result_, work_before_, work_after_);
         result_.kernel = engines_.front()->facts();
         for (auto& e : engines_) engines::give(how_, std::move(e));
@@ -100,8 +106,9 @@ public:
 
 private:
     struct part {
-        cuda::engine<Model, R>* worker;
+        engine* worker;
         std::int64_t first, count;
+        std::future<void> back;
     };
 
     /// As many chunks as overlap most of the transfers, each with enough to do for the GPU and for the bus.
@@ -115,9 +122,9 @@ private:
         };
         for_each_array(arguments_, add);
         for_each_record(arguments_.record, add);
-        constexpr std::int64_t most_chunks = 16, worthwhile_bytes = std::int64_t{8} << 20, all_memory_has = std::int64_t{64} << 20;
+        constexpr std::int64_t most_chunks = 32, worthwhile_bytes = std::int64_t{8} << 20, all_memory_has = std::int64_t{64} << 20;
         const std::int64_t least =
-            std::max({worth_chunks, 2 * engines_.front()->full_load(), worthwhile_bytes / copied});
+            std::max({worth_chunks, engines_.front()->full_load(), worthwhile_bytes / copied});
         const std::int64_t chunks = std::clamp(size_ / least, std::int64_t{1}, most_chunks);
         const std::int64_t chunk = (size_ + chunks - 1) / chunks;
         const std::int64_t at_a_time = std::min(chunks, static_cast<std::int64_t>(chunks_at_a_time));
@@ -140,29 +147,38 @@ private:
         past_ = cuda::past::kept;  // some are marked
     }
 
-    void begin(engine& worker, std::int64_t count) {
+    void begin(engine& worker, std::int64_t chunk) {
+        const std::int64_t count = std::min(chunk, size_ - begun_);
         check(count);
         if (past_ == cuda::past::kept) add_work(work_before_, begun_, count);
         worker.upload(arguments_, begun_, count, past_);
         worker.integrate(arguments_);
         worker.download(arguments_);
-        under_way_.push_back({&worker, begun_, count});
+        under_way_.push_back({&worker, begun_, count, {}});
         begun_ += count;
     }
 
-    void finish_oldest() {
-        check(size_ - begun_);
-        instances_.touch();
-        const part p = under_way_.front();
+    /// Has the results of a chunk put into the ensemble, and looked at, in the order of chunks.
+    void bring_back(part& p) {
+        const auto task = [this, worker = p.worker, first = p.first, count = p.count] {
+            worker->wait();
+            // Kernels may overlap: a new one fills the places that the one before leaves.
+            const auto [from, to] = worker->kernel_interval(clock_);
+            result_.kernel_seconds += std::max(0.0, to - std::max(from, kernels_until_));
+            kernels_until_ = std::max(kernels_until_, to);
+            add_work(work_after_, first, count);
+            add_summary(instances_, result_, first, count);
+        };
+        p.back = engines_.size() == 1 ? std::async(std::launch::deferred, task) : background_.ask(task);
+    }
+
+    /// Returns the engine that is free then.
+    engine& wait_for_oldest() {
+        part p = std::move(under_way_.front());
         under_way_.pop_front();
-        p.worker->wait();
-        // Kernels may overlap: a new one fills the places that the one before leaves.
-        const auto [from, to] = p.worker->kernel_interval(clock_);
-        result_.kernel_seconds += std::max(0.0, to - std::max(from, kernels_until_));
-        kernels_until_ = std::max(kernels_until_, to);
-        add_work(work_after_, p.first, p.count);
-        add_summary(instances_, result_, p.first, p.count);
+        p.back.get();
         progress_relay::call(&relay_, p.first + p.count);
+        return *p.worker;
     }
 
     void add_work(work_count& sum, std::int64_t first, std::int64_t count) const {
@@ -185,6 +201,7 @@ private:
     void* clock_ = nullptr;
     double kernels_until_ = 0;
     work_count work_before_{}, work_after_{};
+    background background_;  // destroyed first: it uses all of the above
 };
 
 }  // namespace myriad::host
