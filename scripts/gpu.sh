@@ -15,7 +15,7 @@ Without --tests, --sanitize, --bench or --methods: the first three, in this orde
 
   --tests        the test programs on the GPU, then those of the solver on the CPU too
   --sanitize     compute-sanitizer memcheck and racecheck on small cases
-  --bench        the benchmark, as CSV, and a table of registers, stack and spills per kernel
+  --bench        the benchmarks, as CSV, and a table of registers, stack and spills per kernel
   --methods      the methods beside each other, as CSV; its kernels take minutes to compile
   --deps DIR     folder with the headers of what is not installed: DIR/xsimd, DIR/CLI (default: .deps, if it is there)
   --output DIR   where logs and CSV files go (default: results/gpu)
@@ -54,7 +54,7 @@ say "Building in build/cuda"
 cmake --preset cuda "${options[@]}" >"$output/configure.log" 2>&1 || { tail -30 "$output/configure.log"; exit 1; }
 targets=()
 if wants tests || wants sanitize; then targets+=(check_gpu); fi
-if wants bench; then targets+=(gpu_ensembles several_gpus); fi
+if wants bench; then targets+=(gpu_ensembles end_to_end several_gpus); fi
 if wants methods; then targets+=(methods); fi
 cmake --build --preset cuda --parallel "$jobs" --target "${targets[@]}" -- -k 0 >"$output/build.log" 2>&1 || {
     grep -E "error|FAILED" "$output/build.log" | head -40 || true
@@ -97,6 +97,8 @@ fi
 
 if wants bench; then
     build/cuda/benchmarks/gpu_ensembles/gpu_ensembles --output "$output/gpu_ensembles.csv" || failed+=(bench)
+    build/cuda/benchmarks/end_to_end/end_to_end --commit "$(git rev-parse --short HEAD 2>/dev/null || echo unknown)" \
+        --output "$output/end_to_end.csv" || failed+=(end_to_end)
     if (($(nvidia-smi -L | grep -c '^GPU ') > 1)); then
         build/cuda/benchmarks/several_gpus/several_gpus | tee "$output/several_gpus.csv" || failed+=(several_gpus)
     fi

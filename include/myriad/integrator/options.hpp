@@ -123,7 +123,7 @@ struct options {
 
     myriad::schedule schedule = myriad::schedule::automatic;
     std::int64_t block_size = 0;  ///< CUDA threads per block; 0: what fills the multiprocessors best
-    std::int64_t chunk_size = 0;  ///< instances on a GPU at a time; 0: what its memory allows
+    std::int64_t chunk_size = 0;  ///< instances on a GPU at a time; 0: so many that transfers and work overlap
     myriad::shared_placement shared_placement = myriad::shared_placement::automatic;
 
     /// Called now and then from the thread that called solve, with the number of instances begun and their total.

@@ -60,27 +60,31 @@ public:
         reserve(host, count);
         arguments from = host;
         const bool fresh_samples = of_instances == past::none || !has_samples(host);
+        const auto is_cleared = [&](array_kind kind) {
+            return (kind == array_kind::bookkeeping && of_instances == past::none) ||
+                   (kind == array_kind::samples && fresh_samples);
+        };
         row_list list;
-        std::byte *zeros = nullptr, *end_of_zeros = nullptr;
         walk(from, [&](auto*& source, auto* target, std::int64_t components, array_access, array_kind kind) {
-            if (kind == array_kind::bookkeeping && of_instances == past::none) {
-                auto* const begin = reinterpret_cast<std::byte*>(target);
-                if (zeros == nullptr) zeros = begin;
-                end_of_zeros = begin + bytes_of(target, components * count_);
-            } else if (kind == array_kind::samples && fresh_samples) {
-                clear(target, components);
-            } else {
-                list.push_back(rows_of(source, host.size, target, components));
-            }
+            if (!is_cleared(kind)) list.push_back(rows_of(source, host.size, target, components));
         });
-        // They lie side by side.
-        if (zeros != nullptr)
-            MYRIAD_CUDA(cudaMemsetAsync(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
         if (copies_directly(list)) {
             copy_directly(list, cudaMemcpyHostToDevice, stream_.get());
         } else {
             staged_.upload(list, stream_.get());
         }
+        // After the copies: clearing takes multiprocessors, and would have them wait for kernels of other chunks.
+        std::byte *zeros = nullptr, *end_of_zeros = nullptr;
+        walk(from, [&](auto*&, auto* target, std::int64_t components, array_access, array_kind kind) {
+            if (!is_cleared(kind)) return;
+            if (kind == array_kind::samples) return clear(target, components);
+            auto* const begin = reinterpret_cast<std::byte*>(target);
+            if (zeros == nullptr) zeros = begin;
+            end_of_zeros = begin + bytes_of(target, components * count_);
+        });
+        // Bookkeeping lies side by side.
+        if (zeros != nullptr)
+            MYRIAD_CUDA(cudaMemsetAsync(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
         launcher_.set_shared(host.shared);
         if (launcher_.facts().shared_placement != shared_placement::constant_bank) upload_shared(host.shared);
     }
