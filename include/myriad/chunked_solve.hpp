@@ -77,7 +77,7 @@ public:
     chunked_solve(const device& where, const options& o, ensemble<Model, R>& instances, kernel_arguments<Model, R>& arguments,
                   input_check<Model, R>& check, progress_relay& relay, report<Model, R>& result)
         : options_(o), instances_(instances), arguments_(arguments), check_(check), relay_(relay), result_(result),
-          how_{where.number(), o.block_size, o.shared_placement}, size_(instances.size()),
+          how_{where.number(), o.block_size, o.shared_placement, o.schedule}, size_(instances.size()),
           checked_(size_ <= worth_chunks ? size_ : 0),
           past_(instances.untouched() ? cuda::past::none : cuda::past::kept) {}
 

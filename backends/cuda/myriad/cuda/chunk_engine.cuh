@@ -3,6 +3,7 @@
 // stream.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "myriad/backend.hpp"
 #include "myriad/cuda/check.cuh"
+#include "myriad/cuda/chunk_layout.cuh"
 #include "myriad/cuda/cost_order.cuh"
 #include "myriad/cuda/launch.cuh"
 #include "myriad/cuda/resources.cuh"
@@ -48,7 +50,8 @@ public:
         records(add);
         grow(memory_, bytes_for(count, arrays), per_instance);
         grow(records_, bytes_for(count, records), per_instance);
-        if (pinned_.empty()) staged_.reserve(memory_.bytes() + records_.bytes());
+        const std::size_t all_bytes = memory_.bytes() + records_.bytes();
+        staged_.reserve(pinned_.empty() ? all_bytes : std::min(all_bytes, little));
     }
 
     void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances) override {
@@ -252,47 +255,25 @@ private:
         launcher_.launch(now, queue, stream_.get());
     }
 
-    template <class T>
-    static std::size_t bytes_of(const T*, std::int64_t values) {
-        return static_cast<std::size_t>(values) * sizeof(T);
-    }
-    /// Bytes of an array, rounded up so that the next one begins where memory transactions do.
-    static std::size_t padded(std::int64_t values, std::size_t element) {
-        constexpr std::size_t unit = staged_transfer::padding;
-        return (static_cast<std::size_t>(values) * element + unit - 1) / unit * unit;
-    }
-
     /// Calls `visit(pointer, on the device, components, access, kind)` for every array.
     template <class Visit>
     void walk(arguments& host, Visit&& visit) {
         auto* next = static_cast<std::byte*>(memory_.data());
-        for_each_array(host, placing(next, visit));
+        for_each_array(host, placing(next, count_, visit));
     }
     template <class Visit>
     void walk_records(record_arguments<Model, R>& host, Visit&& visit) {
         auto* next = static_cast<std::byte*>(records_.data());
-        for_each_record(host, placing(next, visit));
+        for_each_record(host, placing(next, count_, visit));
     }
-    template <class Visit>
-    auto placing(std::byte*& next, Visit&& visit) const {
-        return [&next, &visit, count = count_](auto*& array, std::int64_t components, array_access access,
-                                               array_kind kind) {
-            auto* const here = reinterpret_cast<std::remove_reference_t<decltype(array)>>(next);
-            next += padded(components * count, sizeof(*array));
-            visit(array, here, components, access, kind);
-        };
-    }
-
     template <class T>
     array_rows rows_of(T* host, std::int64_t size, T* device, std::int64_t components) const {
         return {reinterpret_cast<std::byte*>(host + first_), reinterpret_cast<std::byte*>(device),
                 bytes_of(host, count_), static_cast<std::size_t>(components), bytes_of(host, size)};
     }
     /// Pinned memory, unless there is so little to copy that the number of copies counts.
-    bool copies_directly(const row_list& list) const {
-        constexpr std::size_t little = 65'536;
-        return !pinned_.empty() && cuda::bytes_of(list) > little;
-    }
+    static constexpr std::size_t little = 65'536;
+    bool copies_directly(const row_list& list) const { return !pinned_.empty() && bytes_of(list) > little; }
 
     /// NaN for reals, as nothing was written there, and 0 for integers.
     template <class T>
@@ -308,15 +289,6 @@ private:
         return false;
     }
 
-    /// What all arrays that `each` goes over take, for `count` instances.
-    template <class Each>
-    static std::size_t bytes_for(std::int64_t count, Each&& each) {
-        std::size_t bytes = staged_transfer::padding;  // so that no copy goes from one allocation on to another
-        each([&](auto* array, std::int64_t components, array_access, array_kind) {
-            bytes += padded(components * count, sizeof(*array));
-        });
-        return bytes;
-    }
     /// Memory in use is not given back.
     void grow(device_memory& memory, std::size_t bytes, std::size_t per_instance) {
         if (bytes <= memory.bytes()) return;

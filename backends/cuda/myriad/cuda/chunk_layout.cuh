@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Where the arrays of a chunk lie in device memory: one after the other, in the order of ensemble/arrays.hpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "myriad/cuda/transfers.cuh"
+#include "myriad/ensemble/arrays.hpp"
+
+namespace myriad::cuda {
+
+template <class T>
+std::size_t bytes_of(const T*, std::int64_t values) {
+    return static_cast<std::size_t>(values) * sizeof(T);
+}
+
+/// Bytes of an array, rounded up so that the next one begins where memory transactions do.
+inline std::size_t padded(std::int64_t values, std::size_t element) {
+    constexpr std::size_t unit = staged_transfer::padding;
+    return (static_cast<std::size_t>(values) * element + unit - 1) / unit * unit;
+}
+
+/// What all arrays that `each` goes over take, for `count` instances.
+template <class Each>
+std::size_t bytes_for(std::int64_t count, Each&& each) {
+    std::size_t bytes = 0;
+    each([&](auto* array, std::int64_t components, array_access, array_kind) {
+        bytes += padded(components * count, sizeof(*array));
+    });
+    return bytes == 0 ? 0 : bytes + staged_transfer::padding;  // so that no copy goes from one allocation on to another
+}
+
+/// For `for_each_array` and `for_each_record`: calls `visit(pointer, on the device, components, access, kind)` for each array,
+/// the first of which is at `next`.
+template <class Visit>
+auto placing(std::byte*& next, std::int64_t count, Visit&& visit) {
+    return [&next, &visit, count](auto*& array, std::int64_t components, array_access access, array_kind kind) {
+        auto* const here = reinterpret_cast<std::remove_reference_t<decltype(array)>>(next);
+        next += padded(components * count, sizeof(*array));
+        visit(array, here, components, access, kind);
+    };
+}
+
+}  // namespace myriad::cuda
