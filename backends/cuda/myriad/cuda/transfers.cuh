@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Copies between an ensemble's arrays on the host and a chunk on the device: directly where the host's memory is pinned, else
-// through small pinned buffers that several threads fill and empty, which is as fast as pinning everything is slow.
+// through small pinned buffers that several threads fill and empty, since pinning everything would take longer than the copy.
 #pragma once
 
 #include <algorithm>
