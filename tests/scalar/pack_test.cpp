@@ -300,3 +300,19 @@ TEST_CASE("plain numbers answer to the same functions as packs") {
     REQUIRE(x == 3.0);
     STATIC_REQUIRE(std::is_same_v<decltype(select(true, 1.0f, 0.0)), float>);  // no double leaks into float models
 }
+
+TEMPLATE_TEST_CASE("numbers that differ in a bit differ, a NaN from itself not", "", (pack<double, 2>), (pack<float, 1>)) {
+    using P = TestType;
+    using T = typename P::value_type;
+    const T nan = std::numeric_limits<T>::quiet_NaN();
+    P a(nan), b(nan);
+    CHECK_FALSE(any(differs_in_bits(a, b)));
+    set_lane(b, P::lanes - 1, T(1));
+    CHECK(bits(differs_in_bits(a, b)) == std::uint64_t{1} << (P::lanes - 1));
+    set_lane(a, 0, T(0));
+    set_lane(b, 0, T(-0.0));
+    CHECK(get_lane(differs_in_bits(a, b), 0));
+    CHECK_FALSE(myriad::differs_in_bits(nan, nan));
+    CHECK(myriad::differs_in_bits(T(1), T(2)));
+    CHECK(myriad::differs_in_bits(1, 2));
+}

@@ -129,8 +129,7 @@ private:
         mask different = mask(false);
         const auto compare = [&](const auto& x, const auto& y, int size) MYRIAD_LAMBDA {
             MYRIAD_UNROLL
-            for (int c = 0; c < size; ++c)  // a NaN that stays one has not changed
-                different = different | ((x[c] != y[c]) & ((x[c] == x[c]) | (y[c] == y[c])));
+            for (int c = 0; c < size; ++c) different = different | differs_in_bits(x[c], y[c]);
         };
         compare(a.y, b.y, n);
         compare(a.accessory, b.accessory, n_accessory<Model>);

@@ -59,4 +59,16 @@ MYRIAD_FUNCTION B polynomial(const B& x, typename arithmetic<B>::real c0, More..
 }
 
 }  // namespace detail
+
+/// Whether two numbers are not the same in every bit, which a NaN that stays one is: cheaper than comparing values with care
+/// for NaN, and true for zeros of different sign.
+template <plain_number T>
+MYRIAD_FUNCTION bool differs_in_bits(const T& a, const T& b) {
+    if constexpr (std::floating_point<T>) {
+        return detail::arithmetic<T>::to_bits(a) != detail::arithmetic<T>::to_bits(b);
+    } else {
+        return a != b;
+    }
+}
+
 }  // namespace myriad::inline MYRIAD_TARGET

@@ -167,4 +167,14 @@ private:
 };
 
 }  // namespace detail
+
+template <class T, int batches>
+MYRIAD_FUNCTION auto differs_in_bits(const pack<T, batches>& a, const pack<T, batches>& b) {
+    using integer = detail::integer_of_width<T>;
+    typename pack<T, batches>::mask_type result;
+    MYRIAD_EACH_BATCH(result.parts[i] = detail::mask_cast<detail::real_of_width<T>>(
+                          detail::bits_as<integer>(a.parts[i]) != detail::bits_as<integer>(b.parts[i])));
+    return result;
+}
+
 }  // namespace myriad::inline MYRIAD_TARGET
