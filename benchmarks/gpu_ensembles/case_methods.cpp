@@ -68,8 +68,10 @@ std::vector<measurement> measure_valves(std::int64_t size, const measure_options
     };
     const auto truth = after_first_phases<myriad::cash_karp>(at(1e-13, 1e-11), size, how.device);
     return {measure_method<myriad::cash_karp>("cash_karp 1e-10", at(1e-10, 1e-6), truth, size, how),
+            measure_method<myriad::verner_7>("verner_7 1e-8", at(1e-8, 1e-6), truth, size, how),
             measure_method<myriad::verner_7>("verner_7 1e-9", at(1e-9, 1e-6), truth, size, how),
             measure_method<myriad::verner_7>("verner_7 1e-10", at(1e-10, 1e-6), truth, size, how),
+            measure_method<myriad::dormand_prince_8>("dormand_prince_8 1e-8", at(1e-8, 1e-6), truth, size, how),
             measure_method<myriad::dormand_prince_8>("dormand_prince_8 1e-9", at(1e-9, 1e-6), truth, size, how),
             measure_method<myriad::dormand_prince_8>("dormand_prince_8 1e-10", at(1e-10, 1e-6), truth, size, how)};
 }

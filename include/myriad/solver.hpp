@@ -102,6 +102,7 @@ public:
         uploaded_ = downloadable_ = false;
         host::check_uses<Method>(instances_, options_, wanted);
         host::input_check<Model, R> data(instances_, options_, wanted);
+        use_domains();
         const auto copy = [&] {
             if (engine_)
                 engine_->upload(prepared_.get(), 0, wanted,
@@ -219,6 +220,15 @@ private:
     friend class solver;
 
     enum class held { on_host, on_device, partly_on_host };
+
+    /// Domains of the instances' own have their memory from when they were asked for.
+    void use_domains() {
+        const R* const before = prepared_.get().t_begin;
+        instances_.describe_domain(prepared_.get());
+        auto* const domains = prepared_.get().t_begin;
+        if (engine_ && domains != nullptr && domains != before)
+            engine_->pin(domains, static_cast<std::size_t>(2 * capacity()) * sizeof(R));
+    }
 
     void require_results(const char* what) const {
         require(results_ != held::on_device, what,

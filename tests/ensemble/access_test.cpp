@@ -188,4 +188,38 @@ TEST_CASE("restart keeps states, parameters and accessories, and forgets the ste
     CHECK((e.accepted_steps() == fresh.accepted_steps()).all());
 }
 
+TEST_CASE("a domain for all instances takes no memory until single ones are asked for") {
+    myriad::ensemble<bare> e(100);
+    e.time_domain(1, 3);
+    CHECK(e.has_common_domain());
+    CHECK(e.t_begin_of(7) == 1);
+    CHECK(e.t_end_of(99) == 3);
+    e.t_end()(5) = 4;
+    CHECK_FALSE(e.has_common_domain());
+    CHECK((e.t_begin() == 1).all());
+    CHECK(e.t_end()(4) == 3);
+    CHECK(e.t_end_of(5) == 4);
+    e.time_domain(0, 2);
+    CHECK((e.t_begin() == 0).all());
+    CHECK((e.t_end() == 2).all());
+}
+
+TEST_CASE("a common domain gives the bits of the same domains set one by one") {
+    const auto solved = [](auto&& set) {
+        myriad::ensemble<bare> e(100);
+        e.state(0) = Eigen::ArrayXd::LinSpaced(100, 1, 2);
+        e.state(1) = 0.5;
+        e.parameter(0) = 0.5;
+        set(e);
+        myriad::solve<myriad::runge_kutta_4>(tests::test_device(), e, {.phases = 2, .step = 0.01});
+        std::vector<double> end(e.state(0).begin(), e.state(0).end());
+        end.insert(end.end(), e.t().begin(), e.t().end());
+        return end;
+    };
+    CHECK(solved([](auto& e) { e.time_domain(0.5, 2.25); }) == solved([](auto& e) {
+              e.t_begin() = 0.5;
+              e.t_end() = 2.25;
+          }));
+}
+
 }  // namespace

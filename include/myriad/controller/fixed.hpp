@@ -28,12 +28,12 @@ MYRIAD_FUNCTION void lay_fixed_steps(const kernel_arguments<Model, real_of<S>>& 
     set_count(s.left, i, bounded);
 }
 
-/// The end of lane i's time domain, for rare use: from the ensemble's array, so that it
-/// need not stay in a register.
+/// The end of lane i's time domain, for rare use: from the ensemble, so that it need not stay in a register.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION real_of<S> domain_end(const kernel_arguments<Model, real_of<S>>& args,
                                       const integration_state<Model, Method, S>& s, int i) {
-    return writes_time_domain<Model> ? get_lane(s.data.t_end, i) : args.t_end[s.instance[i]];
+    if constexpr (writes_time_domain<Model>) return get_lane(s.data.t_end, i);
+    return args.t_end != nullptr ? args.t_end[s.instance[i]] : args.common_t_end;
 }
 
 /// Time of lane i's committed state. For rare use: from the ensemble's array, so that a model whose right-hand side does

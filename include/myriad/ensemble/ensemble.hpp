@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -66,15 +67,23 @@ public:
     }
 
     /// Time domain of each instance; t_end may be before t_begin, to integrate backwards.
-    map<R> t_begin() { return view(time_, 0, "time"); }
-    const_map<R> t_begin() const { return view(time_, 0, "time"); }
-    map<R> t_end() { return view(time_, 1, "time"); }
-    const_map<R> t_end() const { return view(time_, 1, "time"); }
-    /// The same domain for all instances.
+    map<R> t_begin() { return view(own_domains(), 0, "time"); }
+    const_map<R> t_begin() const { return view(std::as_const(own_domains()), 0, "time"); }
+    map<R> t_end() { return view(own_domains(), 1, "time"); }
+    const_map<R> t_end() const { return view(std::as_const(own_domains()), 1, "time"); }
+    /// The same domain for all instances. Unless t_begin or t_end are asked for, it takes no memory, and no copies to a GPU.
     void time_domain(R t_begin_of_all, R t_end_of_all) {
-        time_.fill_component(0, t_begin_of_all);
-        time_.fill_component(1, t_end_of_all);
+        common_begin_ = t_begin_of_all;
+        common_end_ = t_end_of_all;
+        if (has_common_domain()) return;
+        domain_.fill_component(0, t_begin_of_all);
+        domain_.fill_component(1, t_end_of_all);
     }
+    /// Whether all instances have one domain and no memory for their own.
+    bool has_common_domain() const { return domain_.components() == 0; }
+    /// The domain of instance i, without taking that memory.
+    R t_begin_of(std::int64_t i) const { return has_common_domain() ? common_begin_ : domain_.component(0)[i]; }
+    R t_end_of(std::int64_t i) const { return has_common_domain() ? common_end_ : domain_.component(1)[i]; }
 
     /// What both tolerances are multiplied by in each instance, one until set, for a method
     /// `controlled<Method, tolerance_per_instance>`. Takes memory from the first call on.
@@ -98,7 +107,7 @@ public:
     }
 
     /// Results: where the last phase ended, and how.
-    const_map<R> t() const { return view(time_, 2, "time"); }
+    const_map<R> t() const { return view(t_, 0, "time"); }
     myriad::status status(std::int64_t i) const {
         require(i >= 0 && i < size_, "instance ", i, " does not exist: the ensemble has ", size_, " instances");
         return status_.data()[i];
@@ -143,9 +152,8 @@ public:
     void describe(kernel_arguments<Model, R>& a, counting count) {
         a.size = size_;
         a.parameter = parameter_.data();
-        a.t_begin = time_.component(0);
-        a.t_end = time_.component(1);
-        a.t = time_.component(2);
+        describe_domain(a);
+        a.t = t_.data();
         a.state = state_.data();
         a.accessory = accessory_.data();
         a.integer_accessory = integer_accessory_.data();
@@ -163,6 +171,15 @@ public:
             a.evaluations = work_.component(3);
         }
         a.shared = {shared_.data(), shared_integer_.data()};
+    }
+
+    /// The part of it that may change while the ensemble is used.
+    void describe_domain(kernel_arguments<Model, R>& a) {
+        if (writes_time_domain<Model>) own_domains();
+        a.t_begin = has_common_domain() ? nullptr : domain_.component(0);
+        a.t_end = has_common_domain() ? nullptr : domain_.component(1);
+        a.common_t_begin = common_begin_;
+        a.common_t_end = common_end_;
     }
 
     /// Makes room for the samples that are asked for, or checks that they can be added to those there are.
@@ -213,6 +230,14 @@ private:
     MYRIAD_COMPONENT_INDEX(shared_integer)
 #undef MYRIAD_COMPONENT_INDEX
 
+    component_array<R>& own_domains() const {
+        if (has_common_domain()) {
+            domain_ = component_array<R>(2, size_, common_begin_);
+            domain_.fill_component(1, common_end_);
+        }
+        return domain_;
+    }
+
     template <class Array>
     static auto view(Array& array, std::int64_t index, const char* what) {
         using T = std::remove_pointer_t<decltype(array.data())>;
@@ -234,7 +259,9 @@ private:
     component_array<R> parameter_{n_parameter<Model>, size_, unset};
     component_array<R> accessory_{n_accessory<Model>, size_, unset};
     component_array<std::int32_t> integer_accessory_{n_integer_accessory<Model>, size_, 0};
-    component_array<R> time_{3, size_, unset};  // t_begin, t_end, t
+    R common_begin_ = unset, common_end_ = unset;
+    mutable component_array<R> domain_;  // t_begin and t_end, allocated when they are asked for
+    component_array<R> t_{1, size_, unset};
     component_array<R> shared_{n_shared<Model>, 1, unset};
     component_array<std::int32_t> shared_integer_{n_shared_integer<Model>, 1, 0};
     component_array<R> tolerance_scale_;  // allocated when it is asked for

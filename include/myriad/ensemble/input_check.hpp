@@ -62,8 +62,13 @@ public:
         for (int c = 0; c < n_shared<Model>; ++c) fine = fine && std::isfinite(e.shared(c));
         for (int c = 0; c < n_state<Model>; ++c) look(e.state(c).data(), largest);
         for (int c = 0; c < n_parameter<Model>; ++c) look(e.parameter(c).data(), largest);
-        look(e.t_begin().data(), largest);
-        look(e.t_end().data(), may_be_endless() ? std::numeric_limits<R>::infinity() : largest);
+        const R latest = may_be_endless() ? std::numeric_limits<R>::infinity() : largest;
+        if (e.has_common_domain()) {
+            fine = fine && std::abs(e.t_begin_of(0)) <= largest && std::abs(e.t_end_of(0)) <= latest;
+        } else {
+            look(e.t_begin().data(), largest);
+            look(e.t_end().data(), latest);
+        }
         if (!fine || !e.scales_tolerances()) return fine;
         const R* const scale = ensemble_.tolerance_scale().data() + first;
         look(scale - first, largest);
@@ -159,10 +164,12 @@ void check_sample_times(const ensemble<Model, R>& e, const options& o, std::int6
                 " samples per instance in this call: raise the capacity");
     }
     if (own.empty()) {
-        const R *const begin = e.t_begin().data(), *const end = e.t_end().data();
+        const bool common = e.has_common_domain();
+        const R common_begin = e.t_begin_of(0), common_end = e.t_end_of(0);
+        const R *const begin = common ? &common_begin : e.t_begin().data(), *const end = common ? &common_end : e.t_end().data();
         const R from = times.empty() ? R(0) : times.front(), to = times.empty() ? R(0) : times.back();
         const bool evenly = times.empty();
-        const bool fine = all_parts(count, [=](std::int64_t first, std::int64_t last) {
+        const bool fine = all_parts(common ? 1 : count, [=](std::int64_t first, std::int64_t last) {
             bool all = true;
             for (std::int64_t i = first; i < last; ++i) {
                 const bool forwards = (begin[i] <= from) & (from <= to) & (to <= end[i]);
@@ -183,7 +190,7 @@ void check_sample_times(const ensemble<Model, R>& e, const options& o, std::int6
                         " are not in order at number ", k, " (", times[k], " after ", times[k - 1],
                         "): give each time once, in the order in which the integration reaches them");
         }
-        const auto begin = static_cast<double>(e.t_begin()[i]), end = static_cast<double>(e.t_end()[i]);
+        const auto begin = static_cast<double>(e.t_begin_of(i)), end = static_cast<double>(e.t_end_of(i));
         if (e.ended(i) || std::isnan(begin) || std::isnan(end)) continue;
         if (o.invalid_instances == invalid_instances::mark && !std::isfinite(end - begin)) continue;
         if (times.empty()) {

@@ -269,8 +269,8 @@ void add_summary(const ensemble<Model, R>& e, report<Model, R>& r, std::int64_t 
     r.first_failed = i;
     r.first_status = e.statuses()[i];
     r.first_t = e.t()[i];
-    r.first_t_begin = e.t_begin()[i];
-    r.first_t_end = e.t_end()[i];
+    r.first_t_begin = e.t_begin_of(i);
+    r.first_t_end = e.t_end_of(i);
     r.first_state.clear();
     r.first_parameter.clear();
     for (int c = 0; c < n_state<Model>; ++c) r.first_state.push_back(e.state(c)[i]);

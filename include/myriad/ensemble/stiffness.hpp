@@ -40,7 +40,7 @@ double real_stability_limit() {
 template <class Model, class R>
 double step_of(const ensemble<Model, R>& e, std::int64_t i) {
     const double h = static_cast<double>(e.next_step()[i]);
-    const double domain = std::abs(static_cast<double>(e.t_end()[i]) - static_cast<double>(e.t_begin()[i]));
+    const double domain = std::abs(static_cast<double>(e.t_end_of(i)) - static_cast<double>(e.t_begin_of(i)));
     return std::copysign(std::min(std::abs(h), domain), h);
 }
 

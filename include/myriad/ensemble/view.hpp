@@ -76,7 +76,7 @@ struct kernel_arguments {
 
     // per instance, read; parameters and times are written only if the model declares it
     R* parameter;
-    R* t_begin;
+    R* t_begin;  // null where all instances have the domain below
     R* t_end;
     R* tolerance_scale;  // null for methods without
     // per instance, read and written
@@ -105,6 +105,7 @@ struct kernel_arguments {
     // options
     std::int32_t phases;
     std::int32_t first_phase;  // phases of this call that are done already
+    R common_t_begin, common_t_end;
     bool carry_time;  // a phase goes on from where the last one ended, instead of from t_begin
     bool carry_step;  // and with its step size
     std::int32_t max_steps;

@@ -27,7 +27,7 @@ struct event_resolution {
 
     event_resolution(ensemble<Model, R>& e, std::int64_t i) {
         const auto p = inputs_of(e, i);
-        const R t = e.t_begin()[i];
+        const R t = e.t_begin_of(i);
         vec<dual<R>, n_state<Model>> y;
         vec<R, n_state<Model>> origin;
         for (int c = 0; c < n_state<Model>; ++c) {

@@ -74,8 +74,9 @@ private:
     }
 
     MYRIAD_FUNCTION void load_time_domain(int i) {
-        set_lane(s.data.t_begin, i, args.t_begin[s.instance[i]]);
-        set_lane(s.data.t_end, i, args.t_end[s.instance[i]]);
+        const bool own = args.t_begin != nullptr;
+        set_lane(s.data.t_begin, i, own ? args.t_begin[s.instance[i]] : args.common_t_begin);
+        set_lane(s.data.t_end, i, own ? args.t_end[s.instance[i]] : args.common_t_end);
     }
 
     MYRIAD_FUNCTION void store(int i) const {

@@ -24,7 +24,7 @@ void check_jacobian(ensemble<Model, R>& e, std::int64_t count) {
             const auto p = inputs_of(e, i);
             vec<R, n> y;
             for (int c = 0; c < n; ++c) y[c] = e.state(c)[i];
-            const R t = e.t_begin()[i];
+            const R t = e.t_begin_of(i);
             matrix<R, n> own, dual;
             evaluate_jacobian<Model>(t, y, p, own);
             dual_jacobian<Model>(t, y, p, dual);
