@@ -23,7 +23,7 @@ __attribute__((weak)) int most_parts();
 namespace host {
 
 /// Meant to keep up with a GPU's bus, and to leave threads to a second loop beside this one.
-inline constexpr std::int64_t most_threads = 16;
+inline constexpr std::int64_t most_threads = 8;
 
 /// Calls `body(first, last)` for parts that cover [0, size), side by side if there are several of at least `grain`. `body`
 /// throws nothing.
