@@ -96,8 +96,9 @@ if wants sanitize; then
 fi
 
 if wants bench; then
-    build/cuda/benchmarks/gpu_ensembles/gpu_ensembles --output "$output/gpu_ensembles.csv" || failed+=(bench)
-    build/cuda/benchmarks/end_to_end/end_to_end --commit "$(git rev-parse --short HEAD 2>/dev/null || echo unknown)" \
+    commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
+    build/cuda/benchmarks/gpu_ensembles/gpu_ensembles --commit "$commit" --output "$output/gpu_ensembles.csv" || failed+=(bench)
+    build/cuda/benchmarks/end_to_end/end_to_end --commit "$commit" \
         --output "$output/end_to_end.csv" || failed+=(end_to_end)
     if (($(nvidia-smi -L | grep -c '^GPU ') > 1)); then
         build/cuda/benchmarks/several_gpus/several_gpus | tee "$output/several_gpus.csv" || failed+=(several_gpus)

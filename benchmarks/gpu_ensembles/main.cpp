@@ -24,7 +24,7 @@ using namespace gpu_ensembles;
 
 struct settings {
     std::vector<std::string> cases;
-    std::string device = "auto", output;
+    std::string device = "auto", output, commit;
     measure_options measure;
     bool check = false;
 };
@@ -65,6 +65,7 @@ void write_machine(table& out, const myriad::device& device) {
 void write_header(table& out, const settings& chosen) {
     out.write("# Myriad's CUDA backend");
     write_machine(out, chosen.measure.device);
+    if (!chosen.commit.empty()) out.write("# commit: " + chosen.commit);
     out.write("# kernel_ms: data on the device, by CUDA events, uploaded anew for each repetition; median of " +
               std::to_string(chosen.measure.repetitions) + " after a warm-up, with counting off");
     out.write(
@@ -73,7 +74,7 @@ void write_header(table& out, const settings& chosen) {
     out.write("# counting_kernel_ms: one run with counting on, which accepted_steps and rhs_evaluations are from");
     out.write("# failed: instances that ended with a failure status, such as event_accumulation");
     out.write(
-        "case,implementation,instances,kernel_ms,end_to_end_ms,accepted_steps,rhs_evaluations,max_error,failed,"
+        "case,implementation,instances,kernel_ms,end_to_end_ms,accepted_steps,rhs_evaluations,max_error,median_error,failed,"
         "counting_kernel_ms,registers,local_bytes,block_size");
 }
 
@@ -92,10 +93,9 @@ bool run_case(table& out, const benchmark_case& what, const measure_options& opt
             out.write(what.name + ',' + m.implementation + ',' + std::to_string(m.instances) + ',' +
                       number(m.kernel_ms, "%.4f") + ',' + number(m.end_to_end_ms, "%.4f") + ',' +
                       std::to_string(m.accepted_steps) + ',' + std::to_string(m.rhs_evaluations) + ',' +
-                      number(m.max_error, "%.3e") + ',' + std::to_string(m.failed) + ',' +
+                      number(m.max_error, "%.3e") + ',' + number(m.median_error, "%.3e") + ',' + std::to_string(m.failed) + ',' +
                       number(m.counting_kernel_ms, "%.4f") + ',' + std::to_string(m.registers) + ',' +
                       std::to_string(m.local_bytes) + ',' + std::to_string(m.block_size));
-            out.write(title + "median error " + number(m.median_error, "%.3e"));
             if (!right) out.write(title + "WRONG, max_error must be within " + number(what.allowed_error, "%g"));
         }
     }
@@ -157,6 +157,7 @@ int main(int argc, char** argv) {
     app.add_option("--device", chosen.device, "Where to compute: auto, cpu, cpu:THREADS, cuda or cuda:NUMBER")
         ->capture_default_str();
     app.add_option("--output", chosen.output, "File to write the same lines to");
+    app.add_option("--commit", chosen.commit, "What was built, for the header");
     app.add_flag("--check", chosen.check, "Only compare with known results; exit status 1 if they differ");
     try {
         app.parse(argc, argv);

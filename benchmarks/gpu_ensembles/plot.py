@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Draws what gpu_ensembles measured: time of the kernels against the number of instances, with the limits and with what
+other packages take.
+
+Usage: plot.py CSV PNG
+
+Needs matplotlib (Debian, Ubuntu: python3-matplotlib). Exit status 2 if something is missing or wrong.
+"""
+import csv
+import sys
+
+COLUMNS = {"case", "implementation", "instances", "kernel_ms", "median_error"}
+# Okabe and Ito's colours, which the colour-blind can tell apart.
+COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
+# Kernel times of other packages, ms: MPGOS 3.1 on an H100, measured with the same method and the same numbers of steps;
+# of GRADSOLVE and DiffEqGPU on an H200 as published by GRADSOLVE's authors, errors within a factor of two.
+MPGOS = {"lorenz_rk4": {8192: 0.120, 65536: 0.287, 768000: 2.893, 4194304: 15.47},
+         "keller_miksis": {8192: 914.7, 46080: 975.8, 307200: 1928},
+         "relief_valve": {8192: 74.9, 30720: 77.1, 768000: 489}}
+PUBLISHED = {"GRADSOLVE": {"1e-3": 0.276, "1e-6": 0.657, "1e-8": 1.424}, "DiffEqGPU": {"1e-3": 0.748, "1e-6": 1.922, "1e-8": 4.240}}
+# 45 double-precision instructions per step, 64 of them per cycle on each of 132 multiprocessors at 1980 MHz.
+LIMIT_NS_PER_INSTANCE = 1000 * 45 / (64 * 132 * 1.98)
+
+
+def read(path):
+    """Kernel times by case, implementation and number of instances, and the line that names the GPU."""
+    with open(path, encoding="utf-8") as file:
+        lines = file.readlines()
+    gpu = next((line[len("# GPU: "):].split(",")[0] for line in lines if line.startswith("# GPU: ")), "")
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    if not rows or not COLUMNS <= set(rows[0]):
+        raise ValueError(f"{path} is no table of gpu_ensembles, which has the columns {', '.join(sorted(COLUMNS))}")
+    times = {}
+    for row in rows:
+        times.setdefault(row["case"], {}).setdefault(row["implementation"], {})[int(row["instances"])] = float(row["kernel_ms"])
+    return times, gpu
+
+
+def draw(axis, times, label, color, line="-"):
+    """One curve, in the order of instances."""
+    axis.loglog(*zip(*sorted(times.items())), line, marker="o", markersize=4, color=color, label=label)
+
+
+def lorenz_fixed(times, axis):
+    """Classic Runge-Kutta steps beside the hand-written kernel."""
+    case = times["lorenz_rk4"]
+    sizes = sorted(case["myriad"])
+    draw(axis, case["myriad"], "Myriad", COLORS[0])
+    draw(axis, case["by_hand"], "written by hand", COLORS[1], "--")
+    draw(axis, MPGOS["lorenz_rk4"], "MPGOS", "0.5", ":")
+    axis.loglog(sizes, [1e-6 * LIMIT_NS_PER_INSTANCE * n for n in sizes], color="0.7", linewidth=0.8,
+                label="limit: double precision")
+    axis.set_title("Lorenz, 1000 Runge-Kutta steps", fontsize=10)
+
+
+def lorenz_adaptive(times, axis):
+    """Tsitouras' method at three tolerances."""
+    for i, tolerance in enumerate(("1e-3", "1e-6", "1e-8")):
+        draw(axis, times[f"lorenz_tsit5_{tolerance}"]["myriad"], f"Myriad, {tolerance}", COLORS[i])
+        for marker, (package, published) in zip("sv", PUBLISHED.items()):
+            axis.loglog([524288], [published[tolerance]], marker, color=COLORS[i], markersize=6, markerfacecolor="none",
+                        linestyle="none", label=package if i == 0 else None)
+    axis.set_title("Lorenz, Tsitouras 5(4)", fontsize=10)
+
+
+def by_method(name, title, chosen):
+    """Draws one case with the methods at about the error that Cash-Karp has at 1e-10."""
+
+    def panel(times, axis):
+        for i, implementation in enumerate(chosen):
+            draw(axis, times[f"{name}_methods"][implementation], implementation, COLORS[i])
+        draw(axis, MPGOS[name], "MPGOS, cash_karp 1e-10", "0.5", ":")
+        axis.set_title(title, fontsize=10)
+
+    return panel
+
+
+def main():
+    if len(sys.argv) != 3:
+        print(__doc__.strip().split("\n\n")[1], file=sys.stderr)
+        return 2
+    try:
+        import matplotlib
+
+        matplotlib.use("Agg")
+        import matplotlib.pyplot as plt
+
+        times, gpu = read(sys.argv[1])
+        panels = (lorenz_fixed, lorenz_adaptive,
+                  by_method("keller_miksis", "Keller-Miksis, 64 phases", ("cash_karp 1e-10", "verner_7 1e-10", "dormand_prince_8 1e-9")),
+                  by_method("relief_valve", "relief valve, 64 phases", ("cash_karp 1e-10", "verner_7 1e-9", "dormand_prince_8 1e-9")))
+        figure, axes = plt.subplots(2, 2, figsize=(9, 7))
+        for panel, axis in zip(panels, axes.flat):
+            panel(times, axis)
+            axis.set_xlabel("instances")
+            axis.set_ylabel("kernel, ms")
+            axis.legend(frameon=False, fontsize=8)
+            axis.spines[["top", "right"]].set_visible(False)
+        figure.suptitle(gpu)
+        figure.tight_layout()
+        figure.savefig(sys.argv[2], dpi=110)
+    except (ImportError, OSError, ValueError, KeyError) as error:
+        print(f"{sys.argv[0]}: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
