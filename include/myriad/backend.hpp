@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "myriad/core/weak.hpp"
+#include "myriad/core/instruction_set.hpp"
 #include "myriad/ensemble/arrays.hpp"
 #include "myriad/ensemble/view.hpp"
 #include "myriad/integrator/options.hpp"
@@ -37,13 +38,17 @@ struct run_statistics {
 // gets a readable error instead of one by the linker.
 namespace openmp {
 
-/// What a kernel for CPUs was compiled for; in the order of preference, the best first.
-enum class instruction_set { avx512, avx2, sse2, generic };
-
 /// The kernel for one instruction set. A program may hold several (MYRIAD_ARCH as a list), of which host code chooses
 /// one by the CPU it runs on: cpu_kernel.hpp.
-template <instruction_set set, class Model, class Method, class R>
-__attribute__((weak)) run_statistics run_on(const kernel_arguments<Model, R>& arguments, const run_options& options);
+#define MYRIAD_DECLARE_KERNEL(set)                                                                                    \
+    template <class Model, class Method, class R>                                                                     \
+    __attribute__((weak)) run_statistics run_on(for_set<instruction_set::set>, const kernel_arguments<Model, R>&, \
+                                                const run_options&);
+MYRIAD_DECLARE_KERNEL(avx512)
+MYRIAD_DECLARE_KERNEL(avx2)
+MYRIAD_DECLARE_KERNEL(sse2)
+MYRIAD_DECLARE_KERNEL(generic)
+#undef MYRIAD_DECLARE_KERNEL
 
 }  // namespace openmp
 

@@ -11,46 +11,11 @@
 
 #include "myriad/backend.hpp"
 #include "myriad/core/error.hpp"
+#include "myriad/core/instruction_set.hpp"
 #include "myriad/ensemble/cost_order.hpp"
 
 namespace myriad {
 namespace host {
-
-inline constexpr openmp::instruction_set all_instruction_sets[] = {
-    openmp::instruction_set::avx512, openmp::instruction_set::avx2, openmp::instruction_set::sse2,
-    openmp::instruction_set::generic};
-
-inline const char* name_of(openmp::instruction_set set) {
-    switch (set) {
-        case openmp::instruction_set::avx512:
-            return "avx512";
-        case openmp::instruction_set::avx2:
-            return "avx2";
-        case openmp::instruction_set::sse2:
-            return "sse2";
-        case openmp::instruction_set::generic:
-            return "generic";
-    }
-    return "unknown";
-}
-
-/// Whether this CPU has what compilers use with -march=x86-64-v4, -v3 or for any x86-64.
-inline bool cpu_has(openmp::instruction_set set) {
-#if defined(__x86_64__)
-    switch (set) {
-        case openmp::instruction_set::avx512:
-            return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-                   __builtin_cpu_supports("avx512vl");
-        case openmp::instruction_set::avx2:
-            return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
-        default:
-            return true;
-    }
-#else
-    return set == openmp::instruction_set::generic;
-#endif
-}
 
 /// A kernel for the CPU; null where it was not compiled.
 template <class Model, class R>
@@ -59,18 +24,26 @@ struct cpu_kernel {
     openmp::instruction_set set = openmp::instruction_set::generic;
 };
 
+template <openmp::instruction_set set, class Model, class Method, class R>
+cpu_kernel<Model, R> kernel_for() {
+    using tag = openmp::for_set<set>;
+    using arguments = kernel_arguments<Model, R>;
+    run_statistics (*const compiled)(tag, const arguments&, const run_options&) = &openmp::run_on<Model, Method, R>;
+    if (if_defined(compiled) == nullptr) return {};
+    return {[](const arguments& a, const run_options& o) { return openmp::run_on<Model, Method, R>(tag{}, a, o); }, set};
+}
 template <class Model, class Method, class R>
 cpu_kernel<Model, R> compiled_kernel(openmp::instruction_set set) {
-    using openmp::instruction_set, openmp::run_on;
+    using openmp::instruction_set;
     switch (set) {
         case instruction_set::avx512:
-            return {if_defined(&run_on<instruction_set::avx512, Model, Method, R>), set};
+            return kernel_for<instruction_set::avx512, Model, Method, R>();
         case instruction_set::avx2:
-            return {if_defined(&run_on<instruction_set::avx2, Model, Method, R>), set};
+            return kernel_for<instruction_set::avx2, Model, Method, R>();
         case instruction_set::sse2:
-            return {if_defined(&run_on<instruction_set::sse2, Model, Method, R>), set};
+            return kernel_for<instruction_set::sse2, Model, Method, R>();
         case instruction_set::generic:
-            return {if_defined(&run_on<instruction_set::generic, Model, Method, R>), set};
+            return kernel_for<instruction_set::generic, Model, Method, R>();
     }
     return {};
 }
@@ -129,7 +102,7 @@ run_statistics run(const kernel_arguments<Model, R>& arguments, const run_option
     const auto kernel = host::choose_cpu_kernel<Model, Method, R>();
     require(kernel.run != nullptr, "this model was not instantiated for this method and real type");
     run_statistics used{};
-    if (options.schedule == schedule::by_cost && arguments.phases > 1) {
+    if (options.schedule == schedule::by_cost && arguments.phases > 1 && arguments.size <= most_sorted) {
         used = host::run_by_cost(kernel, arguments, options);
     } else {
         used = kernel.run(arguments, options);

@@ -139,3 +139,63 @@ TEST_CASE("a schedule that is none is refused", "[small]") {
         myriad::solve<cash_karp>(test_device(), e, o);
     }, {"schedule is 9", "choose automatic"});
 }
+
+TEST_CASE("schedules change no bit of phases that carry time and step on, nor of instances that have ended before") {
+    const auto integrated = [](schedule how) {
+        myriad::options o = phases_of(4, how);
+        o.phase_time = myriad::phase_time::carry_on;
+        o.phase_step = myriad::phase_step::carry_on;
+        o.max_steps = 70;
+        myriad::ensemble<swing> e(500);
+        fill(e);
+        e.state(swing::x)(17) = std::numeric_limits<double>::quiet_NaN();
+        o.invalid_instances = myriad::invalid_instances::mark;
+        for (int call = 0; call < 2; ++call) {
+            e.t_end() += 3;
+            myriad::solve<cash_karp>(test_device(2), e, o);
+        }
+        return e;
+    };
+    const auto plain = integrated(schedule::in_order);
+    for (const schedule how : {schedule::automatic, schedule::dynamic, schedule::by_cost}) {
+        INFO(name_of(how));
+        CHECK(same_results(integrated(how), plain));
+    }
+}
+
+TEST_CASE("a solver may get domains of the instances' own after a common one, and fewer instances, with the same bits") {
+    // all but the domains, which would be the instances' own if they were asked for
+    const auto set = [](myriad::ensemble<swing>& e) {
+        myriad::ensemble<swing> from(e.size());
+        fill(from);
+        for (const auto c : {swing::x, swing::v}) e.state(c) = from.state(c);
+        for (const auto c : {swing::damping, swing::drive}) e.parameter(c) = from.parameter(c);
+        for (const auto c : {swing::highest, swing::my_number}) e.accessory(c) = from.accessory(c);
+        e.shared(swing::stiffness) = from.shared(swing::stiffness);
+        e.shared(swing::bounce) = from.shared(swing::bounce);
+        e.shared_integer(swing::weight) = from.shared_integer(swing::weight);
+        e.time_domain(0, 4);
+    };
+    const auto integrated = [&](bool own_at_once) {
+        myriad::solver<swing, cash_karp> s(test_device(), 200, phases_of(2, schedule::by_cost));
+        set(s.instances());
+        CHECK(s.instances().has_common_domain());
+        if (own_at_once) s.instances().t_end()(3) = 4;
+        s.upload();
+        s.integrate();
+        s.download();
+        s.instances().restart();
+        set(s.instances());
+        s.instances().t_end()(3) = 5;
+        s.upload(100);
+        s.integrate();
+        s.download();
+        std::vector<double> x(s.results().state(swing::x).begin(), s.results().state(swing::x).end());
+        x.insert(x.end(), s.results().t().begin(), s.results().t().end());
+        return x;
+    };
+    const auto late = integrated(false);
+    CHECK(late == integrated(true));
+    CHECK(late[200 + 3] == 5);
+    CHECK(late[200 + 4] == 4);
+}

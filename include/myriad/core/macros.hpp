@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The execution-space macros: beside backends/cuda and three functions that have other code for CUDA devices
-// (in math.hpp, fast_power.hpp and norm.hpp), the only place that knows which compiler is at work.
+// The execution-space macros: beside backends/cuda, a few functions that have other code for CUDA devices
+// (in math.hpp, fast_power.hpp and norm.hpp) and controller/kind.hpp, the only place that knows which compiler is at work.
 #pragma once
 
 #if defined(__CUDACC__)

@@ -7,16 +7,24 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "myriad/core/instruction_set.hpp"
 #include "myriad/core/weak.hpp"
 
 namespace myriad {
 namespace openmp {
 
-/// Calls `body(context, part)` for every part from 0 on, each in a thread of its own. Weak: provided by the OpenMP backend,
-/// which is in every program with a kernel.
-__attribute__((weak)) void in_parts(int parts, void (*body)(void* context, int part), void* context);
-/// Threads worth using: those that OpenMP would take.
-__attribute__((weak)) int most_parts();
+#define MYRIAD_DECLARE_THREADS(set)                                                              \
+    __attribute__((weak)) void in_parts(for_set<instruction_set::set>, int parts,                 \
+                                        void (*body)(void* context, int part), void* context);    \
+    __attribute__((weak)) int most_parts(for_set<instruction_set::set>);
+/// `in_parts` calls `body(context, part)` for every part from 0 on, each in a thread of its own; `most_parts` are the threads
+/// worth using, those that OpenMP would take. Weak: provided by the OpenMP backend, which is in every program with a kernel,
+/// for the instruction sets that kernels are compiled for.
+MYRIAD_DECLARE_THREADS(avx512)
+MYRIAD_DECLARE_THREADS(avx2)
+MYRIAD_DECLARE_THREADS(sse2)
+MYRIAD_DECLARE_THREADS(generic)
+#undef MYRIAD_DECLARE_THREADS
 
 }  // namespace openmp
 
@@ -24,6 +32,27 @@ namespace host {
 
 /// Meant to keep up with a GPU's bus, and to leave threads to a second loop beside this one.
 inline constexpr std::int64_t most_threads = 8;
+
+/// What the OpenMP backend provides for this CPU; null if nothing.
+struct lent_threads {
+    void (*in_parts)(int, void (*)(void*, int), void*) = nullptr;
+    int (*most_parts)() = nullptr;
+};
+template <openmp::instruction_set set>
+lent_threads threads_for() {
+    using tag = openmp::for_set<set>;
+    void (*const compiled)(tag, int, void (*)(void*, int), void*) = &openmp::in_parts;
+    if (!cpu_has(set) || if_defined(compiled) == nullptr) return {};
+    return {[](int parts, void (*body)(void*, int), void* context) { openmp::in_parts(tag{}, parts, body, context); },
+            [] { return openmp::most_parts(tag{}); }};
+}
+inline lent_threads lend_threads() {
+    using openmp::instruction_set;
+    for (const lent_threads& found : {threads_for<instruction_set::avx512>(), threads_for<instruction_set::avx2>(),
+                                      threads_for<instruction_set::sse2>(), threads_for<instruction_set::generic>()})
+        if (found.in_parts != nullptr) return found;
+    return {};
+}
 
 /// Calls `body(first, last)` for parts that cover [0, size), side by side if there are several of at least `grain`. `body`
 /// throws nothing.
@@ -34,13 +63,13 @@ void in_parallel(std::int64_t size, std::int64_t grain, Body&& body) {
         std::int64_t size, parts;
         std::int64_t begin(std::int64_t part) const { return size / parts * part + std::min(part, size % parts); }
     } all{&body, size, std::min(size / grain, most_threads)};
-    if (all.parts > 1 && if_defined(&openmp::in_parts) != nullptr)
-        all.parts = std::min<std::int64_t>(all.parts, openmp::most_parts());
-    if (all.parts <= 1 || if_defined(&openmp::in_parts) == nullptr) {
+    static const lent_threads threads = lend_threads();
+    if (all.parts > 1 && threads.in_parts != nullptr) all.parts = std::min<std::int64_t>(all.parts, threads.most_parts());
+    if (all.parts <= 1 || threads.in_parts == nullptr) {
         if (size > 0) body(std::int64_t{0}, size);
         return;
     }
-    openmp::in_parts(
+    threads.in_parts(
         static_cast<int>(all.parts),
         [](void* context, int part) {
             const auto& w = *static_cast<const whole*>(context);

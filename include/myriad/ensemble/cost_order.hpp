@@ -11,6 +11,8 @@
 namespace myriad::inline MYRIAD_TARGET {
 
 inline constexpr int cost_buckets = 1024;
+/// Instances that can be sorted: their numbers take 32 bits. More are taken dynamically.
+inline constexpr std::int64_t most_sorted = 2'000'000'000;
 
 /// The bucket of a number of steps, the most expensive first: 32 to an octave, zero in the last one.
 MYRIAD_FUNCTION int cost_bucket(std::uint32_t cost) {

@@ -66,7 +66,8 @@ public:
         return view(integer_accessory_, integer_accessory_index(c), "integer accessory");
     }
 
-    /// Time domain of each instance; t_end may be before t_begin, to integrate backwards.
+    /// Time domain of each instance; t_end may be before t_begin, to integrate backwards. The first of these calls after
+    /// time_domain takes memory, also on an ensemble that is const: threads that share one ask t_begin_of and t_end_of.
     map<R> t_begin() { return view(own_domains(), 0, "time"); }
     const_map<R> t_begin() const { return view(std::as_const(own_domains()), 0, "time"); }
     map<R> t_end() { return view(own_domains(), 1, "time"); }

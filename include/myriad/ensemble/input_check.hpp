@@ -89,8 +89,15 @@ public:
         for (int c = 0; c < n_state<Model>; ++c) check("state", c, ensemble_.state(c).data(), false);
         for (int c = 0; c < n_parameter<Model>; ++c) check("parameter", c, ensemble_.parameter(c).data(), false);
         if (ensemble_.scales_tolerances()) check_positive_scales();
-        check("t_begin", no_component, ensemble_.t_begin().data(), false);
-        check("t_end", endless, ensemble_.t_end().data(), may_be_endless());
+        if (ensemble_.has_common_domain()) {
+            const std::vector<R> begin(static_cast<std::size_t>(count_), ensemble_.t_begin_of(0)),
+                end(static_cast<std::size_t>(count_), ensemble_.t_end_of(0));
+            check("t_begin", no_component, begin.data(), false);
+            check("t_end", endless, end.data(), may_be_endless());
+        } else {
+            check("t_begin", no_component, ensemble_.t_begin().data(), false);
+            check("t_end", endless, ensemble_.t_end().data(), may_be_endless());
+        }
     }
 
 private:

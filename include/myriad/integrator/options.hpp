@@ -50,11 +50,13 @@ enum class counting { off, on };
 /// Whether `solve` looks for stiffness afterwards, with some evaluations of rhs on the host.
 enum class advice { off, on };
 /// The order in which instances are integrated. Their results do not depend on it, bit for bit; the time does where they cost
-/// differently. `in_order`: by index, dealt out in advance. `dynamic`: by index, each lane taking the next one when it is
-/// done with its last. `by_cost`: dynamic in the first phase, whose steps are counted; the other phases after sorting by that
+/// differently. `in_order`: by index, one to a CUDA thread, one part to a thread of the CPU. `dynamic`: by index, each lane taking the
+/// next one when it is done with its last. `by_cost`: dynamic in the first phase, whose steps are counted; the other phases after sorting by that
 /// count, so that instances side by side in a warp cost the same (a solver sorts by the last call's counts as long as the
-/// instances stay on the GPU). `automatic`: on the CPU dynamic; on a GPU by_cost for step-size control or events, four phases
-/// or more and instances enough to fill it, else in_order.
+/// instances stay on the GPU). `automatic`: on the CPU dynamic; on a GPU by_cost for step-size control, events or after_step, four phases
+/// or more and more instances than one for each thread of a warp on every warp scheduler, else in_order. Kernels of fixed
+/// steps without events and after_step are always in order on a GPU. With by_cost on the CPU, progress is told of the phases
+/// after the first.
 enum class schedule : std::uint8_t { automatic, in_order, dynamic, by_cost };
 constexpr const char* name_of(schedule s) {
     constexpr const char* names[] = {"automatic", "in_order", "dynamic", "by_cost"};

@@ -263,8 +263,10 @@ struct functions<dual<S>> {
     }
     template <class B>
     static MYRIAD_FUNCTION D powr(const D& x, const B& exponent) {
-        const S y = to_kind<S>(exponent);
-        return D(f::powr(x.value, y), y * f::powr(x.value, y - constant(real(1))) * x.derivative);
+        const S y = to_kind<S>(exponent), one = constant(real(1));
+        // x^0 is 1 here, though powr(0, 0) is not
+        const S slope = select(y == one, one, y * f::powr(x.value, y - one));
+        return D(f::powr(x.value, y), slope * x.derivative);
     }
     template <class A>
     static MYRIAD_FUNCTION D pow_of_exponent(const A& base, const D& y) {

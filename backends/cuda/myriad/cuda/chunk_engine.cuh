@@ -13,9 +13,9 @@
 #include "myriad/backend.hpp"
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/chunk_layout.cuh"
-#include "myriad/cuda/cost_order.cuh"
 #include "myriad/cuda/launch.cuh"
 #include "myriad/cuda/resources.cuh"
+#include "myriad/cuda/schedule.cuh"
 #include "myriad/cuda/transfers.cuh"
 
 namespace myriad::cuda {
@@ -26,7 +26,8 @@ class chunk_engine final : public engine<Model, R> {
 
 public:
     explicit chunk_engine(const engine_options& options)
-        : device_(options.device), wanted_schedule_(options.schedule), while_starting_(std::in_place, options.device), launcher_(options.device, options) {
+        : device_(options.device), while_starting_(std::in_place, options.device), launcher_(options.device, options),
+          scheduler_(options.schedule) {
         while_starting_.reset();
     }
     ~chunk_engine() override {
@@ -42,7 +43,7 @@ public:
         arguments all = host;
         const auto arrays = [&](auto&& add) { for_each_array(all, add); };
         const auto records = [&](auto&& add) { for_each_record(all.record, add); };
-        std::size_t per_instance = 0;
+        std::size_t per_instance = scheduler_.bytes_per_instance();
         const auto add = [&](auto* array, std::int64_t components, array_access, array_kind) {
             per_instance += bytes_of(array, components);
         };
@@ -50,6 +51,7 @@ public:
         records(add);
         grow(memory_, bytes_for(count, arrays), per_instance);
         grow(records_, bytes_for(count, records), per_instance);
+        scheduler_.reserve(count, host.phases, launcher_.least_threads());
         const std::size_t all_bytes = memory_.bytes() + records_.bytes();
         staged_.reserve(pinned_.empty() ? all_bytes : std::min(all_bytes, little));
     }
@@ -59,7 +61,7 @@ public:
         staged_.finish_download();
         first_ = first;
         count_ = count;
-        costs_known_ = false;
+        scheduler_.forget_costs();
         reserve(host, count);
         arguments from = host;
         const bool fresh_samples = of_instances == past::none || !has_samples(host);
@@ -106,12 +108,8 @@ public:
             array = on_device;
         });
         prepare_sample_times(now.sample);
-        const schedule how = schedule_for(now);
-        if (how == schedule::by_cost) by_cost_.reserve(count_);
-        if (how != schedule::in_order) queue_.reserve(sizeof(unsigned long long));
-        launcher_.note(how);
         MYRIAD_CUDA(cudaEventRecord(begun_.get(), stream_.get()));
-        launch(now, how);
+        scheduler_.launch(launcher_, now, stream_.get());
         MYRIAD_CUDA(cudaEventRecord(done_.get(), stream_.get()));
     }
 
@@ -200,7 +198,7 @@ public:
     }
     void rest() override {
         const current_device here(device_);
-        const std::size_t held = memory_.bytes() + records_.bytes(), always_fine = std::size_t{32} << 20;
+        const std::size_t held = memory_.bytes() + records_.bytes() + scheduler_.bytes(), always_fine = std::size_t{32} << 20;
         if (held <= always_fine) return;
         std::size_t free = 0, total = 0;
         MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
@@ -208,13 +206,15 @@ public:
         count_ = 0;
         memory_.release();
         records_.release();
+        scheduler_.release();
     }
 
     std::int64_t affordable(std::int64_t bytes) const override {
         const current_device here(device_);
         std::size_t free = 0, total = 0;
         MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
-        return static_cast<std::int64_t>(0.9 * static_cast<double>(free) / static_cast<double>(bytes));
+        const double taken = static_cast<double>(bytes) + static_cast<double>(scheduler_.bytes_per_instance());
+        return static_cast<std::int64_t>(0.9 * static_cast<double>(free) / taken);
     }
     void pin(void* memory, std::size_t bytes) override {
         const current_device here(device_);
@@ -222,39 +222,6 @@ public:
     }
 
 private:
-    /// What `automatic` means here. Costs differ where steps are chosen or events end phases; sorting pays if most of the work
-    /// is yet to come.
-    schedule schedule_for(const arguments& now) const {
-        if constexpr (!costs_differ<Model, Method>) return schedule::in_order;
-        if (wanted_schedule_ == schedule::by_cost && count_ > cost_order::most) return schedule::dynamic;
-        if (wanted_schedule_ != schedule::automatic) return wanted_schedule_;
-        const bool pays = now.phases >= 4 && count_ > launcher_.least_threads() && count_ <= cost_order::most;
-        return pays ? schedule::by_cost : schedule::in_order;
-    }
-
-    void launch(arguments& now, schedule how) {
-        if (how == schedule::in_order) return launcher_.launch(now, nullptr, stream_.get());
-        if (how == schedule::dynamic) return launch_with_queue(now);
-        now.cost = by_cost_.cost();
-        if (!costs_known_) {
-            const std::int32_t phases = now.phases;
-            now.phases = 1;
-            launch_with_queue(now);
-            now.phases = phases;
-            now.first_phase = 1;
-            costs_known_ = true;
-        }
-        if (now.first_phase == now.phases) return;
-        by_cost_.sort(count_, stream_.get());
-        now.order = by_cost_.order();
-        launcher_.launch(now, nullptr, stream_.get());
-    }
-    void launch_with_queue(const arguments& now) {
-        auto* const queue = static_cast<unsigned long long*>(queue_.data());
-        MYRIAD_CUDA(cudaMemsetAsync(queue, 0, sizeof *queue, stream_.get()));
-        launcher_.launch(now, queue, stream_.get());
-    }
-
     /// Calls `visit(pointer, on the device, components, access, kind)` for every array.
     template <class Visit>
     void walk(arguments& host, Visit&& visit) {
@@ -319,12 +286,10 @@ private:
     }
 
     int device_;
-    schedule wanted_schedule_;
-    bool costs_known_ = false;  // of the chunk that is on the device
     std::optional<current_device> while_starting_;  // the members below are made on this device
     kernel_launcher<Model, Method, R> launcher_;
-    device_memory memory_, records_, sample_times_, shared_, queue_;
-    cost_order by_cost_;
+    device_memory memory_, records_, sample_times_, shared_;
+    phase_scheduler<Model, Method, R> scheduler_;
     pinned_memory pinned_;
     stream stream_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};

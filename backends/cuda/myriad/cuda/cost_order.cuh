@@ -64,13 +64,20 @@ namespace myriad::cuda {
 /// The costs of a chunk's instances, and their order by cost, in device memory.
 class cost_order {
 public:
-    static constexpr std::int64_t most = 2'000'000'000;
-
     void reserve(std::int64_t count) {
         const auto bytes = static_cast<std::size_t>(count) * sizeof(std::uint32_t);
         cost_.reserve(bytes);
         order_.reserve(bytes);
         buckets_.reserve(cost_buckets * sizeof(unsigned));
+    }
+    std::size_t bytes() const { return cost_.bytes() + order_.bytes(); }
+    void release() {
+        cost_.release();
+        order_.release();
+    }
+    /// Asks for costs of zero.
+    void clear(std::int64_t count, cudaStream_t where) {
+        MYRIAD_CUDA(cudaMemsetAsync(cost_.data(), 0, static_cast<std::size_t>(count) * sizeof(std::uint32_t), where));
     }
     std::uint32_t* cost() const { return static_cast<std::uint32_t*>(cost_.data()); }
     const std::uint32_t* order() const { return static_cast<const std::uint32_t*>(order_.data()); }

@@ -60,7 +60,7 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
     const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
     run_statistics used{0, lanes_of<S>, threads};
     const std::int64_t count = options.count > 0 ? options.count : arguments.size;
-    // In order, every thread has one chunk of its own.
+    // In order, there is one chunk for every thread.
     const std::int64_t chunk = options.schedule == schedule::in_order
                                    ? (count + threads - 1) / threads
                                    : std::clamp<std::int64_t>(count / (64 * threads), 1, 64);
@@ -79,17 +79,16 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
 
 namespace myriad::openmp {
 
-template <instruction_set set, class Model, class Method, class R>
-run_statistics run_on(const kernel_arguments<Model, R>& arguments, const run_options& options) {
-    static_assert(set == instruction_set::MYRIAD_INSTRUCTION_SET,
-                  "kernels for another instruction set need other flags");
+template <class Model, class Method, class R>
+run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const kernel_arguments<Model, R>& arguments,
+                      const run_options& options) {
     return run_packs<Model, Method, R, default_batches<Model, Method>()>(arguments, options);
 }
 
 }  // namespace myriad::openmp
 
 /// Compiles the kernel of one model, method and real type.
-#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                   \
-    template myriad::run_statistics                                                                    \
-    myriad::openmp::run_on<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET, Model, Method, R>( \
+#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                              \
+    template myriad::run_statistics myriad::openmp::run_on<Model, Method, R>(                     \
+        myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>,         \
         const myriad::kernel_arguments<Model, R>&, const myriad::run_options&);

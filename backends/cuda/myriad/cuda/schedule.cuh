@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Launches the phases of a call in the order that the schedule asks for; keeps what that takes on the device.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "myriad/cuda/check.cuh"
+#include "myriad/cuda/cost_order.cuh"
+#include "myriad/cuda/launch.cuh"
+#include "myriad/cuda/resources.cuh"
+
+namespace myriad::cuda {
+
+template <class Model, class Method, class R>
+class phase_scheduler {
+    using arguments = kernel_arguments<Model, R>;
+
+public:
+    explicit phase_scheduler(schedule wanted) : wanted_(costs_differ<Model, Method> ? wanted : schedule::in_order) {}
+
+    /// Device memory that an instance may take beside its own data: a cost and a place in the order.
+    std::size_t bytes_per_instance() const {
+        return wanted_ == schedule::by_cost || wanted_ == schedule::automatic ? 2 * sizeof(std::uint32_t) : 0;
+    }
+    /// Takes the memory for calls of so many phases, with no work under way.
+    void reserve(std::int64_t count, std::int64_t phases, std::int64_t worthwhile) {
+        const schedule how = chosen(count, phases, worthwhile);
+        if (how == schedule::by_cost) by_cost_.reserve(count);
+        if (how != schedule::in_order) queue_.reserve(sizeof(unsigned long long));
+    }
+    std::size_t bytes() const { return by_cost_.bytes(); }
+    void release() { by_cost_.release(); }
+    /// Other instances are on the device now.
+    void forget_costs() { costs_known_ = false; }
+
+    void launch(kernel_launcher<Model, Method, R>& kernel, arguments now, cudaStream_t where) {
+        const schedule how = chosen(now.size, now.phases, kernel.least_threads());
+        kernel.note(how);
+        if (how == schedule::in_order) return kernel.launch(now, nullptr, where);
+        reserve(now.size, now.phases, kernel.least_threads());
+        if (how == schedule::dynamic) return launch_with_queue(kernel, now, where);
+        now.cost = by_cost_.cost();
+        if (!costs_known_) {
+            by_cost_.clear(now.size, where);  // instances that have ended get no cost
+            const std::int32_t phases = now.phases;
+            now.phases = 1;
+            launch_with_queue(kernel, now, where);
+            now.phases = phases;
+            now.first_phase = 1;
+            costs_known_ = true;
+        }
+        if (now.first_phase == now.phases) return;
+        by_cost_.sort(now.size, where);
+        now.order = by_cost_.order();
+        kernel.launch(now, nullptr, where);
+    }
+
+private:
+    /// Sorting pays if most of the work is yet to come; `worthwhile`: threads that keep the GPU's warp schedulers busy.
+    schedule chosen(std::int64_t count, std::int64_t phases, std::int64_t worthwhile) const {
+        const bool sortable = count <= most_sorted;
+        if (wanted_ == schedule::automatic)
+            return sortable && phases >= 4 && count > worthwhile ? schedule::by_cost : schedule::in_order;
+        return wanted_ == schedule::by_cost && !sortable ? schedule::dynamic : wanted_;
+    }
+    void launch_with_queue(kernel_launcher<Model, Method, R>& kernel, const arguments& now, cudaStream_t where) {
+        auto* const queue = static_cast<unsigned long long*>(queue_.data());
+        MYRIAD_CUDA(cudaMemsetAsync(queue, 0, sizeof *queue, where));
+        kernel.launch(now, queue, where);
+    }
+
+    schedule wanted_;
+    bool costs_known_ = false;  // of the instances on the device
+    device_memory queue_;
+    cost_order by_cost_;
+};
+
+}  // namespace myriad::cuda
