@@ -147,10 +147,10 @@ TEST_CASE("a step that grows without limit by its error grows by exactly the gro
     o.growth_limit = 1;
     CHECK(first_trial<cash_karp>(o).next_step == 0.01);
 }
-TEST_CASE("a rejected step shrinks by exactly the shrink limit at most") {
+TEST_CASE("a rejected step shrinks by the shrink limit at most") {
     options o = with_ratio<cash_karp>(0.5, 1e9);
-    // exactly, where limits are not in single precision
-    const double rounding = tests::tests_cpu() ? 0 : 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
+    // limits are kept in single precision, and some factors there round
+    const double rounding = 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
     CHECK(std::abs(first_trial<cash_karp>(o).next_step / (0.5 * 0.1) - 1) <= rounding);
     o.shrink_limit = 0.25;
     CHECK(first_trial<cash_karp>(o).next_step == 0.5 * 0.25);

@@ -105,8 +105,8 @@ struct options {
         std::numeric_limits<double>::quiet_NaN();  ///< fixed step (must be given), or first step (default 1e-2)
     double minimum_step = 0;                       ///< 0: the resolution of t
     double maximum_step = std::numeric_limits<double>::infinity();
-    double growth_limit = 5;              ///< largest factor from one step to the next
-    double shrink_limit = 0.1;            ///< smallest factor
+    double growth_limit = 5;              ///< largest factor from one step to the next; kept in single precision
+    double shrink_limit = 0.1;            ///< smallest factor, likewise
     std::int64_t max_steps = 10'000'000;  ///< trial steps per phase; more end the instance as `max_steps`
 
     myriad::phase_time phase_time = myriad::phase_time::restart;
