@@ -522,7 +522,7 @@ TEST_CASE("powr errs by at most 1.2 + |y| / 5 ulps, in packs and plain numbers, 
                     CHECK(same_bits(get_lane(result, i), myriad::powr(get_lane(x, i), static_cast<T>(y))));
                 }
             }
-            CAPTURE(sizeof(T), y);
+            CAPTURE(powr_function::text, sizeof(T), y);
             CHECK(worst <= (MYRIAD_FUSED ? 1.2 + std::fabs(y) / 5 : 1.5 + std::fabs(y) / 2));
         }
     };
