@@ -10,7 +10,7 @@ usage() {
     cat <<'END'
 Usage: scripts/quickstart.sh [--help]
 
-Installs the packages that are missing (as root or with sudo), builds the examples as a release in
+Installs the packages that are missing (as root or with sudo), builds the example as a release in
 build/release, integrates the Duffing sweep to results/duffing.csv and draws its bifurcation diagram,
 results/duffing.png. Takes a few minutes on two cores.
 END
@@ -26,12 +26,12 @@ done
 started=$SECONDS
 require_packages g++ cmake ninja-build libeigen3-dev libxsimd-dev libcli11-dev python3-matplotlib
 
-say "Building the examples in build/release"
+say "Building the example in build/release"
 # The other parts need further packages; 'cmake --preset release' switches them on again.
 quietly build/release/configure.log cmake --preset release \
     -DMYRIAD_BUILD_TESTS=OFF -DMYRIAD_BUILD_BENCHMARKS=OFF -DMYRIAD_BUILD_VALIDATION=OFF ||
     fail "The configuration failed, see above."
-quietly build/release/build.log cmake --build --preset release --parallel "$(nproc)" ||
+quietly build/release/build.log cmake --build --preset release --parallel "$(nproc)" --target duffing ||
     fail "The build failed, see above."
 
 say "Integrating the Duffing sweep to results/duffing.csv"

@@ -14,7 +14,7 @@
 #include <myriad/myriad.hpp>
 #include <sundials/sundials_config.h>
 
-#include "examples/common/command_line.hpp"
+#include "examples/common/device_option.hpp"
 #include "measures/measures.hpp"
 #include "problems/problems.hpp"
 

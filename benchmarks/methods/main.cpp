@@ -8,8 +8,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "examples/common/command_line.hpp"
 #include "examples/common/csv_file.hpp"
+#include "examples/common/device_option.hpp"
 #include "measure.hpp"
 
 namespace {

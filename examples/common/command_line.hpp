@@ -6,66 +6,111 @@
 #include <csignal>
 #include <cstdint>
 #include <exception>
+#include <filesystem>
+#include <functional>
 #include <iostream>
 #include <new>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
 #include "myriad/device.hpp"
 
+#include "device_option.hpp"
+#include "plot.hpp"
+
 namespace examples {
 
-struct sweep_options {
+/// How much to compute.
+struct sweep_size {
     std::int64_t instances = 0;
     std::int64_t transient = 0;  // phases to let pass
-    std::int64_t recorded = 0;   // phases to keep
+    std::int64_t phases = 1;     // phases to keep after them
+};
+
+/// What the command line has chosen.
+struct sweep_options : sweep_size {
     std::string device = "auto";
     std::string output;
+    std::string picture;  // empty: none
     bool quiet = false;
 };
 
-/// What `--device` may be, in this program.
-inline std::string device_help() {
-    const bool with_cuda = myriad::host::if_defined(&myriad::cuda::list_devices) != nullptr;
-    return with_cuda ? "Where to compute: auto (a GPU if there is one), cpu, cpu:THREADS, cuda or cuda:NUMBER"
-                     : "Where to compute: auto, cpu or cpu:THREADS (built without the CUDA backend)";
-}
+/// What a program offers.
+struct study {
+    std::string description;
+    sweep_size full;     // as in the paper, or what a GPU does in seconds
+    sweep_size small;    // what two cores do in seconds
+    std::string output;  // file to write if none is named
+    std::string instances_help = "Number of instances";
+    std::string phases_help = "Phases to record after the transient ones";
+    bool has_transient = true;
+    std::function<void(CLI::App&)> add_options = {};  // further options of the program
+};
 
-/// Says where the sweep is computed and, if a GPU would have been taken, why there is none.
-inline void announce(const std::string& wanted, const myriad::device& device) {
-    std::cerr << "Computing on " << device.name();
-    if (device.which() == myriad::device::kind::cuda) {
-        std::cerr << " (" << device.description() << ')';
-    } else if (wanted == "auto") {
-        std::cerr << "; no GPU: " << myriad::device::no_gpu();
-    }
-    std::cerr << '\n';
-}
-
-/// Parses the command line over the given defaults and calls `sweep(options, device)`, which returns the exit status.
-template <class Sweep>
-int run_sweep(int argc, const char* const* argv, const std::string& description, sweep_options options, Sweep&& sweep) {
-    CLI::App app(description);
-    const auto add_count = [&app](const char* name, std::int64_t& count, std::int64_t least, const char* meaning) {
+/// A count that the command line may give; else it is that of the study's size.
+class chosen_count {
+public:
+    chosen_count(CLI::App& app, const std::string& names, std::int64_t least, const std::string& meaning,
+                 std::int64_t full, std::int64_t small)
+        : full_(full), small_(small) {
         const CLI::Range range(least, std::int64_t{100'000'000});
-        app.add_option(name, count, meaning)->check(range.description(""))->type_name("N")->capture_default_str();
-    };
-    add_count("--instances", options.instances, 1, "Number of instances");
-    add_count("--transient", options.transient, 0, "Phases to let pass");
-    add_count("--recorded", options.recorded, 1, "Phases to record after them");
+        const std::string standard = std::to_string(full) + "; with --small " + std::to_string(small);
+        app.add_option(names, given_, meaning)->check(range.description(""))->type_name("N")->default_str(standard);
+    }
+    std::int64_t value(bool small) const { return given_.value_or(small ? small_ : full_); }
+
+private:
+    std::optional<std::int64_t> given_;
+    std::int64_t full_, small_;
+};
+
+/// Parses the command line and calls `sweep(options, device)`, which returns the exit status. Draws the picture after it.
+template <class Sweep>
+int run_sweep(int argc, const char* const* argv, const study& offered, Sweep&& sweep) {
+    CLI::App app(offered.description);
+    const sweep_size &full = offered.full, &small = offered.small;
+    const chosen_count instances(app, "--instances", 1, offered.instances_help, full.instances, small.instances);
+    std::optional<chosen_count> transient;
+    if (offered.has_transient)
+        transient.emplace(app, "--transient", 0, "Phases to let pass", full.transient, small.transient);
+    const chosen_count phases(app, "--phases,--recorded", 1, offered.phases_help, full.phases, small.phases);
+    bool is_small = false;
+    app.add_flag("--small", is_small, "A size that takes seconds on two cores");
+
+    sweep_options options;
+    options.output = offered.output;
     app.add_option("--device", options.device, device_help())->type_name("NAME")->capture_default_str();
     app.add_option("--output", options.output, "File to write, as comma-separated values")
         ->type_name("FILE")
         ->capture_default_str();
+    CLI::Option* const plot = app.add_option("--plot", options.picture, "Draw a picture of it too (default: FILE.png)")
+                                  ->type_name("PNG")
+                                  ->expected(0, 1);
     app.add_flag("--quiet", options.quiet, "Print nothing but errors");
+    if (offered.add_options) offered.add_options(app);
+
     // So that a limit on the size of files is an error that the writer reports, like a full disk, and no sudden death.
     std::signal(SIGXFSZ, SIG_IGN);
     try {
         app.parse(argc, argv);
+        options.instances = instances.value(is_small);
+        options.transient = transient ? transient->value(is_small) : 0;
+        options.phases = phases.value(is_small);
+        if (plot->count() > 0 && options.picture.empty())
+            options.picture = std::filesystem::path(options.output).replace_extension(".png").string();
+
+        std::optional<plotter> picture;
+        if (!options.picture.empty()) picture.emplace();
         const myriad::device device = myriad::device::parse(options.device);
         if (!options.quiet) announce(options.device, device);
-        const int status = sweep(options, device);
+        const int status = sweep(std::as_const(options), device);
+        if (picture && status < 2) {
+            picture->draw(MYRIAD_PLOT_SCRIPT, options.output, options.picture);
+            if (!options.quiet) std::cout << "Drawn to " << options.picture << '\n';
+        }
         if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
         return status;
     } catch (const CLI::ParseError& e) {

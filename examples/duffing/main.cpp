@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The first example: a bifurcation diagram of the Duffing oscillator over its damping, as in the MPGOS paper.
-#include <algorithm>
 #include <cstdint>
-#include <iostream>
 #include <numbers>
 #include <string>
 
 #include <myriad/myriad.hpp>
 
-#include "../common/command_line.hpp"
 #include "../common/csv_file.hpp"
-#include "../common/progress.hpp"
+#include "../common/grid.hpp"
+#include "../common/integrate.hpp"
 #include "duffing.hpp"
 
 namespace {
@@ -23,11 +21,7 @@ constexpr double tolerance = 1e-9, event_tolerance = 1e-6;
 
 myriad::ensemble<duffing> prepare(std::int64_t instances) {
     myriad::ensemble<duffing> sweep(instances);
-    if (instances > 1) {
-        sweep.parameter(duffing::k) = Eigen::ArrayXd::LinSpaced(instances, k_first, k_last);
-    } else {
-        sweep.parameter(duffing::k) = k_first;  // LinSpaced would give the last value
-    }
+    sweep.parameter(duffing::k) = examples::linspace(k_first, k_last, instances);
     sweep.shared(duffing::B) = forcing;
     sweep.state(duffing::x) = x_start;
     sweep.state(duffing::v) = v_start;
@@ -36,8 +30,8 @@ myriad::ensemble<duffing> prepare(std::int64_t instances) {
     return sweep;
 }
 
-myriad::options integration(const examples::sweep_options& chosen, examples::progress& shown) {
-    return {.phases = chosen.transient + chosen.recorded,
+myriad::options integration(const examples::sweep_options& chosen) {
+    return {.phases = chosen.transient + chosen.phases,
             .relative_tolerance = tolerance,
             .absolute_tolerance = tolerance,
             .step = 1e-2,
@@ -51,8 +45,7 @@ myriad::options integration(const examples::sweep_options& chosen, examples::pro
             .record = {.from_phase = chosen.transient,
                        .states = {duffing::x, duffing::v},
                        .accessories = {duffing::x_local_max, duffing::v_second_zero, duffing::x_global_max},
-                       .integer_accessories = {duffing::zeros}},
-            .progress = [&shown](std::int64_t begun, std::int64_t total) { shown(begun, total); }};
+                       .integer_accessories = {duffing::zeros}}};
 }
 
 // Nothing here tells when, where or on how many threads the file was made: equal results are equal files.
@@ -94,31 +87,21 @@ void write(examples::csv_file& file, const myriad::ensemble<duffing>& sweep, con
 }
 
 int run(const examples::sweep_options& chosen, const myriad::device& device) {
-    const auto rows = static_cast<std::uintmax_t>(chosen.instances) * static_cast<std::uintmax_t>(chosen.recorded);
+    const auto rows = static_cast<std::uintmax_t>(chosen.instances) * static_cast<std::uintmax_t>(chosen.phases);
     examples::csv_file file(chosen.output, 80 * rows);  // the shortest rows have about 100 characters
     auto sweep = prepare(chosen.instances);
-    if (!chosen.quiet)
-        std::cerr << "Integrating " << sweep.size() << " instances over " << chosen.transient << " + "
-                  << chosen.recorded << " phases\n";
-    examples::progress shown(chosen.quiet ? examples::progress::style::none : examples::progress::style::automatic);
-    const auto report = myriad::solve<myriad::cash_karp>(device, sweep, integration(chosen, shown));
-    shown.finish();
-    if (!chosen.quiet) std::cout << report;
-
+    const auto report = examples::integrate<myriad::cash_karp>(chosen, device, sweep, integration(chosen));
     write(file, sweep, report.records, chosen.transient);
-    if (!chosen.quiet) std::cout << "Written to " << file.path().string() << '\n';
-    if (report.failed() == 0) return 0;
-    std::cerr << report.failed() << " of " << report.instances << " instances failed, the first of them instance "
-              << report.first_failed << " (k = " << report.first_parameter[duffing::k]
-              << "): " << myriad::name_of(report.first_status) << " at t = " << report.first_t
-              << "; phases they did not complete are nan in " << file.path().string() << '\n';
-    return 1;
+    return examples::conclude(chosen, report);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return examples::run_sweep(argc, argv, "Bifurcation diagram of the Duffing oscillator over its damping k",
-                               {.instances = 46080, .transient = 1024, .recorded = 32, .output = "results/duffing.csv"},
+    return examples::run_sweep(argc, argv,
+                               {.description = "Bifurcation diagram of the Duffing oscillator over its damping k",
+                                .full = {.instances = 46080, .transient = 1024, .phases = 32},
+                                .small = {.instances = 1000, .transient = 128, .phases = 16},
+                                .output = "results/duffing.csv"},
                                run);
 }

@@ -2,14 +2,13 @@
 // A hybrid system: the stick-slip oscillation of a block on a belt over the belt's speed. A phase goes from one slip to the
 // next; its period has a closed form, with which the example's test compares it.
 #include <cstdint>
-#include <iostream>
 #include <limits>
 
 #include <myriad/myriad.hpp>
 
-#include "../common/command_line.hpp"
 #include "../common/csv_file.hpp"
-#include "../common/progress.hpp"
+#include "../common/grid.hpp"
+#include "../common/integrate.hpp"
 #include "stick_slip.hpp"
 
 namespace {
@@ -19,8 +18,7 @@ constexpr double tolerance = 1e-10;
 
 myriad::ensemble<stick_slip> prepare(std::int64_t instances) {
     myriad::ensemble<stick_slip> sweep(instances);
-    sweep.parameter(stick_slip::belt) = belt_first;  // LinSpaced would give a single one the last value
-    if (instances > 1) sweep.parameter(stick_slip::belt) = Eigen::ArrayXd::LinSpaced(instances, belt_first, belt_last);
+    sweep.parameter(stick_slip::belt) = examples::linspace(belt_first, belt_last, instances);
     sweep.shared(stick_slip::kinetic) = kinetic;
     sweep.shared(stick_slip::breakaway) = breakaway;
     sweep.state(stick_slip::x) = 0;
@@ -34,20 +32,16 @@ myriad::ensemble<stick_slip> prepare(std::int64_t instances) {
 int run(const examples::sweep_options& chosen, const myriad::device& device) {
     examples::csv_file file(chosen.output);
     auto sweep = prepare(chosen.instances);
-    examples::progress shown(chosen.quiet ? examples::progress::style::none : examples::progress::style::automatic);
-    const auto report = myriad::solve<myriad::tsitouras_5>(
-        device, sweep,
-        {.phases = chosen.transient + chosen.recorded,
+    const auto report = examples::integrate<myriad::tsitouras_5>(
+        chosen, device, sweep,
+        {.phases = chosen.transient + chosen.phases,
          .relative_tolerance = tolerance,
          .absolute_tolerance = tolerance,
          .phase_time = myriad::phase_time::carry_on,
          .events = {{.direction = myriad::direction::rising, .tolerance = tolerance},
                     {.direction = myriad::direction::rising, .tolerance = tolerance, .stop_after = 1}},
          .record = {.from_phase = chosen.transient,
-                    .accessories = {stick_slip::x_slip, stick_slip::x_stick, stick_slip::period}},
-         .progress = [&shown](std::int64_t begun, std::int64_t total) { shown(begun, total); }});
-    shown.finish();
-    if (!chosen.quiet) std::cout << report;
+                    .accessories = {stick_slip::x_slip, stick_slip::x_stick, stick_slip::period}}});
 
     file.comment(
         myriad::message("Block on a belt: x'' = -x + friction; kinetic friction ", kinetic, ", breakaway ", breakaway));
@@ -63,13 +57,16 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
             file.row(i, chosen.transient + r, sweep.parameter(stick_slip::belt)[i], x_slip(i, r), x_stick(i, r),
                      period(i, r), myriad::name_of(sweep.status(i)));
     file.commit();
-    return report.failed() == 0 ? 0 : 1;
+    return examples::conclude(chosen, report);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return examples::run_sweep(argc, argv, "Stick-slip oscillation of a block on a belt, over the belt's speed",
-                               {.instances = 1024, .transient = 1, .recorded = 2, .output = "results/stick_slip.csv"},
+    return examples::run_sweep(argc, argv,
+                               {.description = "Stick-slip oscillation of a block on a belt, over the belt's speed",
+                                .full = {.instances = 1024, .transient = 1, .phases = 2},
+                                .small = {.instances = 64, .transient = 1, .phases = 2},
+                                .output = "results/stick_slip.csv"},
                                run);
 }

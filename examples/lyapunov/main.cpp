@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The Lyapunov spectrum of Lorenz' equations over rho, the Rayleigh number.
 #include <cstdint>
-#include <iostream>
 
 #include <myriad/myriad.hpp>
 
-#include "../common/command_line.hpp"
 #include "../common/csv_file.hpp"
-#include "../common/progress.hpp"
+#include "../common/integrate.hpp"
 #include "lorenz.hpp"
 
 namespace {
@@ -53,30 +51,24 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
     const auto rows = static_cast<std::uintmax_t>(chosen.instances);
     examples::csv_file file(chosen.output, 40 * rows);  // the shortest rows have about 60 characters
     auto sweep = prepare(chosen.instances, chosen.transient);
-    examples::progress shown(chosen.quiet ? examples::progress::style::none : examples::progress::style::automatic);
-    const myriad::options options{
-        .phases = chosen.transient + chosen.recorded,
-        .relative_tolerance = tolerance,
-        .absolute_tolerance = tolerance,
-        .phase_step = myriad::phase_step::carry_on,
-        .progress = [&shown](std::int64_t begun, std::int64_t total) { shown(begun, total); }};
-    const auto report = myriad::solve<myriad::tsitouras_5>(device, sweep, options);
-    shown.finish();
-    if (!chosen.quiet) std::cout << report;
-
-    write(file, sweep, chosen.transient, chosen.recorded);
-    if (!chosen.quiet) std::cout << "Written to " << file.path().string() << '\n';
-    if (report.failed() == 0) return 0;
-    std::cerr << report.failed() << " of " << report.instances << " instances failed, the first of them instance "
-              << report.first_failed << ": " << myriad::name_of(report.first_status) << " at t = " << report.first_t
-              << '\n';
-    return 1;
+    const auto report =
+        examples::integrate<myriad::tsitouras_5>(chosen, device, sweep,
+                                                 {.phases = chosen.transient + chosen.phases,
+                                                  .relative_tolerance = tolerance,
+                                                  .absolute_tolerance = tolerance,
+                                                  .phase_step = myriad::phase_step::carry_on});
+    write(file, sweep, chosen.transient, chosen.phases);
+    return examples::conclude(chosen, report);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return examples::run_sweep(argc, argv, "Lyapunov spectrum of Lorenz' equations over rho; recorded phases are summed",
-                               {.instances = 2000, .transient = 400, .recorded = 2000, .output = "results/lyapunov.csv"},
+    return examples::run_sweep(argc, argv,
+                               {.description = "Lyapunov spectrum of Lorenz' equations over rho",
+                                .full = {.instances = 2000, .transient = 400, .phases = 2000},
+                                .small = {.instances = 200, .transient = 100, .phases = 200},
+                                .output = "results/lyapunov.csv",
+                                .phases_help = "Phases to sum after the transient ones"},
                                run);
 }

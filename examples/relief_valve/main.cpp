@@ -1,30 +1,24 @@
 // SPDX-License-Identifier: MIT
 // Impact dynamics: largest and smallest displacement of a pressure relief valve over its flow, as in the MPGOS paper.
 #include <cstdint>
-#include <iostream>
 
 #include <myriad/myriad.hpp>
 
-#include "../common/command_line.hpp"
 #include "../common/csv_file.hpp"
-#include "../common/progress.hpp"
+#include "../common/integrate.hpp"
 #include "sweep.hpp"
 
 namespace {
 
 int run(const examples::sweep_options& chosen, const myriad::device& device) {
-    const auto rows = static_cast<std::uintmax_t>(chosen.instances) * static_cast<std::uintmax_t>(chosen.recorded);
+    const auto rows = static_cast<std::uintmax_t>(chosen.instances) * static_cast<std::uintmax_t>(chosen.phases);
     examples::csv_file file(chosen.output, 40 * rows);
     auto sweep = relief_valve_sweep::prepare(chosen.instances);
-    examples::progress shown(chosen.quiet ? examples::progress::style::none : examples::progress::style::automatic);
-    auto options = relief_valve_sweep::integration(chosen.transient + chosen.recorded);
+    auto options = relief_valve_sweep::integration(chosen.transient + chosen.phases);
     options.record = {.from_phase = chosen.transient,
                       .accessories = {relief_valve::y_min, relief_valve::y_max},
                       .integer_accessories = {relief_valve::impacts}};
-    options.progress = [&shown](std::int64_t begun, std::int64_t total) { shown(begun, total); };
-    const auto report = myriad::solve<myriad::cash_karp>(device, sweep, options);
-    shown.finish();
-    if (!chosen.quiet) std::cout << report;
+    const auto report = examples::integrate<myriad::cash_karp>(chosen, device, sweep, options);
 
     file.comment("Pressure relief valve: smallest and largest displacement in each recorded phase, over the flow q");
     file.comment("impacts: from the start on. Valves whose impacts accumulate hold nan from there on.");
@@ -37,14 +31,16 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
             file.row(i, chosen.transient + r, sweep.parameter(relief_valve::q)[i], y_min(i, r), y_max(i, r),
                      impacts(i, r), myriad::name_of(sweep.status(i)));
     file.commit();
-    // accumulation is a finding here, and no failure
-    return report.failed() == report.count(myriad::status::event_accumulation) ? 0 : 1;
+    return examples::conclude(chosen, report, myriad::status::event_accumulation);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return examples::run_sweep(
-        argc, argv, "Displacement of a pressure relief valve over its flow q",
-        {.instances = 30720, .transient = 1024, .recorded = 32, .output = "results/relief_valve.csv"}, run);
+    return examples::run_sweep(argc, argv,
+                               {.description = "Displacement of a pressure relief valve over its flow q",
+                                .full = {.instances = 30720, .transient = 1024, .phases = 32},
+                                .small = {.instances = 512, .transient = 64, .phases = 16},
+                                .output = "results/relief_valve.csv"},
+                               run);
 }

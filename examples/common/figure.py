@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""What the examples' plot.py have in common: reading the table, the style, writing the picture, and messages.
+
+A plot.py defines `draw(pyplot, numpy, table, comments)`, which returns the figure, and ends with
+
+    figure.main(__doc__, "program", COLUMNS, draw)
+
+COLUMNS is the header of the table that the program writes; `table` maps the names of its columns, but for `status`, to
+arrays; `comments` is the text of its first lines. Exit status 2, and no picture, if something is missing or wrong.
+"""
+
+import os
+import sys
+
+
+class PlotError(Exception):
+    """What stands in the way of a picture, for people."""
+
+
+def import_libraries():
+    """Returns the modules matplotlib.pyplot, with the style of all pictures, and numpy."""
+    try:
+        import matplotlib
+        import numpy
+    except ImportError as error:
+        raise PlotError(f"{error.name} is missing for {sys.executable}: install it (Debian, Ubuntu: apt-get install "
+                        "python3-matplotlib), or run this with a Python that has it, as /usr/bin/python3") from error
+    matplotlib.use("Agg")  # no display needed
+    from matplotlib import pyplot
+    pyplot.rcParams.update({
+        "font.family": "serif", "font.serif": ["STIXGeneral", "DejaVu Serif"], "mathtext.fontset": "stix",
+        "font.size": 9, "axes.linewidth": 0.6, "axes.titlesize": 11,
+        "xtick.direction": "in", "ytick.direction": "in", "xtick.top": True, "ytick.right": True,
+        "xtick.minor.visible": True, "ytick.minor.visible": True,
+    })
+    return pyplot, numpy
+
+
+def read_table(numpy, path, program, columns):
+    """Returns all columns but `status` as a dictionary of arrays, and the comments at the top of the file as one text."""
+    wanted = [name for name in columns if name != "status"]
+    comments = []
+    again = f"run the program `{program}` again"
+    try:
+        with open(path, encoding="utf-8", errors="replace") as file:
+            line = file.readline()
+            while line.startswith("#"):
+                comments.append(line[1:].strip())
+                line = file.readline()
+            names = tuple(line.strip().split(",")) if line.strip() else ()
+            if not names:
+                raise PlotError(f"{path} is empty: {again}")
+            if names != tuple(columns):
+                raise PlotError(f"{path} has the columns {ascii(line.strip()[:200])}, not those of the program "
+                                f"`{program}`, {','.join(columns)}")
+            start = file.tell()
+            if not file.readline().strip():
+                raise PlotError(f"{path} has no rows: {again}")
+            file.seek(start)
+            table = numpy.loadtxt(file, comments="#", delimiter=",", usecols=[columns.index(name) for name in wanted],
+                                  ndmin=2)
+    except OSError as error:
+        raise PlotError(f"{path} cannot be read: {error.strerror or error}; run the program `{program}` first") from error
+    except (ValueError, IndexError) as error:
+        raise PlotError(f"{path} cannot be read as a table: {error}") from error
+    missing = int((~numpy.isfinite(table)).any(axis=1).sum())
+    if missing == len(table):
+        raise PlotError("The file has no finite rows to draw: every instance failed")
+    if missing:
+        print(f"{missing} of {len(table)} rows have values that are not finite, which are not drawn", file=sys.stderr)
+    return {name: table[:, column] for column, name in enumerate(wanted)}, "\n".join(comments)
+
+
+def limits(numpy, values):
+    """Ends of an axis that hold all finite values with a small margin."""
+    finite = values[numpy.isfinite(values)]
+    if finite.size == 0:
+        raise PlotError("The file has no finite values to draw: every instance failed")
+    low, high = float(finite.min()), float(finite.max())
+    margin = 0.03 * (high - low) or 0.5
+    return low - margin, high + margin
+
+
+def save(figure, path, dpi):
+    """Writes the picture beside its place and renames it, so that there is a whole one or none."""
+    kind = os.path.splitext(path)[1].lstrip(".").lower() or "png"
+    temporary = f"{path}.{os.getpid()}.part"
+    try:
+        if os.path.exists(path) and not os.path.isfile(path):
+            raise PlotError(f"{path} is not a regular file: name another one")
+        folder = os.path.dirname(path)
+        if folder and not os.path.isdir(folder):
+            os.mkdir(folder)
+        figure.savefig(temporary, format=kind, dpi=dpi)
+        os.replace(temporary, os.path.realpath(path))
+    except (OSError, ValueError) as error:
+        raise PlotError(f"{path} cannot be written: {getattr(error, 'strerror', None) or error}") from error
+    finally:
+        if os.path.exists(temporary):
+            os.remove(temporary)
+
+
+def main(documentation, program, columns, draw, dpi=200):
+    """Runs a plot.py with the arguments CSV and PNG."""
+    arguments = sys.argv[1:]
+    if arguments in (["-h"], ["--help"]):
+        print(documentation.strip())
+        return
+    try:
+        if len(arguments) != 2:
+            raise PlotError("Usage: plot.py CSV PNG")
+        pyplot, numpy = import_libraries()
+        table, comments = read_table(numpy, arguments[0], program, columns)
+        save(draw(pyplot, numpy, table, comments), arguments[1], dpi)
+    except PlotError as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)
