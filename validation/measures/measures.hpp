@@ -10,6 +10,7 @@
 
 #include "../problem.hpp"
 #include "../report.hpp"
+#include "arithmetic.hpp"
 #include "recorded.hpp"
 
 namespace validation {
@@ -69,23 +70,6 @@ void for_each_in_parallel(std::size_t count, F&& f) {
         }
     }
     if (failure) std::rethrow_exception(failure);
-}
-
-/// Largest difference of two states; what is NaN in the second is not compared.
-inline double distance(const std::vector<double>& a, const std::vector<double>& b) {
-    double largest = 0;
-    for (std::size_t c = 0; c < a.size() && c < b.size(); ++c) {
-        if (std::isnan(b[c])) continue;
-        const double d = std::abs(a[c] - b[c]);
-        if (!(d <= largest)) largest = d;  // NaN in the first stays
-    }
-    return largest;
-}
-
-inline double median(std::vector<double> values) {
-    if (values.empty()) return unknown;
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
 }
 
 /// The problem with event functions that never leave their tolerance, so that no step is cut.

@@ -28,14 +28,6 @@ struct differences {
     }
 };
 
-/// The median over the instances: where a leading error coefficient happens to vanish, an instance says nothing.
-double median_ratio(const std::vector<double>& a, const std::vector<double>& b) {
-    std::vector<double> ratios;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        if (b[i] > 0) ratios.push_back(a[i] / b[i]);
-    return median(ratios);
-}
-
 }  // namespace
 
 void measure_step(session& s, const problem& p, const method_entry& m) {

@@ -29,7 +29,7 @@ references measure_references(session& s, const problem& p) {
             for (const int a : p.event_times) {
                 const auto k = static_cast<std::size_t>(a);
                 if (k < exact.accessory.size())
-                    events[i] = std::max(events[i], std::abs(known.accessory[k] - exact.accessory[k]));
+                    events[i] = larger(events[i], std::abs(known.accessory[k] - exact.accessory[k]));
             }
             if (p.closed_form_error == 0) {
                 for (std::size_t c = 0; c < exact.end.size(); ++c) {
@@ -49,7 +49,6 @@ references measure_references(session& s, const problem& p) {
         r.known[i] = std::move(known);
     });
     const subject about{p.name, "CVODE", "double", "cpu", fine};
-    const auto largest = [](const std::vector<double>& v) { return *std::max_element(v.begin(), v.end()); };
     s.rows.add(about, "growth of errors, largest", largest(growth));
     s.rows.add(about, "growth of errors, median", median(growth));
     s.rows.add(about, "reference against itself at ten times the tolerance", largest(by_itself));
@@ -57,7 +56,7 @@ references measure_references(session& s, const problem& p) {
     // CVODE is wrong by its own estimate, and some more, as errors of steps add up in another way at each tolerance
     double growth_there = 0;
     for (std::size_t i = 0; i < size; ++i)
-        if (to_exact[i] > 0) growth_there = std::max(growth_there, growth[i]);
+        if (to_exact[i] > 0) growth_there = larger(growth_there, growth[i]);
     const double allowed =
         std::max(10 * largest(by_itself), 1e4 * fine * std::max(1.0, growth_there)) + p.closed_form_error;
     s.rows.add(about, "reference against closed form or quadruple precision", largest(to_exact),

@@ -16,7 +16,7 @@ struct worst {
     double value = 0, bound = bounds::infinite;
     void add(double v, double b) {
         const double ratio = v / b;
-        if (std::isnan(value) || (ratio <= value / bound && bound < bounds::infinite)) return;
+        if (std::isnan(value) || std::isnan(bound) || (ratio <= value / bound && bound < bounds::infinite)) return;
         value = v;
         bound = b;
     }
@@ -99,7 +99,7 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
     const char* const reason = finer == nullptr ? of_tolerance : of_halving;
     s.rows.add(about, "failed instances", failed, bounds::at_most(0), "every instance has a solution");
     s.rows.add(about, "end state, worst", end.value, bounds::at_most(end.bound), reason);
-    s.rows.add(about, "end state, largest", *std::max_element(errors.begin(), errors.end()));
+    s.rows.add(about, "end state, largest", largest(errors));
     s.rows.add(about, "end state, median", median(errors));
     if (!p.event_times.empty()) s.rows.add(about, "event times", event.value, bounds::at_most(event.bound), reason);
     if (accessory.bound < bounds::infinite)
@@ -128,8 +128,8 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
         moved.add(distance(sampled.instances[i].end, plain.instances[i].end), 1e-300);
         const double bound = r.conditions[i].path * (plain.accepted[i] * (tolerance + m.eps) + located + r.error[i]);
         double error = sampled.instances[i].samples.size() == r.known[i].samples.size() ? 0 : unknown;
-        for (std::size_t k = 0; k < sampled.instances[i].samples.size() && !std::isnan(error); ++k)
-            error = std::max(error, distance(sampled.instances[i].samples[k], r.known[i].samples[k]));
+        for (std::size_t k = 0; k < sampled.instances[i].samples.size(); ++k)
+            error = larger(error, distance(sampled.instances[i].samples[k], r.known[i].samples[k]));
         samples.add(error, bound);
     }
     // Of others, the order is measured with fixed steps.
