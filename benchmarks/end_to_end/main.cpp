@@ -178,21 +178,26 @@ private:
             const auto x = s.results().state(lorenz::x);
             expected.assign(x.data(), x.data() + size);
         }
-        myriad::ensemble<lorenz> e(size);
-        const row whole = medians("solve", size, [&] {
-            set_by_threads(e);
-            row r{};
-            r.wall = milliseconds([&] { myriad::solve<myriad::runge_kutta_4>(where_, e, integration(counting_)); });
-            return r;
-        });
-        if (std::memcmp(expected.data(), e.state(lorenz::x).data(), expected.size() * sizeof(double)) != 0) {
-            right_ = false;
-            out_.write("# WRONG: solve and the solver object differ at " + std::to_string(size) + " instances");
+        for (const bool pinned : {false, true}) {
+            myriad::ensemble<lorenz> e(size);
+            if (pinned) e.pin(where_);
+            row whole = medians(pinned ? "solve_pinned" : "solve", size, [&] {
+                set_by_threads(e);
+                row r{};
+                r.wall = milliseconds([&] { myriad::solve<myriad::runge_kutta_4>(where_, e, integration(counting_)); });
+                return r;
+            });
+            if (std::memcmp(expected.data(), e.state(lorenz::x).data(), expected.size() * sizeof(double)) != 0) {
+                right_ = false;
+                out_.write("# WRONG: " + whole.name + " and the solver object differ at " + std::to_string(size) + " instances");
+            }
+            whole.upload = parts.upload;
+            whole.kernel = parts.kernel;
+            whole.download = parts.download;
+            whole.set = NAN;
+            whole.ratio = whole.wall / std::max(parts.kernel, parts.upload + parts.download);
+            out_.write(whole);
         }
-        parts.set = NAN;
-        parts.wall = whole.wall;
-        parts.ratio = whole.wall / std::max(parts.kernel, parts.upload + parts.download);
-        out_.write(parts);
     }
 
     void small(std::int64_t size) {
@@ -258,8 +263,8 @@ int run(const settings& chosen) {
     out.write("# set_up_maps, set_up_threads: a solver object, memory pinned before; restart and values set through maps or by "
               "a loop of several threads, upload with the check of inputs, download; wall_ms: set + upload + download; "
               "ratio: wall / kernel");
-    out.write("# solve: wall_ms is the call of solve on ordinary memory; upload, kernel and download those of a solver object; "
-              "ratio: wall / max(kernel, upload + download)");
+    out.write("# solve: wall_ms is the call of solve on ordinary memory, solve_pinned on that of an ensemble pinned before; upload, "
+              "kernel and download those of a solver object; ratio: wall / max(kernel, upload + download)");
     out.write("# small_solver, small_solve, small_by_hand: wall_ms from before the upload to after the download; ratio: wall / "
               "kernel");
     out.write("case,counting,instances,set_ms,upload_ms,kernel_ms,download_ms,wall_ms,ratio");

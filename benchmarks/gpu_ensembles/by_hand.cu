@@ -6,6 +6,7 @@
 
 #include <myriad/cuda/check.cuh>
 #include <myriad/cuda/resources.cuh>
+#include <myriad/ensemble/layout.hpp>
 
 #include "by_hand.hpp"
 
@@ -61,14 +62,15 @@ namespace cuda = myriad::cuda;
 
 struct lorenz_by_hand::memory {
     memory(int device, std::int64_t instances, double constant)
-        : here(device), size(instances), b(constant), host(static_cast<std::size_t>(4 * instances)) {
-        pinned.add(host.data(), host.size() * sizeof(double));
-        on_device.reserve(host.size() * sizeof(double), 4 * sizeof(double));
+        : here(device), size(instances), b(constant), host(4, instances, 0) {
+        host.pin(device);
+        on_device.reserve(bytes(), 4 * sizeof(double));
     }
+    std::size_t bytes() const { return static_cast<std::size_t>(4 * size) * sizeof(double); }
     double* device_state() const { return static_cast<double*>(on_device.data()); }
 
     void upload() {
-        MYRIAD_CUDA(cudaMemcpyAsync(on_device.data(), host.data(), host.size() * sizeof(double), cudaMemcpyHostToDevice,
+        MYRIAD_CUDA(cudaMemcpyAsync(on_device.data(), host.data(), bytes(), cudaMemcpyHostToDevice,
                                     stream.get()));
     }
     void launch(int steps, double h) {
@@ -91,8 +93,7 @@ struct lorenz_by_hand::memory {
     std::int64_t size;
     double b;
     int block = 128;
-    std::vector<double> host;  // state, then parameter
-    cuda::pinned_memory pinned;
+    myriad::component_array<double> host;  // state, then parameter
     cuda::device_memory on_device;
     cuda::stream stream;
     cuda::event begun{cuda::event::kind::timed}, done{cuda::event::kind::timed};

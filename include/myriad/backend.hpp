@@ -130,10 +130,6 @@ public:
 
     /// Gives device memory back, if it is more than a small part of all that the device has. Nothing may be under way.
     virtual void rest() = 0;
-
-    /// Keeps host memory in place, so that it is copied at full speed and while the host does other things. Pinned until
-    /// the engine is destroyed, which must happen before the memory is released.
-    virtual void pin(void* memory, std::size_t bytes) = 0;
 };
 
 /// The engine for a model, method and real type. Throws `error` if the device does not exist or cannot run the kernel.

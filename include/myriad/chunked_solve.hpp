@@ -92,7 +92,7 @@ public:
         for (auto& e : engines_) begin(*e, chunk);
         check(size_ - begun_);
         instances_.touch();
-        for (part& p : under_way_) bring_back(p);
+        for (part& p : under_way_) bring_back(p);  // into the ensemble, at once where its memory is pinned
         while (!under_way_.empty()) {
             engine& free = wait_for_oldest();
             if (begun_ == size_ || relay_.failure) continue;
@@ -153,13 +153,13 @@ private:
         if (past_ == cuda::past::kept) add_work(work_before_, begun_, count);
         worker.upload(arguments_, begun_, count, past_);
         worker.integrate(arguments_);
-        worker.download(arguments_);
         under_way_.push_back({&worker, begun_, count, {}});
         begun_ += count;
     }
 
     /// Has the results of a chunk put into the ensemble, and looked at, in the order of chunks.
     void bring_back(part& p) {
+        p.worker->download(arguments_);
         const auto task = [this, worker = p.worker, first = p.first, count = p.count] {
             worker->wait();
             // Kernels may overlap: a new one fills the places that the one before leaves.

@@ -50,11 +50,8 @@ public:
         if (where.which() == device::kind::cpu) return;
         engine_ = cuda::make_engine<Model, Method, R>(
             {where.number(), options_.block_size, options_.shared_placement, options_.schedule});
-        const auto pin = [&](auto* array, std::int64_t components_of_it, array_access, array_kind) {
-            engine_->pin(array, static_cast<std::size_t>(components_of_it * capacity) * sizeof(*array));
-        };
-        for_each_array(prepared_.get(), pin);
-        for_each_record(prepared_.get().record, pin);
+        instances_.pin(where);
+        prepared_.records().pin(where.number());
         engine_->reserve(prepared_.get(), capacity);
     }
     solver(const solver&) = delete;
@@ -102,7 +99,7 @@ public:
         uploaded_ = downloadable_ = false;
         host::check_uses<Method>(instances_, options_, wanted);
         host::input_check<Model, R> data(instances_, options_, wanted);
-        use_domains();
+        instances_.describe_domain(prepared_.get());
         const auto copy = [&] {
             if (engine_)
                 engine_->upload(prepared_.get(), 0, wanted,
@@ -220,15 +217,6 @@ private:
     friend class solver;
 
     enum class held { on_host, on_device, partly_on_host };
-
-    /// Domains of the instances' own have their memory from when they were asked for.
-    void use_domains() {
-        const R* const before = prepared_.get().t_begin;
-        instances_.describe_domain(prepared_.get());
-        auto* const domains = prepared_.get().t_begin;
-        if (engine_ && domains != nullptr && domains != before)
-            engine_->pin(domains, static_cast<std::size_t>(2 * capacity()) * sizeof(R));
-    }
 
     void require_results(const char* what) const {
         require(results_ != held::on_device, what,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "tests/catch.hpp"
@@ -81,6 +82,42 @@ TEST_CASE("chunks of a large ensemble, chosen or not, change no bit and no figur
     }
 }
 
+TEST_CASE("an ensemble whose memory is pinned gives the same bits in chunks, whatever was allocated after it was pinned") {
+    auto o = quarter_steps(33'333);
+    o.record = {.from_phase = 1, .states = {drift::x}, .time = true};
+    auto ordinary = filled();
+    const auto expected = myriad::solve<runge_kutta_4>(test_device(), ordinary, o);
+    for (const bool fill_first : {true, false}) {
+        drifts made(size);
+        if (fill_first) fill(made);
+        made.pin(test_device());
+        made.pin(test_device());
+        if (!fill_first) fill(made);  // time domains of its own come now
+        drifts pinned = std::move(made);
+        const auto report = myriad::solve<runge_kutta_4>(test_device(), pinned, o);
+        CHECK(same(pinned, ordinary));
+        CHECK(report.by_status == expected.by_status);
+        CHECK(report.accepted_steps == expected.accepted_steps);
+        CHECK(same_bits(report.records.state(drift::x), expected.records.state(drift::x)));
+        pinned.restart();
+        fill(pinned);
+        myriad::solve<runge_kutta_4>(test_device(), pinned, o);
+        CHECK(same(pinned, ordinary));
+        drifts other = filled(100'000);
+        other.pin(test_device());
+        other = std::move(pinned);  // releases what was pinned there
+        CHECK(same(other, ordinary));
+    }
+}
+
+TEST_CASE("a small ensemble whose memory is pinned gives the same bits") {
+    auto ordinary = filled(10), pinned = filled(10);
+    pinned.pin(test_device());
+    myriad::solve<runge_kutta_4>(test_device(), ordinary, quarter_steps(3));
+    myriad::solve<runge_kutta_4>(test_device(), pinned, quarter_steps(0));
+    CHECK(same(pinned, ordinary));
+}
+
 TEST_CASE("chunks go on from an earlier call, with the work of this call in the report") {
     auto at_once = filled(), twice = filled();
     auto o = quarter_steps(60'000);
@@ -95,9 +132,10 @@ TEST_CASE("chunks go on from an earlier call, with the work of this call in the 
     CHECK(second.accepted_steps < first.accepted_steps);  // some have ended
 }
 
-TEST_CASE("bad input in the last chunk is refused, and leaves all chunks as they were") {
-    for (const std::int64_t bad : {std::int64_t{0}, std::int64_t{200'000}, size - 1}) {
+TEST_CASE("bad input in the last chunk is refused, and leaves all chunks as they were, of pinned memory too") {
+    for (const std::int64_t bad : {std::int64_t{0}, std::int64_t{200'000}, size - 1, size - 2}) {
         auto e = filled();
+        if (bad >= size - 2) e.pin(test_device());
         const auto before = filled();
         e.parameter(drift::speed)(bad) = std::numeric_limits<double>::quiet_NaN();
         refused([&] { myriad::solve<runge_kutta_4>(test_device(), e, quarter_steps(20'000)); },

@@ -12,6 +12,7 @@
 
 #include "myriad/core/error.hpp"
 #include "myriad/core/status.hpp"
+#include "myriad/device.hpp"
 #include "myriad/ensemble/layout.hpp"
 #include "myriad/ensemble/view.hpp"
 #include "myriad/integrator/options.hpp"
@@ -90,6 +91,7 @@ public:
     /// `controlled<Method, tolerance_per_instance>`. Takes memory from the first call on.
     map<R> tolerance_scale() {
         if (!scales_tolerances()) tolerance_scale_ = component_array<R>(1, size_, R(1));
+        pin_later_ones();
         return view(tolerance_scale_, 0, "tolerance scale");
     }
     bool scales_tolerances() const { return tolerance_scale_.components() > 0; }
@@ -143,6 +145,25 @@ public:
         samples_.clear();
     }
 
+    /// Keeps the ensemble's memory in place (pinned) as long as it lives, so that `solve` on a GPU copies it at the bus's speed,
+    /// without a detour. Takes longer than a copy, so it pays for ensembles that are solved more than once, or whose
+    /// results are awaited by the millisecond. On a CPU it does nothing. Throws `error` if the system refuses.
+    void pin(const device& where) {
+        if (where.which() != device::kind::cuda) return;
+        pinned_for_ = where.number();
+        state_.pin(pinned_for_);
+        parameter_.pin(pinned_for_);
+        accessory_.pin(pinned_for_);
+        integer_accessory_.pin(pinned_for_);
+        t_.pin(pinned_for_);
+        h_next_.pin(pinned_for_);
+        phase_.pin(pinned_for_);
+        side_.pin(pinned_for_);
+        ended_.pin(pinned_for_);
+        status_.pin(pinned_for_);
+        pin_later_ones();
+    }
+
     /// Whether no instance was integrated or marked since the construction or the last restart: what is kept from call to
     /// call (steps, phases, sides, counters, samples) is zero.
     bool untouched() const { return untouched_; }
@@ -166,6 +187,7 @@ public:
         a.status = status_.data();
         if (count == counting::on) {
             if (!counted()) work_ = component_array<std::int64_t>(4, size_, 0);
+            pin_later_ones();
             a.accepted = work_.component(0);
             a.rejected = work_.component(1);
             a.located = work_.component(2);
@@ -187,6 +209,7 @@ public:
     void describe_samples(sample_arguments<Model, R>& a, const sample_options& o) {
         if (o.empty()) return;
         if (samples_.empty()) samples_ = trajectory_samples<Model, R>(o, size_);
+        pin_later_ones();
         require(samples_.fits(o), "samples asks for other states or another capacity (", o.capacity, ") than the samples there "
                 "are (", samples_.capacity(), "): use the same in all calls, or a new ensemble");
         samples_.describe(a);
@@ -235,8 +258,18 @@ private:
         if (has_common_domain()) {
             domain_ = component_array<R>(2, size_, common_begin_);
             domain_.fill_component(1, common_end_);
+            if (pinned_for_ >= 0) domain_.pin(pinned_for_);
         }
         return domain_;
+    }
+
+    /// What is allocated when it is first needed.
+    void pin_later_ones() {
+        if (pinned_for_ < 0) return;
+        domain_.pin(pinned_for_);
+        tolerance_scale_.pin(pinned_for_);
+        work_.pin(pinned_for_);
+        samples_.pin(pinned_for_);
     }
 
     template <class Array>
@@ -274,6 +307,7 @@ private:
     trajectory_samples<Model, R> samples_;
     component_array<std::int64_t> work_;  // allocated by the first call that counts
     bool untouched_ = true;
+    int pinned_for_ = -1;  // the GPU for which memory is pinned; none
 };
 
 }  // namespace myriad

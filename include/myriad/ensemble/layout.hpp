@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Storage of an ensemble: a structure of arrays, contiguous per component, on pages of its own, as GPUs pin memory by pages. The memory is the
-// library's own and not Eigen's, whose alignment depends on compiler flags.
+// Storage of an ensemble: a structure of arrays, contiguous per component, on pages of its own, as memory is pinned by pages.
+// The memory is the library's own and not Eigen's, whose alignment depends on compiler flags.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,7 @@
 
 #include "myriad/core/error.hpp"
 #include "myriad/core/parallel.hpp"
+#include "myriad/core/pinned.hpp"
 
 namespace myriad {
 
@@ -36,6 +37,12 @@ public:
     void fill(T value) { fill(data_.get(), components_ * size_, value); }
     /// Sets every value of component c.
     void fill_component(int c, T value) { fill(component(c), size_, value); }
+    /// Keeps the memory in place as long as it lives, for copies to and from GPUs. Once is enough.
+    void pin(int device) {
+        if (data_ == nullptr || data_.get_deleter().pinned) return;
+        host::pin_memory(device, data(), static_cast<std::size_t>(components_ * size_) * sizeof(T));
+        data_.get_deleter().pinned = true;
+    }
 
 private:
     static void fill(T* values, std::int64_t count, T value) {
@@ -46,7 +53,11 @@ private:
     }
     static constexpr std::align_val_t alignment{4096};
     struct release {
-        void operator()(T* p) const { ::operator delete(p, alignment); }
+        bool pinned = false;
+        void operator()(T* p) const {
+            if (pinned) host::unpin_memory(p);
+            ::operator delete(p, alignment);
+        }
     };
     static T* allocate(std::size_t components, std::size_t size) {
         if (components == 0 || size == 0) return nullptr;

@@ -72,6 +72,12 @@ public:
         integers_.fill(0);
     }
 
+    /// Keeps their memory in place, for copies from GPUs.
+    void pin(int device) {
+        values_.pin(device);
+        integers_.pin(device);
+    }
+
     void describe(record_arguments<Model, R>& a) {
         a.values = values_.data();
         a.integers = integers_.data();

@@ -55,6 +55,11 @@ public:
         time_.fill(std::numeric_limits<R>::quiet_NaN());
         values_.fill(std::numeric_limits<R>::quiet_NaN());
     }
+    void pin(int device) {
+        stored_.pin(device);
+        time_.pin(device);
+        values_.pin(device);
+    }
     void describe(sample_arguments<Model, R>& a) {
         a.time = time_.data();
         a.values = values_.data();

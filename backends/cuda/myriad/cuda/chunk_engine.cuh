@@ -52,8 +52,13 @@ public:
         grow(memory_, bytes_for(count, arrays), per_instance);
         grow(records_, bytes_for(count, records), per_instance);
         scheduler_.reserve(count, host.phases, launcher_.least_threads());
-        const std::size_t all_bytes = memory_.bytes() + records_.bytes();
-        staged_.reserve(pinned_.empty() ? all_bytes : std::min(all_bytes, little));
+        std::size_t to_stage = 0;
+        const auto stage = [&](auto* array, std::int64_t components, array_access, array_kind) {
+            if (!is_pinned(array)) to_stage += bytes_of(array, components * count);
+        };
+        arrays(stage);
+        records(stage);
+        staged_.reserve(std::max(to_stage, little));
     }
 
     void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances) override {
@@ -73,11 +78,8 @@ public:
         walk(from, [&](auto*& source, auto* target, std::int64_t components, array_access, array_kind kind) {
             if (!is_cleared(kind)) list.push_back(rows_of(source, host.size, target, components));
         });
-        if (copies_directly(list)) {
-            copy_directly(list, cudaMemcpyHostToDevice, stream_.get());
-        } else {
-            staged_.upload(list, stream_.get());
-        }
+        copy_directly(take_pinned(list), cudaMemcpyHostToDevice, stream_.get());
+        staged_.upload(list, stream_.get());
         // After the copies: clearing takes multiprocessors, and would have them wait for kernels of other chunks.
         std::byte *zeros = nullptr, *end_of_zeros = nullptr;
         walk(from, [&](auto*&, auto* target, std::int64_t components, array_access, array_kind kind) {
@@ -138,11 +140,8 @@ public:
         row_list& lower = after ? of_arrays : list;
         const row_list& upper = after ? list : of_arrays;
         lower.insert(lower.end(), upper.begin(), upper.end());
-        if (copies_directly(lower)) {
-            copy_directly(lower, cudaMemcpyDeviceToHost, stream_.get());
-        } else {
-            staged_.begin_download(lower, stream_.get());
-        }
+        copy_directly(take_pinned(lower), cudaMemcpyDeviceToHost, stream_.get());
+        staged_.begin_download(lower, stream_.get());
     }
 
     void wait() override {
@@ -216,10 +215,6 @@ public:
         const double taken = static_cast<double>(bytes) + static_cast<double>(scheduler_.bytes_per_instance());
         return static_cast<std::int64_t>(0.9 * static_cast<double>(free) / taken);
     }
-    void pin(void* memory, std::size_t bytes) override {
-        const current_device here(device_);
-        pinned_.add(memory, bytes);
-    }
 
 private:
     /// Calls `visit(pointer, on the device, components, access, kind)` for every array.
@@ -238,9 +233,16 @@ private:
         return {reinterpret_cast<std::byte*>(host + first_), reinterpret_cast<std::byte*>(device),
                 bytes_of(host, count_), static_cast<std::size_t>(components), bytes_of(host, size)};
     }
-    /// Pinned memory, unless there is so little to copy that the number of copies counts.
+    /// So little that the number of copies counts.
     static constexpr std::size_t little = 65'536;
-    bool copies_directly(const row_list& list) const { return !pinned_.empty() && bytes_of(list) > little; }
+    /// Takes the rows of pinned memory out of a list, unless it is of so little.
+    static row_list take_pinned(row_list& list) {
+        if (bytes_of(list) <= little) return {};
+        const auto first = std::stable_partition(list.begin(), list.end(), [](const array_rows& rows) { return !is_pinned(rows.host); });
+        row_list pinned(first, list.end());
+        list.erase(first, list.end());
+        return pinned;
+    }
 
     /// NaN for reals, as nothing was written there, and 0 for integers.
     template <class T>
@@ -290,7 +292,6 @@ private:
     kernel_launcher<Model, Method, R> launcher_;
     device_memory memory_, records_, sample_times_, shared_;
     phase_scheduler<Model, Method, R> scheduler_;
-    pinned_memory pinned_;
     stream stream_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};
     staged_transfer staged_;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Owners of what CUDA lends: device memory, pinned host memory, streams and events. Each is bound to the device that was
+// Owners of what CUDA lends: device memory, streams and events. Each is bound to the device that was
 // current when it was made.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "myriad/cuda/check.cuh"
 
@@ -71,27 +70,6 @@ public:
 private:
     void* data_ = nullptr;
     std::size_t bytes_ = 0;
-};
-
-/// Host memory kept in place; released before its owner frees it.
-class pinned_memory {
-public:
-    pinned_memory() = default;
-    pinned_memory(const pinned_memory&) = delete;
-    pinned_memory& operator=(const pinned_memory&) = delete;
-    ~pinned_memory() {
-        for (void* const p : pinned_) cudaHostUnregister(p);
-        cudaGetLastError();
-    }
-    void add(void* memory, std::size_t bytes) {
-        if (memory == nullptr || bytes == 0) return;
-        MYRIAD_CUDA(cudaHostRegister(memory, bytes, cudaHostRegisterPortable));
-        pinned_.push_back(memory);
-    }
-    bool empty() const { return pinned_.empty(); }
-
-private:
-    std::vector<void*> pinned_;
 };
 
 class stream {

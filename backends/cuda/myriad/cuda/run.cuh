@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "myriad/backend.hpp"
+#include "myriad/core/pinned.hpp"
 #include "myriad/cuda/chunk_engine.cuh"
 
 namespace myriad::cuda {
@@ -35,6 +36,15 @@ __attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_no
                          properties.multiProcessorCount, 10 * properties.major + properties.minor});
     }
     return found;
+}
+
+__attribute__((weak)) void pin_memory(int device, void* memory, std::size_t bytes) {
+    const current_device here(device);
+    MYRIAD_CUDA(cudaHostRegister(memory, bytes, cudaHostRegisterPortable));
+}
+__attribute__((weak)) void unpin_memory(void* memory) {
+    cudaHostUnregister(memory);
+    cudaGetLastError();  // of a CUDA that is gone, when a program ends
 }
 
 template <class Model, class Method, class R>

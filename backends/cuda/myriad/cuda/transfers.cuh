@@ -34,6 +34,13 @@ inline std::size_t bytes_of(const row_list& list) {
     return bytes;
 }
 
+/// Whether host memory is pinned, by whomever.
+inline bool is_pinned(const void* host) {
+    cudaPointerAttributes facts{};
+    MYRIAD_CUDA(cudaPointerGetAttributes(&facts, host));
+    return facts.type == cudaMemoryTypeHost;
+}
+
 /// One copy for each array. The host's memory must be pinned.
 inline void copy_directly(const row_list& list, cudaMemcpyKind way, cudaStream_t stream) {
     for (const array_rows& rows : list) {
