@@ -47,9 +47,8 @@ nvidia-smi --query-gpu=name,driver_version --format=csv,noheader || { say "There
 mkdir -p "$output"
 failed=()
 
-options=(-DMYRIAD_BUILD_VALIDATION=OFF -DMYRIAD_CUDA_COMPILE_CHECK=OFF)
-if [[ -d $deps/xsimd ]]; then options+=("-DMYRIAD_XSIMD_INCLUDE_DIR=$PWD/$deps"); fi
-if [[ -d $deps/CLI ]]; then options+=("-DMYRIAD_CLI11_INCLUDE_DIR=$PWD/$deps"); fi
+mapfile -t options < <(dependency_options "$deps")
+options+=(-DMYRIAD_BUILD_VALIDATION=OFF -DMYRIAD_CUDA_COMPILE_CHECK=OFF)
 say "Building in build/cuda"
 cmake --preset cuda "${options[@]}" >"$output/configure.log" 2>&1 || { tail -30 "$output/configure.log"; exit 1; }
 targets=()

@@ -139,6 +139,13 @@ then run this again."
 # Steps
 # ----------------------------------------------------------------------------------------------------------------------
 
+# dependency_options DIR: CMake's options for what DIR has of it, one per line: DIR/xsimd, DIR/CLI, DIR/sundials.
+dependency_options() {
+    if [[ -d $1/xsimd ]]; then printf -- '-DMYRIAD_XSIMD_INCLUDE_DIR=%s\n' "$PWD/$1"; fi
+    if [[ -d $1/CLI ]]; then printf -- '-DMYRIAD_CLI11_INCLUDE_DIR=%s\n' "$PWD/$1"; fi
+    if [[ -d $1/sundials ]]; then printf -- '-DSUNDIALS_ROOT=%s\n' "$PWD/$1/sundials"; fi
+}
+
 # quietly LOG COMMAND...: output goes to the file LOG, and its end is shown if the command fails.
 quietly() {
     local log=$1 status=0

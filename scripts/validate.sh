@@ -57,10 +57,8 @@ else
     has_command nvcc || fail "nvcc is not on the PATH: install the CUDA Toolkit" 2
     nvidia-smi --query-gpu=name,driver_version --format=csv,noheader || fail "There is no GPU, or no driver for it" 2
     preset=cuda
-    options+=(-DMYRIAD_CUDA_COMPILE_CHECK=OFF)
-    if [[ -d $deps/xsimd ]]; then options+=("-DMYRIAD_XSIMD_INCLUDE_DIR=$PWD/$deps"); fi
-    if [[ -d $deps/CLI ]]; then options+=("-DMYRIAD_CLI11_INCLUDE_DIR=$PWD/$deps"); fi
-    if [[ -d $deps/sundials ]]; then options+=("-DSUNDIALS_ROOT=$PWD/$deps/sundials"); fi
+    mapfile -t of_dependencies < <(dependency_options "$deps")
+    options+=(-DMYRIAD_CUDA_COMPILE_CHECK=OFF "${of_dependencies[@]}")
 fi
 
 # A folder of its own, so that nobody's choice of parts is changed.
