@@ -32,6 +32,7 @@ using tutorial_lorenz = lorenz_with<rounded_down>;
 
 /// The dimensionless radius y and its slope v over time in periods of the first forcing; keeps each phase's largest radius.
 struct keller_miksis {
+    static constexpr bool accessories_are_outputs = true;
     enum state { y, v, n_state };
     enum parameter { C0, C1, C2, C3, C4, C5, C6, C7, C8, C9, C10, C11, C12, n_parameter };
     enum accessory { y_max, n_accessory };

@@ -6,6 +6,7 @@
 
 /// x'' + k x' - x + x^3 = B cos t, sampled once per period of the forcing. Events: local maxima of x, and zeros of x.
 struct duffing {
+    static constexpr bool accessories_are_outputs = true;  // hooks write them, rhs and events do not read them
     enum state { x, v, n_state };
     enum parameter { k, n_parameter };
     enum shared { B, n_shared };

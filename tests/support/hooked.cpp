@@ -16,5 +16,7 @@ MYRIAD_INSTANTIATE(hooked::kicked_scalar, ALL_METHODS)
 MYRIAD_INSTANTIATE(hooked::kicked_generic, ALL_METHODS)
 MYRIAD_INSTANTIATE(hooked::kicked_scalar, myriad::dense<myriad::runge_kutta_4>, myriad::dense<myriad::cash_karp>,
                    myriad::dense<myriad::tsitouras_5>)
+MYRIAD_INSTANTIATE(hooked::bookkeeper, myriad::cash_karp, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(hooked::declared_bookkeeper, myriad::cash_karp, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(hooked::step_setter, myriad::cash_karp)
 MYRIAD_INSTANTIATE(hooked::breaker, myriad::runge_kutta_4, myriad::cash_karp)

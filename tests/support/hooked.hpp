@@ -70,6 +70,40 @@ struct phased_by_events : phased {
     }
 };
 
+/// A bouncing oscillator that keeps books after every step and impact, which nothing but its hooks reads.
+struct bookkeeper {
+    enum state { x, v, n_state };
+    enum parameter { w, n_parameter };
+    enum accessory { x_max, path, v_last, n_accessory };
+    enum integer_accessory { steps, impacts, n_integer_accessory };
+    enum event { wall, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto t, const myriad::vec<R, 2>& y, const auto& p) {
+        return {y[v], myriad::cos(p[w] * t) - y[x]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> events(auto, const myriad::vec<R, 2>& y, const auto&) {
+        return myriad::vec<R, 1>{y[x] + R(0.5)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        using count = myriad::integer_of<R>;
+        lane.accessory[x_max] = myriad::max(lane.accessory[x_max], lane.y[x]);
+        lane.accessory[path] += myriad::abs(lane.h * lane.y[v]);
+        lane.accessory[v_last] = lane.y[v];
+        lane.integer_accessory[steps] += count(1);
+    }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) {
+        lane.y[v] = -0.5 * lane.y[v];
+        lane.integer_accessory[impacts] += 1;
+    }
+};
+/// The same, and says so.
+struct declared_bookkeeper : bookkeeper {
+    static constexpr bool accessories_are_outputs = true;
+};
+
 /// Writes down what `lane.h`, `lane.h_next` and `lane.t` are at the start of a phase.
 struct early_reader {
     enum state { x, v, n_state };

@@ -8,6 +8,7 @@ namespace cpu_peers {
 
 /// The dimensionless radius y and its slope v over time in periods of the first forcing.
 struct keller_miksis_model {
+    static constexpr bool accessories_are_outputs = true;
     enum state { y, v, n_state };
     enum parameter { C0, C1, C2, C3, C4, C5, C6, C7, C8, C9, C10, C11, C12, n_parameter };
     enum accessory { y_max, n_accessory };

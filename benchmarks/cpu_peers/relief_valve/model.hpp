@@ -9,6 +9,7 @@ namespace cpu_peers {
 /// Displacement y, velocity v, pressure u. Event `section` (v falling) ends a phase by its count, `seat` (y falling) is an
 /// impact; a valve that stays where it is for 50 steps ends its phase too.
 struct relief_valve_model {
+    static constexpr bool accessories_are_outputs = true;
     enum state { y, v, u, n_state };
     enum parameter { q, n_parameter };
     enum shared { kappa, delta, beta, restitution, rest_band, n_shared };

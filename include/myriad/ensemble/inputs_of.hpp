@@ -14,8 +14,10 @@ template <class Model, class R>
 inputs<Model, R> inputs_of(ensemble<Model, R>& e, std::int64_t i) {
     inputs<Model, R> p;
     for (int c = 0; c < n_parameter<Model>; ++c) p.parameter[c] = e.parameter(c)[i];
-    for (int c = 0; c < n_accessory<Model>; ++c) p.accessory[c] = e.accessory(c)[i];
-    for (int c = 0; c < n_integer_accessory<Model>; ++c) p.integer_accessory[c] = e.integer_accessory(c)[i];
+    if constexpr (!accessories_are_outputs<Model>) {
+        for (int c = 0; c < n_accessory<Model>; ++c) p.accessory[c] = e.accessory(c)[i];
+        for (int c = 0; c < n_integer_accessory<Model>; ++c) p.integer_accessory[c] = e.integer_accessory(c)[i];
+    }
     if constexpr ((n_shared<Model>) > 0) p.shared = &e.shared(0);
     if constexpr ((n_shared_integer<Model>) > 0) p.shared_integer = &e.shared_integer(0);
     return p;

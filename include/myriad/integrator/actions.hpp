@@ -132,8 +132,10 @@ private:
             for (int c = 0; c < size; ++c) different = different | differs_in_bits(x[c], y[c]);
         };
         compare(a.y, b.y, n);
-        compare(a.accessory, b.accessory, n_accessory<Model>);
-        compare(a.integer_accessory, b.integer_accessory, n_integer_accessory<Model>);
+        if constexpr (!accessories_are_outputs<Model>) {
+            compare(a.accessory, b.accessory, n_accessory<Model>);
+            compare(a.integer_accessory, b.integer_accessory, n_integer_accessory<Model>);
+        }
         if constexpr (writes_parameters<Model>) compare(a.parameter, b.parameter, n_parameter<Model>);
         return different;
     }

@@ -45,6 +45,8 @@ MYRIAD_MODEL_COUNT(n_tangent)
 MYRIAD_MODEL_DECLARATION(writes_parameters)
 /// The model's hooks write t_begin and t_end, which are then stored back.
 MYRIAD_MODEL_DECLARATION(writes_time_domain)
+/// Accessories are what hooks put down for the host: rhs and events do not see them, so that writing one changes no slope.
+MYRIAD_MODEL_DECLARATION(accessories_are_outputs)
 /// The model branches on its state, so it runs one instance at a time on the CPU.
 MYRIAD_MODEL_DECLARATION(scalar_only)
 #undef MYRIAD_MODEL_DECLARATION

@@ -28,6 +28,7 @@ std::string describe() {
     add(hooks, has_finalise<Model>, "finalise");
     add(declares, writes_parameters<Model>, "writes_parameters");
     add(declares, writes_time_domain<Model>, "writes_time_domain");
+    add(declares, accessories_are_outputs<Model>, "accessories_are_outputs");
     add(declares, scalar_only<Model>, "scalar_only");
     return message("components: ", n_state<Model>, " state, ", n_parameter<Model>, " parameter, ", n_shared<Model>,
                    " shared, ", n_shared_integer<Model>, " shared integer, ", n_accessory<Model>, " accessory, ",

@@ -29,13 +29,21 @@ struct lane_integer_type<I> {
 template <class I>
 using lane_integer = typename lane_integer_type<I>::type;
 
-/// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value all instances share.
-template <class Model, class S>
-struct inputs {
-    using real = real_of<S>;
-    [[no_unique_address]] vec<S, n_parameter<Model>> parameter;
+/// The user's own storage, or nothing.
+template <class Model, class S, bool there>
+struct accessories {
     [[no_unique_address]] vec<S, n_accessory<Model>> accessory;
     [[no_unique_address]] vec<integer_of<S>, n_integer_accessory<Model>> integer_accessory;
+};
+template <class Model, class S>
+struct accessories<Model, S, false> {};
+
+/// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value all instances share. It has no
+/// accessories in a model that declares them outputs.
+template <class Model, class S>
+struct inputs : accessories<Model, S, !accessories_are_outputs<Model>> {
+    using real = real_of<S>;
+    [[no_unique_address]] vec<S, n_parameter<Model>> parameter;
     const real* shared;
     const std::int32_t* shared_integer;
 
@@ -44,7 +52,7 @@ struct inputs {
 
 /// Everything of one instance (or of one pack of them) that hooks may see.
 template <class Model, class S>
-struct lane_data : inputs<Model, S> {
+struct lane_data : inputs<Model, S>, accessories<Model, S, accessories_are_outputs<Model>> {
     S t, t_begin, t_end;
     S h;       // the step just taken
     S h_next;  // the step to try next

@@ -43,8 +43,10 @@ template <class Model, class W, class S>
 MYRIAD_FUNCTION inputs<Model, S> inputs_in(const lane<W, S>& l) {
     inputs<Model, S> p;
     p.parameter = part<n_parameter<Model>>(l.parameter);
-    p.accessory = part<n_accessory<Model>>(l.accessory);
-    p.integer_accessory = l.integer_accessory;
+    if constexpr (!accessories_are_outputs<Model>) {
+        p.accessory = part<n_accessory<Model>>(l.accessory);
+        p.integer_accessory = l.integer_accessory;
+    }
     p.shared = l.shared;
     p.shared_integer = l.shared_integer;
     return p;
