@@ -1,4 +1,4 @@
-// expect: no member named .?.?.?accessory
+// expect: no member named.*accessory
 // SPDX-License-Identifier: MIT
 // A model that says that rhs does not see accessories does not see them.
 #include "myriad/instantiate.hpp"
