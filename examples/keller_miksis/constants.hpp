@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The constants of the dimensionless Keller-Miksis equation, from a bubble in water and the sound that drives it. Host
-// code, SI units. Keller and Miksis, J. Acoust. Soc. Am. 68 (1980) 628-633; this form and the properties of water at
-// 25 C: Hegedus et al., MPGOS, Commun. Nonlinear Sci. Numer. Simul. 97 (2021) 105521.
+// code, SI units. Keller and Miksis, J. Acoust. Soc. Am. 68 (1980) 628-633; the dimensionless form and the properties of
+// water at 25 C are those of the MPGOS paper, F. Hegedus, Commun. Nonlinear Sci. Numer. Simul. 97 (2021) 105732.
 #pragma once
 
 #include <array>

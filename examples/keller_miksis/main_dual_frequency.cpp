@@ -41,13 +41,15 @@ void write(examples::csv_file& file, const myriad::ensemble<model>& sweep, const
     file.comment(message("eigenfrequency ", bubble::eigenfrequency() / kHz, " kHz"));
     file.comment(message("phases from one maximum of the radius to the next: ", chosen.transient, " transient, ",
                          chosen.phases, " recorded"));
-    file.comment(message("Myriad " MYRIAD_VERSION ", method cash_karp, relative and absolute tolerance ", dual_frequency::tolerance,
-                         ", event tolerance ", dual_frequency::maximum_tolerance, " (maximum) and ",
-                         dual_frequency::minimum_tolerance, " (minimum)"));
-    file.comment("expansion: (Rmax - RE) / RE over the recorded phases; compression, collapse_us: ratio of the maximum to "
-                 "the minimum");
-    file.comment("that follows it, in the strongest collapse, and the time between them in us; winding: maxima per "
-                 "period of f1; failed instances: nan");
+    file.comment(message("Myriad " MYRIAD_VERSION ", method cash_karp, relative and absolute tolerance ",
+                         dual_frequency::tolerance, ", event tolerance ", dual_frequency::maximum_tolerance,
+                         " (maximum) and ", dual_frequency::minimum_tolerance, " (minimum)"));
+    file.comment(
+        "expansion: (Rmax - RE) / RE over the recorded phases; compression, collapse_us: ratio of the maximum to "
+        "the minimum");
+    file.comment(
+        "that follows it, in the strongest collapse, and the time between them in us; winding: maxima per "
+        "period of f1; failed instances: nan");
     file.row("instance", "pa1_bar", "pa2_bar", "f1_kHz", "f2_kHz", "expansion", "compression", "collapse_us", "winding",
              "status");
     const auto largest = sweep.accessory(model::largest), compression = sweep.accessory(model::compression);

@@ -24,8 +24,7 @@ myriad::ensemble<bubble_response> prepare(const Eigen::ArrayXd& f) {
     myriad::ensemble<bubble_response> sweep(f.size());
     for (std::int64_t i = 0; i < sweep.size(); ++i) {
         const auto C = bubble::constants({amplitude * bar, f[i]}, {0, f[i]});
-        for (int c = 0; c < bubble_response::n_parameter; ++c)
-            sweep.parameter(c)[i] = C[static_cast<std::size_t>(c)];
+        for (int c = 0; c < bubble_response::n_parameter; ++c) sweep.parameter(c)[i] = C[static_cast<std::size_t>(c)];
     }
     sweep.state(bubble_response::y) = 1;
     sweep.state(bubble_response::v) = 0;
@@ -57,8 +56,9 @@ void write(examples::csv_file& file, const myriad::ensemble<bubble_response>& sw
     file.comment(message("phases of one period: ", transient, " transient, ", recorded.phases(), " recorded"));
     file.comment(message("Myriad " MYRIAD_VERSION ", method cash_karp, relative and absolute tolerance ", tolerance,
                          ", event tolerance ", event_tolerance));
-    file.comment("One row per instance and recorded phase. y_max: largest radius over that at rest, at local maxima and "
-                 "at the start of the phase;");
+    file.comment(
+        "One row per instance and recorded phase. y_max: largest radius over that at rest, at local maxima and "
+        "at the start of the phase;");
     file.comment("maxima: number of local maxima in the phase; phases that a failed instance did not complete: nan, 0");
     file.row("instance", "phase", "f_kHz", "y_max", "maxima", "status");
     const auto y_max = recorded.accessory(bubble_response::y_max);

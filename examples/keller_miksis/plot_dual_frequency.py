@@ -52,6 +52,7 @@ def draw(pyplot, numpy, table, _comments):
     figure, axes = pyplot.subplots(len(ROWS), len(pairs), sharex=True, sharey=True, squeeze=False,
                                    figsize=(1.1 + 1.55 * len(pairs), 6.35), layout="compressed")
     for (name, label, colours, scale), row in zip(ROWS, axes):
+        colours = pyplot.get_cmap(colours, COLOURS)
         norm = scale_of(pyplot, numpy, table[name], scale)
         for (first, second), axis in zip(pairs, row):
             chosen = (table["pa1_bar"] == first) & (table["pa2_bar"] == second)
@@ -59,7 +60,7 @@ def draw(pyplot, numpy, table, _comments):
             f_2, line = numpy.unique(table["f2_kHz"][chosen], return_inverse=True)
             plane = numpy.full((f_2.size, f_1.size), numpy.nan)
             plane[line, column] = table[name][chosen]
-            mesh = axis.pcolormesh(edges(numpy, f_1), edges(numpy, f_2), plane, norm=norm, cmap=pyplot.get_cmap(colours, COLOURS),
+            mesh = axis.pcolormesh(edges(numpy, f_1), edges(numpy, f_2), plane, norm=norm, cmap=colours,
                                    rasterized=True)
             axis.set(xscale="log", yscale="log", aspect="equal", xticks=TICKS, yticks=TICKS)
             axis.xaxis.set_major_formatter("{x:g}")

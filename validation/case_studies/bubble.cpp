@@ -34,7 +34,8 @@ struct history {
 
 /// The Keller-Miksis equation as it is written in textbooks, in SI units and none of the model's constants: with
 /// M = R'/c, liquid pressure p at the wall and far away P(t),
-/// (1 - M) R R'' + 3/2 (1 - M/3) R'^2 = (1 + M + R/c d/dt) (p - P) / rho,  p = pG (RE/R)^(3 gamma) + pV - 2 sigma/R - 4 mu R'/R.
+/// (1 - M) R R'' + 3/2 (1 - M/3) R'^2 = (1 + M + R/c d/dt) (p - P) / rho,
+/// p = pG (RE/R)^(3 gamma) + pV - 2 sigma/R - 4 mu R'/R.
 /// Given and returned in units of the radius at rest and the period of the first wave.
 double acceleration(const waves& w, double tau, const double* u) {
     using namespace bubble;
@@ -50,11 +51,11 @@ double acceleration(const waves& w, double tau, const double* u) {
                        std::pow(radius / R, 3 * polytropic_exponent);
     const double wall = gas + vapour_pressure - 2 * surface_tension / R - 4 * viscosity * V / R;
     // but for its part with R''
-    const double wall_rate = -3 * polytropic_exponent * gas * V / R + 2 * surface_tension * V / (R * R) +
-                             4 * viscosity * V * V / (R * R);
+    const double wall_rate =
+        -3 * polytropic_exponent * gas * V / R + 2 * surface_tension * V / (R * R) + 4 * viscosity * V * V / (R * R);
     const double pressure = (1 + M) * (wall - far) + R / sound_speed * (wall_rate - far_rate);
-    const double A = (pressure / density - 1.5 * (1 - M / 3) * V * V) /
-                     ((1 - M) * R + 4 * viscosity / (density * sound_speed));
+    const double A =
+        (pressure / density - 1.5 * (1 - M / 3) * V * V) / ((1 - M) * R + 4 * viscosity / (density * sound_speed));
     return A / (radius * rate * rate);
 }
 
@@ -112,7 +113,8 @@ std::vector<waves> choose() {
 int compare() {
     const auto chosen = choose();
     auto sweep = dual_frequency::prepare(chosen, transient);
-    const auto report = myriad::solve<myriad::cash_karp>(myriad::device::cpu(), sweep, dual_frequency::integration(transient + recorded));
+    const auto report = myriad::solve<myriad::cash_karp>(myriad::device::cpu(), sweep,
+                                                         dual_frequency::integration(transient + recorded));
     std::cout << report;
     std::int64_t wrong = 0, sensitive = 0;
     double strongest = 0, worst = 0;
