@@ -4,45 +4,24 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <myriad/myriad.hpp>
 
+#include "examples/keller_miksis/constants.hpp"
 #include "models.hpp"
 
 namespace gpu_ensembles {
 
-// Water at 25 C, a gas bubble of 10 um, driven with 1.5 bar at f1 = logspace(20 kHz, 1000 kHz, N) and not driven at f2. SI
-// units.
+// Bubbles driven with 1.5 bar at f1 = logspace(20 kHz, 1000 kHz, N) and not driven at f2.
 inline void fill_bubbles(myriad::ensemble<keller_miksis>& instances) {
     using model = keller_miksis;
-    constexpr double pi = std::numbers::pi;
-    constexpr double vapour_pressure = 3166.775638952003, density = 997.0639504998557;
-    constexpr double surface_tension = 0.071977583160056, viscosity = 8.902125058209557e-4;
-    constexpr double sound_speed = 1497.251785455527, polytropic_exponent = 1.4, ambient_pressure = 1e5;
-    constexpr double radius = 10e-6, amplitude_1 = 1.5e5, amplitude_2 = 0, phase_shift = 0;
-    constexpr double excess = ambient_pressure - vapour_pressure + 2 * surface_tension / radius;
     const Eigen::ArrayXd logarithm =
         Eigen::ArrayXd::LinSpaced(instances.size(), std::log10(20e3), std::log10(1000e3));  // of f1 in Hz
     for (std::int64_t i = 0; i < instances.size(); ++i) {
-        const double omega_1 = 2 * pi * std::pow(10.0, logarithm[i]), omega_2 = omega_1;
-        const double q = 2 * pi / (radius * omega_1);
-        const double C[model::n_parameter] = {
-            excess * q * q / density,
-            (1 - 3 * polytropic_exponent) * excess * q / (density * sound_speed),
-            (ambient_pressure - vapour_pressure) * q * q / density,
-            2 * surface_tension * q * q / (density * radius),
-            4 * viscosity / (density * radius * radius) * 2 * pi / omega_1,
-            amplitude_1 * q * q / density,
-            amplitude_2 * q * q / density,
-            radius * omega_1 * amplitude_1 * q * q / (density * sound_speed),
-            radius * omega_2 * amplitude_2 * q * q / (density * sound_speed),
-            radius * omega_1 / (2 * pi * sound_speed),
-            3 * polytropic_exponent,
-            omega_2 / omega_1,
-            phase_shift / pi,
-        };
-        for (int c = 0; c < model::n_parameter; ++c) instances.parameter(c)[i] = C[c];
+        const double f = std::pow(10.0, logarithm[i]);
+        const auto C = bubble::constants({1.5e5, f}, {0, f});
+        static_assert(C.size() == model::n_parameter);
+        for (int c = 0; c < model::n_parameter; ++c) instances.parameter(c)[i] = C[static_cast<std::size_t>(c)];
     }
     instances.time_domain(0, 1);
 }
