@@ -2,10 +2,11 @@
 // The plane of parameters of the Oregonator: constants, start, options, and its equilibrium in closed form. Host code.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <myriad/myriad.hpp>
 
 #include "../common/grid.hpp"
@@ -27,21 +28,26 @@ inline Eigen::Vector3d equilibrium(double f) {
 }
 
 /// Small deviations from equilibrium grow as exp(rate t) and turn with the frequency (zero if they do not turn), by the
-/// leading eigenvalue of the Jacobian there.
+/// leading eigenvalue of the Jacobian [a b 0; c d e; 1 0 -1] there.
 struct growth {
     double rate, frequency;
 };
 inline growth growth_at(double f, double epsilon) {
-    const Eigen::Vector3d c = equilibrium(f);
-    const double x = c[0], y = c[1], slow = ratio * epsilon;
-    Eigen::Matrix3d jacobian;
-    jacobian << (1 - 2 * x - y) / epsilon, (q - x) / epsilon, 0,  //
-        -y / slow, -(q + x) / slow, f / slow,                     //
-        1, 0, -1;
-    const Eigen::Vector3cd values = jacobian.eigenvalues();
-    Eigen::Index leading = 0;
-    values.real().maxCoeff(&leading);
-    return {values[leading].real(), std::abs(values[leading].imag())};
+    const Eigen::Vector3d rest = equilibrium(f);
+    const double x = rest[0], y = rest[1], slow = ratio * epsilon;
+    const double a = (1 - 2 * x - y) / epsilon, b = (q - x) / epsilon, c = -y / slow, d = -(q + x) / slow, e = f / slow;
+    // Characteristic polynomial r^3 + p2 r^2 + p1 r + p0. Newton's method falls on its least real root from the left, which
+    // is that of the fast bromide, until rounding stops it.
+    const double p2 = 1 - a - d, p1 = a * d - a - d - b * c, p0 = a * d - b * c - b * e;
+    double fast = -1 - std::max({std::abs(p2), std::abs(p1), std::abs(p0)});
+    for (double last = 2 * fast; fast > last;) {
+        last = fast;
+        fast -= (((fast + p2) * fast + p1) * fast + p0) / ((3 * fast + 2 * p2) * fast + p1);
+    }
+    // What is left is r^2 - sum r + product.
+    const double product = -p0 / fast, sum = (p1 - product) / fast, square = sum * sum / 4 - product;
+    const growth pair{sum / 2 + std::sqrt(std::max(square, 0.0)), std::sqrt(std::max(-square, 0.0))};
+    return pair.rate > fast ? pair : growth{fast, 0};
 }
 
 /// side x side instances, f along the rows, epsilon with a constant ratio from row to row, all near their equilibrium.
