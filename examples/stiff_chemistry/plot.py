@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Draws the periods of the Oregonator that the program `stiff_chemistry` computed, and what they cost, over f and epsilon.
+
+Usage: plot.py CSV PNG
+"""
+
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "common"))
+import figure as figures  # pylint: disable=wrong-import-position
+
+COLUMNS = ("instance", "f", "epsilon", "period", "z_least", "z_largest", "growth", "frequency", "steps", "status")
+
+
+def edges(numpy, middles):
+    """Borders of cells around these middles."""
+    if middles.size == 1:
+        return numpy.array([0.9, 1.1]) * middles
+    inner = (middles[1:] + middles[:-1]) / 2
+    return numpy.concatenate(([2 * middles[0] - inner[0]], inner, [2 * middles[-1] - inner[-1]]))
+
+
+def draw(pyplot, numpy, table, comments):
+    """Returns the figure: the period where there is an oscillation, and the steps of every instance."""
+    said = re.search(r"of cycle (\d+)", comments)
+    cycles = f" in {said[1]} cycles" if said else ""
+    f, epsilon = numpy.unique(table["f"]), numpy.unique(table["epsilon"])
+    shape = (epsilon.size, f.size)
+    if table["f"].size != epsilon.size * f.size:
+        raise figures.PlotError("The rows are no complete plane of f and epsilon: run the program `stiff_chemistry` again")
+    oscillates = (table["period"] > 0) & (table["z_largest"] - table["z_least"] > 0.05 * table["z_largest"])
+    period = numpy.where(oscillates, table["period"], numpy.nan)
+    f_edges, epsilon_edges = edges(numpy, f), numpy.exp(edges(numpy, numpy.log(epsilon)))
+
+    from matplotlib.colors import LogNorm
+    figure, axes = pyplot.subplots(1, 2, sharey=True, figsize=(9, 4.2), layout="constrained")
+    for axis, values, name, colors, title in (
+            (axes[0], period, "period, in decay times of the catalyst", "viridis", "Period of the oscillation"),
+            (axes[1], table["steps"], f"trial steps{cycles}", "cividis", "Cost")):
+        mesh = axis.pcolormesh(f_edges, epsilon_edges, values.reshape(shape), cmap=colors, rasterized=True,
+                               norm=LogNorm() if numpy.isfinite(values).any() else None)
+        if min(shape) > 1:
+            axis.contour(f, epsilon, table["growth"].reshape(shape), levels=[0], colors="#d03020", linewidths=1.1)
+        figure.colorbar(mesh, ax=axis, label=name, pad=0.02)
+        axis.set_yscale("log")
+        axis.set_xlabel("stoichiometric factor $f$ (–)")
+        axis.set_title(title)
+    bar = figure.axes[2].yaxis
+    bar.set_major_formatter("{x:g}")
+    bar.set_minor_formatter("{x:g}")
+    axes[0].set_ylabel(r"$\varepsilon$ (–)")
+    axes[0].plot([], [], color="#d03020", linewidth=1.1, label="Hopf bifurcation, closed form")
+    axes[0].legend(loc="upper right", frameon=False)
+    return figure
+
+
+if __name__ == "__main__":
+    figures.main(__doc__, "stiff_chemistry", COLUMNS, draw)
