@@ -10,30 +10,32 @@
 struct magnetic_pendulum {
     enum state { x, y, u, v, n_state };
     enum shared { omega, damping, height, barrier, n_shared };
-    static constexpr int magnets = 3;
-    static constexpr double x_1 = 0.57735026918962576, x_23 = -x_1 / 2, y_2 = 0.5,
-                            y_3 = -0.5;  // the first is at (x_1, 0)
+    // The magnets are at (x_1, 0), (x_23, half) and (x_23, -half).
+    static constexpr double x_1 = 0.57735026918962576, x_23 = -x_1 / 2, half = 0.5;
 
     template <class R>
     MYRIAD_FUNCTION static R inverse_distance(R dx, R dy, R height) {
         return R(1) / myriad::sqrt(dx * dx + dy * dy + height * height);
     }
-    // Mirrored in the x axis the second and third term change places: added first, they give the same bits then.
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 3> inverse_distances(R at_x, R at_y, R height) {
+        const R dx_23 = R(x_23) - at_x;
+        return {inverse_distance(R(x_1) - at_x, at_y, height), inverse_distance(dx_23, R(half) - at_y, height),
+                inverse_distance(dx_23, R(half) + at_y, height)};
+    }
+    // Mirrored in the x axis, with magnets 2 and 3 exchanged, these sums have the same bits, however they are fused.
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
-        const R h = R(p.shared[height]), stiffness = R(p.shared[omega] * p.shared[omega]);
-        const R dx_1 = R(x_1) - s[x], dx_23 = R(x_23) - s[x], dy_2 = R(y_2) - s[y], dy_3 = R(y_3) - s[y];
-        const R n_1 = inverse_distance(dx_1, -s[y], h), n_2 = inverse_distance(dx_23, dy_2, h),
-                n_3 = inverse_distance(dx_23, dy_3, h);
-        const R w_1 = n_1 * n_1 * n_1, w_2 = n_2 * n_2 * n_2, w_3 = n_3 * n_3 * n_3;
-        return {s[u], s[v], dx_1 * w_1 + dx_23 * (w_2 + w_3) - stiffness * s[x] - p.shared[damping] * s[u],
-                (dy_2 * w_2 + dy_3 * w_3) - s[y] * w_1 - stiffness * s[y] - p.shared[damping] * s[v]};
+        const myriad::vec<R, 3> n = inverse_distances<R>(s[x], s[y], R(p.shared[height]));
+        const R w_1 = n[0] * n[0] * n[0], w_2 = n[1] * n[1] * n[1], w_3 = n[2] * n[2] * n[2];
+        const R stiffness = w_1 + (w_2 + w_3) + p.shared[omega] * p.shared[omega];
+        return {s[u], s[v], R(x_1) * w_1 + R(x_23) * (w_2 + w_3) - stiffness * s[x] - p.shared[damping] * s[u],
+                R(half) * (w_2 - w_3) - stiffness * s[y] - p.shared[damping] * s[v]};
     }
     template <class R>
-    MYRIAD_FUNCTION static R potential(R at_x, R at_y, R omega, R h) {
-        return R(0.5) * omega * omega * (at_x * at_x + at_y * at_y) - inverse_distance(R(x_1) - at_x, -at_y, h) -
-               (inverse_distance(R(x_23) - at_x, R(y_2) - at_y, h) +
-                inverse_distance(R(x_23) - at_x, R(y_3) - at_y, h));
+    MYRIAD_FUNCTION static R potential(R at_x, R at_y, R omega, R height) {
+        const myriad::vec<R, 3> n = inverse_distances<R>(at_x, at_y, height);
+        return R(0.5) * omega * omega * (at_x * at_x + at_y * at_y) - (n[0] + (n[1] + n[2]));
     }
     /// Friction only takes energy away: below the barrier between the wells, the bob stays in the one where it is.
     template <class R>

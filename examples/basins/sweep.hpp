@@ -58,8 +58,8 @@ inline myriad::ensemble<pendulum> grid(std::int64_t side, double barrier, double
 
 /// The nearest magnet, 1 to 3, in whose third of the plane the bob is.
 inline int nearest_magnet(double x, double y) {
-    const double along_1 = pendulum::x_1 * x, along_2 = pendulum::x_23 * x + pendulum::y_2 * y,
-                 along_3 = pendulum::x_23 * x + pendulum::y_3 * y;
+    const double along_1 = pendulum::x_1 * x, along_2 = pendulum::x_23 * x + pendulum::half * y,
+                 along_3 = pendulum::x_23 * x - pendulum::half * y;
     if (along_1 > along_2 && along_1 > along_3) return 1;
     return along_2 > along_3 ? 2 : 3;
 }
