@@ -81,8 +81,11 @@ def limits(numpy, values):
     return low - margin, high + margin
 
 
-def save(figure, path, dpi):
-    """Writes the picture beside its place and renames it, so that there is a whole one or none."""
+def save(figure, path, dpi, colors=None):
+    """Writes the picture beside its place and renames it, so that there is a whole one or none.
+
+    colors: of a PNG, the number to reduce it to, 256 at most. A plane of noisy values takes a third of the space then.
+    """
     kind = os.path.splitext(path)[1].lstrip(".").lower() or "png"
     temporary = f"{path}.{os.getpid()}.part"
     try:
@@ -92,6 +95,11 @@ def save(figure, path, dpi):
         if folder and not os.path.isdir(folder):
             os.mkdir(folder)
         figure.savefig(temporary, format=kind, dpi=dpi)
+        if colors and kind == "png":
+            from PIL import Image  # with which matplotlib writes  # pylint: disable=import-outside-toplevel
+            with Image.open(temporary) as picture:
+                fewer = picture.convert("RGB").quantize(colors, Image.Quantize.MAXCOVERAGE, kmeans=4, dither=Image.Dither.NONE)
+            fewer.save(temporary, format="png", optimize=True)
         os.replace(temporary, os.path.realpath(path))
     except (OSError, ValueError) as error:
         raise PlotError(f"{path} cannot be written: {getattr(error, 'strerror', None) or error}") from error
@@ -100,7 +108,7 @@ def save(figure, path, dpi):
             os.remove(temporary)
 
 
-def main(documentation, program, columns, draw, dpi=200):
+def main(documentation, program, columns, draw, dpi=200, colors=None):
     """Runs a plot.py with the arguments CSV and PNG."""
     arguments = sys.argv[1:]
     if arguments in (["-h"], ["--help"]):
@@ -111,7 +119,7 @@ def main(documentation, program, columns, draw, dpi=200):
             raise PlotError("Usage: plot.py CSV PNG")
         pyplot, numpy = import_libraries()
         table, comments = read_table(numpy, arguments[0], program, columns)
-        save(draw(pyplot, numpy, table, comments), arguments[1], dpi)
+        save(draw(pyplot, numpy, table, comments), arguments[1], dpi, colors)
     except PlotError as error:
         print(error, file=sys.stderr)
         sys.exit(2)
