@@ -30,7 +30,7 @@ def draw(pyplot, numpy, table, _comments):
     y = numpy.linspace(0, 2.41031, 200)
     axis.plot(y * numpy.sqrt(y + 10), y, color="0.4", linewidth=0.8, linestyle=(0, (4, 3)), label="unstable equilibrium")
     grazing = q[impact].max() if impact.any() else numpy.nan
-    for place, height, text in ((grazing, 4.8, "grazing"), (STABLE_FROM, 8.9, "Hopf bifurcation")):
+    for place, height, text in ((grazing, 3.7, "grazing"), (STABLE_FROM, 8.9, "Hopf bifurcation")):
         if q.min() < place < q.max():
             axis.axvline(place, color="0.75", linewidth=0.6, zorder=0)
             axis.text(place + 0.06, height, f"{text},\n$q = {place:.2f}$", ha="left", va="top", color="0.3", fontsize=8)

@@ -63,6 +63,7 @@ inline myriad::options integration(std::int64_t phases) {
             .accumulation_limit = 25};
 }
 
+// snippet: contact
 inline myriad::options integration_with_contact(std::int64_t phases) {
     auto options = integration(phases);
     options.absolute_tolerance = {1e-15, 1e-12, 1e-10};  // y and v of bounces 1e-9 high
@@ -70,5 +71,6 @@ inline myriad::options integration_with_contact(std::int64_t phases) {
     options.events.push_back({.direction = myriad::direction::rising, .tolerance = contact_tolerance});
     return options;
 }
+// end of snippet
 
 }  // namespace relief_valve_sweep
