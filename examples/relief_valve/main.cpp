@@ -10,18 +10,26 @@
 
 namespace {
 
+namespace valves = relief_valve_sweep;
+
 int run(const examples::sweep_options& chosen, const myriad::device& device) {
     const auto rows = static_cast<std::uintmax_t>(chosen.instances) * static_cast<std::uintmax_t>(chosen.phases);
     examples::csv_file file(chosen.output, 40 * rows);
-    auto sweep = relief_valve_sweep::prepare(chosen.instances);
-    auto options = relief_valve_sweep::integration(chosen.transient + chosen.phases);
+    auto sweep = valves::prepare(chosen.instances);
+    auto options = valves::integration(chosen.transient + chosen.phases);
     options.record = {.from_phase = chosen.transient,
                       .accessories = {relief_valve::y_min, relief_valve::y_max},
                       .integer_accessories = {relief_valve::impacts}};
     const auto report = examples::integrate<myriad::cash_karp>(chosen, device, sweep, options);
 
-    file.comment("Pressure relief valve: smallest and largest displacement in each recorded phase, over the flow q");
+    file.comment(
+        "Pressure relief valve: smallest and largest y in each recorded phase, which goes from one maximum to the "
+        "next");
+    file.comment(myriad::message(valves::constants(), "; q = linspace(", valves::q_first, ", ", valves::q_last, ", ",
+                                 chosen.instances, "); ", chosen.transient, " phases were let pass"));
     file.comment("impacts: from the start on. Valves whose impacts accumulate hold nan from there on.");
+    file.comment(myriad::message("Myriad " MYRIAD_VERSION ", method cash_karp, relative and absolute tolerance ",
+                                 valves::tolerance, ", of the seat ", valves::event_tolerance));
     file.row("instance", "phase", "q", "y_min", "y_max", "impacts", "status");
     const auto y_min = report.records.accessory(relief_valve::y_min),
                y_max = report.records.accessory(relief_valve::y_max);
