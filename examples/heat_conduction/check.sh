@@ -32,6 +32,14 @@ rows table.csv | awk -F, '
     { for (i = 9; i <= 41; ++i) if (!($i >= -1e-6 && $i <= 1 + 1e-6)) { print "T out of range: " $0; bad = 1 } }
     END { exit bad || steady != 32 || pulsed != 32 }' || fail 'wrong heat flow'
 
+# A stiff method has the same heat flows, to the errors of both, in a few of the steps.
+"$program" --small --quiet --method rodas_5p --transient 16 --output stiff.csv
+"$program" --small --quiet --transient 16 --output explicit.csv
+paste -d, <(rows stiff.csv | cut -d, -f1-7) <(rows explicit.csv | cut -d, -f7) | awk -F, '
+    { d = $7 - $8; if (!(d < 1e-5 && -d < 1e-5)) { print "rodas_5p differs: " $0; bad = 1 } }
+    END { exit bad || NR != 64 + 12 * 15 }' || fail 'methods differ'
+expect 2 'compiled for 24 points' "$program" --points 77 --method rodas_5p
+
 # Of the smallest diffusivity, whose layers are the thinnest, over a quarter of a period. The flow of liquid begins at once, with a
 # layer that has no thickness; after a phase it has sqrt(0.05 / 16) = 0.06, on which 24 points keep four digits.
 for points in 24 77; do

@@ -14,11 +14,17 @@ template <int points>
 struct heat_conduction {
     static constexpr bool writes_time_domain = true;
     static constexpr bool scalar_only = points > 64;  // on the CPU, to be compiled in a third of the time
-    static constexpr int inner = points - 2;  // those whose temperature is not given
+    static constexpr int inner = points - 2;          // those whose temperature is not given
     static constexpr int phases_per_period = 16;
     enum state { temperature, heat = inner, n_state };
     enum parameter { diffusivity, through, pulse, n_parameter };
-    enum shared { matrix, square = points * points, inverse_square = square + points, wall = inverse_square + points, n_shared };
+    enum shared {
+        matrix,
+        square = points * points,
+        inverse_square = square + points,
+        wall = inverse_square + points,
+        n_shared
+    };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {

@@ -12,6 +12,7 @@
 namespace shell {
 
 constexpr double outer = 3;  // radius at which the temperature is zero; that of the bubble is one
+constexpr int flows = 4;     // of liquid, with each diffusivity
 
 // snippet: shared
 /// The values that all instances share: D, row by row, and r r and 1 / (r r) at the points.
@@ -33,9 +34,7 @@ Eigen::ArrayXd shared_values(double wall) {
 constexpr double still = outer / (outer - 1);
 
 /// That with a steady flow of liquid of this Peclet number, u r^2 / diffusivity: with r^2 T' = P (T - c), T = c + b exp(-P / r).
-inline double steady_heat_flow(double peclet) {
-    return peclet == 0 ? still : peclet / std::expm1(peclet / still);
-}
+inline double steady_heat_flow(double peclet) { return peclet == 0 ? still : peclet / std::expm1(peclet / still); }
 
 /// Temperature of a wall at one without flow of liquid, where all instances start.
 inline Eigen::ArrayXd still_temperature(const Eigen::ArrayXd& r) { return (outer / r - 1) / (outer - 1); }

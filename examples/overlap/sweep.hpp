@@ -42,8 +42,7 @@ struct results {
     Eigen::ArrayXd x, v, x_global_max;
     Eigen::ArrayXi zeros;
 
-    explicit results(std::int64_t instances)
-        : x(instances), v(instances), x_global_max(instances), zeros(instances) {}
+    explicit results(std::int64_t instances) : x(instances), v(instances), x_global_max(instances), zeros(instances) {}
     void take(const myriad::ensemble<duffing>& part, std::int64_t first, std::int64_t count) {
         x.segment(first, count) = part.state(duffing::x).head(count);
         v.segment(first, count) = part.state(duffing::v).head(count);

@@ -110,10 +110,12 @@ int main() {
         const auto same = by_cvode<24>(diffusivity, 1, 2);
         expect_below("heat flow, CVODE on 24 points", diffusivity, std::abs(here.heat - same.heat), 100 * tolerance);
         const auto finer = by_cvode<48>(diffusivity, 1, 2);
-        expect_below("heat flow, CVODE on 48 points", diffusivity, std::abs(here.heat - finer.heat), missed(diffusivity));
+        expect_below("heat flow, CVODE on 48 points", diffusivity, std::abs(here.heat - finer.heat),
+                     missed(diffusivity));
         const Eigen::MatrixXd P = chebyshev::interpolation_matrix(chebyshev::points(1, outer, 48), r);
         expect_below("temperature, CVODE on 48 points", diffusivity,
-                     ((P * finer.temperature.matrix()).array() - here.temperature).abs().maxCoeff(), missed(diffusivity));
+                     ((P * finer.temperature.matrix()).array() - here.temperature).abs().maxCoeff(),
+                     missed(diffusivity));
     }
     std::cout << (all_well ? "All checks passed.\n" : "A check FAILED.\n");
     return all_well ? EXIT_SUCCESS : EXIT_FAILURE;
