@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
     };
     return examples::run_sweep(argc, argv,
                                {.description = "Heat conduction around a bubble over the diffusivity of the liquid",
-                                .full = {.instances = 16384, .transient = 48 * 16, .phases = 16},
+                                .full = {.instances = 16384, .transient = 32 * 16, .phases = 16},
                                 .small = {.instances = 64, .transient = 16 * 16, .phases = 16},
                                 .output = "results/heat_conduction.csv",
                                 .phases_help = "Phases to record after the transient ones, sixteen to a period",
