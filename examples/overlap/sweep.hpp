@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The Duffing sweep in chunks: what they are filled with, what is kept of them, and the table of one.
+#pragma once
+
+#include <cstdint>
+#include <numbers>
+#include <string>
+
+#include <myriad/myriad.hpp>
+
+#include "../common/csv_file.hpp"
+#include "../duffing/duffing.hpp"
+
+namespace duffing_sweep {
+
+inline myriad::options integration(std::int64_t phases) {
+    return {.phases = phases,
+            .relative_tolerance = 1e-9,
+            .absolute_tolerance = 1e-9,
+            .events = {{.direction = myriad::direction::falling, .tolerance = 1e-6}, {.tolerance = 1e-6}},
+            .counting = myriad::counting::off,
+            .advice = myriad::advice::off};
+}
+
+/// Damping of instance i of `instances`: the same number whatever the chunks.
+inline double damping(std::int64_t i, std::int64_t instances) {
+    return 0.2 + 0.1 * static_cast<double>(i) / static_cast<double>(std::max<std::int64_t>(instances - 1, 1));
+}
+
+/// Sets `count` instances of `part` to the instances first, first + 1, ... of the sweep.
+inline void fill(myriad::ensemble<duffing>& part, std::int64_t first, std::int64_t count, std::int64_t instances) {
+    part.restart();  // a new chunk, and not further phases of the one before
+    for (std::int64_t i = 0; i < count; ++i) part.parameter(duffing::k)[i] = damping(first + i, instances);
+    part.shared(duffing::B) = 0.3;
+    part.state(duffing::x).head(count) = -0.5;
+    part.state(duffing::v).head(count) = -0.1;
+    part.time_domain(0, 2 * std::numbers::pi);
+}
+
+/// What is kept of every instance.
+struct results {
+    Eigen::ArrayXd x, v, x_global_max;
+    Eigen::ArrayXi zeros;
+
+    explicit results(std::int64_t instances) : x(instances), v(instances), x_global_max(instances), zeros(instances) {}
+    void take(const myriad::ensemble<duffing>& part, std::int64_t first, std::int64_t count) {
+        x.segment(first, count) = part.state(duffing::x).head(count);
+        v.segment(first, count) = part.state(duffing::v).head(count);
+        x_global_max.segment(first, count) = part.accessory(duffing::x_global_max).head(count);
+        zeros.segment(first, count) = part.integer_accessory(duffing::zeros).head(count);
+    }
+    bool operator==(const results& other) const {
+        return (x == other.x).all() && (v == other.v).all() && (x_global_max == other.x_global_max).all() &&
+               (zeros == other.zeros).all();
+    }
+};
+
+/// The table of the instances first, first + 1, ... of the sweep.
+inline void write(const std::string& name, const results& all, std::int64_t first, std::int64_t count) {
+    examples::csv_file file(name);
+    file.row("instance", "k", "x", "v", "x_global_max", "zeros");
+    for (std::int64_t i = first; i < first + count; ++i)
+        file.row(i, damping(i, all.x.size()), all.x[i], all.v[i], all.x_global_max[i], all.zeros[i]);
+    file.commit();
+}
+
+}  // namespace duffing_sweep

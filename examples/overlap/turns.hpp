@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Threads that take turns in the order in which they come, as a mutex does not promise.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+
+class turns {
+public:
+    /// Runs `task` when all that came before are done with theirs.
+    template <class Task>
+    void take(Task&& task) {
+        std::unique_lock lock(mutex_);
+        const std::int64_t mine = next_++;
+        changed_.wait(lock, [&] { return served_ == mine; });
+        lock.unlock();
+        const end_of_turn end{*this};  // of one that failed too
+        task();
+    }
+
+private:
+    struct end_of_turn {
+        turns& all;
+        ~end_of_turn() {
+            const std::lock_guard lock(all.mutex_);
+            ++all.served_;
+            all.changed_.notify_all();
+        }
+    };
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::int64_t next_ = 0, served_ = 0;
+};
