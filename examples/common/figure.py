@@ -81,7 +81,7 @@ def limits(numpy, values):
     return low - margin, high + margin
 
 
-def save(figure, path, dpi):
+def save(figure, path, dpi, colours):
     """Writes the picture beside its place and renames it, so that there is a whole one or none."""
     kind = os.path.splitext(path)[1].lstrip(".").lower() or "png"
     temporary = f"{path}.{os.getpid()}.part"
@@ -92,6 +92,10 @@ def save(figure, path, dpi):
         if folder and not os.path.isdir(folder):
             os.mkdir(folder)
         figure.savefig(temporary, format=kind, dpi=dpi)
+        if colours and kind == "png":
+            from PIL import Image  # which matplotlib needs too
+            with Image.open(temporary) as picture:
+                picture.convert("RGB").quantize(colours).save(temporary, format="png", optimize=True)
         os.replace(temporary, os.path.realpath(path))
     except (OSError, ValueError) as error:
         raise PlotError(f"{path} cannot be written: {getattr(error, 'strerror', None) or error}") from error
@@ -100,8 +104,8 @@ def save(figure, path, dpi):
             os.remove(temporary)
 
 
-def main(documentation, program, columns, draw, dpi=200):
-    """Runs a plot.py with the arguments CSV and PNG."""
+def main(documentation, program, columns, draw, dpi=200, colours=None):
+    """Runs a plot.py with the arguments CSV and PNG. A PNG of few `colours` is a fraction of the size: for clouds of dots."""
     arguments = sys.argv[1:]
     if arguments in (["-h"], ["--help"]):
         print(documentation.strip())
@@ -111,7 +115,7 @@ def main(documentation, program, columns, draw, dpi=200):
             raise PlotError("Usage: plot.py CSV PNG")
         pyplot, numpy = import_libraries()
         table, comments = read_table(numpy, arguments[0], program, columns)
-        save(draw(pyplot, numpy, table, comments), arguments[1], dpi)
+        save(draw(pyplot, numpy, table, comments), arguments[1], dpi, colours)
     except PlotError as error:
         print(error, file=sys.stderr)
         sys.exit(2)
