@@ -91,7 +91,7 @@ def main(arguments):
     if arguments not in ([], ["--fix"]):
         raise Problem("Usage: scripts/check_readme.py [--fix]")
     different = False
-    for document in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+    for document in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
         old, new = check(document)
         if old == new:
             continue
