@@ -10,15 +10,16 @@
 
 namespace {
 
-constexpr std::int64_t grid = 46080;                      // instances of the full sweep
+constexpr std::int64_t grid = 46080;                       // instances of the full sweep
 constexpr std::array chosen_instances = {0, 4789, 15479};  // of that grid
 constexpr std::int64_t samples_per_phase = 200;
 
 int run(const examples::sweep_options& chosen, const myriad::device& device) {
     using namespace duffing_sweep;
     if (chosen.instances > static_cast<std::int64_t>(chosen_instances.size()))
-        throw std::runtime_error(myriad::message("--instances is ", chosen.instances, ", but trajectories are known of ",
-                                                 chosen_instances.size(), " instances: give so many or fewer"));
+        throw std::runtime_error(myriad::message("--instances is ", chosen.instances,
+                                                 ", but trajectories are known of ", chosen_instances.size(),
+                                                 " instances: give so many or fewer"));
     examples::csv_file file(chosen.output);
     // snippet: trajectories
     const Eigen::ArrayXd all = k_grid(grid);
@@ -42,7 +43,8 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
                          ", x(0) = ", x_start, ", v(0) = ", v_start));
     file.comment(message("phases of length 2 pi: ", chosen.transient, " transient, ", chosen.phases, " sampled, ",
                          samples_per_phase, " samples each; t within the phase, which is counted from 0"));
-    file.comment(message("Myriad " MYRIAD_VERSION ", method dense<tsitouras_5>, relative and absolute tolerance ", tolerance));
+    file.comment(
+        message("Myriad " MYRIAD_VERSION ", method dense<tsitouras_5>, relative and absolute tolerance ", tolerance));
     file.row("instance", "phase", "k", "t", "x", "v", "status");
     for (std::int64_t i = 0; i < sweep.size(); ++i)
         for (std::int64_t s = 0; s < sweep.samples().stored()[i]; ++s)

@@ -34,8 +34,7 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
     auto sampled = resonance::prepare<oscillator>(chosen.instances);
     options.events = {};
     options.phases = chosen.transient;
-    if (chosen.transient > 0)
-        examples::integrate<myriad::dense<myriad::tsitouras_5>>(call, device, sampled, options);
+    if (chosen.transient > 0) examples::integrate<myriad::dense<myriad::tsitouras_5>>(call, device, sampled, options);
     options.phases = chosen.phases;
     // snippet: samples
     options.samples = {.states = {oscillator::x},
@@ -55,10 +54,12 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
                   << "By dense output: " << in_samples << " bytes of samples, " << by_samples << " s\n";
     }
     using myriad::message;
-    file.comment("Response of x'' + 2 zeta x' + x + beta x^3 = cos(omega t); x in units of the static deflection of the "
-                 "linear spring, time in units of 1/omega_0");
+    file.comment(
+        "Response of x'' + 2 zeta x' + x + beta x^3 = cos(omega t); x in units of the static deflection of the "
+        "linear spring, time in units of 1/omega_0");
     file.comment(message("zeta = ", resonance::zeta, ", omega = linspace(", resonance::omega_first, ", ",
-                         resonance::omega_last, ", ", chosen.instances, "); start 0: at rest, 1: on the backbone curve"));
+                         resonance::omega_last, ", ", chosen.instances,
+                         "); start 0: at rest, 1: on the backbone curve"));
     file.comment(message("phases of one period of the forcing: ", chosen.transient, " transient, ", chosen.phases,
                          " evaluated"));
     file.comment(message("Myriad " MYRIAD_VERSION ", method tsitouras_5, relative and absolute tolerance ",
@@ -71,8 +72,8 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
         const double duration = static_cast<double>(chosen.phases) * hooked.t_end()[i];
         file.row(hooked.parameter(response::beta)[i], i / chosen.instances % resonance::starts,
                  hooked.parameter(response::omega)[i], hooked.accessory(response::maximum)[i],
-                 hooked.accessory(response::minimum)[i], hooked.accessory(response::integral)[i] / duration, found(i, 0),
-                 found(i, 1), found(i, 2) / duration, myriad::name_of(hooked.status(i)));
+                 hooked.accessory(response::minimum)[i], hooked.accessory(response::integral)[i] / duration,
+                 found(i, 0), found(i, 1), found(i, 2) / duration, myriad::name_of(hooked.status(i)));
     }
     file.commit();
     return examples::conclude(chosen, report);

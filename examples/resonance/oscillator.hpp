@@ -30,7 +30,8 @@ struct response : oscillator {
     }
     template <class R>
     MYRIAD_FUNCTION static void after_step(auto& lane) {
-        const R x0 = lane.accessory[x_before], v0 = lane.accessory[v_before], x1 = lane.y[x], v1 = lane.y[v], h = lane.h;
+        const R x0 = lane.accessory[x_before], v0 = lane.accessory[v_before], x1 = lane.y[x], v1 = lane.y[v],
+                h = lane.h;
         lane.accessory[maximum] = myriad::max(R(lane.accessory[maximum]), x1);
         lane.accessory[minimum] = myriad::min(R(lane.accessory[minimum]), x1);
         // The trapezoidal rule with the slopes of x^2 at both ends: the integral of its Hermite polynomial, of order four.

@@ -30,7 +30,7 @@ def draw(pyplot, numpy, table, comments):
                                              layout="constrained")
     omega = table["omega"]
     grid = numpy.linspace(omega.min(), omega.max(), 1000)
-    upper.plot(grid, 1 / numpy.hypot(1 - grid**2, 2 * zeta * grid), linewidth=3, color="0.8",
+    upper.plot(grid, 1 / numpy.hypot(1 - grid**2, 2 * zeta * grid), linewidth=5, color="0.8",
                label=r"closed form, $\beta = 0$", zorder=1)
     for beta, colour in zip(numpy.unique(table["beta"]), COLOURS):
         chosen = table["beta"] == beta
@@ -56,4 +56,4 @@ def draw(pyplot, numpy, table, comments):
 
 
 if __name__ == "__main__":
-    figures.main(__doc__, "resonance", COLUMNS, draw)
+    figures.main(__doc__, "resonance", COLUMNS, draw, dpi=180, colours=64)

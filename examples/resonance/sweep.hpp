@@ -16,7 +16,7 @@ namespace resonance {
 
 inline constexpr double zeta = 0.05, omega_first = 0.5, omega_last = 1.6;
 inline constexpr std::array betas = {0.0, 0.002, 0.01};
-inline constexpr std::int64_t starts = 2;  // at rest, and on the backbone curve, which leads to the upper of two branches
+inline constexpr std::int64_t starts = 2;  // at rest; on the backbone curve, which leads to the upper of two branches
 inline constexpr std::int64_t curves = starts * static_cast<std::int64_t>(betas.size());
 inline constexpr double tolerance = 1e-10, event_tolerance = 1e-8;
 inline constexpr std::int64_t samples_per_phase = 200;
