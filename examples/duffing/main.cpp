@@ -1,34 +1,19 @@
 // SPDX-License-Identifier: MIT
 // The first example: a bifurcation diagram of the Duffing oscillator over its damping, as in the MPGOS paper.
 #include <cstdint>
-#include <numbers>
 #include <string>
 
 #include <myriad/myriad.hpp>
 
 #include "../common/csv_file.hpp"
-#include "../common/grid.hpp"
 #include "../common/integrate.hpp"
-#include "duffing.hpp"
+#include "sweep.hpp"
 
 namespace {
 
 using records = myriad::phase_records<duffing, double>;
 
-constexpr double k_first = 0.2, k_last = 0.3, forcing = 0.3;
-constexpr double x_start = -0.5, v_start = -0.1;
-constexpr double tolerance = 1e-9, event_tolerance = 1e-6;
-
-myriad::ensemble<duffing> prepare(std::int64_t instances) {
-    myriad::ensemble<duffing> sweep(instances);
-    sweep.parameter(duffing::k) = examples::linspace(k_first, k_last, instances);
-    sweep.shared(duffing::B) = forcing;
-    sweep.state(duffing::x) = x_start;
-    sweep.state(duffing::v) = v_start;
-    sweep.time_domain(0, 2 * std::numbers::pi);
-    for (int c = 0; c < duffing::n_accessory; ++c) sweep.accessory(c) = 0.0;  // `initialise` sets them in every phase
-    return sweep;
-}
+using namespace duffing_sweep;
 
 myriad::options integration(const examples::sweep_options& chosen) {
     return {.phases = chosen.transient + chosen.phases,
@@ -89,7 +74,7 @@ void write(examples::csv_file& file, const myriad::ensemble<duffing>& sweep, con
 int run(const examples::sweep_options& chosen, const myriad::device& device) {
     const auto rows = static_cast<std::uintmax_t>(chosen.instances) * static_cast<std::uintmax_t>(chosen.phases);
     examples::csv_file file(chosen.output, 80 * rows);  // the shortest rows have about 100 characters
-    auto sweep = prepare(chosen.instances);
+    auto sweep = prepare(k_grid(chosen.instances));
     const auto report = examples::integrate<myriad::cash_karp>(chosen, device, sweep, integration(chosen));
     write(file, sweep, report.records, chosen.transient);
     return examples::conclude(chosen, report);

@@ -75,4 +75,4 @@ def draw(pyplot, numpy, table, comments):
 
 
 if __name__ == "__main__":
-    figures.main(__doc__, "duffing", COLUMNS, draw, dpi=240)
+    figures.main(__doc__, "duffing", COLUMNS, draw, dpi=150, colors=16)
