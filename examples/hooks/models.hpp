@@ -55,6 +55,7 @@ struct tangent_duffing {
 // snippet: after_step
 /// x' = -k x, its integral by the trapezoidal rule, and an end where x has fallen below a limit.
 struct settling {
+    static constexpr bool accessories_are_outputs = true;  // rhs does not read them
     enum state { x, n_state };
     enum parameter { k, n_parameter };
     enum shared { limit, n_shared };

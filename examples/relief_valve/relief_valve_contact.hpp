@@ -10,6 +10,7 @@
 /// turns positive. An impact that the valve leaves more slowly than `slowest` is its last, if the net force holds it closed for
 /// longer than the bounces to come can take.
 struct relief_valve_contact : relief_valve {
+    static constexpr bool accessories_are_outputs = false;  // rhs and events read the mode
     // those of `relief_valve`, and more behind them
     enum shared { kappa, delta, beta, restitution, rest_band, slowest, n_shared };
     enum accessory { y_min, y_max, y_lowest, rest_at, u_contact, t_contact, time_at_rest, n_accessory };

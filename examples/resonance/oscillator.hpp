@@ -21,6 +21,7 @@ struct oscillator {
 /// The same with the largest and smallest x and the integral of x^2 over all steps since the host has set them. The event,
 /// v = 0, needs no action: it makes every extremum the end of a step, and so the maximum as good as the steps.
 struct response : oscillator {
+    static constexpr bool accessories_are_outputs = true;
     enum accessory { maximum, minimum, integral, x_before, v_before, n_accessory };
     enum event { extremum, n_event };
 
