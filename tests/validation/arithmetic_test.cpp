@@ -2,7 +2,7 @@
 // The validation's arithmetic: a NaN in a result is not lost on its way to the verdict.
 #include "validation/measures/arithmetic.hpp"
 
-#include "catch.hpp"
+#include "tests/catch.hpp"
 
 namespace {
 
