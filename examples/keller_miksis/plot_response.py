@@ -44,6 +44,7 @@ def draw(pyplot, numpy, table, comments):
     lower.set_xlabel(r"frequency $f_1$ (kHz)")
     lower.set_xscale("log")
     lower.xaxis.set_major_formatter("{x:g}")
+    lower.xaxis.set_minor_formatter("")
     lower.set_xticks([20, 50, 100, 200, 500, 1000])
     lower.set_xlim(frequency.min(), frequency.max() if frequency.max() > frequency.min() else 2 * frequency.min())
 

@@ -117,7 +117,8 @@ public:
         integrated_ = false;
         results_ = held::on_host;
         report_ = {};
-        prepared_.records().clear();
+        has_records_ = wanted < capacity();  // a GPU writes those of what was uploaded, all in the most frequent case
+        if (has_records_) prepared_.records().clear();
         work_before_ = counted_work();
     }
 
@@ -135,6 +136,7 @@ public:
         arguments.phases = static_cast<std::int32_t>(phases > 0 ? phases : options_.phases);
         results_ = held::on_device;
         instances_.touch();
+        has_records_ = true;
         if (engine_) {
             engine_->integrate(arguments);
             integrated_ = true;
@@ -205,10 +207,12 @@ public:
         }
         return report_;
     }
-    /// The records of the last `integrate`. Waits; throws `error` after an `integrate` without a `download`.
+    /// The records of the last `integrate`, empty (NaN, 0) if there was none since the upload. Waits; throws `error` after an `integrate` without a `download`.
     const phase_records<Model, R>& records() {
         wait();
         require_results("records");
+        if (!has_records_) prepared_.records().clear();
+        has_records_ = true;
         return prepared_.records();
     }
 
@@ -258,6 +262,7 @@ private:
     bool downloadable_ = false;  // uploaded, and found fine
     held results_ = held::on_host;
     bool integrated_ = false;
+    bool has_records_ = true;  // those there are belong to what was uploaded last
     host::work_count work_before_{};
     myriad::report<Model, R> report_;
     std::unique_ptr<cuda::engine<Model, R>> engine_;  // destroyed first: it holds on to the memory above

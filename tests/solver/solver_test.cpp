@@ -195,6 +195,13 @@ TEST_CASE("records of an earlier call do not stay behind") {
     CHECK(s.records().state(swing::x).isFinite().all());
     s.instances().restart();
     fill(s.instances());
+    s.upload();
+    CHECK(s.records().state(swing::x).isNaN().all());
+    s.integrate();
+    s.download();
+    CHECK(s.records().state(swing::x).isFinite().all());
+    s.instances().restart();
+    fill(s.instances());
     s.upload(5);
     s.integrate();
     s.download();
