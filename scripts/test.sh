@@ -27,7 +27,7 @@ Steps, in this order, of which strict and clang run only if asked for, for the s
 
 Options:
   --quick          only ci
-  --all            all of them
+  --all            all of them, and in cuda the kernels of the case studies too
   --only STEP,...  only these
   --jobs N         processes at a time (default: number of cores)
   --help           this text
@@ -35,12 +35,13 @@ END
 }
 
 steps=("${usual_steps[@]}")
+every_kernel=no
 jobs=$(nproc)
 while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
         --quick) steps=(ci) ;;
-        --all) steps=("${all_steps[@]}") ;;
+        --all) steps=("${all_steps[@]}") every_kernel=yes ;;
         --only)
             (($# > 1)) || usage_error "--only needs steps: ${all_steps[*]}"
             IFS=, read -r -a wanted <<<"$2"
@@ -82,11 +83,12 @@ build() {
         quietly "build/$preset/build.log" cmake --build --preset "$preset" --parallel "$jobs" -- -k 0
 }
 
-# Every file that nvcc compiles, and the programs that show what both backends in one program do without a GPU.
+# Every file that nvcc compiles (without --all: but for the case studies, which scripts/case_studies.sh builds), and the programs that show what both backends in one program do without a GPU.
 build_kernels() {
     local kernels
     quietly build/cuda/configure.log cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return
-    mapfile -t kernels < <(ninja -C build/cuda -t targets all | sed -n 's/: CUDA_COMPILER__.*//p')
+    mapfile -t kernels < <(ninja -C build/cuda -t targets all | sed -n 's/: CUDA_COMPILER__.*//p' |
+        grep -E "$([[ $every_kernel == yes ]] || printf '^(tests|benchmarks|examples/(duffing|hooks|own_method|quickstart))/')")
     ((${#kernels[@]})) || return
     quietly build/cuda/build.log cmake --build --preset cuda --parallel "$jobs" \
         --target "${kernels[@]}" solver_test duffing -- -k 0
