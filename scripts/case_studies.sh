@@ -13,8 +13,9 @@ Usage: scripts/case_studies.sh [--device NAME] [--small] [--only PROGRAM,...] [-
 Builds the example programs and runs each of them: DIR/PROGRAM.csv, DIR/PROGRAM.png, and what it said in DIR/PROGRAM.log. The
 last lines are a table of their times by the clock. Exit status 1 if one of them fails.
 
-  --device NAME        where to compute (default: cuda if nvcc and a GPU are there, else cpu); for a GPU it builds in build/cuda
-                       and installs nothing, else in build/release and installs what is missing (as root or with sudo)
+  --device NAME        where to compute (default: cuda if nvcc and a GPU are there, else cpu); for a GPU it builds in
+                       build/case-studies-cuda and installs nothing, else in build/case-studies-release and installs what is
+                       missing (as root or with sudo)
   --small              sizes that take seconds on two cores; the full ones are for a GPU
   --only PROGRAM,...   only these
   --deps DIR           for a GPU: folder with the headers of what is not installed, DIR/xsimd and DIR/CLI (default: .deps)
@@ -54,6 +55,9 @@ while (($#)); do
     esac
     shift
 done
+[[ $device =~ ^(cpu|cuda)(:[0-9]+)?$ ]] || usage_error "There is no device '$device': choose cpu, cpu:THREADS, cuda or cuda:NUMBER"
+[[ $jobs =~ ^[1-9][0-9]*$ ]] || usage_error "--jobs needs a positive number"
+((${#programs[@]})) || usage_error "--only needs programs"
 mkdir -p "$output"
 
 options=(-DMYRIAD_BUILD_TESTS=OFF -DMYRIAD_BUILD_BENCHMARKS=OFF -DMYRIAD_BUILD_VALIDATION=OFF)
@@ -81,14 +85,14 @@ table=()
 for program in "${programs[@]}"; do
     executable=$(find "$build/examples" -type f -name "$program" -perm -u+x)
     say "$program"
-    begin=${EPOCHREALTIME/./}
+    begin=${EPOCHREALTIME//[.,]/}
     result=""
     "$executable" --device "$device" "${size[@]}" --output "$output/$program.csv" "${plot[@]}" >"$output/$program.log" 2>&1 || {
         result="failed with exit status $?"
         status=1
         tail -n 5 "$output/$program.log"
     }
-    table+=("$(printf '%-24s %8.1f s  %s' "$program" "$(((${EPOCHREALTIME/./} - begin) / 100000))e-1" "$result")")
+    table+=("$(printf '%-24s %8.1f s  %s' "$program" "$(((${EPOCHREALTIME//[.,]/} - begin) / 100000))e-1" "$result")")
 done
 say "Times, with reading, writing and drawing"
 printf '   %s\n' "${table[@]}"

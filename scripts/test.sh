@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/lib.sh
 
 all_steps=(ci cuda strict clang asan tsan)
-usual_steps=(ci cuda asan tsan)
+usual_steps=(ci cuda asan)
 
 usage() {
     cat <<'END'
@@ -16,9 +16,9 @@ Usage: scripts/test.sh [--quick] [--all] [--only STEP,...] [--jobs N] [--help]
 Installs the packages that are missing (as root or with sudo), builds and runs the tests.
 Its last line is "N passed, N failed"; the exit status is 0 if none failed.
 
-Steps, in this order, of which strict and clang run only if asked for, for the sake of the usual run's time:
+Steps, in this order, of which strict, clang and tsan run only if asked for, for the sake of the usual run's time:
   ci      g++, release, warnings are errors: all tests, examples, benchmarks, validation
-  cuda    all kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
+  cuda    the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
           both backends runs without a GPU (skipped without nvcc)
   strict  no contraction of a * b + c: scalar lanes and packs agree bit for bit
   clang   clang++, warnings are errors
@@ -27,7 +27,7 @@ Steps, in this order, of which strict and clang run only if asked for, for the s
 
 Options:
   --quick          only ci
-  --all            all of them, and in cuda the kernels of the case studies too
+  --all            all of them, and in cuda all kernels
   --only STEP,...  only these
   --jobs N         processes at a time (default: number of cores)
   --help           this text
@@ -83,12 +83,15 @@ build() {
         quietly "build/$preset/build.log" cmake --build --preset "$preset" --parallel "$jobs" -- -k 0
 }
 
-# Every file that nvcc compiles (without --all: but for the case studies, which scripts/case_studies.sh builds), and the programs that show what both backends in one program do without a GPU.
+# Every file that nvcc compiles, without --all those of the tests and some examples (tests/cuda/budgets.cu has the benchmarks'
+# kernels, and scripts/case_studies.sh builds the case studies), and the programs that show what both backends in one program do without a GPU.
 build_kernels() {
     local kernels
     quietly build/cuda/configure.log cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return
     mapfile -t kernels < <(ninja -C build/cuda -t targets all | sed -n 's/: CUDA_COMPILER__.*//p' |
-        grep -E "$([[ $every_kernel == yes ]] || printf '^(tests|benchmarks|examples/(duffing|hooks|own_method|quickstart))/')")
+        if [[ $every_kernel == yes ]]; then cat; else
+            grep -E '^(tests|examples/(duffing|hooks|own_method|quickstart))/'
+        fi)
     ((${#kernels[@]})) || return
     quietly build/cuda/build.log cmake --build --preset cuda --parallel "$jobs" \
         --target "${kernels[@]}" solver_test duffing -- -k 0

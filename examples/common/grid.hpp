@@ -2,6 +2,7 @@
 // Grids of parameters.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include <Eigen/Core>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Core>
 
@@ -32,9 +33,6 @@ Eigen::ArrayXd shared_values(double wall) {
 
 /// Heat flow without flow of liquid, in the unit of `heat` per time.
 constexpr double still = outer / (outer - 1);
-
-/// That with a steady flow of liquid of this Peclet number, u r^2 / diffusivity: with r^2 T' = P (T - c), T = c + b exp(-P / r).
-inline double steady_heat_flow(double peclet) { return peclet == 0 ? still : peclet / std::expm1(peclet / still); }
 
 /// Temperature of a wall at one without flow of liquid, where all instances start.
 inline Eigen::ArrayXd still_temperature(const Eigen::ArrayXd& r) { return (outer / r - 1) / (outer - 1); }

@@ -57,9 +57,10 @@ std::vector<std::string> findings(const myriad::ensemble<epidemic>& sweep, std::
     add("variance of the peak", variance_of(peaks, exact));
     for (const double p : {0.05, 0.5, 0.95, 0.99})
         add(myriad::message("share of peaks below ", exact.quantile(p)), share_below(peaks, exact, p));
-    double worst = 0;
+    Eigen::ArrayXd errors(sweep.size());
     for (std::int64_t i = 0; i < sweep.size(); ++i)
-        worst = std::max(worst, std::abs(peaks[i] - exact_peak(sweep.parameter(epidemic::R0)[i], s_start, i_start)));
+        errors[i] = std::abs(peaks[i] - exact_peak(sweep.parameter(epidemic::R0)[i], s_start, i_start));
+    const double worst = errors.maxCoeff<Eigen::PropagateNaN>();
     lines.push_back(myriad::message("largest error of a peak: ", worst));
     lines.push_back(myriad::message("parameters drawn differently by the host: ", drawn_differently(sweep, seed)));
     return lines;

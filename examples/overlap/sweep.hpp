@@ -2,6 +2,7 @@
 // The Duffing sweep in chunks: what they are filled with, what is kept of them, and the table of one.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <numbers>
 #include <string>
@@ -9,31 +10,31 @@
 #include <myriad/myriad.hpp>
 
 #include "../common/csv_file.hpp"
-#include "../duffing/duffing.hpp"
+#include "../duffing/sweep.hpp"
 
 namespace duffing_sweep {
 
 inline myriad::options integration(std::int64_t phases) {
     return {.phases = phases,
-            .relative_tolerance = 1e-9,
-            .absolute_tolerance = 1e-9,
-            .events = {{.direction = myriad::direction::falling, .tolerance = 1e-6}, {.tolerance = 1e-6}},
+            .relative_tolerance = tolerance,
+            .absolute_tolerance = tolerance,
+            .events = {{.direction = myriad::direction::falling, .tolerance = event_tolerance}, {.tolerance = event_tolerance}},
             .counting = myriad::counting::off,
             .advice = myriad::advice::off};
 }
 
 /// Damping of instance i of `instances`: the same number whatever the chunks.
 inline double damping(std::int64_t i, std::int64_t instances) {
-    return 0.2 + 0.1 * static_cast<double>(i) / static_cast<double>(std::max<std::int64_t>(instances - 1, 1));
+    return k_first + (k_last - k_first) * static_cast<double>(i) / static_cast<double>(std::max<std::int64_t>(instances - 1, 1));
 }
 
 /// Sets `count` instances of `part` to the instances first, first + 1, ... of the sweep.
 inline void fill(myriad::ensemble<duffing>& part, std::int64_t first, std::int64_t count, std::int64_t instances) {
     part.restart();  // a new chunk, and not further phases of the one before
     for (std::int64_t i = 0; i < count; ++i) part.parameter(duffing::k)[i] = damping(first + i, instances);
-    part.shared(duffing::B) = 0.3;
-    part.state(duffing::x).head(count) = -0.5;
-    part.state(duffing::v).head(count) = -0.1;
+    part.shared(duffing::B) = forcing;
+    part.state(duffing::x).head(count) = x_start;
+    part.state(duffing::v).head(count) = v_start;
     part.time_domain(0, 2 * std::numbers::pi);
 }
 

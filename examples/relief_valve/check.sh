@@ -6,8 +6,8 @@
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
 
 check_arguments
-"$program" --instances 981 --transient 400 --phases 16 --quiet --output table.csv
-check_table table.csv $((981 * 16)) instance,phase,q,y_min,y_max,impacts,status
+"$program" --instances 981 --transient 400 --phases 64 --quiet --output table.csv
+check_table table.csv $((981 * 64)) instance,phase,q,y_min,y_max,impacts,status
 # q goes in steps of 0.01. The oscillation grazes the seat at q = 7.55721, by CVODE (validation/case_studies). The
 # equilibrium, u = y + delta, q = y sqrt(u), has the characteristic polynomial l^3 + (kappa + a) l^2 + (1 + kappa a) l + a + b
 # with a = beta y / (2 sqrt(u)), b = beta sqrt(u), and so is stable where (kappa + a) (1 + kappa a) > a + b (Routh, Hurwitz).

@@ -10,7 +10,7 @@ check_arguments
 "$program" --instances 240 --transient 128 --phases 64 --quiet --output table.csv
 check_table table.csv $((240 * 64)) $header
 # At rest u' = beta q up to delta, so that the time at rest is (delta - u_contact) / (beta q); the opening has a tolerance of
-# 1e-12 in u, and time is rounded to 1e-15. Valves rest in every cycle up to q = 0.0202, by CVODE (validation/case_studies).
+# 1e-12 in u, and time is rounded to 1e-15. Valves rest in every cycle up to q = 0.02006, by CVODE (validation/case_studies).
 rows table.csv | awk -F, '
     $8 != "stopped_by_event" || $4 < -1e-12 { print "wrong: " $0; bad = 1 }
     $7 > 0 { wrong = $7 - (10 - $6) / (20 * $3); if (wrong > 1e-8 || wrong < -1e-8) { print "wrong time: " $0; bad = 1 } rest[$1]++ }
@@ -21,6 +21,6 @@ check_plot table.csv plot_contact.py
 
 # What ends as event_accumulation without resting contact (check.sh) rests once and goes on.
 "$program" --first 0.2 --last 0.27 --instances 8 --transient 0 --phases 80 --quiet --output start.csv
-rows start.csv | awk -F, '$8 != "stopped_by_event" { exit 1 } $7 > 0 { rests[$1]++ } END { exit length(rests) != 8 }' ||
+rows start.csv | awk -F, '$8 != "stopped_by_event" { bad = 1 } $7 > 0 { rests[$1] = 1 } END { for (i in rests) ++n; exit bad || n != 8 }' ||
     fail 'valves with small flows do not rest'
 echo 'All checks passed.'

@@ -21,8 +21,8 @@ rows table.csv | awk -F, '
         # A = 1 / sqrt((1 - r^2)^2 + (2 zeta r)^2), zeta = 0.05, and the mean square A^2 / 2. 1e-8: errors of a step, 1e-10
         # of the amplitude and some 100 steps in a period, live for 1 / (2 pi zeta) periods, 3; their signs differ.
         exact = 1 / sqrt((1 - $3 ^ 2) ^ 2 + (0.1 * $3) ^ 2)
-        if (abs($4 / exact - 1) > 1e-8 || abs($5 / exact + 1) > 1e-8) wrong("amplification is not " exact)
-        if (abs(2 * $6 / exact ^ 2 - 1) > 2e-8) wrong("mean square is not half the square of " exact)
+        if (!(abs($4 / exact - 1) <= 1e-8 && abs($5 / exact + 1) <= 1e-8)) wrong("amplification is not " exact)
+        if (!(abs(2 * $6 / exact ^ 2 - 1) <= 2e-8)) wrong("mean square is not half the square of " exact)
         n++; s[n] = $3 ^ 2; q[n] = 1 / $4 ^ 2
         if ($4 > top) { top = $4; at = n }
     }
@@ -31,10 +31,10 @@ rows table.csv | awk -F, '
         # (1 + beta A^2) A + 1, in units in which t = phase / omega.
         d = atan2(0, -1) / 199 / $3
         missed = ((1 + $1 * $4 ^ 2) * $4 + 1) * d ^ 2 / 2 + 1e-6
-        if ($4 - $7 > missed || $4 - $7 < -1e-6) wrong("sampled maximum")
-        if ($8 - $5 > missed || $8 - $5 < -1e-6) wrong("sampled minimum")
+        if (!($4 - $7 <= missed && $4 - $7 >= -1e-6)) wrong("sampled maximum")
+        if (!($8 - $5 <= missed && $8 - $5 >= -1e-6)) wrong("sampled minimum")
         # Sums over whole periods are exact for all harmonics that the samples resolve; samples err by 1e-6 at most.
-        if (abs($9 / $6 - 1) > 1e-6) wrong("sampled mean square")
+        if (!(abs($9 / $6 - 1) <= 1e-6)) wrong("sampled mean square")
     }
     END {
         # 1 / A^2 is quadratic in s = r^2: the vertex of the parabola through any three points is at 1 - 2 zeta^2. Errors

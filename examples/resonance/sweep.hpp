@@ -2,7 +2,6 @@
 // The sweep over frequency, hardening and start, and its response by hooks and by dense output. Host code.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

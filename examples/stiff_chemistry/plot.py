@@ -41,7 +41,8 @@ def draw(pyplot, numpy, table, comments):
             (axes[0], period, "period, in decay times of the catalyst", "viridis", "Period of the oscillation"),
             (axes[1], table["steps"], f"trial steps{cycles}", "cividis", "Cost")):
         mesh = axis.pcolormesh(f_edges, epsilon_edges, values.reshape(shape), cmap=colors, rasterized=True,
-                               norm=LogNorm() if numpy.isfinite(values).any() else None)
+                               # a few that are not done have other periods
+                               norm=LogNorm(*numpy.nanquantile(values, (0.002, 1))) if numpy.isfinite(values).any() else None)
         if min(shape) > 1:
             axis.contour(f, epsilon, table["growth"].reshape(shape), levels=[0], colors="#d03020", linewidths=1.1)
         figure.colorbar(mesh, ax=axis, label=name, pad=0.02)

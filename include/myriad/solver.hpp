@@ -51,7 +51,7 @@ public:
         engine_ = cuda::make_engine<Model, Method, R>(
             {where.number(), options_.block_size, options_.shared_placement, options_.schedule});
         instances_.pin(where);
-        prepared_.records().pin(where.number());
+        prepared_.pin(where.number());
         engine_->reserve(prepared_.get(), capacity);
     }
     solver(const solver&) = delete;
@@ -117,8 +117,8 @@ public:
         integrated_ = false;
         results_ = held::on_host;
         report_ = {};
-        has_records_ = wanted < capacity();  // a GPU writes those of what was uploaded, all in the most frequent case
-        if (has_records_) prepared_.records().clear();
+        has_records_ = false;
+        if (wanted < capacity()) prepared_.records().clear();  // a GPU writes those of what was uploaded, most often all
         work_before_ = counted_work();
     }
 
@@ -212,7 +212,6 @@ public:
         wait();
         require_results("records");
         if (!has_records_) prepared_.records().clear();
-        has_records_ = true;
         return prepared_.records();
     }
 

@@ -41,6 +41,7 @@ expect "validate.sh --help" 0 'Usage: scripts/validate.sh' scripts/validate.sh -
 expect "validate.sh refuses an unknown device" 2 "no device 'abacus'" scripts/validate.sh --device abacus
 expect "case_studies.sh --help" 0 'Usage: scripts/case_studies.sh' scripts/case_studies.sh --help
 expect "case_studies.sh refuses an unknown program" 2 "no case study 'abacus'" scripts/case_studies.sh --only abacus
+expect "case_studies.sh refuses an unknown device" 2 "no device 'abacus'" scripts/case_studies.sh --device abacus
 expect "quickstart.sh --help" 0 'Usage: scripts/quickstart.sh' scripts/quickstart.sh --help
 expect "quickstart.sh refuses an unknown option" 2 "Unknown option 'now'" scripts/quickstart.sh now
 

@@ -197,6 +197,8 @@ TEST_CASE("records of an earlier call do not stay behind") {
     fill(s.instances());
     s.upload();
     CHECK(s.records().state(swing::x).isNaN().all());
+    s.download();
+    CHECK(s.records().state(swing::x).isNaN().all());
     s.integrate();
     s.download();
     CHECK(s.records().state(swing::x).isFinite().all());

@@ -147,20 +147,22 @@ public:
 
     /// Keeps the ensemble's memory in place (pinned) as long as it lives, so that `solve` on a GPU copies it at the bus's speed,
     /// without a detour. Takes longer than a copy, so it pays for ensembles that are solved more than once, or whose
-    /// results are awaited by the millisecond. On a CPU it does nothing. Throws `error` if the system refuses.
+    /// results are awaited by the millisecond. On a CPU it does nothing. Throws `error` if the system refuses; all goes on
+    /// without then. Nobody else may have pinned parts of it.
     void pin(const device& where) {
         if (where.which() != device::kind::cuda) return;
-        pinned_for_ = where.number();
-        state_.pin(pinned_for_);
-        parameter_.pin(pinned_for_);
-        accessory_.pin(pinned_for_);
-        integer_accessory_.pin(pinned_for_);
-        t_.pin(pinned_for_);
-        h_next_.pin(pinned_for_);
-        phase_.pin(pinned_for_);
-        side_.pin(pinned_for_);
-        ended_.pin(pinned_for_);
-        status_.pin(pinned_for_);
+        const int gpu = where.number();
+        state_.pin(gpu);
+        parameter_.pin(gpu);
+        accessory_.pin(gpu);
+        integer_accessory_.pin(gpu);
+        t_.pin(gpu);
+        h_next_.pin(gpu);
+        phase_.pin(gpu);
+        side_.pin(gpu);
+        ended_.pin(gpu);
+        status_.pin(gpu);
+        pinned_for_ = gpu;
         pin_later_ones();
     }
 

@@ -82,6 +82,11 @@ public:
     prepared_arguments& operator=(const prepared_arguments&) = delete;
 
     kernel_arguments<Model, R>& get() { return arguments_; }
+    /// Keeps what is not the ensemble's in place, for copies to and from a GPU.
+    void pin(int device) {
+        records_.pin(device);
+        own_times_.pin(device);
+    }
     phase_records<Model, R>& records() { return records_; }
 
 private:

@@ -16,6 +16,10 @@ namespace myriad::inline MYRIAD_TARGET {
 /// Four 32-bit words: a counter, and the random bits made of it.
 using random_block = vec<std::uint32_t, 4>;
 
+/// What random numbers may be.
+template <class R>
+concept random_real = std::same_as<R, float> || std::same_as<R, double>;
+
 /// Philox4x32-10, a bijection of the counters for every key: Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy
 /// as 1, 2, 3", SC11 (2011), section 3.3. Different counters, or keys, give independent bits. The low word of `key` is key[0].
 MYRIAD_FUNCTION constexpr random_block philox_4x32_10(random_block counter, std::uint64_t key) {
@@ -32,7 +36,7 @@ MYRIAD_FUNCTION constexpr random_block philox_4x32_10(random_block counter, std:
 
 /// The middle of one of 2^52 equal parts of (0, 1): (2 k + 1) / 2^53, where k is the first 52 of the bits, word 1 before word 0.
 /// For float of 2^23 parts: (2 k + 1) / 2^24. All are exact, none is 0 or 1, and u and 1 - u are equally likely.
-template <std::floating_point R>
+template <random_real R>
 MYRIAD_FUNCTION constexpr R uniform_of(const random_block& bits) {
     constexpr int digits = std::numeric_limits<R>::digits;
     const std::uint64_t all = std::uint64_t{bits[1]} << 32 | bits[0];
@@ -70,7 +74,7 @@ MYRIAD_FUNCTION R minus_log(R x) {
 /// (1988) 477-484. Relative error at most 1e-15 in double precision, 1e-6 in single precision.
 /// Written with fused operations, whole ones, divisions and square roots alone, of which no compiler makes other ones: so its
 /// bits are the same on every target. Where the processor has no fused operation the C library emulates it.
-template <std::floating_point R>
+template <random_real R>
 MYRIAD_FUNCTION R normal_quantile(R p) {
     using detail::fused_polynomial;
     const R q = p - R(0.5);
@@ -109,7 +113,7 @@ MYRIAD_FUNCTION R normal_quantile(R p) {
 /// The random numbers of one instance in one phase, one after the other, each a block of bits of its own: counter (index, low
 /// and high word; phase; number of the draw), key `seed`. Nothing is kept beyond the hook: another hook of the same phase begins
 /// with another number, so that the two do not draw the same, as an event's hook with the count of the event.
-template <std::floating_point R>
+template <random_real R>
 class random_numbers {
 public:
     MYRIAD_FUNCTION constexpr random_numbers(std::uint64_t seed, std::int64_t index, std::int32_t phase,

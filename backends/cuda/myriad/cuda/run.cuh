@@ -40,7 +40,11 @@ __attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_no
 
 __attribute__((weak)) void pin_memory(int device, void* memory, std::size_t bytes) {
     const current_device here(device);
-    MYRIAD_CUDA(cudaHostRegister(memory, bytes, cudaHostRegisterPortable));
+    const cudaError_t status = cudaHostRegister(memory, bytes, cudaHostRegisterPortable);
+    if (status != cudaSuccess) cudaGetLastError();
+    require(status == cudaSuccess, static_cast<double>(bytes) / 1e9, " GB of host memory cannot be pinned: ",
+            cudaGetErrorString(status), " (", cudaGetErrorName(status),
+            "); there may be too little of it, or someone else has pinned it: go on without pinning");
 }
 __attribute__((weak)) void unpin_memory(void* memory) {
     cudaHostUnregister(memory);

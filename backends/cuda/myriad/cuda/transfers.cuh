@@ -34,7 +34,7 @@ inline std::size_t bytes_of(const row_list& list) {
     return bytes;
 }
 
-/// Whether host memory is pinned, by whomever.
+/// Whether host memory is pinned; its first byte stands for all, as arrays are pinned as a whole.
 inline bool is_pinned(const void* host) {
     cudaPointerAttributes facts{};
     MYRIAD_CUDA(cudaPointerGetAttributes(&facts, host));
