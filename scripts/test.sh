@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/lib.sh
 
 all_steps=(ci cuda strict clang asan tsan)
-usual_steps=(ci cuda)
+usual_steps=(ci cuda tsan)
 
 usage() {
     cat <<'END'
@@ -16,7 +16,7 @@ Usage: scripts/test.sh [--quick] [--all] [--only STEP,...] [--jobs N] [--help]
 Installs the packages that are missing (as root or with sudo), builds and runs the tests.
 Its last line is "N passed, N failed"; the exit status is 0 if none failed.
 
-Steps, in this order, of which all but ci and cuda run only if asked for, for the sake of the usual run's time:
+Steps, in this order, of which strict, clang and asan run only if asked for, for the sake of the usual run's time:
   ci      g++, release, warnings are errors: all tests, examples, benchmarks, validation
   cuda    the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
           both backends runs without a GPU (skipped without nvcc)
