@@ -35,12 +35,14 @@ myriad::error_norm<double> norm_of(pair y, pair y1, pair error, pair atol, pair 
     return myriad::scaled_error<model, myriad::cash_karp>(args, myriad::vec<double, 2>{y.first, y.second}, h, trial);
 }
 
+bool accepts(const myriad::error_norm<double>& norm) { return norm.finite && norm.worst <= 1; }
+
 // products and quotients of a few rounded numbers
 constexpr double tolerance = 8 * std::numeric_limits<double>::epsilon();
 
 void check_worst(const myriad::error_norm<double>& norm, double expected) {
     CHECK(std::abs(norm.worst / expected - 1) <= tolerance);
-    CHECK(norm.within == (expected <= 1));
+    CHECK(accepts(norm) == (expected <= 1));
 }
 
 }  // namespace
@@ -70,22 +72,22 @@ TEST_CASE("every component has its own tolerances") {
 TEST_CASE("a step without any error is accepted") {
     const auto norm = norm_of({1, 1}, {1, 1}, {0, 0}, {1e-6, 1e-6}, {1e-6, 1e-6});
     CHECK(norm.worst == 0.0);
-    CHECK(norm.within);
+    CHECK(accepts(norm));
 }
 TEST_CASE("a step whose error is NaN in one component is not accepted") {
-    CHECK_FALSE(norm_of({1, 1}, {1, 1}, {not_a_number, 0}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
-    CHECK_FALSE(norm_of({1, 1}, {1, 1}, {0, not_a_number}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+    CHECK_FALSE(accepts(norm_of({1, 1}, {1, 1}, {not_a_number, 0}, {1e-6, 1e-6}, {1e-6, 1e-6})));
+    CHECK_FALSE(accepts(norm_of({1, 1}, {1, 1}, {0, not_a_number}, {1e-6, 1e-6}, {1e-6, 1e-6})));
 }
 TEST_CASE("a step to a state that is not finite is not accepted") {
     for (const double bad : {not_a_number, infinity, -infinity}) {
-        CHECK_FALSE(norm_of({1, 1}, {bad, 1}, {0, 0}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
-        CHECK_FALSE(norm_of({1, 1}, {1, bad}, {0, 0}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+        CHECK_FALSE(accepts(norm_of({1, 1}, {bad, 1}, {0, 0}, {1e-6, 1e-6}, {1e-6, 1e-6})));
+        CHECK_FALSE(accepts(norm_of({1, 1}, {1, bad}, {0, 0}, {1e-6, 1e-6}, {1e-6, 1e-6})));
         // an infinite error over an infinite scale is no number, and a finite one over it would be zero
-        CHECK_FALSE(norm_of({1, 1}, {1, bad}, {0, 1}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+        CHECK_FALSE(accepts(norm_of({1, 1}, {1, bad}, {0, 1}, {1e-6, 1e-6}, {1e-6, 1e-6})));
     }
 }
 TEST_CASE("an infinite error is not accepted") {
-    CHECK_FALSE(norm_of({1, 1}, {1, 1}, {infinity, 0}, {1e-6, 1e-6}, {1e-6, 1e-6}).within);
+    CHECK_FALSE(accepts(norm_of({1, 1}, {1, 1}, {infinity, 0}, {1e-6, 1e-6}, {1e-6, 1e-6})));
 }
 
 TEST_CASE("the combined estimate of dormand_prince_8 falls with the step to the eighth power") {
@@ -123,8 +125,8 @@ TEST_CASE("two estimates are combined as in DOP853, and are nothing where the fi
         const auto norm = myriad::scaled_error<model, method>(args, {1.0, 1.0}, 1.0, trial);
         const double expected = e5 == 0 ? 0 : e5 * (e5 / std::hypot(e5, 0.1 * e3));
         CHECK(std::abs(norm.worst - expected) <= 2 * tolerance * expected);
-        CHECK(norm.within == (expected <= 1));
+        CHECK(accepts(norm) == (expected <= 1));
     }
     trial.y[1] = infinity;
-    CHECK_FALSE(myriad::scaled_error<model, method>(args, {1.0, 1.0}, 1.0, trial).within);
+    CHECK_FALSE(accepts(myriad::scaled_error<model, method>(args, {1.0, 1.0}, 1.0, trial)));
 }

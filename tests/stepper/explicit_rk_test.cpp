@@ -53,7 +53,7 @@ struct single_step {
     template <int row = myriad::row_of<Method>::error>
     R estimate(int c) const {
         if constexpr (Method::embedded_order > 0) {
-            return myriad::error_estimate<Method, row>(h, trial.k, c);
+            return myriad::error_factor<Method, row>(h) * myriad::error_sum<Method, row>(trial, c);
         } else {
             return 0;
         }

@@ -41,7 +41,7 @@ struct single_step {
     }
     state estimate() const {
         state e;
-        for (int c = 0; c < n; ++c) e[c] = error_estimate(h, trial, c);
+        for (int c = 0; c < n; ++c) e[c] = myriad::error_factor<Method>(h) * myriad::error_sum<Method>(trial, c);
         return e;
     }
 };

@@ -9,12 +9,12 @@
 namespace myriad::inline MYRIAD_TARGET {
 
 /// The next step of every lane: the one wanted, or what is left of the domain. A step that falls short of t_end by less
-/// than a thousandth of itself is stretched, so that no sliver is left over; its error is tested like any other.
+/// than 1/1024 of itself is stretched, so that no sliver is left over; its error is tested like any other.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION void propose_adaptive_step(integration_state<Model, Method, S>& s) {
     using R = real_of<S>;
     const S remaining = s.data.t_end - s.data.t;
-    s.final_step = abs(remaining) <= abs(s.data.h_next) * S(R(1.001));
+    s.final_step = abs(remaining) <= abs(s.data.h_next) * S(R(1 + 1.0 / 1024));
     s.h = select(s.final_step, remaining, copysign(s.data.h_next, remaining));
 }
 
@@ -35,22 +35,23 @@ inline constexpr double least_error_remembered = -13.2877;
 /// tolerance and p the order of the error estimate, kept within the options' limits (Hairer, Norsett, Wanner, Solving
 /// ODE I, II.4, eq. (4.13)); or the one chosen with `controlled`. Lanes whose trial is not finite (or not `valid`, or
 /// singular) are rejected with the smallest factor.
-/// Lanes that are rejected at the minimum step end. Returns the accepted lanes.
+/// Lanes that are rejected at the minimum step end, and of those that `may_stick` the ones whose step ends, at `t1`, where it
+/// began. Returns the accepted lanes.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>>& args,
                                         integration_state<Model, Method, S>& s,
-                                        const rk_trial<Method, S, n_state<Model>>& trial, mask_of<S> valid) {
+                                        const rk_trial<Method, S, n_state<Model>>& trial, const S& t1,
+                                        mask_of<S> valid, const mask_of<S>& may_stick) {
     using C = control_of<S>;
     using R = real_of<C>;
     using mask = mask_of<S>;
     if constexpr (solves_linear_systems<Method>) valid = valid & !trial.singular;
     error_norm<S> error = scaled_error<Model, Method>(args, s.data.y, s.h, trial);
-    if constexpr (scales_tolerances<Method>) {
-        error.worst = error_ratio(S(error.worst), s.tolerance_scale);
-        error.within = all_finite(trial.y) & (error.worst <= C(R(1)));
-    }
-    const mask within = valid & error.within;
-    const mask accepted = s.running() & within;
+    if constexpr (scales_tolerances<Method>)
+        error.worst = static_cast<C>(error_ratio(S(error.worst), s.tolerance_scale));
+    valid = valid & error.finite;
+    const mask within = valid & (error.worst <= C(R(1)));
+    mask accepted = s.running() & within;
     constexpr int order = estimate_order<Method>;
     const C shrink_limit = C(static_cast<R>(args.shrink_limit));
     C factor;
@@ -66,8 +67,9 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
         const C exponent = select(within, C(R(-1.0 / (order + 1))), C(R(-1.0 / order)));
         factor = C(R(0.9)) * fast_power(error.worst, exponent);
     }
-    factor = smaller(larger(factor, shrink_limit), C(static_cast<R>(args.growth_limit)));
+    factor = limited(factor, shrink_limit, C(static_cast<R>(args.growth_limit)));
 
+    const mask not_finite_before = s.last_not_finite;
     s.last_not_finite = s.last_not_finite & !within;
     const mask rejected = s.running() & !within;
     if (any(rejected)) {
@@ -81,11 +83,21 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
         const mask smallest = rejected & (abs(s.h) <= S(args.minimum_step));
         if (MYRIAD_UNLIKELY(any(smallest))) end_stuck_lanes(s, smallest);
     }
-    S size = smaller(larger(abs(s.h) * S(factor), S(args.minimum_step)), S(args.maximum_step));
-    // A step cut short by the end of the domain says little about the step size that goes on from there.
-    const mask ends = accepted & s.final_step;
-    if (MYRIAD_UNLIKELY(any(ends))) size = select(ends, larger(size, abs(s.data.h_next)), size);
-    s.data.h_next = select(s.running(), copysign(size, s.h), s.data.h_next);
+    S next = s.h * S(factor);
+    const S minimum = S(args.minimum_step), maximum = S(args.maximum_step);
+    const mask ends = accepted & (t1 == s.data.t_end), stuck = may_stick & (t1 == s.data.t);
+    if (MYRIAD_UNLIKELY(any(ends | stuck | (s.running() & !clearly_between(minimum, next, maximum))))) {
+        S size = limited(abs(next), minimum, maximum);
+        // A step cut short by the end of the domain says little about the step size that goes on from there.
+        size = select(ends, larger(size, abs(s.data.h_next)), size);
+        next = copysign(size, s.h);
+        s.rejected = count_where(stuck & accepted, s.rejected);
+        accepted = accepted & !stuck;
+        // a step that did not get anywhere says nothing about why the one before it failed
+        s.last_not_finite = s.last_not_finite | (stuck & not_finite_before);
+        end_stuck_lanes(s, stuck);
+    }
+    s.data.h_next = select(s.running(), next, s.data.h_next);
     return accepted;
 }
 

@@ -4,6 +4,7 @@
 
 #include <type_traits>
 
+#include "myriad/scalar/math.hpp"
 #include "myriad/scalar/select.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
@@ -27,6 +28,49 @@ MYRIAD_FUNCTION S larger(const S& a, const S& b) {
 template <class S>
 MYRIAD_FUNCTION S smaller(const S& a, const S& b) {
     return select(a < b, a, b);
+}
+
+/// a within the limits, the lower one where it is NaN.
+template <class S>
+MYRIAD_FUNCTION S limited(const S& a, const S& low, const S& high) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (std::is_same_v<S, float>) return ::fminf(::fmaxf(a, low), high);
+#endif
+    return smaller(larger(a, low), high);
+}
+
+/// a / b and 1 / sqrt(a); in CUDA threads within a few units of the last place and without code for numbers near the ends of
+/// the range, where a / b is 0.
+template <class S>
+MYRIAD_FUNCTION S quotient(const S& a, const S& b) {
+#if defined(__CUDA_ARCH__)
+    return __fdividef(a, b);
+#else
+    return a / b;
+#endif
+}
+template <class S>
+MYRIAD_FUNCTION S inverse_root(const S& a) {
+#if defined(__CUDA_ARCH__)
+    float y;
+    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(a));
+    return y;
+#else
+    return S(real_of<S>(1)) / sqrt(a);
+#endif
+}
+
+/// Whether low <= |a| <= high; in CUDA threads judged by the upper halves of their bits, and false where those of a limit are
+/// the same.
+template <class S>
+MYRIAD_FUNCTION mask_of<S> clearly_between(const S& low, const S& a, const S& high) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (std::is_same_v<S, double>) {
+        const int size = __double2hiint(a) & 0x7fffffff;
+        return (__double2hiint(low) < size) & (size < __double2hiint(high));
+    }
+#endif
+    return (low <= abs(a)) & (abs(a) <= high);
 }
 
 }  // namespace myriad::inline MYRIAD_TARGET

@@ -48,7 +48,6 @@ struct integrator {
             hook_driver<Model, Method, S> hooks{args, s, e};
             if constexpr (has_after_step<Model>) hooks.after_step(accepted);
             if constexpr (has_events<Model>) hooks.act_on_events();
-            end_long_phases();
         }
     }
 
@@ -68,7 +67,12 @@ struct integrator {
     /// Takes lanes whose phase has ended to their next phase or instance. Returns false when no lane is left running.
     template <class Source>
     MYRIAD_FUNCTION bool fill_lanes(Source& source) {
-        if (!any(s.ended)) return true;
+        if (!any(s.ended)) {
+            if (s.turn - s.first_start < args.max_steps) return true;
+            end_long_phases();
+        } else if constexpr (lanes_of<S> > 1) {
+            end_long_phases();  // of the other lanes
+        }
         mask begun = mask(false);
         for_each_lane(s.ended, [&](int i) MYRIAD_LAMBDA {
             const auto* arguments = &args;
@@ -86,6 +90,7 @@ struct integrator {
             const mask open = begun & s.first_step_open;
             if (any(open)) choose_first_step(args, s, open);
         }
+        if constexpr (keeps_slope && !loses_slope) s.renew_slope(begun);
         if constexpr (has_events<Model>) locator{args, s, e}.begin(begun);
         return any(s.active);
     }
@@ -147,7 +152,7 @@ struct integrator {
             s.h = select(e.locating, e.h_redo, s.h);
             s.final_step = s.final_step & !e.locating;
         }
-        if constexpr (keeps_slope) s.renew_slope(mask(true));
+        if constexpr (keeps_slope && loses_slope) s.renew_slope(mask(true));
     }
 
     MYRIAD_FUNCTION void take_step(trial_step& trial) {
@@ -190,6 +195,8 @@ struct integrator {
             if constexpr (compensates_time)
                 s.time_low = select(accepted, (s.h + s.time_low) - (t1 - s.data.t), s.time_low);
             s.data.t = select(accepted, t1, s.data.t);
+            // The last step ends there, and so may one before it, by rounding or at an event.
+            s.ended = s.ended | (accepted & (t1 == s.data.t_end));
         } else {
             s.done = count_where(accepted, s.done);
             s.left = select(accepted, s.left - count(1), s.left);
@@ -222,10 +229,7 @@ struct integrator {
                 }
             }
         }
-        if constexpr (adaptive) {
-            // The last step ends there, and so may one before it, by rounding or at an event.
-            s.ended = s.ended | (accepted & (s.data.t == s.data.t_end));
-        } else {
+        if constexpr (!adaptive) {
             s.ended = s.ended | (accepted & s.final_step);
             if constexpr (has_events<Model>) s.ended = s.ended | (accepted & s.slope_end_known & (s.data.t == s.data.t_end));
         }
@@ -233,12 +237,10 @@ struct integrator {
 
     /// Ends phases that have taken as many trial steps as the options allow.
     MYRIAD_FUNCTION void end_long_phases() {
-        if (MYRIAD_UNLIKELY(s.turn - s.first_start >= args.max_steps)) {
-            for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA {
-                if (s.turn - s.phase_start[i] < args.max_steps) return;
-                s.end_lane(i, status::max_steps);
-            });
-        }
+        for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA {
+            if (s.turn - s.phase_start[i] < args.max_steps) return;
+            s.end_lane(i, status::max_steps);
+        });
     }
 
 private:
@@ -248,6 +250,8 @@ private:
                                         !Method::first_same_as_last;
     /// Slopes are worth keeping where a step may be repeated or its last slope is the next one's first.
     static constexpr bool keeps_slope = stepper_keeps_slope<Model, Method>;
+    /// Within a phase too, the slope may have to be computed anew.
+    static constexpr bool loses_slope = !Method::first_same_as_last || has_after_step<Model> || has_events<Model>;
     /// Events and samples may need the slope at the end of a step, which is then the first of the next.
     static constexpr bool knows_slope_end = has_events<Model> || samples;
     /// In single precision the rounding of t would cost steps and accuracy.
@@ -272,18 +276,9 @@ private:
 
     MYRIAD_FUNCTION mask control(const trial_step& trial, const S& t1, const mask& valid) {
         if constexpr (adaptive) {
-            const mask not_finite_before = s.last_not_finite;
-            mask accepted = control_step(args, s, trial, valid);
-            mask stuck = s.running() & (t1 == s.data.t);
-            if constexpr (has_events<Model>) stuck = stuck & !e.locating;  // a flight shorter than the resolution of t
-            if (MYRIAD_UNLIKELY(any(stuck))) {
-                s.rejected = count_where(stuck & accepted, s.rejected);
-                accepted = accepted & !stuck;
-                // a step that did not get anywhere says nothing about why the one before it failed
-                s.last_not_finite = s.last_not_finite | (stuck & not_finite_before);
-                end_stuck_lanes(s, stuck);
-            }
-            return accepted;
+            mask may_stick = s.running();
+            if constexpr (has_events<Model>) may_stick = may_stick & !e.locating;  // a flight shorter than the resolution of t
+            return control_step(args, s, trial, t1, valid, may_stick);
         } else {
             const mask finite = valid & all_finite(trial.y);
             const mask failed = s.running() & !finite;

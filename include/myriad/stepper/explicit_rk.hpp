@@ -147,14 +147,14 @@ MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<
     return out;
 }
 
-/// The error estimate h * sum_j e_j k_j of one component.
-template <class Method, int row = row_of<Method>::error, class S, int n>
-MYRIAD_FUNCTION S error_estimate(const S& h, const vec<vec<S, n>, Method::stages>& k, int component) {
-    return h * S(first_operand<Method, row, real_of<S>>()) * scaled_sum<Method, row>(k, component);
+/// The error estimate h * sum_j e_j k_j of a component is the product of a factor that all components share and a sum.
+template <class Method, int row = row_of<Method>::error, class S>
+MYRIAD_FUNCTION S error_factor(const S& h) {
+    return h * S(first_operand<Method, row, real_of<S>>());
 }
-template <class Method, class S, int n>
-MYRIAD_FUNCTION S error_estimate(const S& h, const rk_trial<Method, S, n>& trial, int component) {
-    return error_estimate<Method>(h, trial.k, component);
+template <class Method, int row = row_of<Method>::error, class S, int n>
+MYRIAD_FUNCTION S error_sum(const rk_trial<Method, S, n>& trial, int component) {
+    return scaled_sum<Method, row>(trial.k, component);
 }
 
 /// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given. The new state is summed up stage by stage, so

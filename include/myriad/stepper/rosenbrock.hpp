@@ -104,10 +104,14 @@ MYRIAD_FUNCTION S sum_stages(const vec<vec<S, n>, Method::stages>& u, int compon
     return add_stages<Method, kind, row, first + 1, end>(sum, u, component);
 }
 
-/// The error estimate of one component.
-template <rosenbrock_method Method, class S, int n>
-MYRIAD_FUNCTION S error_estimate(const S&, const rk_trial<Method, S, n>& trial, int component) {
+/// The error estimate of one component, and its factor.
+template <rosenbrock_method Method, int row = row_of<Method>::error, class S, int n>
+MYRIAD_FUNCTION S error_sum(const rk_trial<Method, S, n>& trial, int component) {
     return sum_stages<Method, rosenbrock_row::error, 0, Method::stages>(trial.u, component);
+}
+template <rosenbrock_method Method, int row = row_of<Method>::error, class S>
+MYRIAD_FUNCTION S error_factor(const S&) {
+    return S(real_of<S>(1));
 }
 
 /// Factors of I / (h gamma) - J; false in lanes where it is singular.
