@@ -3,11 +3,11 @@
 // run at the same time (65536 registers per multiprocessor, in steps of eight per thread) or begins to spill.
 //
 // limit: integrate_ensemble<lorenz_with<eight_thirds>, runge_kutta_4> registers 56 stack 0 spill 0
-// limit: integrate_ensemble<lorenz_with<eight_thirds>, tsitouras_5> registers 72 stack 0 spill 0
-// limit: integrate_ensemble<keller_miksis, cash_karp> registers 128 stack 0 spill 0
-// limit: integrate_ensemble<keller_miksis, verner_7> registers 128 stack 0 spill 0
+// limit: integrate_ensemble<lorenz_with<eight_thirds>, tsitouras_5> registers 64 stack 0 spill 0
+// limit: integrate_ensemble<keller_miksis, cash_karp> registers 136 stack 0 spill 0
+// limit: integrate_ensemble<keller_miksis, verner_7> registers 168 stack 0 spill 0
 // limit: integrate_ensemble<keller_miksis, dormand_prince_8> registers 168 stack 0 spill 0
-// limit: integrate_ensemble<relief_valve_model, cash_karp> registers 184 stack 0 spill 0
+// limit: integrate_ensemble<relief_valve_model, cash_karp> registers 168 stack 40 spill 120
 // limit: integrate_ensemble<relief_valve_model, verner_7> registers 224 stack 0 spill 0
 // limit: integrate_ensemble<relief_valve_model, dormand_prince_8> registers 224 stack 0 spill 0
 #include <myriad/cuda/kernel.cuh>

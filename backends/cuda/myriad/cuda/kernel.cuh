@@ -63,13 +63,14 @@ inline constexpr int shared_parameter_bytes =
     n_shared<Model>* static_cast<int>(sizeof(R)) + n_shared_integer<Model>* static_cast<int>(sizeof(std::int32_t));
 
 /// Most threads per block; a model may choose by `static constexpr int max_block_size = 512;`. Up to 256, a thread can have
-/// as many registers as the hardware addresses.
+/// as many registers as the hardware addresses. nvcc weighs registers against blocks of this size: with 192 it stops at 168,
+/// where with 256 it went down to 128, or up to 255, for kernels of the same work (docs/gpu.md).
 template <class Model>
 constexpr int max_block_size() {
     if constexpr (requires { Model::max_block_size; }) {
         return Model::max_block_size;
     } else {
-        return 256;
+        return 192;
     }
 }
 
