@@ -106,16 +106,34 @@ std::vector<measurement> measure_fixed(std::int64_t size, const measure_options&
     return all;
 }
 
-std::vector<measurement> measure_adaptive(double tolerance, std::int64_t size, const measure_options& how) {
+/// One method at one tolerance.
+template <class Method>
+measurement measure_method(double tolerance, std::int64_t size, const measure_options& how) {
     const problem<lorenz> what{{.relative_tolerance = tolerance, .absolute_tolerance = tolerance / 1000, .step = 0.01},
                                &fill<lorenz>,
                                &start_at_one};
-    const auto inspect = [size](const myriad::ensemble<lorenz>& instances, measurement& m) {
+    return measure_myriad<Method>(what, size, how, [size](const myriad::ensemble<lorenz>& instances, measurement& m) {
         set_errors(
             m, errors_of(
                    size, [&](int c, std::int64_t i) { return instances.state(c)[i]; }, ones, 20'000, relative_length));
-    };
-    return {measure_myriad<myriad::tsitouras_5>(what, size, how, inspect)};
+    });
+}
+
+template <class Method>
+measurement measure_method(const char* name, double tolerance, std::int64_t size, const measure_options& how) {
+    measurement m = measure_method<Method>(tolerance, size, how);
+    m.implementation = name;
+    return m;
+}
+
+/// Methods of higher order, at tolerances that lead to the errors of Tsitouras' method at 1e-3, 1e-6 and 1e-8.
+std::vector<measurement> measure_methods(std::int64_t size, const measure_options& how) {
+    return {measure_method<myriad::verner_7>("verner_7 1e-2", 1e-2, size, how),
+            measure_method<myriad::verner_7>("verner_7 6e-6", 6e-6, size, how),
+            measure_method<myriad::verner_7>("verner_7 5e-8", 5e-8, size, how),
+            measure_method<myriad::dormand_prince_8>("dormand_prince_8 1e-2", 1e-2, size, how),
+            measure_method<myriad::dormand_prince_8>("dormand_prince_8 1e-6", 1e-6, size, how),
+            measure_method<myriad::dormand_prince_8>("dormand_prince_8 6e-9", 6e-9, size, how)};
 }
 
 }  // namespace
@@ -128,6 +146,10 @@ std::vector<benchmark_case> lorenz_cases() {
          .allowed_error = 1e-10,
          .sizes = {8192, 65536, 768'000, 4'194'304},
          .measure = &measure_fixed}};
+    const std::string start = "start (1, 0, 0), t in [0, 1], ";
+    const std::string first = ", atol rtol/1000, first step 0.01, rho = linspace(0, 21, N), b = 8/3";
+    const std::string distance = "of 64 instances against 20000 classic Runge-Kutta steps in long double, length of the "
+                                 "difference over that of the value";
     for (const double tolerance : {1e-3, 1e-6, 1e-8}) {
         char text[16];
         std::snprintf(text, sizeof text, "%.0e", tolerance);
@@ -135,16 +157,20 @@ std::vector<benchmark_case> lorenz_cases() {
         std::string exponent(text);
         exponent.erase(3, 1);
         all.push_back({.name = "lorenz_tsit5_" + exponent,
-                       .work = "start (1, 0, 0), t in [0, 1], rtol " + exponent +
-                               ", atol rtol/1000, first step 0.01, rho = linspace(0, 21, N), b = 8/3",
-                       .error = "of 64 instances against 20000 classic Runge-Kutta steps in long double, "
-                                "length of the difference over that of the value",
+                       .work = start + "rtol " + exponent + first,
+                       .error = distance,
                        .allowed_error = 10 * tolerance,
                        .sizes = {32768, 65536, 131'072, 262'144, 524'288},
                        .measure = [tolerance](std::int64_t size, const measure_options& how) {
-                           return measure_adaptive(tolerance, size, how);
+                           return std::vector{measure_method<myriad::tsitouras_5>(tolerance, size, how)};
                        }});
     }
+    all.push_back({.name = "lorenz_methods",
+                   .work = start + "by method and rtol" + first,
+                   .error = distance,
+                   .allowed_error = 1e-1,
+                   .sizes = {32768, 524'288},
+                   .measure = &measure_methods});
     return all;
 }
 
