@@ -9,6 +9,7 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,8 @@ namespace myriad::host {
 
 /// Chunks under way at a time: one is copied in, one is integrated, one is copied out by a thread of its own.
 inline constexpr std::size_t chunks_at_a_time = 3;
+/// Chunks on the device while the last ones are still being checked and none may be copied out.
+inline constexpr std::size_t most_chunks_held = 16;
 /// Ensembles of fewer instances are not worth several.
 inline constexpr std::int64_t worth_chunks = 131'072;
 
@@ -53,7 +56,7 @@ public:
         idle_engines& all = instance();
         const std::lock_guard lock(all.mutex_);
         all.idle_.emplace_back(how, std::move(e));
-        if (all.idle_.size() > chunks_at_a_time) all.idle_.pop_front();
+        if (all.idle_.size() > most_chunks_held) all.idle_.pop_front();
     }
 
 private:
@@ -90,7 +93,13 @@ public:
             engines_.push_back(engines::take(how_));
         for (auto& e : engines_) e->reserve(arguments_, chunk);
         for (auto& e : engines_) begin(*e, chunk);
-        check(size_ - begun_);
+        while (checked_ < size_) {
+            check(std::min(checked_ + chunk, size_));
+            if (begun_ < checked_ && keeps_too_few_busy() && may_hold_another(chunk)) {
+                engines_.push_back(engines::take(how_));
+                begin(*engines_.back(), chunk);
+            }
+        }
         instances_.touch();
         for (part& p : under_way_) bring_back(p);  // into the ensemble, at once where its memory is pinned
         while (!under_way_.empty()) {
@@ -123,6 +132,7 @@ private:
         for_each_array(arguments_, add);
         for_each_record(arguments_.record, add);
         constexpr std::int64_t most_chunks = 32, worthwhile_bytes = std::int64_t{8} << 20, all_memory_has = std::int64_t{64} << 20;
+        memory_per_instance_ = memory;
         const std::int64_t least =
             std::max({worth_chunks, engines_.front()->full_load(), worthwhile_bytes / copied});
         const std::int64_t chunks = std::clamp(size_ / least, std::int64_t{1}, most_chunks);
@@ -135,11 +145,22 @@ private:
                    : std::clamp(fits / static_cast<std::int64_t>(chunks_at_a_time), std::int64_t{1}, chunk);
     }
 
-    /// Sees to it that the data of `count` more instances are fine, or marked.
+    bool keeps_too_few_busy() const {
+        const auto idle = std::count_if(engines_.begin(), engines_.end(), [](const auto& e) { return e->idle(); });
+        return engines_.size() - static_cast<std::size_t>(idle) < chunks_at_a_time;
+    }
+    /// Whether one more chunk may be held than `chunks_at_a_time`; half of the device's memory that is left stays free.
+    bool may_hold_another(std::int64_t chunk) {
+        if (options_.chunk_size > 0 || engines_.size() >= most_chunks_held) return false;
+        if (!affordable_chunks_) affordable_chunks_ = engines_.front()->affordable(memory_per_instance_) / (2 * chunk);
+        return (*affordable_chunks_)-- > 0;
+    }
+
+    /// Sees to it that the data of the first `count` instances are fine, or marked.
     void check(std::int64_t count) {
-        if (checked_ >= begun_ + count) return;
-        if (check_.passes(begun_, count)) {
-            checked_ = begun_ + count;
+        if (checked_ >= count) return;
+        if (check_.passes(checked_, count - checked_)) {
+            checked_ = count;
             return;
         }
         check_.run();
@@ -149,7 +170,7 @@ private:
 
     void begin(engine& worker, std::int64_t chunk) {
         const std::int64_t count = std::min(chunk, size_ - begun_);
-        check(count);
+        check(begun_ + count);
         if (past_ == cuda::past::kept) add_work(work_before_, begun_, count);
         worker.upload(arguments_, begun_, count, past_);
         worker.integrate(arguments_);
@@ -194,6 +215,8 @@ private:
     progress_relay& relay_;
     report<Model, R>& result_;
     cuda::engine_options how_;
+    std::int64_t memory_per_instance_ = 0;  // bytes on the device
+    std::optional<std::int64_t> affordable_chunks_;  // beyond `chunks_at_a_time`
     std::int64_t size_, checked_, begun_ = 0;  // the first instances that are fine, and those that were begun
     cuda::past past_;
     std::vector<std::unique_ptr<engine>> engines_;

@@ -201,7 +201,7 @@ public:
         if (held <= always_fine) return;
         std::size_t free = 0, total = 0;
         MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
-        if (held <= total / 256) return;
+        if (held <= total / 1024) return;
         count_ = 0;
         memory_.release();
         records_.release();
