@@ -120,19 +120,26 @@ private:
         std::future<void> back;
     };
 
-    /// As many chunks as overlap most of the transfers, each with enough to do for the GPU and for the bus.
-    std::int64_t chunk_size() const {
-        if (options_.chunk_size > 0) return std::min(options_.chunk_size, size_);
-        std::int64_t memory = 0, copied = 0;  // bytes per instance
+    struct bytes {
+        std::int64_t kept = 0, copied = 0;
+    };
+    bytes of_an_instance() const {
+        bytes sum;
         const auto add = [&](auto* array, std::int64_t components, array_access access, array_kind) {
-            const auto bytes = components * static_cast<std::int64_t>(sizeof(*array));
-            memory += bytes;
-            copied += access == array_access::update ? 2 * bytes : bytes;
+            const auto all = components * static_cast<std::int64_t>(sizeof(*array));
+            sum.kept += all;
+            sum.copied += access == array_access::update ? 2 * all : all;
         };
         for_each_array(arguments_, add);
         for_each_record(arguments_.record, add);
+        return sum;
+    }
+
+    /// As many chunks as overlap most of the transfers, each with enough to do for the GPU and for the bus.
+    std::int64_t chunk_size() const {
+        if (options_.chunk_size > 0) return std::min(options_.chunk_size, size_);
+        const auto [memory, copied] = of_an_instance();
         constexpr std::int64_t most_chunks = 32, worthwhile_bytes = std::int64_t{8} << 20, all_memory_has = std::int64_t{64} << 20;
-        memory_per_instance_ = memory;
         const std::int64_t least =
             std::max({worth_chunks, engines_.front()->full_load(), worthwhile_bytes / copied});
         const std::int64_t chunks = std::clamp(size_ / least, std::int64_t{1}, most_chunks);
@@ -149,10 +156,11 @@ private:
         const auto idle = std::count_if(engines_.begin(), engines_.end(), [](const auto& e) { return e->idle(); });
         return engines_.size() - static_cast<std::size_t>(idle) < chunks_at_a_time;
     }
-    /// Whether one more chunk may be held than `chunks_at_a_time`; half of the device's memory that is left stays free.
+    /// Whether one more chunk may be held than `chunks_at_a_time`; half of the device's memory that is left stays free. Where the
+    /// host's memory is not pinned, copying it would delay the check.
     bool may_hold_another(std::int64_t chunk) {
-        if (options_.chunk_size > 0 || engines_.size() >= most_chunks_held) return false;
-        if (!affordable_chunks_) affordable_chunks_ = engines_.front()->affordable(memory_per_instance_) / (2 * chunk);
+        if (!instances_.pinned() || options_.chunk_size > 0 || engines_.size() >= most_chunks_held) return false;
+        if (!affordable_chunks_) affordable_chunks_ = engines_.front()->affordable(of_an_instance().kept) / (2 * chunk);
         return (*affordable_chunks_)-- > 0;
     }
 
@@ -215,7 +223,6 @@ private:
     progress_relay& relay_;
     report<Model, R>& result_;
     cuda::engine_options how_;
-    std::int64_t memory_per_instance_ = 0;  // bytes on the device
     std::optional<std::int64_t> affordable_chunks_;  // beyond `chunks_at_a_time`
     std::int64_t size_, checked_, begun_ = 0;  // the first instances that are fine, and those that were begun
     cuda::past past_;

@@ -166,6 +166,9 @@ public:
         pin_later_ones();
     }
 
+    /// Whether `pin` has pinned it.
+    bool pinned() const { return pinned_for_ >= 0; }
+
     /// Whether no instance was integrated or marked since the construction or the last restart: what is kept from call to
     /// call (steps, phases, sides, counters, samples) is zero.
     bool untouched() const { return untouched_; }
