@@ -12,6 +12,7 @@
 #include "tests/support/compare.hpp"
 #include "tests/support/faulty.hpp"
 #include "tests/support/problems.hpp"
+#include "tests/support/recorder.hpp"
 #include "tests/support/device.hpp"
 
 namespace {
@@ -127,6 +128,24 @@ TEST_CASE("with step-size control, a right-hand side that turns NaN or infinite 
             CHECK(std::abs(bad.state(1)[0] - (2.5 - 2 * std::exp(-0.5))) < bound);
         }
     });
+}
+TEST_CASE("with step-size control, a state that overflows is not accepted, although its error is none") {
+    const auto check = []<class Method>(std::type_identity<Method>) {
+        ensemble<recorder::recorded<problems::uniform>> e(1);  // y' = 1
+        const double start = 1.7e308;
+        e.state(0) = start;
+        e.time_domain(1e308, 1.79e308);  // as coarse as the state
+        recorder::take();
+        solve<Method>(tests::test_device(1), e, with_tolerance(1e-6, 1e306));
+        CHECK(e.status(0) == status::not_finite);
+        CHECK(e.accepted_steps()[0] > 0);
+        // up to the last step that t can resolve
+        CHECK(e.state(0)[0] <= std::numeric_limits<double>::max());
+        CHECK(e.state(0)[0] >= (1 - 1e-12) * std::numeric_limits<double>::max());
+        recorder::take();
+    };
+    check(std::type_identity<myriad::cash_karp>{});
+    check(std::type_identity<myriad::tsitouras_5>{});
 }
 TEST_CASE("with a minimum step, a right-hand side that turns NaN ends the instance within that step") {
     each_adaptive_method([]<class Method> {
