@@ -49,6 +49,7 @@ struct integrator {
             if constexpr (has_after_step<Model>) hooks.after_step(accepted);
             if constexpr (has_events<Model>) hooks.act_on_events();
         }
+        if constexpr (requires { source.is_empty(); }) phase_driver<Model, Method, S>{args, s, e, o}.finish(0);
     }
 
     /// An empty pack: every lane asks for an instance.

@@ -28,7 +28,13 @@ struct phase_driver {
     template <class Source>
     MYRIAD_FUNCTION bool advance(int i, Source& source) {
         MYRIAD_FORGET(s.instance[i]);
-        if (s.instance[i] >= 0) end_phase(i);
+        if (s.instance[i] >= 0) {
+            if (is_last(i, source)) {
+                set_lane(s.active, i, false);
+                return false;
+            }
+            end_phase(i);
+        }
         for (;;) {
             while (s.instance[i] < 0 || s.phases_left[i] == 0) {
                 if (s.instance[i] >= 0) store(i);
@@ -44,7 +50,24 @@ struct phase_driver {
         }
     }
 
+    /// Ends the phase and the instance that `advance` left to be ended with those of the other threads of a warp.
+    MYRIAD_FUNCTION void finish(int i) {
+        if (s.instance[i] < 0) return;
+        end_phase(i);
+        store(i);
+    }
+
 private:
+    /// Whether lane i is to end with its instance, in its last phase. Threads of a warp do so side by side, after the loop.
+    template <class Source>
+    MYRIAD_FUNCTION bool is_last(int i, const Source& source) const {
+        if constexpr (requires { source.is_empty(); }) {
+            return s.phases_left[i] == 1 && source.is_empty();
+        } else {
+            return false;
+        }
+    }
+
     template <class T>
     MYRIAD_FUNCTION T& at(T* array, int component, int i) const {
         return array[static_cast<std::int64_t>(component) * args.size + s.instance[i]];

@@ -27,6 +27,7 @@ public:
         index_ = -1;
         return given;
     }
+    __device__ __forceinline__ bool is_empty() const { return true; }
 
 private:
     std::int64_t index_;
@@ -50,6 +51,8 @@ public:
         if (place >= size_) return -1;
         return order_ != nullptr ? order_[place] : place;
     }
+    /// Whether the next call gives none.
+    __device__ __forceinline__ bool is_empty() const { return queue_ == nullptr; }
 
 private:
     std::int64_t size_;
