@@ -29,9 +29,7 @@ def shade(numpy, hue, depth):
 
 def draw(pyplot, numpy, table, _comments):
     """Returns the figure: the plane of initial places, and three bars for the time."""
-    side = round(len(table["x"]) ** 0.5)
-    if side * side != len(table["x"]) or side < 2:
-        raise figures.PlotError("The file holds no square grid: run the program `basins` again")
+    side, ends = figures.square_grid(table, "x", "y", "basins")
     magnet = table["magnet"].reshape(side, side).astype(int)
     t = table["t"].reshape(side, side)
     longest = float(numpy.ceil(t.max()))
@@ -43,8 +41,6 @@ def draw(pyplot, numpy, table, _comments):
 
     figure = pyplot.figure(figsize=(7.2, 6.2), layout="constrained")
     main, bar = figure.subplots(1, 2, width_ratios=(20, 1))
-    half = (table["x"].max() - table["x"].min()) / (side - 1) / 2
-    ends = [edge for name in ("x", "y") for edge in (table[name].min() - half, table[name].max() + half)]
     main.imshow(picture, origin="lower", extent=ends)
     for number, (x, y) in enumerate(MAGNETS, start=1):
         main.plot(x, y, "o", markersize=4, color="black")

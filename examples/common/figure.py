@@ -81,6 +81,34 @@ def limits(numpy, values):
     return low - margin, high + margin
 
 
+def square_grid(table, across, up, program):
+    """Cells along each side of a square grid that the table holds row by row, and its ends (left, right, bottom, top).
+
+    across, up: the columns with the middles of the cells, equidistant.
+    """
+    side = round(len(table[across]) ** 0.5)
+    if side * side != len(table[across]) or side < 2:
+        raise PlotError(f"The file holds no square grid: run the program `{program}` again")
+    ends = []
+    for axis in (table[across], table[up]):
+        half = (axis[-1] - axis[0]) / (side - 1) / 2
+        ends += [axis[0] - half, axis[-1] + half]
+    return side, ends
+
+
+def edges(numpy, middles):
+    """Borders of cells around these middles, halfway from one to the next."""
+    if middles.size == 1:
+        return middles + numpy.array([-0.1, 0.1])
+    inner = (middles[1:] + middles[:-1]) / 2
+    return numpy.concatenate(([2 * middles[0] - inner[0]], inner, [2 * middles[-1] - inner[-1]]))
+
+
+def edges_of_ratios(numpy, middles):
+    """The same on a logarithmic axis."""
+    return numpy.exp(edges(numpy, numpy.log(middles)))
+
+
 def save(figure, path, dpi, colors=None):
     """Writes the picture beside its place and renames it, so that there is a whole one or none.
 

@@ -28,12 +28,6 @@ TICKS = (20, 100, 1000)
 COLOURS = 24  # of each map: as many as can be told apart, and a small file
 
 
-def edges(numpy, centres):
-    """Ends of cells whose middles are equidistant in their logarithm."""
-    ratio = (centres[-1] / centres[0]) ** (0.5 / max(len(centres) - 1, 1)) if len(centres) > 1 else 1.1
-    return numpy.append(centres / ratio, centres[-1] * ratio)
-
-
 def scale_of(pyplot, numpy, values, scale):
     """The scale of colours that all planes of a row share, without the outermost thousandth of the values."""
     finite = values[numpy.isfinite(values)]
@@ -60,8 +54,8 @@ def draw(pyplot, numpy, table, _comments):
             f_2, line = numpy.unique(table["f2_kHz"][chosen], return_inverse=True)
             plane = numpy.full((f_2.size, f_1.size), numpy.nan)
             plane[line, column] = table[name][chosen]
-            mesh = axis.pcolormesh(edges(numpy, f_1), edges(numpy, f_2), plane, norm=norm, cmap=colours,
-                                   rasterized=True)
+            mesh = axis.pcolormesh(figures.edges_of_ratios(numpy, f_1), figures.edges_of_ratios(numpy, f_2), plane,
+                                   norm=norm, cmap=colours, rasterized=True)
             axis.set(xscale="log", yscale="log", aspect="equal", xticks=TICKS, yticks=TICKS)
             axis.xaxis.set_major_formatter("{x:g}")
             axis.yaxis.set_major_formatter("{x:g}")

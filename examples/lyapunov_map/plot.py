@@ -18,18 +18,6 @@ COLUMNS = ("k", "B", "lambda_hand", "lambda_library", "status")
 SHOWN = 0.25  # exponents beyond have the colours of the ends
 
 
-def plane(numpy, table, name):
-    """The values of a column as a square array, and the ends of its cells."""
-    side = round(len(table[name]) ** 0.5)
-    if side * side != len(table[name]) or side < 2:
-        raise figures.PlotError("The file holds no square plane: run the program `lyapunov_map` again")
-    ends = []
-    for axis in (table["k"], table["B"]):
-        half = (axis[-1] - axis[0]) / (side - 1) / 2
-        ends += [axis[0] - half, axis[-1] + half]
-    return numpy.reshape(table[name], (side, side)), ends
-
-
 def draw(pyplot, numpy, table, _comments):
     """Returns the figure: the map, and beside it the difference of both exponents, over the plane and over the exponent."""
     from matplotlib import colors  # pylint: disable=import-outside-toplevel
@@ -37,8 +25,9 @@ def draw(pyplot, numpy, table, _comments):
     left, right = figure.subfigures(1, 2, width_ratios=(1.75, 1))
     main = left.subplots()
     above, below = right.subplots(2, 1)
-    exponent, ends = plane(numpy, table, "lambda_library")
-    smoothing = "nearest" if len(exponent) < 700 else "antialiased"  # fewer cells than dots, or more
+    side, ends = figures.square_grid(table, "k", "B", "lyapunov_map")
+    exponent = table["lambda_library"].reshape(side, side)
+    smoothing = "nearest" if side < 700 else "antialiased"  # fewer cells than dots, or more
     image = main.imshow(exponent, origin="lower", extent=ends, aspect="auto", cmap=pyplot.get_cmap("RdBu_r", 100),
                         vmin=-SHOWN, vmax=SHOWN, interpolation=smoothing)
     k = numpy.array(ends[:2])
@@ -53,9 +42,8 @@ def draw(pyplot, numpy, table, _comments):
 
     difference = numpy.abs(table["lambda_library"] - table["lambda_hand"])
     magnitude = numpy.log10(numpy.maximum(difference, 1e-17))
-    parted, _ = plane(numpy, {**table, "difference": magnitude}, "difference")
-    image = above.imshow(parted, origin="lower", extent=ends, aspect="auto", cmap="cividis", interpolation="nearest",
-                         norm=colors.BoundaryNorm(numpy.arange(-16, 1, 2), 256, extend="min"))
+    image = above.imshow(magnitude.reshape(side, side), origin="lower", extent=ends, aspect="auto", cmap="cividis",
+                         interpolation="nearest", norm=colors.BoundaryNorm(numpy.arange(-16, 1, 2), 256, extend="min"))
     above.set_xlabel("$k$")
     above.set_ylabel("$B$")
     above.set_title("by hand against by the library", fontsize=9)

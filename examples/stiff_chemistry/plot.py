@@ -15,14 +15,6 @@ import figure as figures  # pylint: disable=wrong-import-position
 COLUMNS = ("instance", "f", "epsilon", "period", "z_least", "z_largest", "growth", "frequency", "steps", "status")
 
 
-def edges(numpy, middles):
-    """Borders of cells around these middles."""
-    if middles.size == 1:
-        return numpy.array([0.9, 1.1]) * middles
-    inner = (middles[1:] + middles[:-1]) / 2
-    return numpy.concatenate(([2 * middles[0] - inner[0]], inner, [2 * middles[-1] - inner[-1]]))
-
-
 def draw(pyplot, numpy, table, comments):
     """Returns the figure: the period where there is an oscillation, and the steps of every instance."""
     said = re.search(r"of cycle (\d+)", comments)
@@ -33,7 +25,7 @@ def draw(pyplot, numpy, table, comments):
         raise figures.PlotError("The rows are no complete plane of f and epsilon: run the program `stiff_chemistry` again")
     oscillates = (table["period"] > 0) & (table["z_largest"] - table["z_least"] > 0.05 * table["z_largest"])
     period = numpy.where(oscillates, table["period"], numpy.nan)
-    f_edges, epsilon_edges = edges(numpy, f), numpy.exp(edges(numpy, numpy.log(epsilon)))
+    f_edges, epsilon_edges = figures.edges(numpy, f), figures.edges_of_ratios(numpy, epsilon)
 
     from matplotlib.colors import LogNorm
     figure, axes = pyplot.subplots(1, 2, sharey=True, figsize=(9, 4.2), layout="constrained")
