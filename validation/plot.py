@@ -30,8 +30,8 @@ LABELS = {"cash_karp": "Cash–Karp 5(4)", "tsitouras_5": "Tsitouras 5(4)", "run
 
 
 def style(method):
-    color, marker, line = STYLES.get(method, ("#F0E442", "*", "-"))
-    return dict(color=color, marker=marker, linestyle=line, markersize=4, linewidth=1, label=LABELS.get(method, method))
+    colour, marker, line = STYLES.get(method, ("#F0E442", "*", "-"))
+    return dict(color=colour, marker=marker, linestyle=line, markersize=4, linewidth=1, label=LABELS.get(method, method))
 
 
 def curves(rows, problem, measure):

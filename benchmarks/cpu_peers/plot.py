@@ -18,7 +18,7 @@ GOALS = {("lorenz_rk4", "avx512"): 9, ("lorenz_rk4", "avx2"): 5, "duffing_cash_k
          "relief_valve": 4}
 GOAL_AT_EQUAL_ERROR = 15
 # Okabe and Ito's colours, which the colour-blind can tell apart.
-COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7")
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7")
 
 
 def read(path):
@@ -44,7 +44,7 @@ def draw_bars(axis, labels, heights_by_set, goals):
     width = 0.8 / len(heights_by_set)
     for s, (name, heights) in enumerate(heights_by_set.items()):
         places = [i + (s - (len(heights_by_set) - 1) / 2) * width for i in range(len(labels))]
-        axis.bar(places, heights, 0.9 * width, color=COLORS[s], label=name)
+        axis.bar(places, heights, 0.9 * width, color=COLOURS[s], label=name)
         for i, place in enumerate(places):
             axis.plot([place - width / 2, place + width / 2], [goals(i, name)] * 2, color="black", linewidth=1.2,
                       label="goal" if s == i == 0 else None)
@@ -90,7 +90,7 @@ def growth(rows, axis):
             points = sorted({row["instances"]: row["nanoseconds_per_step"] for row in rows
                              if row["case"] == "lorenz_rk4" and row["implementation"] == implementation
                              and row["instruction_set"] == name}.items())
-            axis.loglog(*zip(*points), line, marker="o", markersize=4, color=COLORS[s], label=f"{implementation}, {name}")
+            axis.loglog(*zip(*points), line, marker="o", markersize=4, color=COLOURS[s], label=f"{implementation}, {name}")
     axis.set_xlabel("instances")
     axis.set_ylabel("Lorenz: ns of a core per step and instance")
     axis.legend(frameon=False, fontsize=8)
@@ -110,7 +110,7 @@ def scaling(rows, axis):
             continue
         most = max(most, *points)
         axis.plot(sorted(points), [points[1] / points[t] for t in sorted(points)], marker="o", markersize=4,
-                  color=COLORS[s], label=TITLES[case])
+                  color=COLOURS[s], label=TITLES[case])
     axis.plot([1, most], [1, most], color="0.6", linewidth=0.8, label="linear")
     axis.set_xlabel("threads")
     axis.set_ylabel(f"times as fast as one thread ({name})")

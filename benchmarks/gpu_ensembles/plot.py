@@ -12,7 +12,7 @@ import sys
 
 COLUMNS = {"case", "implementation", "instances", "kernel_ms", "median_error"}
 # Okabe and Ito's colours, which the colour-blind can tell apart.
-COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
 # Kernel times of other packages, ms: MPGOS 3.1 on an H100, measured with the same method and the same numbers of steps;
 # of GRADSOLVE and DiffEqGPU on an H200 as published by GRADSOLVE's authors, errors within a factor of two.
 MPGOS = {"lorenz_rk4": {8192: 0.120, 65536: 0.287, 768000: 2.893, 4194304: 15.47},
@@ -37,17 +37,17 @@ def read(path):
     return times, gpu
 
 
-def draw(axis, times, label, color, line="-"):
+def draw(axis, times, label, colour, line="-"):
     """One curve, in the order of instances."""
-    axis.loglog(*zip(*sorted(times.items())), line, marker="o", markersize=4, color=color, label=label)
+    axis.loglog(*zip(*sorted(times.items())), line, marker="o", markersize=4, color=colour, label=label)
 
 
 def lorenz_fixed(times, axis):
     """Classic Runge-Kutta steps beside the hand-written kernel."""
     case = times["lorenz_rk4"]
     sizes = sorted(case["myriad"])
-    draw(axis, case["myriad"], "Myriad", COLORS[0])
-    draw(axis, case["by_hand"], "written by hand", COLORS[1], "--")
+    draw(axis, case["myriad"], "Myriad", COLOURS[0])
+    draw(axis, case["by_hand"], "written by hand", COLOURS[1], "--")
     draw(axis, MPGOS["lorenz_rk4"], "MPGOS", "0.5", ":")
     axis.loglog(sizes, [1e-6 * LIMIT_NS_PER_INSTANCE * n for n in sizes], color="0.7", linewidth=0.8,
                 label="limit: double precision")
@@ -57,9 +57,9 @@ def lorenz_fixed(times, axis):
 def lorenz_adaptive(times, axis):
     """Tsitouras' method at three tolerances."""
     for i, tolerance in enumerate(("1e-3", "1e-6", "1e-8")):
-        draw(axis, times[f"lorenz_tsit5_{tolerance}"]["myriad"], f"Myriad, {tolerance}", COLORS[i])
+        draw(axis, times[f"lorenz_tsit5_{tolerance}"]["myriad"], f"Myriad, {tolerance}", COLOURS[i])
         for marker, (package, published) in zip("sv", PUBLISHED.items()):
-            axis.loglog([524288], [published[tolerance]], marker, color=COLORS[i], markersize=6, markerfacecolor="none",
+            axis.loglog([524288], [published[tolerance]], marker, color=COLOURS[i], markersize=6, markerfacecolor="none",
                         linestyle="none", label=package if i == 0 else None)
     axis.set_title("Lorenz, Tsitouras 5(4)", fontsize=10)
 
@@ -69,7 +69,7 @@ def by_method(name, title, chosen):
 
     def panel(times, axis):
         for i, implementation in enumerate(chosen):
-            draw(axis, times[f"{name}_methods"][implementation], implementation, COLORS[i])
+            draw(axis, times[f"{name}_methods"][implementation], implementation, COLOURS[i])
         draw(axis, MPGOS[name], "MPGOS, cash_karp 1e-10", "0.5", ":")
         axis.set_title(title, fontsize=10)
 

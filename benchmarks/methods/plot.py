@@ -106,11 +106,11 @@ def draw(tables, case):
     for axis, (label, table, cost) in zip(axes, panels):
         for method in methods_of(table, case):
             name, _, control = method.partition(" ")
-            color, marker = STYLES[name]
+            colour, marker = STYLES[name]
             line, filled = CONTROLS[control]
             rows = table[case, method]
-            axis.loglog([cost(row) for row in rows], [row["median_error"] for row in rows], line, color=color,
-                        marker=marker, markersize=4.5, markerfacecolor=color if filled else "white", linewidth=1,
+            axis.loglog([cost(row) for row in rows], [row["median_error"] for row in rows], line, color=colour,
+                        marker=marker, markersize=4.5, markerfacecolor=colour if filled else "white", linewidth=1,
                         label=method)
         axis.set_xlabel(label)
         axis.grid(True, which="major", linewidth=0.3, color="0.8")

@@ -62,4 +62,4 @@ def draw(pyplot, numpy, table, _comments):
 
 
 if __name__ == "__main__":
-    figures.main(__doc__, "basins", COLUMNS, draw, dpi=150, colors=256)
+    figures.main(__doc__, "basins", COLUMNS, draw, dpi=150, colours=256)

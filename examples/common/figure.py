@@ -109,10 +109,10 @@ def edges_of_ratios(numpy, middles):
     return numpy.exp(edges(numpy, numpy.log(middles)))
 
 
-def save(figure, path, dpi, colors=None):
+def save(figure, path, dpi, colours=None):
     """Writes the picture beside its place and renames it, so that there is a whole one or none.
 
-    colors: of a PNG, the number to reduce it to, 256 at most. A plane of noisy values takes a third of the space then.
+    colours: of a PNG, the number to reduce it to, 256 at most. A plane of noisy values takes a third of the space then.
     """
     kind = os.path.splitext(path)[1].lstrip(".").lower() or "png"
     temporary = f"{path}.{os.getpid()}.part"
@@ -123,10 +123,10 @@ def save(figure, path, dpi, colors=None):
         if folder and not os.path.isdir(folder):
             os.mkdir(folder)
         figure.savefig(temporary, format=kind, dpi=dpi)
-        if colors and kind == "png":
+        if colours and kind == "png":
             from PIL import Image  # with which matplotlib writes  # pylint: disable=import-outside-toplevel
             with Image.open(temporary) as picture:
-                fewer = picture.convert("RGB").quantize(colors, Image.Quantize.MAXCOVERAGE, kmeans=4, dither=Image.Dither.NONE)
+                fewer = picture.convert("RGB").quantize(colours, Image.Quantize.MAXCOVERAGE, kmeans=4, dither=Image.Dither.NONE)
             fewer.save(temporary, format="png", optimize=True)
         os.replace(temporary, os.path.realpath(path))
     except (OSError, ValueError) as error:
@@ -136,7 +136,7 @@ def save(figure, path, dpi, colors=None):
             os.remove(temporary)
 
 
-def main(documentation, program, columns, draw, dpi=200, colors=None):
+def main(documentation, program, columns, draw, dpi=200, colours=None):
     """Runs a plot.py with the arguments CSV and PNG."""
     arguments = sys.argv[1:]
     if arguments in (["-h"], ["--help"]):
@@ -147,7 +147,7 @@ def main(documentation, program, columns, draw, dpi=200, colors=None):
             raise PlotError("Usage: plot.py CSV PNG")
         pyplot, numpy = import_libraries()
         table, comments = read_table(numpy, arguments[0], program, columns)
-        save(draw(pyplot, numpy, table, comments), arguments[1], dpi, colors)
+        save(draw(pyplot, numpy, table, comments), arguments[1], dpi, colours)
     except PlotError as error:
         print(error, file=sys.stderr)
         sys.exit(2)

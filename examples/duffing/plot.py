@@ -67,12 +67,12 @@ def draw(pyplot, numpy, table, comments):
         axis.set_xlabel(K_LABEL)
         axis.set_ylabel(label)
         axis.set_title(f"({'abcde'[number]})", loc="left", fontsize=9, pad=3)
-    center = (grid.left + grid.right) / 2
+    centre = (grid.left + grid.right) / 2
     title = r"Duffing oscillator  $\ddot{x} + k\,\dot{x} - x + x^3 = B\,\cos t$"
-    figure.text(center, 0.972, title, ha="center", fontsize=12)
-    figure.text(center, 0.94, describe(table, comments), ha="center", fontsize=8.5)
+    figure.text(centre, 0.972, title, ha="center", fontsize=12)
+    figure.text(centre, 0.94, describe(table, comments), ha="center", fontsize=8.5)
     return figure
 
 
 if __name__ == "__main__":
-    figures.main(__doc__, "duffing", COLUMNS, draw, dpi=150, colors=16)
+    figures.main(__doc__, "duffing", COLUMNS, draw, dpi=150, colours=16)

@@ -46,4 +46,4 @@ def draw(pyplot, numpy, table, _comments):
 
 
 if __name__ == "__main__":
-    figures.main(__doc__, "duffing_trajectories", COLUMNS, draw, dpi=150, colors=32)
+    figures.main(__doc__, "duffing_trajectories", COLUMNS, draw, dpi=150, colours=32)

@@ -62,4 +62,4 @@ def draw(pyplot, numpy, table, _comments):
 
 
 if __name__ == "__main__":
-    figures.main(__doc__, "lyapunov_map", COLUMNS, draw, colors=256)
+    figures.main(__doc__, "lyapunov_map", COLUMNS, draw, colours=256)

@@ -41,14 +41,14 @@ def draw(pyplot, numpy, table, _comments):
 
     returns = figure.add_subplot(grid[1, 0])
     follows = (instance[1:] == instance[:-1]) & (numpy.diff(table["phase"][good]) == 1)
-    for value, color in MAPS:
+    for value, colour in MAPS:
         step = (c.max() - c.min()) / max(numpy.unique(instance).size - 1, 1)
         near = follows & (numpy.abs(c[:-1] - value) <= max(MAP_WIDTH / 2, step))
         if not near.any():
             continue
-        returns.plot(x[:-1][near], x[1:][near], linestyle="none", marker="o", markersize=1.5, markeredgewidth=0, color=color,
+        returns.plot(x[:-1][near], x[1:][near], linestyle="none", marker="o", markersize=1.5, markeredgewidth=0, color=colour,
                      label=f"$c = {value:g}$", rasterized=True)
-        diagram.axvline(value, color=color, linewidth=0.8, linestyle=(0, (4, 3)))
+        diagram.axvline(value, color=colour, linewidth=0.8, linestyle=(0, (4, 3)))
     low, high = figures.limits(numpy, x)
     returns.plot((low, high), (low, high), color="0.6", linewidth=0.6, zorder=0)
     returns.set_xlabel("$x_n$ (–)")

@@ -56,4 +56,4 @@ def draw(pyplot, numpy, table, comments):
 
 
 if __name__ == "__main__":
-    figures.main(__doc__, "resonance", COLUMNS, draw, dpi=180, colors=64)
+    figures.main(__doc__, "resonance", COLUMNS, draw, dpi=180, colours=64)

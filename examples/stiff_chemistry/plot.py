@@ -29,10 +29,10 @@ def draw(pyplot, numpy, table, comments):
 
     from matplotlib.colors import LogNorm
     figure, axes = pyplot.subplots(1, 2, sharey=True, figsize=(9, 4.2), layout="constrained")
-    for axis, values, name, colors, title in (
+    for axis, values, name, colours, title in (
             (axes[0], period, "period, in decay times of the catalyst", "viridis", "Period of the oscillation"),
             (axes[1], table["steps"], f"trial steps{cycles}", "cividis", "Cost")):
-        mesh = axis.pcolormesh(f_edges, epsilon_edges, values.reshape(shape), cmap=colors, rasterized=True,
+        mesh = axis.pcolormesh(f_edges, epsilon_edges, values.reshape(shape), cmap=colours, rasterized=True,
                                # a few that are not done have other periods
                                norm=LogNorm(*numpy.nanquantile(values, (0.002, 1))) if numpy.isfinite(values).any() else None)
         if min(shape) > 1:
