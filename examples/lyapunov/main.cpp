@@ -6,6 +6,7 @@
 
 #include "../common/csv_file.hpp"
 #include "../common/integrate.hpp"
+#include "../common/phases.hpp"
 #include "lorenz.hpp"
 
 namespace {
@@ -51,12 +52,8 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
     const auto rows = static_cast<std::uintmax_t>(chosen.instances);
     examples::csv_file file(chosen.output, 40 * rows);  // the shortest rows have about 60 characters
     auto sweep = prepare(chosen.instances, chosen.transient);
-    const auto report =
-        examples::integrate<myriad::tsitouras_5>(chosen, device, sweep,
-                                                 {.phases = chosen.transient + chosen.phases,
-                                                  .relative_tolerance = tolerance,
-                                                  .absolute_tolerance = tolerance,
-                                                  .phase_step = myriad::phase_step::carry_on});
+    const auto report = examples::integrate<myriad::tsitouras_5>(
+        chosen, device, sweep, examples::smooth_phases(chosen.transient + chosen.phases, tolerance));
     write(file, sweep, chosen.transient, chosen.phases);
     return examples::conclude(chosen, report);
 }

@@ -9,6 +9,7 @@
 #include "../common/csv_file.hpp"
 #include "../common/grid.hpp"
 #include "../common/integrate.hpp"
+#include "../common/phases.hpp"
 #include "sweep.hpp"
 
 namespace {
@@ -53,7 +54,7 @@ void write(examples::csv_file& file, const examples::sweep_options& chosen, cons
 int run(const examples::sweep_options& chosen, const myriad::device& device) {
     const auto side = static_cast<std::uintmax_t>(chosen.instances);
     examples::csv_file file(chosen.output, 50 * side * side);
-    const auto options = integration(chosen.transient + chosen.phases);
+    const auto options = examples::smooth_phases(chosen.transient + chosen.phases, tolerance);
     auto library = plane(chosen.instances, chosen.transient);
     auto hand = by_hand(library, chosen.transient);
     const auto of_hand = examples::integrate<myriad::dormand_prince_8>(chosen, device, hand, options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The plane of damping and forcing: its ends, the start and the options. Host code.
+// The plane of damping and forcing: its ends, the start and the tolerance. Host code.
 #pragma once
 
 #include <cstdint>
@@ -42,13 +42,6 @@ inline myriad::ensemble<library_tangent> by_library(std::int64_t instances, std:
     myriad::initial_tangents(sweep);
     sweep.shared_integer(library_tangent::transient_phases) = static_cast<std::int32_t>(transient);
     return sweep;
-}
-
-inline myriad::options integration(std::int64_t phases) {
-    return {.phases = phases,
-            .relative_tolerance = tolerance,
-            .absolute_tolerance = tolerance,
-            .phase_step = myriad::phase_step::carry_on};
 }
 
 }  // namespace lyapunov_map

@@ -6,6 +6,7 @@
 
 #include "../common/csv_file.hpp"
 #include "../common/integrate.hpp"
+#include "../common/phases.hpp"
 #include "sweep.hpp"
 
 namespace {
@@ -16,7 +17,7 @@ double seconds_since(clock::time_point begin) { return std::chrono::duration<dou
 
 int run(const examples::sweep_options& chosen, const myriad::device& device) {
     examples::csv_file file(chosen.output, 100 * static_cast<std::uintmax_t>(resonance::curves * chosen.instances));
-    auto options = resonance::integration(1);
+    auto options = examples::smooth_phases(1, resonance::tolerance);
     examples::sweep_options call = chosen;  // each call has phases of one kind
     call.transient = 0;
 

@@ -44,13 +44,6 @@ myriad::ensemble<Model> prepare(std::int64_t n) {
     return sweep;
 }
 
-inline myriad::options integration(std::int64_t phases) {
-    return {.phases = phases,
-            .relative_tolerance = tolerance,
-            .absolute_tolerance = tolerance,
-            .phase_step = myriad::phase_step::carry_on};
-}
-
 /// Lets the maximum, the minimum and the integral begin at the present state.
 inline void begin_response(myriad::ensemble<response>& sweep) {
     // snippet: begin

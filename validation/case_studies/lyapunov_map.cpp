@@ -8,6 +8,7 @@
 
 #include <myriad/myriad.hpp>
 
+#include "../../examples/common/phases.hpp"
 #include "cvode.hpp"
 #include "lyapunov_map_spectrum.hpp"
 #include "sweep.hpp"
@@ -30,7 +31,8 @@ myriad::ensemble<library_tangent> by_myriad(const std::vector<point>& points) {
         sweep.parameter(forced_duffing::B)[row] = points[i].B;
         sweep.state(forced_duffing::x)[row] = points[i].x;
     }
-    myriad::solve<myriad::dormand_prince_8>(myriad::device::parse("cpu"), sweep, integration(transient + summed));
+    myriad::solve<myriad::dormand_prince_8>(myriad::device::parse("cpu"), sweep,
+                                            examples::smooth_phases(transient + summed, tolerance));
     return sweep;
 }
 
@@ -121,7 +123,8 @@ bool sums() {
     myriad::initial_tangents(sweep);
     sweep.shared_integer(duffing_spectrum::transient_phases) = transient;
     sweep.time_domain(0, period);
-    myriad::solve<myriad::tsitouras_5>(myriad::device::parse("cpu"), sweep, integration(transient + summed));
+    myriad::solve<myriad::tsitouras_5>(myriad::device::parse("cpu"), sweep,
+                                       examples::smooth_phases(transient + summed, tolerance));
     const auto lambda = myriad::exponents(sweep);
     const double worst = (lambda.rowwise().sum() + sweep.parameter(forced_duffing::k)).abs().maxCoeff();
     std::cout << "largest exponents from " << lambda.col(0).minCoeff() << " to " << lambda.col(0).maxCoeff()

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <vector>
 
+#include "../../examples/common/phases.hpp"
 #include "cvode.hpp"
 #include "sweep.hpp"
 
@@ -37,7 +38,7 @@ double largest_by_cvode(double omega, double beta, double v_start) {
 int main() {
     auto sweep = resonance::prepare<response>(frequencies);
     const std::vector<double> v_start(sweep.state(response::v).begin(), sweep.state(response::v).end());
-    auto options = resonance::integration(transient);
+    auto options = examples::smooth_phases(transient, resonance::tolerance);
     options.events = {{.tolerance = resonance::event_tolerance}};
     resonance::begin_response(sweep);
     const auto device = myriad::device::parse("cpu");

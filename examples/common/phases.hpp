@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// How phases without events are integrated.
+#pragma once
+
+#include <cstdint>
+
+#include "myriad/integrator/options.hpp"
+
+namespace examples {
+
+/// Phases of a smooth motion: each begins with the step that the one before it would have tried next.
+inline myriad::options smooth_phases(std::int64_t phases, double tolerance) {
+    return {.phases = phases,
+            .relative_tolerance = tolerance,
+            .absolute_tolerance = tolerance,
+            .phase_step = myriad::phase_step::carry_on};
+}
+
+}  // namespace examples
