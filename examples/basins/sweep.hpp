@@ -44,8 +44,7 @@ inline Eigen::ArrayXd places(std::int64_t cells) {
 inline myriad::ensemble<pendulum> grid(std::int64_t side, double barrier, double duration) {
     myriad::ensemble<pendulum> sweep(side * side);
     const Eigen::ArrayXd axis = places(side);
-    sweep.state(pendulum::x) = axis.replicate(side, 1);
-    for (std::int64_t row = 0; row < side; ++row) sweep.state(pendulum::y).segment(row * side, side) = axis[row];
+    examples::fill_plane(sweep.state(pendulum::x), axis, sweep.state(pendulum::y), axis);
     sweep.state(pendulum::u) = 0;
     sweep.state(pendulum::v) = 0;
     sweep.shared(pendulum::omega) = omega;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Grids of parameters.
+// Grids of parameters and of initial values.
 #pragma once
 
 #include <cmath>
@@ -18,6 +18,15 @@ inline Eigen::ArrayXd linspace(double first, double last, std::int64_t n) {
 /// n values from `first` to `last`, both included and positive, with a constant ratio from one to the next.
 inline Eigen::ArrayXd logspace(double first, double last, std::int64_t n) {
     return Eigen::exp(linspace(std::log(first), std::log(last), n));
+}
+
+/// Sets two components of a plane of across.size() x up.size() instances, row by row: one varies along each row, the other from
+/// row to row.
+inline void fill_plane(Eigen::Ref<Eigen::ArrayXd> along_rows, const Eigen::ArrayXd& across,
+                       Eigen::Ref<Eigen::ArrayXd> from_row_to_row, const Eigen::ArrayXd& up) {
+    along_rows = across.replicate(up.size(), 1);
+    for (Eigen::Index row = 0; row < up.size(); ++row)
+        from_row_to_row.segment(row * across.size(), across.size()) = up[row];
 }
 
 }  // namespace examples

@@ -19,9 +19,8 @@ using namespace lyapunov_map;
 myriad::ensemble<library_tangent> plane(std::int64_t side, std::int64_t transient) {
     auto sweep = by_library(side * side, transient);
     // snippet: plane
-    const auto k = examples::linspace(k_first, k_last, side), B = examples::linspace(B_first, B_last, side);
-    sweep.parameter(forced_duffing::k) = k.replicate(side, 1);
-    for (std::int64_t row = 0; row < side; ++row) sweep.parameter(forced_duffing::B).segment(row * side, side) = B[row];
+    examples::fill_plane(sweep.parameter(forced_duffing::k), examples::linspace(k_first, k_last, side),
+                         sweep.parameter(forced_duffing::B), examples::linspace(B_first, B_last, side));
     // end of snippet
     return sweep;
 }

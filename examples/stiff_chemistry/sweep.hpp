@@ -53,11 +53,8 @@ inline growth growth_at(double f, double epsilon) {
 /// side x side instances, f along the rows, epsilon with a constant ratio from row to row, all near their equilibrium.
 inline myriad::ensemble<oregonator> prepare(std::int64_t side) {
     myriad::ensemble<oregonator> sweep(side * side);
-    const Eigen::ArrayXd f = examples::linspace(f_first, f_last, side),
-                         epsilon = examples::logspace(epsilon_first, epsilon_last, side);
-    sweep.parameter(oregonator::f) = f.replicate(side, 1);
-    for (std::int64_t row = 0; row < side; ++row)
-        sweep.parameter(oregonator::epsilon).segment(row * side, side) = epsilon[row];
+    examples::fill_plane(sweep.parameter(oregonator::f), examples::linspace(f_first, f_last, side),
+                         sweep.parameter(oregonator::epsilon), examples::logspace(epsilon_first, epsilon_last, side));
     for (std::int64_t i = 0; i < sweep.size(); ++i) {
         const Eigen::Vector3d start = equilibrium(sweep.parameter(oregonator::f)[i]);
         sweep.state(oregonator::x)[i] = start[0];
