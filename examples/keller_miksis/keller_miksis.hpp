@@ -26,7 +26,6 @@ struct keller_miksis {
 };
 // end of snippet
 
-// snippet: response
 /// Phases of one period each: the largest radius, and the number of its maxima.
 struct bubble_response : keller_miksis {
     enum accessory { y_max, n_accessory };
@@ -46,7 +45,6 @@ struct bubble_response : keller_miksis {
         lane.integer_accessory[maxima] += 1;
     }
 };
-// end of snippet
 
 // snippet: dual
 /// Phases from one maximum of the radius to the next, with `stop_after = 1` for the event `maximum`. From phase

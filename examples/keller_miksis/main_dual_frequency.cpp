@@ -13,10 +13,8 @@
 
 namespace {
 
+using bubble::kHz, bubble::bar, bubble::us, bubble::f_first, bubble::f_last;
 using dual_frequency::model, dual_frequency::waves;
-
-constexpr double kHz = 1e3, bar = 1e5, us = 1e-6;
-constexpr double f_first = 20 * kHz, f_last = 1000 * kHz;
 
 /// Pressure amplitudes in bar; options of the command line.
 std::vector<double> first_amplitudes{0.5, 1.1}, second_amplitudes{0.7, 1.2};

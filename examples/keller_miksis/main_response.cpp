@@ -12,10 +12,9 @@
 
 namespace {
 
+using bubble::kHz, bubble::bar, bubble::f_first, bubble::f_last;
 using records = myriad::phase_records<bubble_response, double>;
 
-constexpr double kHz = 1e3, bar = 1e5;
-constexpr double f_first = 20 * kHz, f_last = 1000 * kHz;
 constexpr double tolerance = 1e-10, event_tolerance = 1e-6;
 
 double amplitude = 1.5;  // of the pressure, in bar; an option of the command line
