@@ -9,6 +9,7 @@
 
 #include <myriad/myriad.hpp>
 
+#include "../common/grid.hpp"
 #include "oscillator.hpp"
 
 namespace resonance {
@@ -32,10 +33,9 @@ myriad::ensemble<Model> prepare(std::int64_t n) {
     sweep.shared(Model::zeta) = zeta;
     sweep.state(Model::x) = 0;
     sweep.t_begin() = 0;
+    const Eigen::ArrayXd frequencies = examples::linspace(omega_first, omega_last, n);
     for (std::int64_t i = 0; i < sweep.size(); ++i) {
-        const double beta = betas[static_cast<std::size_t>(i / (starts * n))];
-        const double share = n == 1 ? 0 : static_cast<double>(i % n) / static_cast<double>(n - 1);
-        const double omega = omega_first + share * (omega_last - omega_first);
+        const double beta = betas[static_cast<std::size_t>(i / (starts * n))], omega = frequencies[i % n];
         sweep.parameter(Model::omega)[i] = omega;
         sweep.parameter(Model::beta)[i] = beta;
         sweep.state(Model::v)[i] = i / n % starts == 0 ? 0 : backbone_velocity(omega, beta);
