@@ -48,6 +48,12 @@ check_arguments() {
     expect 2 'not a regular file' "$program" --output /dev/null
 }
 
+# check_small ROWS HEADER: the size for two cores gives such a table.
+check_small() {
+    expect 0 '' "$program" --small --quiet --output small.csv
+    check_table small.csv "$@"
+}
+
 # A Python that has matplotlib.
 plotting_python() {
     local python

@@ -40,8 +40,7 @@ rows sums.csv | awk -F, '
     }
     END { exit bad || compared != 5 }' || fail 'two waves of one frequency are not their sum'
 
-"$program" --small --quiet --output small.csv
-check_table small.csv 576 "$header"
+check_small 576 "$header"
 if rows small.csv | grep -q nan; then fail 'values are missing'; fi
 check_plot small.csv plot_dual_frequency.py
 echo 'All checks passed.'

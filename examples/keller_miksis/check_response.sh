@@ -48,5 +48,6 @@ rows table.csv | awk -F, '
     $3 < 25 && $5 < 7 { print "no rebounds: " $0; bad = 1 }
     $3 > 180 && $3 < 340 && $5 != 1 { print "more than one maximum: " $0; bad = 1 }
     END { exit bad }' || fail 'wrong response'
+check_small $((200 * 16)) "$header"
 check_plot table.csv plot_response.py
 echo 'All checks passed.'

@@ -6,9 +6,10 @@
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
 
+header=k,B,lambda_hand,lambda_library,status
 check_arguments
 "$program" --instances 33 --transient 64 --phases 128 --quiet --output table.csv
-check_table table.csv $((33 * 33)) k,B,lambda_hand,lambda_library,status
+check_table table.csv $((33 * 33)) "$header"
 rows table.csv | awk -F, '
     function wrong(what) { print what ": " $0; bad = 1 }
     {
@@ -39,5 +40,6 @@ rows table.csv | awk -F, '
         if (known != 2 || chaotic < 100 || same < 0.9 * regular || mean ^ 2 > (4 * error) ^ 2) bad = 1
         exit bad
     }' || fail 'wrong exponents'
+check_small $((48 * 48)) "$header"
 check_plot table.csv
 echo 'All checks passed.'

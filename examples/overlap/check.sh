@@ -18,9 +18,9 @@ expect 0 '' "$program" "${small[@]}" --chunks 5 --solvers 1 --devices cpu:1,cpu:
 expect 0 '' "$program" "${small[@]}" --chunks 1 --solvers 1 --output whole.csv --quiet --device cpu:1
 
 header=solver,device,chunk,step,begin,end,kernel_seconds
-check_table table.csv 35 $header
-check_table two.csv 25 $header
-check_table whole.csv 5 $header
+check_table table.csv 35 "$header"
+check_table two.csv 25 "$header"
+check_table whole.csv 5 "$header"
 together() {
     local chunk
     for ((chunk = 1; chunk <= $2; ++chunk)); do rows "$1_chunks/${chunk}_of_$2.csv"; done
@@ -38,5 +38,6 @@ rows table.csv | awk -F, '
     { ended[$1] = $6; last[$3] = $4 }
     END { for (chunk = 0; chunk < 7; ++chunk) if (last[chunk] != 4) bad = 1; exit bad }' || fail 'wrong timeline'
 
+check_small 80 "$header"
 check_plot table.csv
 echo 'All checks passed.'

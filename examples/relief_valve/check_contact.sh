@@ -8,7 +8,7 @@ source "$(dirname "$(realpath "$0")")/../common/check.sh"
 header=instance,phase,q,y_min,y_max,u_contact,time_at_rest,status
 check_arguments
 "$program" --instances 240 --transient 128 --phases 64 --quiet --output table.csv
-check_table table.csv $((240 * 64)) $header
+check_table table.csv $((240 * 64)) "$header"
 # At rest u' = beta q up to delta, so that the time at rest is (delta - u_contact) / (beta q); the opening has a tolerance of
 # 1e-12 in u, and time is rounded to 1e-15. Valves rest in every cycle up to q = 0.02006, by CVODE (validation/case_studies).
 rows table.csv | awk -F, '
@@ -17,6 +17,7 @@ rows table.csv | awk -F, '
     { q[$1] = $3 }
     END { for (i in q) if (q[i] < 0.0200 && !rest[i]) { print "no rest at q = " q[i]; bad = 1 } exit bad }' ||
     fail 'not the rests of the closed form'
+check_small $((512 * 64)) "$header"
 check_plot table.csv plot_contact.py
 
 # What ends as event_accumulation without resting contact (check.sh) rests once and goes on.

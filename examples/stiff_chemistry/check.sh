@@ -6,11 +6,12 @@
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
 
+header=instance,f,epsilon,period,z_least,z_largest,growth,frequency,steps,status
 check_arguments
 grep -q -- --schedule <("$program" --help) || fail '--help does not name --schedule'
 expect 2 'schedule' "$program" --schedule sometimes
 expect 0 '' "$program" --instances 2000 --transient 31 --device cpu:2 --output table.csv
-check_table table.csv 1936 instance,f,epsilon,period,z_least,z_largest,growth,frequency,steps,status
+check_table table.csv 1936 "$header"
 grep -Eq '^idle lanes in this run: [0-9.e-]+ %$' stdout || fail 'no idle lanes'
 [[ $(grep -c '^idle lanes if .* neighbours waited' stdout) == 2 ]] || fail 'no idle lanes of groups'
 rows table.csv | awk -F, '
@@ -45,5 +46,6 @@ for schedule in in_order by_cost; do
     expect 0 '' "$program" --instances 2000 --transient 31 --device cpu:1 --schedule "$schedule" --quiet --output other.csv
     cmp table.csv other.csv || fail "other results with the schedule $schedule"
 done
+check_small $((32 * 32)) "$header"
 check_plot table.csv
 echo 'All checks passed.'
