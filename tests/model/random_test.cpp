@@ -146,6 +146,18 @@ TEST_CASE("normal_quantile errs by 1e-15 in double and 1e-6 in single precision"
     CHECK(relative_error(0x1p-53) < 1e-15);
 }
 
+TEMPLATE_TEST_CASE("normal_quantile is infinite at 0 and at 1, finite next to them, and no number beyond", "", double, float) {
+    using R = TestType;
+    using limits = std::numeric_limits<R>;
+    CHECK(myriad::normal_quantile(R(0)) == -limits::infinity());
+    CHECK(myriad::normal_quantile(R(-0.0)) == -limits::infinity());
+    CHECK(myriad::normal_quantile(R(1)) == limits::infinity());
+    CHECK(std::isfinite(myriad::normal_quantile(limits::min())));
+    CHECK(std::isfinite(myriad::normal_quantile(1 - limits::epsilon() / 2)));
+    for (const R beyond : {-limits::min(), R(-1), 1 + limits::epsilon(), limits::infinity(), limits::quiet_NaN()})
+        CHECK(std::isnan(myriad::normal_quantile(beyond)));
+}
+
 TEMPLATE_TEST_CASE("hooks draw the same bits as the host, in every phase and by every schedule", "", double, float) {
     using R = TestType;
     constexpr std::int32_t seed = 20'111'118, phases = 3;

@@ -10,6 +10,7 @@
 
 #include "myriad/core/macros.hpp"
 #include "myriad/core/vec.hpp"
+#include "myriad/scalar/select.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -70,8 +71,9 @@ MYRIAD_FUNCTION R minus_log(R x) {
 
 }  // namespace detail
 
-/// The inverse of the normal distribution function, for p in (0, 1): Wichura's algorithm AS 241, PPND16, Appl. Statist. 37
-/// (1988) 477-484. Relative error at most 1e-15 in double precision, 1e-6 in single precision.
+/// The inverse of the normal distribution function, for p in (0, 1); -infinity at 0, infinity at 1, NaN beyond: Wichura's
+/// algorithm AS 241, PPND16, Appl. Statist. 37 (1988) 477-484. Relative error at most 1e-15 in double precision, 1e-6 in
+/// single precision.
 /// Written with fused operations, whole ones, divisions and square roots alone, of which no compiler makes other ones: so its
 /// bits are the same on every target. Where the processor has no fused operation the C library emulates it.
 template <random_real R>
@@ -88,6 +90,7 @@ MYRIAD_FUNCTION R normal_quantile(R p) {
                                      5.2264952788528545610e3));
     }
     const R tail = q < R(0) ? p : R(1) - p;  // exact
+    if (!(tail > R(0))) return tail == R(0) ? q * infinity_of<R> : nan_of<R>;
     const R root = std::sqrt(detail::minus_log(tail));
     R x;
     if (root <= R(5)) {
