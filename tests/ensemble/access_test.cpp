@@ -100,6 +100,21 @@ TEST_CASE("an ensemble that was moved keeps its memory", "[ensemble]") {
     CHECK(solve<cash_karp>(one_thread, b).count(status::success) == 9);
 }
 
+TEST_CASE("enumerators that a model inherits name its components, beside an enumeration declared anew as numbers", "[ensemble]") {
+    struct stronger : complete {
+        enum shared { strength = complete::n_shared, n_shared };
+    };
+    ensemble<stronger> e(3);
+    e.state(stronger::v) = 2;
+    e.shared_integer(stronger::sign) = -1;
+    e.shared(stronger::strength) = 5;
+    e.shared(int(stronger::scale)) = 7;
+    CHECK(e.state(1)[2] == 2);
+    CHECK(e.shared_integer(0) == -1);
+    CHECK(e.shared(1) == 5);
+    CHECK(e.shared(0) == 7);
+}
+
 TEST_CASE("component indices out of range are refused", "[ensemble]") {
     ensemble<complete> e(3);
     refused([&] { e.state(2); }, {"state 2 does not exist", "the model has 2", "enumerators"});

@@ -247,7 +247,9 @@ private:
     static std::int64_t kind##_index(C c) {                                                                  \
         static_assert(std::is_enum_v<C> || std::is_integral_v<C>, "give a number or an enumerator of the model"); \
         if constexpr (std::is_enum_v<C> && requires { typename Model::kind; }) {                             \
-            static_assert(std::is_same_v<C, typename Model::kind>, "this enumerator is not a " #kind " of the model"); \
+            static_assert(std::is_same_v<C, typename Model::kind>,                                           \
+                          "this enumerator is not a " #kind " of the model; where the model declares anew an enumeration " \
+                          "that it inherits, give those of the inherited one as numbers");                   \
         }                                                                                                    \
         return static_cast<std::int64_t>(c);                                                                 \
     }
