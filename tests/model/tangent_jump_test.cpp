@@ -112,6 +112,7 @@ TEST_CASE("tangents pass impacts on a moving table as the differences of traject
     }
 }
 
+// The tangents' model declares its accessories outputs, the one without them does not: no bit depends on that either.
 TEST_CASE("hooks and events do with tangents what they do without, at the ends of phases too") {
     // Of 400 phases many end while an event function is within such a tolerance.
     myriad::options o = with_tolerance(1e-9);
@@ -220,15 +221,16 @@ TEST_CASE("actions that only record leave tangents alone, to the bit, even where
     CHECK(std::isnan(rest.tangents()[1]));
 }
 
-TEST_CASE("an impact moves tangents by its saltation matrix") {
+TEMPLATE_TEST_CASE("an impact moves tangents by its saltation matrix", "", table, recording_table) {
+    using W = myriad::with_tangents<TestType, 2>;
     // Of a table at rest: x -> -r x and v -> -r v, v -> v + (1 + r) x f / v, from the textbook formula with f = -1.
     const double r = 0.75, v = -2;
-    by_hand<table_spectrum> ball({0, v, 1, 0, 0, 1});
+    by_hand<W> ball({0, v, 1, 0, 0, 1});
     ball.shared = {0, 0};
     ball.data.t = 1;
     ball.data.parameter = {r};
     ball.data.integer_accessory = {0, 0};
-    table_spectrum::after_event(table::impact, ball.lane);
+    W::after_event(table::impact, ball.lane);
     CHECK(ball.data.y[table::v] == -r * v);
     const std::array<double, 4> expected{-r, (1 + r) * -1 / v, 0, -r};  // exact in binary
     CHECK(ball.tangents() == expected);

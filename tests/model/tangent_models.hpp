@@ -98,7 +98,12 @@ struct table {
     }
     MYRIAD_FUNCTION static void finalise(auto& lane) { lane.integer_accessory[phases] += 1; }
 };
-using table_spectrum = myriad::with_tangents<table, 2>;
+
+/// The same, whose accessories rhs and events do not see.
+struct recording_table : table {
+    static constexpr bool accessories_are_outputs = true;
+};
+using table_spectrum = myriad::with_tangents<recording_table, 2>;
 
 /// x' = 1 until x passes zero and `speed` from there on; each phase ends with x -> 3 x, a scalar after_step stops at x = 9.
 struct gear {
