@@ -172,6 +172,59 @@ TEST_CASE("bad input in the last chunk is marked, and all others run as if it we
     CHECK(different == 3);
 }
 
+TEST_CASE("instances that fail or are marked in later chunks of a pinned ensemble are told from all others") {
+    auto o = quarter_steps(20'000);
+    o.invalid_instances = myriad::invalid_instances::mark;
+    auto clean = filled(), ordinary = filled(), pinned = filled();
+    myriad::solve<runge_kutta_4>(test_device(), clean, o);
+    const std::int64_t bad[] = {30'001, size - 2}, fails[] = {210'000, size - 1};
+    myriad::report<drift, double> reports[2];
+    pinned.pin(test_device());
+    for (drifts* const e : {&ordinary, &pinned}) {
+        for (const std::int64_t i : bad) e->parameter(drift::speed)(i) = std::numeric_limits<double>::quiet_NaN();
+        // Finite, and infinite after a step.
+        for (const std::int64_t i : fails) e->parameter(drift::speed)(i) = std::numeric_limits<double>::max();
+        reports[e == &pinned] = myriad::solve<runge_kutta_4>(test_device(), *e, o);
+    }
+    CHECK(same(pinned, ordinary));
+    CHECK(reports[1].by_status == reports[0].by_status);
+    CHECK(reports[1].count(status::invalid_input) == 2);
+    CHECK(reports[1].count(status::not_finite) == 2);
+    CHECK(reports[1].first_failed == 30'001);
+    CHECK(reports[1].accepted_steps == reports[0].accepted_steps);
+    for (const std::int64_t i : bad) CHECK(pinned.status(i) == status::invalid_input);
+    for (const std::int64_t i : fails) {
+        CHECK(pinned.status(i) == status::not_finite);
+        CHECK(pinned.state(drift::x)(i) == filled().state(drift::x)(i));  // the last finite one
+    }
+    std::int64_t different = 0;
+    for (std::int64_t i = 0; i < size; ++i)
+        different += pinned.state(drift::x)(i) != clean.state(drift::x)(i) || pinned.status(i) != clean.status(i);
+    CHECK(different == 4);
+}
+
+TEST_CASE("samples and scales of tolerances that a pinned ensemble is asked for later come in chunks as in an ordinary one") {
+    using dense = myriad::dense<myriad::tsitouras_5>;
+    auto o = usual();
+    o.samples = {.states = {swing::x, swing::v}, .capacity = 40, .evenly = 10};
+    myriad::ensemble<swing> ordinary(1000), pinned(1000);
+    fill(ordinary);
+    fill(pinned);
+    pinned.pin(test_device());
+    for (const std::int64_t chunk : {170, 0, 999}) {  // the last samples find no room
+        o.chunk_size = chunk;
+        o.phases = chunk == 0 ? 2 : 1;
+        myriad::solve<dense>(test_device(), pinned, o);
+        myriad::solve<dense>(test_device(), ordinary, o);
+        CHECK(same_results(pinned, ordinary));
+        CHECK(same_bits(pinned.samples().stored(), ordinary.samples().stored()));
+        CHECK(same_bits(pinned.samples().time(), ordinary.samples().time()));
+        for (const int c : {swing::x, swing::v}) CHECK(same_bits(pinned.samples().state(c), ordinary.samples().state(c)));
+    }
+    CHECK(pinned.samples().stored().minCoeff() == 40);
+    CHECK(pinned.samples().state(swing::v).isFinite().all());
+}
+
 TEST_CASE("a restarted ensemble gives the bits of a new one, on engines that were used before") {
     auto fresh = filled(), used = filled();
     myriad::options o = quarter_steps(0);
