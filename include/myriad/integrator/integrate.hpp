@@ -292,7 +292,8 @@ private:
     }
 };
 
-/// Integrates all instances that `source.next()` hands out (indices, then -1) on one pack of lanes of kind S. Returns the
+/// Integrates all instances that `source.next()` hands out (indices, then -1) on one pack of lanes of kind S. The source of a
+/// CUDA thread also says by `is_empty()` that there is no next one. Returns the
 /// turns the loop took, each a trial step in every lane. `shared` stands for `args.shared` where a backend has moved them.
 template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
