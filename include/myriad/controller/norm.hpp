@@ -26,49 +26,56 @@ MYRIAD_FUNCTION S error_ratio(const S& error, const S& scale) {
 #endif
 }
 
-// In CUDA threads the larger of two numbers that are not negative is found by the upper halves of their bits, off the
-// floating-point pipe, and the lower halves are left out: 1e-6 of its size. So are magnitudes.
-
-/// Whether what is not finite makes ratios NaN all by itself.
-#if defined(__CUDA_ARCH__)
-template <class S>
-inline constexpr bool tells_infinity = std::is_same_v<S, double>;
-#else
-template <class S>
-inline constexpr bool tells_infinity = false;
-#endif
-
 /// max(|a|, |b|) of a finite a; not finite where b is not.
 template <class S>
 MYRIAD_FUNCTION S larger_magnitude(const S& a, const S& b) {
-#if defined(__CUDA_ARCH__)
-    // with a lower half that makes NaN of infinity
-    if constexpr (tells_infinity<S>)
-        return __hiloint2double(::max(__double2hiint(a) & 0x7fffffff, __double2hiint(b) & 0x7fffffff), 1);
-#endif
     return larger(abs(a), abs(b));
-}
-/// max(a, b), neither negative; NaN where one is.
-template <class S>
-MYRIAD_FUNCTION S larger_ratio(const S& a, const S& b) {
-#if defined(__CUDA_ARCH__)
-    // a NaN's bits, taken for an unsigned integer, are above those of infinity
-    if constexpr (std::is_same_v<S, double>) {
-        const unsigned upper = ::max(static_cast<unsigned>(__double2hiint(a)), static_cast<unsigned>(__double2hiint(b)));
-        return __hiloint2double(static_cast<int>(upper), 0);
-    }
-#endif
-    return select((a > b) | (a != a), a, b);
 }
 /// max(a, b) of a number a that is not negative; NaN where b is.
 template <class S>
 MYRIAD_FUNCTION S larger_scale(const S& a, const S& b) {
-#if defined(__CUDA_ARCH__)
-    return larger_ratio(a, b);
-#else
     return larger(a, b);
-#endif
 }
+/// The largest of numbers that are not negative; NaN where one is.
+template <class S, int n>
+MYRIAD_FUNCTION S largest_ratio(const vec<S, n>& a) {
+    S largest = a[0], sum = a[0];
+    MYRIAD_UNROLL
+    for (int c = 1; c < n; ++c) {
+        largest = larger(a[c], largest);
+        sum = sum + a[c];
+    }
+    if constexpr (n == 1) return largest;
+    return select(sum == sum, largest, sum);
+}
+/// Whether what is not finite makes these NaN all by itself.
+template <class S>
+inline constexpr bool tells_infinity = false;
+
+#if defined(__CUDA_ARCH__)
+// The same in CUDA threads: the larger of two numbers by the upper halves of their bits, off the floating-point pipe. The lower
+// halves are left out, which is 1e-6 of the number's size.
+
+template <>
+inline constexpr bool tells_infinity<double> = true;
+
+MYRIAD_FUNCTION double larger_magnitude(const double& a, const double& b) {
+    // with a lower half that makes NaN of infinity
+    return __hiloint2double(::max(__double2hiint(a) & 0x7fffffff, __double2hiint(b) & 0x7fffffff), 1);
+}
+/// A NaN's bits, taken for an unsigned integer, are above those of infinity.
+MYRIAD_FUNCTION double larger_scale(const double& a, const double& b) {
+    const unsigned upper = ::max(static_cast<unsigned>(__double2hiint(a)), static_cast<unsigned>(__double2hiint(b)));
+    return __hiloint2double(static_cast<int>(upper), 0);
+}
+template <int n>
+MYRIAD_FUNCTION double largest_ratio(const vec<double, n>& a) {
+    double largest = a[0];
+    MYRIAD_UNROLL
+    for (int c = 1; c < n; ++c) largest = larger_scale(a[c], largest);
+    return largest;
+}
+#endif
 
 /// What the errors of a trial are compared with.
 template <class S, int n>
@@ -110,10 +117,10 @@ MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const
         }
         return sqrt(squares * C(R(1.0 / n)));
     } else {
-        S worst = error_ratio(sum(0), scale[0]);
+        vec<S, n> ratio;
         MYRIAD_UNROLL
-        for (int c = 1; c < n; ++c) worst = larger_ratio(error_ratio(sum(c), scale[c]), worst);
-        return static_cast<C>(worst * abs(factor));
+        for (int c = 0; c < n; ++c) ratio[c] = error_ratio(sum(c), scale[c]);
+        return static_cast<C>(largest_ratio(ratio) * abs(factor));
     }
 }
 
