@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -31,35 +32,48 @@ inline constexpr std::size_t most_chunks_held = 16;
 /// Ensembles of fewer instances are not worth several.
 inline constexpr std::int64_t worth_chunks = 131'072;
 
+/// What makes an engine of a model and a real type: one for each method.
+template <class Model, class R>
+using engine_maker = std::unique_ptr<cuda::engine<Model, R>> (*)(const cuda::engine_options&);
+
 /// Engines between two calls of `solve`, since making one takes longer than integrating a small ensemble.
-template <class Model, class Method, class R>
+template <class Model, class R>
 class idle_engines {
     using engine = std::unique_ptr<cuda::engine<Model, R>>;
+    using maker = engine_maker<Model, R>;
 
 public:
-    static engine take(const cuda::engine_options& how) {
+    static engine take(maker make, const cuda::engine_options& how) {
         {
             idle_engines& all = instance();
             const std::lock_guard lock(all.mutex_);
-            const auto found = std::find_if(all.idle_.begin(), all.idle_.end(), [&](const auto& e) { return e.first == how; });
-            if (found != all.idle_.end()) {
-                engine taken = std::move(found->second);
-                all.idle_.erase(found);
+            for (auto place = all.idle_.begin(); place != all.idle_.end(); ++place) {
+                if (place->make != make || !(place->how == how)) continue;
+                engine taken = std::move(place->idle);
+                all.idle_.erase(place);
                 return taken;
             }
         }
-        return cuda::make_engine<Model, Method, R>(how);
+        return make(how);
     }
-    /// Only for engines that have finished without an error.
-    static void give(const cuda::engine_options& how, engine e) {
+    /// Only for engines that have finished without an error. Of each method the last few are kept.
+    static void give(maker make, const cuda::engine_options& how, engine e) {
         e->rest();
         idle_engines& all = instance();
         const std::lock_guard lock(all.mutex_);
-        all.idle_.emplace_back(how, std::move(e));
-        if (all.idle_.size() > most_chunks_held) all.idle_.pop_front();
+        all.idle_.push_back({make, how, std::move(e)});
+        const auto of_this = [make](const entry& other) { return other.make == make; };
+        if (static_cast<std::size_t>(std::count_if(all.idle_.begin(), all.idle_.end(), of_this)) > most_chunks_held)
+            all.idle_.erase(std::find_if(all.idle_.begin(), all.idle_.end(), of_this));
     }
 
 private:
+    struct entry {
+        maker make;
+        cuda::engine_options how;
+        engine idle;
+    };
+
     /// Never destroyed: when a program ends, CUDA may be gone first.
     static idle_engines& instance() {
         static idle_engines* const all = new idle_engines;
@@ -67,36 +81,37 @@ private:
     }
 
     std::mutex mutex_;
-    std::deque<std::pair<cuda::engine_options, engine>> idle_;
+    std::vector<entry> idle_;
 };
 
 /// One call of `solve` on a GPU.
-template <class Model, class Method, class R>
+template <class Model, class R>
 class chunked_solve {
     using engine = cuda::engine<Model, R>;
-    using engines = idle_engines<Model, Method, R>;
+    using engines = idle_engines<Model, R>;
 
 public:
-    chunked_solve(const device& where, const options& o, ensemble<Model, R>& instances, kernel_arguments<Model, R>& arguments,
-                  input_check<Model, R>& check, progress_relay& relay, report<Model, R>& result)
-        : options_(o), instances_(instances), arguments_(arguments), check_(check), relay_(relay), result_(result),
+    chunked_solve(const device& where, const options& o, engine_maker<Model, R> make, ensemble<Model, R>& instances,
+                  kernel_arguments<Model, R>& arguments, input_check<Model, R>& check, progress_relay& relay,
+                  report<Model, R>& result)
+        : options_(o), make_(make), instances_(instances), arguments_(arguments), check_(check), relay_(relay), result_(result),
           how_{where.number(), o.block_size, o.shared_placement, o.schedule}, size_(instances.size()),
           checked_(size_ <= worth_chunks ? size_ : 0),
           past_(instances.untouched() ? cuda::past::none : cuda::past::kept) {}
 
     /// Nothing is written to the ensemble before all of it is checked.
     void run() {
-        engines_.push_back(engines::take(how_));
+        engines_.push_back(engines::take(make_, how_));
         clock_ = engines_.front()->start_clock();
         const std::int64_t chunk = chunk_size();
         while (engines_.size() < chunks_at_a_time && static_cast<std::int64_t>(engines_.size()) * chunk < size_)
-            engines_.push_back(engines::take(how_));
+            engines_.push_back(engines::take(make_, how_));
         for (auto& e : engines_) e->reserve(arguments_, chunk);
         for (auto& e : engines_) begin(*e, chunk);
         while (checked_ < size_) {
             check(std::min(checked_ + chunk, size_));
             if (begun_ < checked_ && keeps_too_few_busy() && may_hold_another(chunk)) {
-                engines_.push_back(engines::take(how_));
+                engines_.push_back(engines::take(make_, how_));
                 begin(*engines_.back(), chunk);
             }
         }
@@ -110,7 +125,7 @@ public:
         }
         if (options_.counting == counting::on) set_work(result_, work_before_, work_after_);
         result_.kernel = engines_.front()->facts();
-        for (auto& e : engines_) engines::give(how_, std::move(e));
+        for (auto& e : engines_) engines::give(make_, how_, std::move(e));
     }
 
 private:
@@ -189,7 +204,7 @@ private:
     /// Has the results of a chunk put into the ensemble, and looked at, in the order of chunks.
     void bring_back(part& p) {
         p.worker->download(arguments_);
-        const auto task = [this, worker = p.worker, first = p.first, count = p.count] {
+        const std::function<void()> task = [this, worker = p.worker, first = p.first, count = p.count] {
             worker->wait();
             // Kernels may overlap: a new one fills the places that the one before leaves.
             const auto [from, to] = worker->kernel_interval(clock_);
@@ -217,6 +232,7 @@ private:
     }
 
     const options& options_;
+    engine_maker<Model, R> make_;
     ensemble<Model, R>& instances_;
     kernel_arguments<Model, R>& arguments_;
     input_check<Model, R>& check_;

@@ -48,27 +48,31 @@ cpu_kernel<Model, R> compiled_kernel(openmp::instruction_set set) {
     return {};
 }
 
-/// The kernel for the best instruction set that it was compiled for and that the CPU has, or for the one that the
-/// environment variable MYRIAD_INSTRUCTION_SET names; null where it was compiled for none. Throws `error` if the CPU has
-/// none of them, or not the one named.
-template <class Model, class Method, class R>
-cpu_kernel<Model, R> choose_cpu_kernel() {
+/// The best, of the instruction sets that a kernel was compiled for, that the CPU has, or the one that the environment
+/// variable MYRIAD_INSTRUCTION_SET names. Throws `error` if the CPU has none of them, or not the one named.
+inline openmp::instruction_set choose_instruction_set(const std::vector<openmp::instruction_set>& compiled) {
     const char* const variable = std::getenv("MYRIAD_INSTRUCTION_SET");
     const std::string_view wanted = variable == nullptr ? "" : variable;
-    std::string compiled_for;
-    for (const openmp::instruction_set set : all_instruction_sets) {
-        const auto kernel = compiled_kernel<Model, Method, R>(set);
-        if (kernel.run == nullptr) continue;
-        if (cpu_has(set) && (wanted.empty() || wanted == name_of(set))) return kernel;
-        compiled_for += (compiled_for.empty() ? "" : ", ") + std::string(name_of(set));
+    std::string names;
+    for (const openmp::instruction_set set : compiled) {
+        if (cpu_has(set) && (wanted.empty() || wanted == name_of(set))) return set;
+        names += (names.empty() ? "" : ", ") + std::string(name_of(set));
     }
-    require(compiled_for.empty() || wanted.empty(), "MYRIAD_INSTRUCTION_SET is \"", wanted,
-            "\", but this model was compiled for ", compiled_for,
+    require(wanted.empty(), "MYRIAD_INSTRUCTION_SET is \"", wanted, "\", but this model was compiled for ", names,
             ": name one of these that the CPU has, or unset the variable");
-    require(compiled_for.empty(), "this model was compiled for ", compiled_for,
-            ", which this CPU lacks: build it with -DMYRIAD_ARCH=x86-64-v2, or for several instruction sets with "
-            "-DMYRIAD_ARCH=\"x86-64-v2;x86-64-v3;x86-64-v4\"");
-    return {};
+    throw error(message("this model was compiled for ", names,
+                        ", which this CPU lacks: build it with -DMYRIAD_ARCH=x86-64-v2, or for several instruction sets with "
+                        "-DMYRIAD_ARCH=\"x86-64-v2;x86-64-v3;x86-64-v4\""));
+}
+
+/// The kernel for the instruction set chosen; null where it was compiled for none.
+template <class Model, class Method, class R>
+cpu_kernel<Model, R> choose_cpu_kernel() {
+    std::vector<openmp::instruction_set> compiled;
+    for (const openmp::instruction_set set : all_instruction_sets)
+        if (compiled_kernel<Model, Method, R>(set).run != nullptr) compiled.push_back(set);
+    if (compiled.empty()) return {};
+    return compiled_kernel<Model, Method, R>(choose_instruction_set(compiled));
 }
 
 /// The first phase counts the steps, by which the instances are sorted for the others.
@@ -92,6 +96,17 @@ run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_argu
     return used;
 }
 
+/// Integrates on the CPU. Throws `error` if there is no kernel.
+template <class Model, class R>
+run_statistics run_kernel(const cpu_kernel<Model, R>& kernel, const kernel_arguments<Model, R>& arguments,
+                          const run_options& options) {
+    require(kernel.run != nullptr, "this model was not instantiated for this method and real type");
+    const bool sorted = options.schedule == schedule::by_cost && arguments.phases > 1 && arguments.size <= most_sorted;
+    run_statistics used = sorted ? run_by_cost(kernel, arguments, options) : kernel.run(arguments, options);
+    used.instruction_set = name_of(kernel.set);
+    return used;
+}
+
 }  // namespace host
 
 namespace openmp {
@@ -99,16 +114,7 @@ namespace openmp {
 /// Integrates on the CPU with the kernel that fits it. Throws `error` if there is none.
 template <class Model, class Method, class R>
 run_statistics run(const kernel_arguments<Model, R>& arguments, const run_options& options) {
-    const auto kernel = host::choose_cpu_kernel<Model, Method, R>();
-    require(kernel.run != nullptr, "this model was not instantiated for this method and real type");
-    run_statistics used{};
-    if (options.schedule == schedule::by_cost && arguments.phases > 1 && arguments.size <= most_sorted) {
-        used = host::run_by_cost(kernel, arguments, options);
-    } else {
-        used = kernel.run(arguments, options);
-    }
-    used.instruction_set = host::name_of(kernel.set);
-    return used;
+    return host::run_kernel(host::choose_cpu_kernel<Model, Method, R>(), arguments, options);
 }
 
 }  // namespace openmp

@@ -20,33 +20,63 @@
 namespace myriad {
 namespace host {
 
-/// Throws `error` if the program has no kernel of the model and method for that device.
+/// What integrates a model with one method on one device.
+template <class Model, class R>
+struct device_kernel {
+    cpu_kernel<Model, R> cpu;
+    engine_maker<Model, R> make_engine = nullptr;
+};
+
+/// The kernel of the model and method for that device. Throws `error` if the program has none.
 template <class Model, class Method, class R>
-void require_kernel(const device& where) {
+device_kernel<Model, R> require_kernel(const device& where) {
     const bool on_cpu = where.which() == device::kind::cpu;
-    require(
-        on_cpu ? choose_cpu_kernel<Model, Method, R>().run != nullptr
-               : if_defined(&cuda::make_engine<Model, Method, R>) != nullptr,
-        "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
-        ", or its source file was not linked: write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for "
-        "float) in the model's source file, and name that file in myriad_add_models for the program or an OBJECT "
-        "library",
-        on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
+    device_kernel<Model, R> found;
+    if (on_cpu) {
+        found.cpu = choose_cpu_kernel<Model, Method, R>();
+    } else {
+        found.make_engine = if_defined(&cuda::make_engine<Model, Method, R>);
+    }
+    require(on_cpu ? found.cpu.run != nullptr : found.make_engine != nullptr,
+            "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
+            ", or its source file was not linked: write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for "
+            "float) in the model's source file, and name that file in myriad_add_models for the program or an OBJECT "
+            "library",
+            on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
+    return found;
 }
 
-template <class Model, class Method, class R>
-void solve_on_cpu(const device& where, const options& o, const kernel_arguments<Model, R>& arguments, progress_relay& relay,
-                  report<Model, R>& result) {
-    run_options how;
-    how.threads = where.threads();
-    how.schedule = o.schedule;
-    how.progress = &progress_relay::call;
-    how.context = &relay;
-    const run_statistics used = openmp::run<Model, Method, R>(arguments, how);
-    result.lane_turns = used.lane_turns;
-    result.lanes = used.lanes;
-    result.threads = used.threads;
-    result.instruction_set = used.instruction_set;
+/// The part of `solve` that does not depend on the method: a program compiles it once for each model.
+template <class Model, class R>
+void integrate_all(const device& where, const options& o, const device_kernel<Model, R>& kernel, ensemble<Model, R>& instances,
+                   kernel_arguments<Model, R>& arguments, input_check<Model, R>& check, report<Model, R>& result) {
+    progress_relay relay{o.progress, instances.size(), nullptr};
+    const auto begin = std::chrono::steady_clock::now();
+    if (where.which() == device::kind::cpu) {
+        const auto work = [&] {
+            return o.counting == counting::on ? counted_work(instances, instances.size()) : work_count{};
+        };
+        const auto work_before = work();
+        instances.touch();
+        run_options how;
+        how.threads = where.threads();
+        how.schedule = o.schedule;
+        how.progress = &progress_relay::call;
+        how.context = &relay;
+        const run_statistics used = run_kernel(kernel.cpu, arguments, how);
+        result.lane_turns = used.lane_turns;
+        result.lanes = used.lanes;
+        result.threads = used.threads;
+        result.instruction_set = used.instruction_set;
+        set_work(result, work_before, work());
+        summarise(instances, result, instances.size());
+    } else {
+        chunked_solve<Model, R>(where, o, kernel.make_engine, instances, arguments, check, relay, result).run();
+    }
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (relay.failure) std::rethrow_exception(relay.failure);
+    result.device = where.name();
+    note_tolerances(result, o);
 }
 
 }  // namespace host
@@ -59,35 +89,16 @@ void solve_on_cpu(const device& where, const options& o, const kernel_arguments<
 template <class Method, class Model, class R>
 report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
     check_options<Model, Method, R>(options);
-    host::require_kernel<Model, Method, R>(where);
+    const auto kernel = host::require_kernel<Model, Method, R>(where);
     host::check_uses<Method>(instances, options, instances.size());
-    const bool on_cpu = where.which() == device::kind::cpu;
     // On a GPU the data of large ensembles are checked chunk by chunk, while it works on others.
     host::input_check<Model, R> check(instances, options, instances.size());
-    if (on_cpu || instances.size() <= host::worth_chunks) check.run();
+    if (where.which() == device::kind::cpu || instances.size() <= host::worth_chunks) check.run();
 
     report<Model, R> result;
-    host::prepared_arguments<Model, Method, R> prepared(instances, options);
-    host::progress_relay relay{options.progress, instances.size(), nullptr};
-    const auto begin = std::chrono::steady_clock::now();
-    if (on_cpu) {
-        const auto work = [&] {
-            return options.counting == counting::on ? host::counted_work(instances, instances.size()) : host::work_count{};
-        };
-        const auto work_before = work();
-        instances.touch();
-        host::solve_on_cpu<Model, Method, R>(where, options, prepared.get(), relay, result);
-        host::set_work(result, work_before, work());
-        host::summarise(instances, result, instances.size());
-    } else {
-        host::chunked_solve<Model, Method, R>(where, options, instances, prepared.get(), check, relay, result).run();
-    }
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (relay.failure) std::rethrow_exception(relay.failure);
-
-    result.device = where.name();
+    host::prepared_arguments<Model, R> prepared(instances, options, host::traits_of<Method>);
+    host::integrate_all(where, options, kernel, instances, prepared.get(), check, result);
     result.records = std::move(prepared.records());
-    host::note_tolerances(result, options);
     host::note_stiffness<Method>(result, instances, options);
     return result;
 }

@@ -45,7 +45,7 @@ public:
     /// the device or a kernel for it is not there.
     solver(const device& where, std::int64_t capacity, options o = {})
         : where_(where), options_(checked(std::move(o), capacity)), instances_(capacity),
-          prepared_(instances_, options_) {
+          prepared_(instances_, options_, host::traits_of<Method>) {
         host::require_kernel<Model, Method, R>(where);
         if (where.which() == device::kind::cpu) return;
         engine_ = cuda::make_engine<Model, Method, R>(
@@ -255,7 +255,7 @@ private:
     device where_;
     options options_;
     ensemble<Model, R> instances_;
-    host::prepared_arguments<Model, Method, R> prepared_;
+    host::prepared_arguments<Model, R> prepared_;
     std::int64_t count_ = 0;
     bool uploaded_ = false;      // and not handed out to be set since
     bool downloadable_ = false;  // uploaded, and found fine

@@ -130,7 +130,7 @@ auto solve(myriad::ensemble<watch, R>& e, const myriad::options& o) {
 /// Without the checks of the options, which refuse what only rounding keeps from working: the kernel itself, on the CPU.
 template <class Method, class R>
 void solve_unchecked(myriad::ensemble<watch, R>& e, const myriad::options& o) {
-    myriad::host::prepared_arguments<watch, Method, R> prepared(e, o);
+    myriad::host::prepared_arguments<watch, R> prepared(e, o, myriad::host::traits_of<Method>);
     myriad::openmp::run<watch, Method, R>(prepared.get(), {});
 }
 

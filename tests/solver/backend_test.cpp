@@ -145,7 +145,7 @@ TEST_CASE("a GPU that lacks memory or room for a block says so, and the next sol
     auto engine = myriad::cuda::make_engine<swing, cash_karp, double>({test_device().number(), 0, {}});
     myriad::ensemble<swing> e(10);
     fill(e);
-    myriad::host::prepared_arguments<swing, cash_karp, double> prepared(e, usual());
+    myriad::host::prepared_arguments<swing, double> prepared(e, usual(), myriad::host::traits_of<cash_karp>);
     refused([&] { engine->reserve(prepared.get(), std::int64_t{1} << 40); },
             {"out of device memory", "GB are wanted", "are free", "chunk_size"});
     engine->upload(prepared.get(), 0, 10);

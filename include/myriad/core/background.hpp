@@ -4,6 +4,7 @@
 
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <future>
 #include <mutex>
 #include <thread>
@@ -28,9 +29,8 @@ public:
     }
 
     /// What the task throws, the future does.
-    template <class Task>
-    std::future<void> ask(Task&& task) {
-        std::packaged_task<void()> packed(std::forward<Task>(task));
+    std::future<void> ask(std::function<void()> task) {
+        std::packaged_task<void()> packed(std::move(task));
         std::future<void> done = packed.get_future();
         {
             const std::lock_guard lock(mutex_);

@@ -19,18 +19,25 @@
 
 namespace myriad::host {
 
+/// What the arguments of a kernel depend on in its method.
+struct method_traits {
+    bool adaptive, scales_tolerances, chooses_first_step;
+};
+template <class Method>
+inline constexpr method_traits traits_of{Method::embedded_order > 0, scales_tolerances<Method>, chooses_first_step<Method>};
+
 /// The options as a kernel of the method wants them.
-template <class Model, class Method, class R>
-void describe_options(kernel_arguments<Model, R>& a, const options& o) {
+template <class Model, class R>
+void describe_options(kernel_arguments<Model, R>& a, const options& o, const method_traits& method) {
     a.phases = static_cast<std::int32_t>(o.phases);
     a.carry_time = o.phase_time == phase_time::carry_on;
     a.carry_step = o.phase_step == phase_step::carry_on;
     a.max_steps = static_cast<std::int32_t>(o.max_steps);
-    constexpr double default_step = chooses_first_step<Method> ? 0 : 1e-2;
+    const double default_step = method.chooses_first_step ? 0 : 1e-2;
     a.step = static_cast<R>(std::isnan(o.step) ? std::min(default_step, o.maximum_step) : o.step);
     a.minimum_step = static_cast<R>(o.minimum_step);
     a.maximum_step = static_cast<R>(o.maximum_step);
-    if (Method::embedded_order > 0 && a.step > 0) a.step = std::clamp(a.step, a.minimum_step, a.maximum_step);
+    if (method.adaptive && a.step > 0) a.step = std::clamp(a.step, a.minimum_step, a.maximum_step);
     a.growth_limit = static_cast<float>(o.growth_limit);
     a.shrink_limit = static_cast<float>(o.shrink_limit);
     for (std::size_t c = 0; c < static_cast<std::size_t>(n_state<Model>); ++c) {
@@ -46,19 +53,23 @@ void describe_options(kernel_arguments<Model, R>& a, const options& o) {
     a.sub_samples = static_cast<std::int32_t>(o.sub_samples);
     a.accumulation_limit = static_cast<std::int32_t>(o.accumulation_limit);
 }
+template <class Model, class Method, class R>
+void describe_options(kernel_arguments<Model, R>& a, const options& o) {
+    describe_options(a, o, traits_of<Method>);
+}
 
 /// The arguments for an ensemble, with what they point to: the records, and the sample times in the ensemble's real type.
-template <class Model, class Method, class R>
+template <class Model, class R>
 class prepared_arguments {
 public:
     /// Throws `error` if an option is invalid.
-    prepared_arguments(ensemble<Model, R>& instances, const options& o)
+    prepared_arguments(ensemble<Model, R>& instances, const options& o, const method_traits& method)
         : records_(o.record, o.phases, instances.size()),
           sample_times_(o.samples.times.begin(), o.samples.times.end()) {
-        describe_options<Model, Method, R>(arguments_, o);
-        if constexpr (scales_tolerances<Method>) instances.tolerance_scale();  // there from now on
+        describe_options(arguments_, o, method);
+        if (method.scales_tolerances) instances.tolerance_scale();  // there from now on
         instances.describe(arguments_, o.counting);
-        if constexpr (Method::embedded_order == 0) arguments_.h_next = nullptr;  // fixed steps leave none to go on with
+        if (!method.adaptive) arguments_.h_next = nullptr;  // fixed steps leave none to go on with
         records_.describe(arguments_.record);
         if (o.samples.empty()) return;
         auto& sample = arguments_.sample;

@@ -208,32 +208,35 @@ inline void check_no_samples(const sample_options& s) {
 
 }  // namespace host
 
-namespace host {
-
-/// Refuses numbers that turn into zero or infinity in the ensemble's real type.
-template <class R>
-void check_kept(const char* name, double value) {
-    require(value == 0 || static_cast<R>(value) != R(0), name, " is ", value,
-            ", which is zero in single precision: give a larger value or use an ensemble of doubles");
-    require(std::isinf(value) || std::isfinite(static_cast<R>(value)), name, " is ", value,
-            ", which is infinite in single precision: give a smaller value or use an ensemble of doubles");
-}
-
-}  // namespace host
-
 /// The least relative tolerance that makes sense: the rounding of a state is up to half of epsilon, and that of its change
 /// another.
 template <class R>
 inline constexpr R least_relative_tolerance = R(4) * std::numeric_limits<R>::epsilon();
 
-/// Checks everything about the options that does not need the ensemble's data; throws `error`.
-template <class Model, class Method, class R>
-void check_options(const options& o) {
-    using namespace host;
-    constexpr bool adaptive = Method::embedded_order > 0;
+namespace host {
+
+/// What of a model, a method and a real type the options must fit.
+struct option_limits {
+    int n_state, n_event, n_accessory, n_integer_accessory;
+    bool adaptive, samples_trajectory;
+    int digits;                 ///< of the real type's mantissa
+    double (*rounded)(double);  ///< a number as the real type has it
+
+    /// Refuses numbers that turn into zero or infinity in the ensemble's real type.
+    void check_kept(const char* name, double value) const {
+        require(value == 0 || rounded(value) != 0, name, " is ", value,
+                ", which is zero in single precision: give a larger value or use an ensemble of doubles");
+        require(std::isinf(value) || std::isfinite(rounded(value)), name, " is ", value,
+                ", which is infinite in single precision: give a smaller value or use an ensemble of doubles");
+    }
+    /// Throws `error`. One function for all models and methods, which a program would else compile for each.
+    void check(const options& o) const;
+};
+
+inline void option_limits::check(const options& o) const {
     check_count("phases", o.phases, 1, 1'000'000'000);
-    check_tolerance("relative_tolerance", o.relative_tolerance, static_cast<std::size_t>(n_state<Model>));
-    check_tolerance("absolute_tolerance", o.absolute_tolerance, static_cast<std::size_t>(n_state<Model>));
+    check_tolerance("relative_tolerance", o.relative_tolerance, static_cast<std::size_t>(n_state));
+    check_tolerance("absolute_tolerance", o.absolute_tolerance, static_cast<std::size_t>(n_state));
     if (adaptive) {
         require(std::isnan(o.step) || (o.step > 0 && std::isfinite(o.step)), "step is ", o.step,
                 " (must be positive and finite): give the length of the first step to try");
@@ -241,16 +244,16 @@ void check_options(const options& o) {
         require(!std::isnan(o.step), "step is not set, but the method takes fixed steps: give options::step");
         check_positive("step", o.step, "give the length of the fixed step; the direction follows from t_end");
     }
-    if (!std::isnan(o.step)) check_kept<R>("step", o.step);
+    if (!std::isnan(o.step)) check_kept("step", o.step);
     for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c)
-        check_kept<R>("relative_tolerance", o.relative_tolerance[c]);
+        check_kept("relative_tolerance", o.relative_tolerance[c]);
     for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c)
-        check_kept<R>("absolute_tolerance", o.absolute_tolerance[c]);
+        check_kept("absolute_tolerance", o.absolute_tolerance[c]);
     require(o.minimum_step >= 0 && std::isfinite(o.minimum_step), "minimum_step is ", o.minimum_step,
             " (must not be negative): give 0 for the resolution of t");
-    check_kept<R>("minimum_step", o.minimum_step);
+    check_kept("minimum_step", o.minimum_step);
     require(o.maximum_step > 0, "maximum_step is ", o.maximum_step, " (must be positive)");
-    check_kept<R>("maximum_step", o.maximum_step);
+    check_kept("maximum_step", o.maximum_step);
     require(o.minimum_step <= o.maximum_step, "minimum_step ", o.minimum_step, " is above maximum_step ",
             o.maximum_step, ": no step size is left; exchange them");
     require(o.growth_limit >= 1 && std::isfinite(o.growth_limit), "growth_limit is ", o.growth_limit,
@@ -260,14 +263,14 @@ void check_options(const options& o) {
     require(static_cast<float>(o.shrink_limit) < 1, "shrink_limit is ", o.shrink_limit,
             ", which is 1 in single precision, that of step-size control: give a smaller value, such as 0.1");
     // Fixed steps are counted in the state's own kind of number, exact up to its mantissa.
-    check_count("max_steps", o.max_steps, 1, std::numeric_limits<R>::digits > 31 ? 2'000'000'000 : 16'000'000);
-    require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event<Model>), "events has ",
-            o.events.size(), " entries, but the model has ", n_event<Model>,
+    check_count("max_steps", o.max_steps, 1, digits > 31 ? 2'000'000'000 : 16'000'000);
+    require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), "events has ",
+            o.events.size(), " entries, but the model has ", n_event,
             " event functions: give one entry for each, or none for defaults");
     for (const event_options& e : o.events) {
         check_positive("event tolerance", e.tolerance,
                        "give the |g| at which an event counts as located, such as 1e-6");
-        check_kept<R>("event tolerance", e.tolerance);
+        check_kept("event tolerance", e.tolerance);
         check_count("stop_after", e.stop_after, 0, 2'000'000'000);
         const int d = static_cast<int>(e.direction);
         require(d >= -1 && d <= 1, "event direction is ", d, " (must be falling, either or rising)");
@@ -281,13 +284,13 @@ void check_options(const options& o) {
     require(o.chunk_size >= 0, "chunk_size is ", o.chunk_size,
             " (must not be negative): give 0 for what the memory allows");
     if (!o.samples.empty()) {
-        require(samples_trajectory<Method>,
+        require(samples_trajectory,
                 "samples are asked for, but the method has no dense output: use dense<Method>, in solve and in "
                 "MYRIAD_INSTANTIATE");
-        check_samples(o.samples, o, n_state<Model>);
+        check_samples(o.samples, o, n_state);
         const std::vector<double>& times = o.samples.times;
         for (std::size_t k = 1; k < times.size(); ++k)
-            require(static_cast<R>(times[k]) != static_cast<R>(times[k - 1]), "samples.times[", k, "] is ", times[k],
+            require(rounded(times[k]) != rounded(times[k - 1]), "samples.times[", k, "] is ", times[k],
                     ", which is the same as the time before it in single precision: give times further apart or use an "
                     "ensemble of doubles");
     } else {
@@ -297,10 +300,26 @@ void check_options(const options& o) {
         require(o.record.from_phase >= 0 && o.record.from_phase < o.phases, "record.from_phase is ",
                 o.record.from_phase, ", but the call has ", o.phases,
                 " phases (counted from 0): nothing would be recorded");
-        check_components("record.states", o.record.states, n_state<Model>);
-        check_components("record.accessories", o.record.accessories, n_accessory<Model>);
-        check_components("record.integer_accessories", o.record.integer_accessories, n_integer_accessory<Model>);
+        check_components("record.states", o.record.states, n_state);
+        check_components("record.accessories", o.record.accessories, n_accessory);
+        check_components("record.integer_accessories", o.record.integer_accessories, n_integer_accessory);
     }
+}
+
+}  // namespace host
+
+/// Checks everything about the options that does not need the ensemble's data; throws `error`.
+template <class Model, class Method, class R>
+void check_options(const options& o) {
+    constexpr host::option_limits limits{n_state<Model>,
+                                         n_event<Model>,
+                                         n_accessory<Model>,
+                                         n_integer_accessory<Model>,
+                                         Method::embedded_order > 0,
+                                         samples_trajectory<Method>,
+                                         std::numeric_limits<R>::digits,
+                                         [](double value) { return static_cast<double>(static_cast<R>(value)); }};
+    limits.check(o);
 }
 
 }  // namespace myriad
