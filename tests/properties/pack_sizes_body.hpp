@@ -10,20 +10,32 @@
 
 namespace properties {
 
+/// The size that the backend takes by itself is its own kernel, compiled elsewhere.
+template <class Model, class Method, class R, int batches>
+myriad::run_statistics run_with(const myriad::kernel_arguments<Model, R>& arguments, const myriad::run_options& options) {
+    if constexpr (batches == myriad::default_batches<Model, Method>()) {
+        using namespace myriad::openmp;
+        return run_on<Model, Method, R>(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>{}, arguments, options);
+    } else {
+        return myriad::run_packs<Model, Method, R, batches>(arguments, options);
+    }
+}
+
 template <class Model, class Method, class R>
 myriad::run_statistics run_with_packs(int batches, const myriad::kernel_arguments<Model, R>& arguments,
                                       const myriad::run_options& options) {
-    if (batches == 0) return myriad::run_packs<Model, Method, R, 0>(arguments, options);
-    if (batches == 1) return myriad::run_packs<Model, Method, R, 1>(arguments, options);
+    if (batches == 0) return run_with<Model, Method, R, 0>(arguments, options);
+    if (batches == 1) return run_with<Model, Method, R, 1>(arguments, options);
     if constexpr (compiles_large_packs<Model>) {
-        if (batches == 3) return myriad::run_packs<Model, Method, R, 3>(arguments, options);
-        if (batches == 4) return myriad::run_packs<Model, Method, R, 4>(arguments, options);
+        if (batches == 3) return run_with<Model, Method, R, 3>(arguments, options);
+        if (batches == 4) return run_with<Model, Method, R, 4>(arguments, options);
     }
-    return myriad::run_packs<Model, Method, R, 2>(arguments, options);
+    return run_with<Model, Method, R, 2>(arguments, options);
 }
 
 }  // namespace properties
 
 #define RUN_WITH_PACKS(Model, Method, R)                                                  \
+    extern MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                   \
     template myriad::run_statistics properties::run_with_packs<Model, Method, R>(         \
         int, const myriad::kernel_arguments<Model, R>&, const myriad::run_options&);
