@@ -27,7 +27,7 @@ Steps, in this order, of which strict, clang and asan run only if asked for, for
 
 Options:
   --quick          only ci
-  --all            all of them, and in cuda all kernels
+  --all            all of them, in cuda all kernels, and all models in packs
   --only STEP,...  only these
   --jobs N         processes at a time (default: number of cores)
   --help           this text
@@ -78,19 +78,20 @@ summary=()
 
 # build PRESET
 build() {
-    local preset=$1
-    quietly "build/$preset/configure.log" cmake --preset "$preset" &&
+    local preset=$1 options=()
+    if [[ $every_kernel == yes ]]; then options+=(-DMYRIAD_ALL_PACKS=ON); fi
+    quietly "build/$preset/configure.log" cmake --preset "$preset" "${options[@]}" &&
         quietly "build/$preset/build.log" cmake --build --preset "$preset" --parallel "$jobs" -- -k 0
 }
 
 # Every file that nvcc compiles, without --all those of the tests and some examples (tests/cuda/budgets.cu has the benchmarks'
-# kernels, and scripts/case_studies.sh builds the case studies), and the programs that show what both backends in one program do without a GPU.
+# kernels, and scripts/case_studies.sh builds the case studies) but for models whose features others have too, and the programs that show what both backends in one program do without a GPU.
 build_kernels() {
     local kernels
     quietly build/cuda/configure.log cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return
     mapfile -t kernels < <(ninja -C build/cuda -t targets all | sed -n 's/: CUDA_COMPILER__.*//p' |
         if [[ $every_kernel == yes ]]; then cat; else
-            grep -E '^(tests|examples/(duffing|hooks|own_method|quickstart))/'
+            grep -E '^(tests|examples/(duffing|hooks|own_method|quickstart))/' | grep -vFf build/cuda/single_lanes.txt
         fi)
     ((${#kernels[@]})) || return
     quietly build/cuda/build.log cmake --build --preset cuda --parallel "$jobs" \

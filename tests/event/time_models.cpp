@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Compiles the kernels of the models of time_models.hpp.
+// Compiles the kernels of the models of time_models.hpp, and those of watch.hpp that need no packs.
 #include "time_models.hpp"
 
 #include <myriad/instantiate.hpp>
 
 #include "methods.hpp"
+#include "watch.hpp"
 
 MYRIAD_INSTANTIATE(wave, ALL_METHODS)
 MYRIAD_INSTANTIATE(gate, ALL_METHODS)
 MYRIAD_INSTANTIATE(pendulum, ALL_METHODS)
 MYRIAD_INSTANTIATE(walled, ALL_METHODS)
+MYRIAD_INSTANTIATE(watch, myriad::cash_karp, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE_FLOAT(watch, myriad::cash_karp)

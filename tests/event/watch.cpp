@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Compiles the kernels of the model that the tests of events watch.
+// Compiles, in packs, kernels of the model that the tests of events watch; time_models.cpp has the others.
 #include "watch.hpp"
 
 #include <myriad/instantiate.hpp>
 
-#include "methods.hpp"
-
-MYRIAD_INSTANTIATE(watch, ALL_ORDERS)
-MYRIAD_INSTANTIATE_FLOAT(watch, myriad::cash_karp)
+MYRIAD_INSTANTIATE(watch, myriad::runge_kutta_4, myriad::dormand_prince_8)

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: MIT
+# myriad_single_lanes(): which of the project's own model files need no packs to show what they show.
+include_guard(GLOBAL)
+
+option(MYRIAD_ALL_PACKS "Compile all of the project's own models for packs; off: of those that show as much one instance at a time, \
+none, which takes a quarter of the compile time" ON)
+
+# What scripts/test.sh leaves to --all when it compiles for GPUs.
+file(WRITE "${PROJECT_BINARY_DIR}/single_lanes.txt" "")
+
+# myriad_single_lanes(<file>...): without MYRIAD_ALL_PACKS the kernels of these files, of the same directory, integrate one
+# instance at a time on the CPU. A kernel must not be in a program both ways. For files that show numbers (orders, references, closed
+# forms), not what lanes do to each other, and whose features others show in packs.
+function(myriad_single_lanes)
+    if(NOT MYRIAD_ALL_PACKS)
+        set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS MYRIAD_SCALAR_LANES)
+    endif()
+    foreach(file IN LISTS ARGN)
+        myriad_twin_name(name "${file}")
+        file(APPEND "${PROJECT_BINARY_DIR}/single_lanes.txt" "/cuda/${name}.cu.o\n")
+    endforeach()
+endfunction()
