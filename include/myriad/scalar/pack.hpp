@@ -34,6 +34,12 @@ public:
     batch_type parts[batches];
 
     pack_mask() = default;
+    // Batch by batch, as g++ copies trivial arrays of them in pieces of 16 bytes, which wider loads then wait for.
+    MYRIAD_FUNCTION pack_mask(const pack_mask& other) { MYRIAD_EACH_BATCH(parts[i] = other.parts[i]); }
+    MYRIAD_FUNCTION pack_mask& operator=(const pack_mask& other) {
+        MYRIAD_EACH_BATCH(parts[i] = other.parts[i]);
+        return *this;
+    }
     /// The same value in every lane.
     MYRIAD_FUNCTION pack_mask(bool value) { MYRIAD_EACH_BATCH(parts[i] = batch_type(value)); }
 
@@ -76,14 +82,14 @@ public:
 
     /// Whether some lane holds; the batches are joined first, so that there is one test and one jump per pack.
     friend MYRIAD_FUNCTION bool any(const pack_mask& a) {
-        batch_type joined(false);
-        MYRIAD_EACH_BATCH(joined = joined | a.parts[i]);
+        batch_type joined = a.parts[0];
+        MYRIAD_EACH_BATCH(if constexpr (i > 0) joined = joined | a.parts[i]);
         return xsimd::any(joined);
     }
     /// Whether every lane holds.
     friend MYRIAD_FUNCTION bool all(const pack_mask& a) {
-        batch_type joined(true);
-        MYRIAD_EACH_BATCH(joined = joined & a.parts[i]);
+        batch_type joined = a.parts[0];
+        MYRIAD_EACH_BATCH(if constexpr (i > 0) joined = joined & a.parts[i]);
         return xsimd::all(joined);
     }
     /// Lane i as bit i, to visit the lanes that hold.
@@ -143,6 +149,12 @@ public:
     batch_type parts[batches];
 
     pack() = default;
+    // Batch by batch, for the reason given at masks.
+    MYRIAD_FUNCTION pack(const pack& other) { MYRIAD_EACH_BATCH(parts[i] = other.parts[i]); }
+    MYRIAD_FUNCTION pack& operator=(const pack& other) {
+        MYRIAD_EACH_BATCH(parts[i] = other.parts[i]);
+        return *this;
+    }
     MYRIAD_FUNCTION pack(T value) { MYRIAD_EACH_BATCH(parts[i] = batch_type(value)); }
 
     /// a * b + c of one batch, with one rounding where the target has the instruction.
