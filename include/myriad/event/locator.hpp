@@ -104,6 +104,14 @@ struct event_locator {
     /// their target, are set up for a redone step and taken out of `accepted`; events that have happened are put in
     /// `firing`, either at the end of the trial or, in lanes taken out of `accepted` as well, at its start.
     MYRIAD_FUNCTION void locate(const rk_trial<Method, S, n>& trial, const S& t1, const values& g1, mask& accepted) {
+        if constexpr (lanes_of<S> > 1) {
+            // Most steps change nothing but the values; below, a pack goes through all that one of its lanes needs.
+            if (args.sub_samples <= 1 && !any(accepted & !undisturbed(g1))) {
+                MYRIAD_UNROLL
+                for (int j = 0; j < m; ++j) e.value[j] = select(accepted, g1[j], e.value[j]);
+                return;
+            }
+        }
         find_open_sides(accepted);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) e.firing[j] = mask(false);
@@ -137,6 +145,14 @@ struct event_locator {
     }
 
 private:
+    /// Lanes on their way to no event, whose event functions end the trial on the side where they were, beyond their tolerance.
+    MYRIAD_FUNCTION mask undisturbed(const values& g1) const {
+        mask quiet = !e.locating;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) quiet = quiet & e.left[j] & (e.side[j] * g1[j] > S(args.event[j].tolerance));
+        return quiet;
+    }
+
     /// Puts functions on the side that they have a little ahead, further than the rounding of t and of the state: that is
     /// beyond a jump which a step was located to, and which the state is heading for. Needs the slope.
     MYRIAD_FUNCTION void look_beyond(const masks& on_jump) {
