@@ -39,7 +39,7 @@ struct arithmetic<T> {
     static MYRIAD_FUNCTION T floor(T x) { return functions<T>::floor(x); }
     static MYRIAD_FUNCTION bits to_bits(T x) { return __builtin_bit_cast(bits, x); }
     static MYRIAD_FUNCTION T from_bits(bits b) { return __builtin_bit_cast(T, b); }
-    static MYRIAD_FUNCTION bool are_set(bits b, bits which) { return (b & which) != 0; }
+    static MYRIAD_FUNCTION bool is_odd(bits b) { return (b & 1) != 0; }
     static MYRIAD_FUNCTION T reciprocal(T x) { return functions<T>::reciprocal(x); }
     /// Whether x is at least `least` and finite, both positive: by the bits, which are off the floating-point pipe.
     static MYRIAD_FUNCTION bool is_finite_from(T least, T x) {

@@ -154,8 +154,15 @@ struct arithmetic<xsimd::batch<T>> {
     static MYRIAD_FUNCTION B floor(const B& x) { return xsimd::floor(x); }
     static MYRIAD_FUNCTION bits to_bits(const B& x) { return bits_as<typename arithmetic<T>::bits>(x); }
     static MYRIAD_FUNCTION B from_bits(const bits& b) { return bits_as<T>(b); }
-    static MYRIAD_FUNCTION mask are_set(const bits& b, typename arithmetic<T>::bits which) {
-        return mask_cast<T>((b & bits(which)) != bits(typename arithmetic<T>::bits{0}));
+    static MYRIAD_FUNCTION mask is_odd(const bits& b) {
+        using unsigned_bits = typename arithmetic<T>::bits;
+        if constexpr (has_bit_mask<mask>) {
+            return mask_cast<T>((b & bits(unsigned_bits{1})) != bits(unsigned_bits{0}));
+        } else {
+            // By the sign: a comparison with zero would have to be negated.
+            using integer = integer_of_width<T>;
+            return mask_cast<T>(bits_as<integer>(b << static_cast<int>(8 * sizeof(T) - 1)) < xsimd::batch<integer>(integer{0}));
+        }
     }
     static MYRIAD_FUNCTION B reciprocal(const B& x) { return B(T(1)) / x; }
     static MYRIAD_FUNCTION mask is_finite_from(T least, const B& x) {

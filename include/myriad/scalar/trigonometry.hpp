@@ -117,7 +117,7 @@ struct trigonometry {
         const B lost = (B(T(1)) - head) - half;
         return head + A::multiply_add(z * z, constants::cosine(z), lost);
     }
-    static MYRIAD_FUNCTION auto is_odd(const bits& quarters) { return A::are_set(quarters, 1); }
+    static MYRIAD_FUNCTION auto is_odd(const bits& quarters) { return A::is_odd(quarters); }
     static MYRIAD_FUNCTION bits sign_of(const B& x) { return A::to_bits(x) & A::to_bits(B(-T(0))); }
     static MYRIAD_FUNCTION bits sign_from_bit_1(const bits& quarters) {
         return (quarters & bits(bit_1)) << to_sign;
