@@ -23,21 +23,16 @@ struct hook_driver {
     /// Calls after_step on the lanes whose step was accepted.
     MYRIAD_FUNCTION void after_step(const mask& accepted) {
         const lane_data<Model, S> before = s.data;
-        mask changed;
         if constexpr (has_generic_after_step<Model, R>) {
-            lane<Model, S> view(s.data);
-            mask stops = mask(false);
+            lane_data<Model, S> after = s.data;
+            lane<Model, S> view(after);
             if constexpr (std::is_void_v<decltype(Model::template after_step<S>(view))>) {
                 Model::template after_step<S>(view);
             } else {
-                stops = accepted & Model::template after_step<S>(view);
+                const mask stops = accepted & Model::template after_step<S>(view);
+                if (MYRIAD_UNLIKELY(any(stops))) s.end_lanes(stops, status::stopped_by_user);
             }
-            // All that every step needs before what is rare, after which the data is read from memory again.
-            take_back(accepted, before);
-            changed = accepted & differs(before, s.data);
-            const mask rescaled = accepted & differs_in_bits(s.data.h_next, before.h_next);
-            if (any(rescaled)) for_each_lane(rescaled, [&](int i) MYRIAD_LAMBDA { s.bound_step(args, i); });
-            if (MYRIAD_UNLIKELY(any(stops))) s.end_lanes(stops, status::stopped_by_user);
+            adopt(accepted, after);
             if constexpr (writes_time_domain<Model>) {
                 for_each_lane(accepted & (before.t_end != s.data.t_end), [&](int i) MYRIAD_LAMBDA { retarget(i); });
             }
@@ -45,10 +40,10 @@ struct hook_driver {
             for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA {
                 run_hook(i, [](auto& lane) MYRIAD_LAMBDA { return Model::after_step(lane); });
             });
-            changed = accepted & differs(before, s.data);
         }
         // Where the slope at the end of the step may be known, as the first of the next.
         if constexpr (Method::first_same_as_last || has_events<Model> || samples_trajectory<Method>) {
+            const mask changed = accepted & differs(before, s.data);
             if (any(changed)) follow_up(changed, before.y);
         } else {
             check_finite(accepted, before.y);
@@ -109,21 +104,23 @@ private:
         if constexpr (!is_adaptive<Method>) lay_fixed_steps(args, s, i, t);
     }
 
-    /// Takes back what a generic hook wrote in other lanes than the given ones.
-    MYRIAD_FUNCTION void take_back(const mask& lanes, const lane_data<Model, S>& before) {
+    /// Takes over what a generic hook wrote, in the given lanes.
+    MYRIAD_FUNCTION void adopt(const mask& lanes, const lane_data<Model, S>& after) {
         lane_data<Model, S>& d = s.data;
-        const auto restore = [&](auto& to, const auto& from, int size) MYRIAD_LAMBDA {
+        const auto blend_all = [&](auto& to, const auto& from, int size) MYRIAD_LAMBDA {
             MYRIAD_UNROLL
-            for (int c = 0; c < size; ++c) to[c] = select(lanes, to[c], from[c]);
+            for (int c = 0; c < size; ++c) to[c] = select(lanes, from[c], to[c]);
         };
-        restore(d.y, before.y, n);
-        restore(d.accessory, before.accessory, n_accessory<Model>);
-        restore(d.integer_accessory, before.integer_accessory, n_integer_accessory<Model>);
-        d.h_next = select(lanes, d.h_next, before.h_next);
-        if constexpr (writes_parameters<Model>) restore(d.parameter, before.parameter, n_parameter<Model>);
+        blend_all(d.y, after.y, n);
+        blend_all(d.accessory, after.accessory, n_accessory<Model>);
+        blend_all(d.integer_accessory, after.integer_accessory, n_integer_accessory<Model>);
+        const mask rescaled = lanes & (after.h_next != d.h_next);
+        d.h_next = select(lanes, after.h_next, d.h_next);
+        if (any(rescaled)) for_each_lane(rescaled, [&](int i) MYRIAD_LAMBDA { s.bound_step(args, i); });
+        if constexpr (writes_parameters<Model>) blend_all(d.parameter, after.parameter, n_parameter<Model>);
         if constexpr (writes_time_domain<Model>) {
-            d.t_begin = select(lanes, d.t_begin, before.t_begin);
-            d.t_end = select(lanes, d.t_end, before.t_end);
+            d.t_begin = select(lanes, after.t_begin, d.t_begin);
+            d.t_end = select(lanes, after.t_end, d.t_end);
         }
     }
 
