@@ -75,6 +75,10 @@ measurement measure_by_hand(std::int64_t size, const measure_options& how) {
     Eigen::Map<Eigen::ArrayXd>(kernel.parameter(), size) = range_of_rho(size);
     start();
     kernel.choose_block(steps, h);
+    warm_up([&] {
+        start();
+        kernel.run(steps, h);
+    });
     std::vector<double> alone, all;
     for (int i = 0; i < how.repetitions; ++i) {
         start();

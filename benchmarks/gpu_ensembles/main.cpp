@@ -67,7 +67,7 @@ void write_header(table& out, const settings& chosen) {
     write_machine(out, chosen.measure.device);
     if (!chosen.commit.empty()) out.write("# commit: " + chosen.commit);
     out.write("# kernel_ms: data on the device, by CUDA events, uploaded anew for each repetition; median of " +
-              std::to_string(chosen.measure.repetitions) + " after a warm-up, with counting off");
+              std::to_string(chosen.measure.repetitions) + " after a warm-up of 0.2 s, with counting off");
     out.write(
         "# end_to_end_ms: upload, kernel and download of everything, wall clock, host memory pinned before; median of "
         "the same runs");

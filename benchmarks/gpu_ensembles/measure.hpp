@@ -60,6 +60,14 @@ std::pair<double, double> run_once(myriad::solver<Model, Method>& solver, const 
     return {1e3 * solver.report().seconds, all.count()};
 }
 
+/// Runs until a GPU that has rested has its clock rate again.
+template <class Once>
+void warm_up(Once&& once) {
+    const auto begin = std::chrono::steady_clock::now();
+    do once();
+    while (std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(200));
+}
+
 /// Times the problem, then counts its work in a run of its own. `inspect(instances)` sees the results of the timed runs.
 template <class Method, class Model, class Inspect>
 measurement measure_myriad(const problem<Model>& what, std::int64_t size, const measure_options& how,
@@ -70,7 +78,7 @@ measurement measure_myriad(const problem<Model>& what, std::int64_t size, const 
         options.counting = myriad::counting::off;
         myriad::solver<Model, Method> solver(how.device, size, options);
         what.fill(solver.instances());
-        run_once(solver, what);
+        warm_up([&] { run_once(solver, what); });
         std::vector<double> kernel, end_to_end;
         for (int i = 0; i < how.repetitions; ++i) {
             const auto [alone, all] = run_once(solver, what);
