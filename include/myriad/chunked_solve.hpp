@@ -109,8 +109,9 @@ public:
         for (auto& e : engines_) e->reserve(arguments_, chunk);
         for (auto& e : engines_) begin(*e, chunk);
         while (checked_ < size_) {
-            check(std::min(checked_ + chunk, size_));
-            if (begun_ < checked_ && keeps_too_few_busy() && may_hold_another(chunk)) {
+            const bool hold_more = may_hold_more();
+            check(hold_more ? std::min(checked_ + chunk, size_) : size_);
+            if (hold_more && begun_ < checked_ && keeps_too_few_busy() && has_memory_for_another(chunk)) {
                 engines_.push_back(engines::take(make_, how_));
                 begin(*engines_.back(), chunk);
             }
@@ -171,10 +172,13 @@ private:
         const auto idle = std::count_if(engines_.begin(), engines_.end(), [](const auto& e) { return e->idle(); });
         return engines_.size() - static_cast<std::size_t>(idle) < chunks_at_a_time;
     }
-    /// Whether one more chunk may be held than `chunks_at_a_time`; half of the device's memory that is left stays free. Where the
-    /// host's memory is not pinned, copying it would delay the check.
-    bool may_hold_another(std::int64_t chunk) {
-        if (!instances_.pinned() || options_.chunk_size > 0 || engines_.size() >= most_chunks_held) return false;
+    /// Whether more chunks may be held than `chunks_at_a_time`. Where the host's memory is not pinned, copying it would delay the
+    /// check.
+    bool may_hold_more() const {
+        return instances_.pinned() && options_.chunk_size == 0 && engines_.size() < most_chunks_held;
+    }
+    /// Half of the device's memory that is left stays free.
+    bool has_memory_for_another(std::int64_t chunk) {
         if (!affordable_chunks_) affordable_chunks_ = engines_.front()->affordable(of_an_instance().kept) / (2 * chunk);
         return (*affordable_chunks_)-- > 0;
     }

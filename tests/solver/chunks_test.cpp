@@ -110,6 +110,21 @@ TEST_CASE("an ensemble whose memory is pinned gives the same bits in chunks, wha
     }
 }
 
+TEST_CASE("a pinned ensemble of many chunks, of which more are begun while the last are checked, gives the same bits") {
+    constexpr std::int64_t many = 1'300'003;
+    auto o = quarter_steps(0);
+    o.phases = 1;
+    auto ordinary = filled(many), pinned = filled(many), bad = filled(many);
+    myriad::solve<runge_kutta_4>(test_device(), ordinary, o);
+    pinned.pin(test_device());
+    myriad::solve<runge_kutta_4>(test_device(), pinned, o);
+    CHECK(same(pinned, ordinary));
+    bad.pin(test_device());
+    bad.state(drift::x)(many - 1) = std::numeric_limits<double>::infinity();
+    refused([&] { myriad::solve<runge_kutta_4>(test_device(), bad, o); }, {"state 0", "instance 1300002"});
+    CHECK((bad.phases_done() == 0).all());
+    CHECK(bad.untouched());
+}
 TEST_CASE("a small ensemble whose memory is pinned gives the same bits") {
     auto ordinary = filled(10), pinned = filled(10);
     pinned.pin(test_device());
