@@ -84,8 +84,9 @@ build() {
         quietly "build/$preset/build.log" cmake --build --preset "$preset" --parallel "$jobs" -- -k 0
 }
 
-# Every file that nvcc compiles, without --all those of the tests and some examples (tests/cuda/budgets.cu has the benchmarks'
-# kernels, and scripts/case_studies.sh builds the case studies) but for models whose features others have too, and the programs that show what both backends in one program do without a GPU.
+# The programs that show what both backends in one program do without a GPU, and with --all every file that nvcc compiles; without
+# it those of the tests whose features no others have, and of some examples (tests/cuda/budgets.cu has the benchmarks' kernels,
+# and scripts/case_studies.sh builds the case studies).
 build_kernels() {
     local kernels
     quietly build/cuda/configure.log cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return

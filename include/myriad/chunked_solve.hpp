@@ -111,10 +111,7 @@ public:
         while (checked_ < size_) {
             const bool hold_more = may_hold_more();
             check(hold_more ? std::min(checked_ + chunk, size_) : size_);
-            if (hold_more && begun_ < checked_ && keeps_too_few_busy() && has_memory_for_another(chunk)) {
-                engines_.push_back(engines::take(make_, how_));
-                begin(*engines_.back(), chunk);
-            }
+            if (hold_more && begun_ < checked_ && keeps_too_few_busy()) begin_another(chunk);
         }
         instances_.touch();
         for (part& p : under_way_) bring_back(p);  // into the ensemble, at once where its memory is pinned
@@ -177,10 +174,20 @@ private:
     bool may_hold_more() const {
         return instances_.pinned() && options_.chunk_size == 0 && engines_.size() < most_chunks_held;
     }
-    /// Half of the device's memory that is left stays free.
-    bool has_memory_for_another(std::int64_t chunk) {
+    /// Begins one more chunk, if there is memory: half of what the device has left stays free.
+    void begin_another(std::int64_t chunk) {
         if (!affordable_chunks_) affordable_chunks_ = engines_.front()->affordable(of_an_instance().kept) / (2 * chunk);
-        return (*affordable_chunks_)-- > 0;
+        if (*affordable_chunks_ <= 0) return;
+        --*affordable_chunks_;
+        auto another = engines::take(make_, how_);
+        try {
+            another->reserve(arguments_, chunk);
+        } catch (const error&) {  // someone else has taken the memory since
+            affordable_chunks_ = 0;
+            return;
+        }
+        engines_.push_back(std::move(another));
+        begin(*engines_.back(), chunk);
     }
 
     /// Sees to it that the data of the first `count` instances are fine, or marked.

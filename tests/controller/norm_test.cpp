@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "myriad/methods.hpp"
+#include "myriad/scalar/pack_math.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/problems.hpp"
 
@@ -84,6 +85,20 @@ TEST_CASE("a step to a state that is not finite is not accepted") {
         CHECK_FALSE(accepts(norm_of({1, 1}, {1, bad}, {0, 0}, {1e-6, 1e-6}, {1e-6, 1e-6})));
         // an infinite error over an infinite scale is no number, and a finite one over it would be zero
         CHECK_FALSE(accepts(norm_of({1, 1}, {1, bad}, {0, 1}, {1e-6, 1e-6}, {1e-6, 1e-6})));
+    }
+}
+TEST_CASE("in a pack, the largest ratio is NaN in the lanes where one component's is, and in no others") {
+    using pack = myriad::pack<double, 2>;
+    for (int bad = 0; bad < 3; ++bad) {
+        for (int lane = 0; lane < pack::lanes; ++lane) {
+            myriad::vec<pack, 3> ratio{pack(0.5), pack(2.0), pack(0.25)};
+            set_lane(ratio[bad], lane, not_a_number);
+            const pack largest = myriad::largest_ratio(ratio);
+            for (int i = 0; i < pack::lanes; ++i) {
+                const double found = get_lane(largest, i);
+                CHECK((i == lane ? std::isnan(found) : found == 2.0));
+            }
+        }
     }
 }
 TEST_CASE("an infinite error is not accepted") {

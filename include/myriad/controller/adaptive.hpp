@@ -35,8 +35,8 @@ inline constexpr double least_error_remembered = -13.2877;
 /// tolerance and p the order of the error estimate, kept within the options' limits (Hairer, Norsett, Wanner, Solving
 /// ODE I, II.4, eq. (4.13)); or the one chosen with `controlled`. Lanes whose trial is not finite (or not `valid`, or
 /// singular) are rejected with the smallest factor.
-/// Lanes that are rejected at the minimum step end, and of those that `may_stick` the ones whose step ends, at `t1`, where it
-/// began. Returns the accepted lanes.
+/// Lanes that are rejected at the minimum step end; so do those in `may_stick` whose step does not advance (`t1`, at which
+/// it ends, is where it began). Returns the accepted lanes.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>>& args,
                                         integration_state<Model, Method, S>& s,

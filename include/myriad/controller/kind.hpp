@@ -44,6 +44,7 @@ MYRIAD_FUNCTION S limited(const S& a, const S& low, const S& high) {
 template <class S>
 MYRIAD_FUNCTION S quotient(const S& a, const S& b) {
 #if defined(__CUDA_ARCH__)
+    static_assert(std::is_same_v<S, float>);
     return __fdividef(a, b);
 #else
     return a / b;
@@ -52,6 +53,7 @@ MYRIAD_FUNCTION S quotient(const S& a, const S& b) {
 template <class S>
 MYRIAD_FUNCTION S inverse_root(const S& a) {
 #if defined(__CUDA_ARCH__)
+    static_assert(std::is_same_v<S, float>);
     float y;
     asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(a));
     return y;

@@ -48,7 +48,7 @@ MYRIAD_FUNCTION S largest_ratio(const vec<S, n>& a) {
     if constexpr (n == 1) return largest;
     return select(sum == sum, largest, sum);
 }
-/// Whether what is not finite makes these NaN all by itself.
+/// Whether a state that is not finite makes its ratio NaN all by itself.
 template <class S>
 inline constexpr bool tells_infinity = false;
 

@@ -105,7 +105,8 @@ struct event_locator {
     /// `firing`, either at the end of the trial or, in lanes taken out of `accepted` as well, at its start.
     MYRIAD_FUNCTION void locate(const rk_trial<Method, S, n>& trial, const S& t1, const values& g1, mask& accepted) {
         if constexpr (lanes_of<S> > 1) {
-            // Most steps change nothing but the values; below, a pack goes through all that one of its lanes needs.
+            // Most steps change nothing but the values; below, a pack goes through all that one of its lanes needs. Nothing
+            // fires then: what fired before was cleared when it was acted on.
             if (args.sub_samples <= 1 && !any(accepted & !undisturbed(g1))) {
                 MYRIAD_UNROLL
                 for (int j = 0; j < m; ++j) e.value[j] = select(accepted, g1[j], e.value[j]);
@@ -145,7 +146,8 @@ struct event_locator {
     }
 
 private:
-    /// Lanes on their way to no event, whose event functions end the trial on the side where they were, beyond their tolerance.
+    /// Lanes on their way to no event, whose event functions have left their tolerance and end the trial beyond it, on the side
+    /// where they were.
     MYRIAD_FUNCTION mask undisturbed(const values& g1) const {
         mask quiet = !e.locating;
         MYRIAD_UNROLL

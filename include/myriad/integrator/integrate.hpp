@@ -49,7 +49,7 @@ struct integrator {
             if constexpr (has_after_step<Model>) hooks.after_step(accepted);
             if constexpr (has_events<Model>) hooks.act_on_events();
         }
-        if constexpr (requires { source.is_empty(); }) phase_driver<Model, Method, S>{args, s, e, o}.finish(0);
+        if constexpr (requires { source.gives_only_one(); }) phase_driver<Model, Method, S>{args, s, e, o}.finish(0);
     }
 
     /// An empty pack: every lane asks for an instance.
@@ -293,8 +293,8 @@ private:
 };
 
 /// Integrates all instances that `source.next()` hands out (indices, then -1) on one pack of lanes of kind S. The source of a
-/// CUDA thread also says by `is_empty()` that there is no next one. Returns the
-/// turns the loop took, each a trial step in every lane. `shared` stands for `args.shared` where a backend has moved them.
+/// CUDA thread also says whether it `gives_only_one()`. Returns the turns the loop took, each a trial step in every lane.
+/// `shared` stands for `args.shared` where a backend has moved them.
 template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
                                        const shared_parameters<real_of<S>>& shared, Source& source) {

@@ -61,8 +61,8 @@ private:
     /// Whether lane i is to end with its instance, in its last phase. Threads of a warp do so side by side, after the loop.
     template <class Source>
     MYRIAD_FUNCTION bool is_last(int i, const Source& source) const {
-        if constexpr (requires { source.is_empty(); }) {
-            return s.phases_left[i] == 1 && source.is_empty();
+        if constexpr (requires { source.gives_only_one(); }) {
+            return s.phases_left[i] == 1 && source.gives_only_one();
         } else {
             return false;
         }

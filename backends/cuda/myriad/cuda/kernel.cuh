@@ -27,7 +27,8 @@ public:
         index_ = -1;
         return given;
     }
-    __device__ __forceinline__ bool is_empty() const { return true; }
+    /// Whether there is no other instance than the first.
+    __device__ __forceinline__ bool gives_only_one() const { return true; }
 
 private:
     std::int64_t index_;
@@ -51,8 +52,7 @@ public:
         if (place >= size_) return -1;
         return order_ != nullptr ? order_[place] : place;
     }
-    /// Whether the next call gives none.
-    __device__ __forceinline__ bool is_empty() const { return queue_ == nullptr; }
+    __device__ __forceinline__ bool gives_only_one() const { return queue_ == nullptr; }
 
 private:
     std::int64_t size_;
@@ -66,8 +66,7 @@ inline constexpr int shared_parameter_bytes =
     n_shared<Model>* static_cast<int>(sizeof(R)) + n_shared_integer<Model>* static_cast<int>(sizeof(std::int32_t));
 
 /// Most threads per block; a model may choose by `static constexpr int max_block_size = 512;`. Up to 256, a thread can have
-/// as many registers as the hardware addresses. nvcc weighs registers against blocks of this size: with 192 it stops at 168,
-/// where with 256 it went down to 128, or up to 255, for kernels of the same work (docs/gpu.md).
+/// as many registers as the hardware addresses. nvcc weighs registers against blocks of this size (docs/gpu.md).
 template <class Model>
 constexpr int max_block_size() {
     if constexpr (requires { Model::max_block_size; }) {
