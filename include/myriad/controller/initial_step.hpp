@@ -39,7 +39,7 @@ MYRIAD_FUNCTION void choose_first_step(const kernel_arguments<Model, real_of<S>>
     const S h1 = select(most <= S(R(1e-15)), larger(S(R(1e-6)), h0 * S(R(1e-3))), power);
     S h = smaller(S(R(100)) * h0, h1);
     h = select(h > S(R(0)), h, S(R(1e-6)));  // the slope was NaN: the trial step will say so
-    h = smaller(larger(h, S(args.minimum_step)), S(args.maximum_step));
+    h = limited(h, S(args.minimum_step), S(args.maximum_step));
     s.data.h_next = select(open, direction * h, s.data.h_next);
 }
 
