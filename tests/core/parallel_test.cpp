@@ -25,3 +25,16 @@ TEST_CASE("a parallel loop reaches every element once, in parts no smaller than 
             CHECK(smallest >= std::min(size, grain));
         }
 }
+
+TEST_CASE("a parallel loop leaves threads to a second one beside it, and two to others") {
+    using myriad::host::team_size;
+    CHECK(team_size(1) == 1);
+    for (const std::int64_t available : {2, 3, 4, 5}) CHECK(team_size(available) == 2);
+    for (const std::int64_t available : {6, 7, 8, 9, 12, 16, 17, 256}) {
+        INFO(available << " threads");
+        CHECK(2 * team_size(available) <= available - 2);
+        CHECK(team_size(available) <= myriad::host::most_threads);
+        CHECK(team_size(available) >= 2);
+    }
+    CHECK(team_size(16) == myriad::host::most_threads);
+}

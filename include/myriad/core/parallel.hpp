@@ -30,8 +30,14 @@ MYRIAD_DECLARE_THREADS(generic)
 
 namespace host {
 
-/// Meant to keep up with a GPU's bus, and to leave threads to a second loop beside this one.
-inline constexpr std::int64_t most_threads = 8;
+/// Enough to keep up with a GPU's bus.
+inline constexpr std::int64_t most_threads = 5;
+
+/// Of `available` threads those that a loop takes. A second one beside it gets as many, and two are left over: those of a team
+/// wait for each other without sleeping, and one that has to wait for a core holds up all of them for milliseconds.
+constexpr std::int64_t team_size(std::int64_t available) {
+    return std::min(available, std::clamp(available / 2 - 1, std::int64_t{2}, most_threads));
+}
 
 /// What the OpenMP backend provides for this CPU; null if nothing.
 struct lent_threads {
@@ -55,25 +61,27 @@ inline lent_threads lend_threads() {
 }
 
 /// Calls `body(first, last)` for parts that cover [0, size), side by side if there are several of at least `grain`. `body`
-/// throws nothing.
+/// throws nothing. The team of threads is always of one size: OpenMP ends those that a smaller team does not need, and makes them
+/// anew for a larger one.
 template <class Body>
 void in_parallel(std::int64_t size, std::int64_t grain, Body&& body) {
+    static const lent_threads threads = lend_threads();
+    const bool divides = size / grain > 1 && threads.in_parts != nullptr;
+    const std::int64_t team = divides ? team_size(threads.most_parts()) : 1;
     struct whole {
         std::remove_reference_t<Body>* body;
         std::int64_t size, parts;
         std::int64_t begin(std::int64_t part) const { return size / parts * part + std::min(part, size % parts); }
-    } all{&body, size, std::min(size / grain, most_threads)};
-    static const lent_threads threads = lend_threads();
-    if (all.parts > 1 && threads.in_parts != nullptr) all.parts = std::min<std::int64_t>(all.parts, threads.most_parts());
-    if (all.parts <= 1 || threads.in_parts == nullptr) {
+    } all{&body, size, std::min(size / grain, team)};
+    if (team == 1) {
         if (size > 0) body(std::int64_t{0}, size);
         return;
     }
     threads.in_parts(
-        static_cast<int>(all.parts),
+        static_cast<int>(team),
         [](void* context, int part) {
             const auto& w = *static_cast<const whole*>(context);
-            (*w.body)(w.begin(part), w.begin(part + 1));
+            if (part < w.parts) (*w.body)(w.begin(part), w.begin(part + 1));
         },
         &all);
 }

@@ -21,6 +21,9 @@
 
 namespace myriad {
 
+/// Whether instances have a step size to go on with, as with adaptive methods, or none, as with fixed steps.
+enum class step_sizes { fixed, kept };
+
 /// `size` independent instances of a model, with real type R (double or float). Every accessor returns an Eigen map of
 /// one component over all instances, contiguous and writable; nothing is copied and nothing is checked per element.
 /// Values nobody set are NaN, so that `solve` can say which. Movable, not copyable.
@@ -118,8 +121,9 @@ public:
     const myriad::status* statuses() const { return status_.data(); }
     /// Phases completed since the start.
     const_map<std::int32_t> phases_done() const { return view(phase_, 0, "phase"); }
-    /// Step size the instance would try next.
-    const_map<R> next_step() const { return view(h_next_, 0, "step"); }
+    /// Step size the instance would try next; zero before the first phase, and with fixed steps. The first of these calls takes
+    /// memory unless an adaptive method did.
+    const_map<R> next_step() const { return view(std::as_const(next_steps()), 0, "step"); }
     /// Work since the start: accepted and rejected steps, steps redone to locate events, evaluations of rhs. Throws
     /// `error` if no call has counted.
     const_map<std::int64_t> accepted_steps() const { return counter(0); }
@@ -136,12 +140,15 @@ public:
     void restart() {
         if (untouched_) return;
         untouched_ = true;
-        h_next_.fill(R(0));
-        phase_.fill(0);
-        side_.fill(0);
-        ended_.fill(0);
-        status_.fill(status::not_started);
-        if (counted()) work_.fill(0);
+        // One loop of threads for all arrays, as each takes them a while to begin and to end.
+        host::in_parallel(size_, 32'768, [this](std::int64_t first, std::int64_t last) {
+            h_next_.fill_instances(first, last, R(0));
+            phase_.fill_instances(first, last, 0);
+            side_.fill_instances(first, last, 0);
+            ended_.fill_instances(first, last, 0);
+            status_.fill_instances(first, last, status::not_started);
+            work_.fill_instances(first, last, 0);
+        });
         samples_.clear();
     }
 
@@ -157,7 +164,6 @@ public:
         accessory_.pin(gpu);
         integer_accessory_.pin(gpu);
         t_.pin(gpu);
-        h_next_.pin(gpu);
         phase_.pin(gpu);
         side_.pin(gpu);
         ended_.pin(gpu);
@@ -176,7 +182,7 @@ public:
     void touch() { untouched_ = false; }
 
     /// Fills in the pointers of a kernel's arguments.
-    void describe(kernel_arguments<Model, R>& a, counting count) {
+    void describe(kernel_arguments<Model, R>& a, counting count, step_sizes steps = step_sizes::kept) {
         a.size = size_;
         a.parameter = parameter_.data();
         describe_domain(a);
@@ -185,7 +191,7 @@ public:
         a.accessory = accessory_.data();
         a.integer_accessory = integer_accessory_.data();
         a.tolerance_scale = scales_tolerances() ? tolerance_scale_.data() : nullptr;
-        a.h_next = h_next_.data();
+        a.h_next = steps == step_sizes::kept ? next_steps().data() : nullptr;
         a.phase = phase_.data();
         a.side = side_.data();
         a.ended = ended_.data();
@@ -270,10 +276,19 @@ private:
         return domain_;
     }
 
+    component_array<R>& next_steps() const {
+        if (h_next_.components() == 0) {
+            h_next_ = component_array<R>(1, size_, R(0));
+            if (pinned_for_ >= 0) h_next_.pin(pinned_for_);
+        }
+        return h_next_;
+    }
+
     /// What is allocated when it is first needed.
     void pin_later_ones() {
         if (pinned_for_ < 0) return;
         domain_.pin(pinned_for_);
+        h_next_.pin(pinned_for_);
         tolerance_scale_.pin(pinned_for_);
         work_.pin(pinned_for_);
         samples_.pin(pinned_for_);
@@ -306,7 +321,7 @@ private:
     component_array<R> shared_{n_shared<Model>, 1, unset};
     component_array<std::int32_t> shared_integer_{n_shared_integer<Model>, 1, 0};
     component_array<R> tolerance_scale_;  // allocated when it is asked for
-    component_array<R> h_next_{1, size_, R(0)};
+    mutable component_array<R> h_next_;  // allocated when it is asked for
     component_array<std::int32_t> phase_{1, size_, 0};
     component_array<std::int8_t> side_{n_event<Model>, size_, 0};
     component_array<std::uint8_t> ended_{1, size_, 0};

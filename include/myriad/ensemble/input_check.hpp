@@ -38,11 +38,17 @@ bool all_within(const R* values, std::int64_t count, R limit) {
     using bits = std::conditional_t<sizeof(R) == 8, std::uint64_t, std::uint32_t>;
     constexpr bits magnitude = static_cast<bits>(~bits(0)) >> 1;
     const bits to_sign = magnitude - std::bit_cast<bits>(limit);
-    return all_parts(count, [=](std::int64_t first, std::int64_t last) {
-        bits signs = 0;
-        for (std::int64_t i = first; i < last; ++i) signs |= (std::bit_cast<bits>(values[i]) & magnitude) + to_sign;
-        return (signs & ~magnitude) == 0;
-    });
+    bits signs = 0;
+    const auto look = [&](std::int64_t i) { signs |= (std::bit_cast<bits>(values[i]) & magnitude) + to_sign; };
+    // Asking for what comes 4 KiB later is worth a factor of 1.2 to 1.6 where caches do not hold it.
+    constexpr std::int64_t line = 64 / sizeof(R), ahead = 64 * line;
+    std::int64_t done = 0;
+    for (; done + line <= count; done += line) {
+        __builtin_prefetch(values + done + ahead);
+        for (std::int64_t i = done; i < done + line; ++i) look(i);
+    }
+    for (; done < count; ++done) look(done);
+    return (signs & ~magnitude) == 0;
 }
 
 /// Checks the first `count` instances: throws `error`, naming the count and the first instance, or marks the instances
@@ -57,24 +63,27 @@ public:
     bool passes(std::int64_t first, std::int64_t count) const {
         const ensemble<Model, R>& e = ensemble_;
         constexpr R largest = std::numeric_limits<R>::max();
-        bool fine = true;
-        const auto look = [&](const R* values, R limit) { fine = fine && all_within(values + first, count, limit); };
-        for (int c = 0; c < n_shared<Model>; ++c) fine = fine && std::isfinite(e.shared(c));
-        for (int c = 0; c < n_state<Model>; ++c) look(e.state(c).data(), largest);
-        for (int c = 0; c < n_parameter<Model>; ++c) look(e.parameter(c).data(), largest);
         const R latest = may_be_endless() ? std::numeric_limits<R>::infinity() : largest;
-        if (e.has_common_domain()) {
-            fine = fine && std::abs(e.t_begin_of(0)) <= largest && std::abs(e.t_end_of(0)) <= latest;
-        } else {
-            look(e.t_begin().data(), largest);
-            look(e.t_end().data(), latest);
-        }
-        if (!fine || !e.scales_tolerances()) return fine;
-        const R* const scale = ensemble_.tolerance_scale().data() + first;
-        look(scale - first, largest);
-        return fine && all_parts(count, [=](std::int64_t begin, std::int64_t end) {
+        bool fine = true;
+        for (int c = 0; c < n_shared<Model>; ++c) fine = fine && std::isfinite(e.shared(c));
+        const bool common_domain = e.has_common_domain();
+        if (common_domain) fine = fine && std::abs(e.t_begin_of(0)) <= largest && std::abs(e.t_end_of(0)) <= latest;
+        const R* const t_begin = common_domain ? nullptr : e.t_begin().data();
+        const R* const t_end = common_domain ? nullptr : e.t_end().data();
+        const R* const scale = e.scales_tolerances() ? ensemble_.tolerance_scale().data() : nullptr;
+        // One loop of threads for all arrays, as each takes them a while to begin and to end.
+        return fine && all_parts(count, [&](std::int64_t begin, std::int64_t end) {
+            const auto within = [&](const R* values, R limit) {
+                return values == nullptr || all_within(values + first + begin, end - begin, limit);
+            };
+            for (int c = 0; c < n_state<Model>; ++c)
+                if (!within(e.state(c).data(), largest)) return false;
+            for (int c = 0; c < n_parameter<Model>; ++c)
+                if (!within(e.parameter(c).data(), largest)) return false;
+            if (!within(t_begin, largest) || !within(t_end, latest) || !within(scale, largest)) return false;
             bool positive = true;
-            for (std::int64_t i = begin; i < end; ++i) positive &= scale[i] > 0;
+            if (scale != nullptr)
+                for (std::int64_t i = first + begin; i < first + end; ++i) positive &= scale[i] > 0;
             return positive;
         });
     }

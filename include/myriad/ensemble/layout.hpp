@@ -3,6 +3,7 @@
 // The memory is the library's own and not Eigen's, whose alignment depends on compiler flags.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -35,6 +36,10 @@ public:
     const T* component(int c) const { return data_.get() + c * size_; }
     /// Sets every value.
     void fill(T value) { fill(data_.get(), components_ * size_, value); }
+    /// Sets all components of instances [first, last), in the thread that calls it.
+    void fill_instances(std::int64_t first, std::int64_t last, T value) {
+        for (int c = 0; c < components_; ++c) std::fill(component(c) + first, component(c) + last, value);
+    }
     /// Sets every value of component c.
     void fill_component(int c, T value) { fill(component(c), size_, value); }
     /// Keeps the memory in place as long as it lives, for copies to and from GPUs. Once is enough.

@@ -68,8 +68,7 @@ public:
           sample_times_(o.samples.times.begin(), o.samples.times.end()) {
         describe_options(arguments_, o, method);
         if (method.scales_tolerances) instances.tolerance_scale();  // there from now on
-        instances.describe(arguments_, o.counting);
-        if (!method.adaptive) arguments_.h_next = nullptr;  // fixed steps leave none to go on with
+        instances.describe(arguments_, o.counting, method.adaptive ? step_sizes::kept : step_sizes::fixed);
         records_.describe(arguments_.record);
         if (o.samples.empty()) return;
         auto& sample = arguments_.sample;
