@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -84,6 +86,22 @@ private:
     std::vector<entry> idle_;
 };
 
+/// For a thread that waits for one of several things: it looks again at once while that may save some of the time of a chunk, and
+/// later sleeps in between.
+class patience {
+public:
+    /// Whether what the future promises has come.
+    template <class Future>
+    bool is_over(const Future& awaited) {
+        const bool sleeps = std::chrono::steady_clock::now() - begin_ > std::chrono::milliseconds{5};
+        if (!sleeps) std::this_thread::yield();
+        return awaited.wait_for(std::chrono::microseconds{sleeps ? 50 : 0}) == std::future_status::ready;
+    }
+
+private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
 /// One call of `solve` on a GPU.
 template <class Model, class R>
 class chunked_solve {
@@ -96,42 +114,67 @@ public:
                   report<Model, R>& result)
         : options_(o), make_(make), instances_(instances), arguments_(arguments), check_(check), relay_(relay), result_(result),
           how_{where.number(), o.block_size, o.shared_placement, o.schedule}, size_(instances.size()),
-          checked_(size_ <= worth_chunks ? size_ : 0),
           past_(instances.untouched() ? cuda::past::none : cuda::past::kept) {}
 
     /// Nothing is written to the ensemble before all of it is checked.
     void run() {
         engines_.push_back(engines::take(make_, how_));
-        clock_ = engines_.front()->start_clock();
+        engine& first = *engines_.front();
+        clock_ = first.start_clock();
         const std::int64_t chunk = chunk_size();
-        while (engines_.size() < chunks_at_a_time && static_cast<std::int64_t>(engines_.size()) * chunk < size_)
-            engines_.push_back(engines::take(make_, how_));
-        for (auto& e : engines_) e->reserve(arguments_, chunk);
-        for (auto& e : engines_) begin(*e, chunk);
-        while (checked_ < size_) {
-            const bool hold_more = may_hold_more();
-            check(hold_more ? std::min(checked_ + chunk, size_) : size_);
-            if (hold_more && begun_ < checked_ && keeps_too_few_busy()) begin_another(chunk);
-        }
-        instances_.touch();
-        for (part& p : under_way_) bring_back(p);  // into the ensemble, at once where its memory is pinned
-        while (!under_way_.empty()) {
-            engine& free = wait_for_oldest();
-            if (begun_ == size_ || relay_.failure) continue;
-            begin(free, chunk);
-            bring_back(under_way_.back());
+        first.reserve(arguments_, chunk);
+        check(chunk);
+        if (chunk == size_) {
+            open_for_results();
+            begin(first, 0, chunk);
+            first.download(arguments_);
+            bring_back(first, 0, chunk);
+            progress_relay::call(&relay_, chunk);
+        } else {
+            run_chunks(chunk);
         }
         if (options_.counting == counting::on) set_work(result_, work_before_, work_after_);
-        result_.kernel = engines_.front()->facts();
+        result_.kernel = first.facts();
         for (auto& e : engines_) engines::give(make_, how_, std::move(e));
     }
 
 private:
     struct part {
-        engine* worker;
         std::int64_t first, count;
+        engine* worker;
+        std::shared_future<void> asked;
         std::future<void> back;
     };
+
+    /// This thread begins chunks. A second one checks those that come, and afterwards brings back those that went: it asks for
+    /// the results of a chunk before it puts those of the one before in their places.
+    void run_chunks(std::int64_t chunk) {
+        checking_ = background_->ask([this, chunk] {
+            while (checked_ < size_) check(std::min(checked_ + chunk, size_));
+            open_for_results();
+        }).share();
+        for (std::int64_t first = 0; first < size_; first += chunk) {
+            engine* const worker = first == 0 ? engines_.front().get() : &free_engine(chunk);
+            if (relay_.failure) break;
+            const std::int64_t count = std::min(chunk, size_ - first);
+            wait_for_check(first + count);
+            begin(*worker, first, count);
+            auto asked = background_->ask([this, worker] {
+                checking_.get();  // nothing is brought back if that was refused
+                worker->download(arguments_);
+            });
+            if (!under_way_.empty()) bring_back(under_way_.back());
+            under_way_.push_back({first, count, worker, asked.share(), {}});
+        }
+        bring_back(under_way_.back());
+        while (!under_way_.empty()) wait_for_oldest();
+    }
+    void bring_back(part& p) {
+        p.back = background_->ask([this, worker = p.worker, first = p.first, count = p.count, asked = p.asked] {
+            asked.get();
+            bring_back(*worker, first, count);
+        });
+    }
 
     struct bytes {
         std::int64_t kept = 0, copied = 0;
@@ -165,66 +208,76 @@ private:
                    : std::clamp(fits / static_cast<std::int64_t>(chunks_at_a_time), std::int64_t{1}, chunk);
     }
 
+    /// An engine that has finished, or another one: the first ones anyhow, more where too few of them keep the device busy, as
+    /// nothing may be brought back yet.
+    engine& free_engine(std::int64_t chunk) {
+        if (engines_.size() < chunks_at_a_time) return add_engine(chunk);
+        for (patience waiting;;) {
+            if (waiting.is_over(under_way_.front().back)) return wait_for_oldest();
+            if (may_hold_more(chunk) && keeps_too_few_busy()) {
+                try {
+                    return add_engine(chunk);
+                } catch (const error&) {  // someone else has taken the memory since
+                    most_engines_ = engines_.size();
+                }
+            }
+        }
+    }
+    engine& add_engine(std::int64_t chunk) {
+        auto another = engines::take(make_, how_);
+        another->reserve(arguments_, chunk);
+        engines_.push_back(std::move(another));
+        return *engines_.back();
+    }
+    /// Whether there is memory for more than `chunks_at_a_time`: half of what the device then has left stays free.
+    bool may_hold_more(std::int64_t chunk) {
+        if (options_.chunk_size > 0) return false;
+        if (!most_engines_) {
+            const std::int64_t fit = engines_.front()->affordable(of_an_instance().kept) / (2 * chunk);
+            most_engines_ = std::min(most_chunks_held, engines_.size() + static_cast<std::size_t>(fit));
+        }
+        return engines_.size() < *most_engines_;
+    }
     bool keeps_too_few_busy() const {
         const auto idle = std::count_if(engines_.begin(), engines_.end(), [](const auto& e) { return e->idle(); });
         return engines_.size() - static_cast<std::size_t>(idle) < chunks_at_a_time;
     }
-    /// Whether more chunks may be held than `chunks_at_a_time`. Where the host's memory is not pinned, copying it would delay the
-    /// check.
-    bool may_hold_more() const {
-        return instances_.pinned() && options_.chunk_size == 0 && engines_.size() < most_chunks_held;
-    }
-    /// Begins one more chunk, if there is memory: half of what the device has left stays free.
-    void begin_another(std::int64_t chunk) {
-        if (!affordable_chunks_) affordable_chunks_ = engines_.front()->affordable(of_an_instance().kept) / (2 * chunk);
-        if (*affordable_chunks_ <= 0) return;
-        --*affordable_chunks_;
-        auto another = engines::take(make_, how_);
-        try {
-            another->reserve(arguments_, chunk);
-        } catch (const error&) {  // someone else has taken the memory since
-            affordable_chunks_ = 0;
-            return;
-        }
-        engines_.push_back(std::move(another));
-        begin(*engines_.back(), chunk);
-    }
 
     /// Sees to it that the data of the first `count` instances are fine, or marked.
     void check(std::int64_t count) {
-        if (checked_ >= count) return;
         if (check_.passes(checked_, count - checked_)) {
             checked_ = count;
             return;
         }
         check_.run();
-        checked_ = size_;
         past_ = cuda::past::kept;  // some are marked
+        checked_ = size_;
+    }
+    /// Throws what the check throws.
+    void wait_for_check(std::int64_t count) const {
+        for (patience waiting; checked_ < count;)
+            if (waiting.is_over(checking_)) checking_.get();
     }
 
-    void begin(engine& worker, std::int64_t chunk) {
-        const std::int64_t count = std::min(chunk, size_ - begun_);
-        check(begun_ + count);
-        if (past_ == cuda::past::kept) add_work(work_before_, begun_, count);
-        worker.upload(arguments_, begun_, count, past_);
+    void open_for_results() {
+        if (past_ == cuda::past::kept) add_work(work_before_, 0, size_);
+        instances_.touch();
+    }
+
+    void begin(engine& worker, std::int64_t first, std::int64_t count) {
+        worker.upload(arguments_, first, count, past_);
         worker.integrate(arguments_);
-        under_way_.push_back({&worker, begun_, count, {}});
-        begun_ += count;
     }
 
-    /// Has the results of a chunk put into the ensemble, and looked at, in the order of chunks.
-    void bring_back(part& p) {
-        p.worker->download(arguments_);
-        const std::function<void()> task = [this, worker = p.worker, first = p.first, count = p.count] {
-            worker->wait();
-            // Kernels may overlap: a new one fills the places that the one before leaves.
-            const auto [from, to] = worker->kernel_interval(clock_);
-            result_.kernel_seconds += std::max(0.0, to - std::max(from, kernels_until_));
-            kernels_until_ = std::max(kernels_until_, to);
-            add_work(work_after_, first, count);
-            add_summary(instances_, result_, first, count);
-        };
-        p.back = engines_.size() == 1 ? std::async(std::launch::deferred, task) : background_.ask(task);
+    /// Puts results that were asked for into the ensemble, and looks at them; in the order of chunks.
+    void bring_back(engine& worker, std::int64_t first, std::int64_t count) {
+        worker.wait();
+        // Kernels may overlap: a new one fills the places that the one before leaves.
+        const auto [from, to] = worker.kernel_interval(clock_);
+        result_.kernel_seconds += std::max(0.0, to - std::max(from, kernels_until_));
+        kernels_until_ = std::max(kernels_until_, to);
+        add_work(work_after_, first, count);
+        add_summary(instances_, result_, first, count);
     }
 
     /// Returns the engine that is free then.
@@ -250,15 +303,17 @@ private:
     progress_relay& relay_;
     report<Model, R>& result_;
     cuda::engine_options how_;
-    std::optional<std::int64_t> affordable_chunks_;  // beyond `chunks_at_a_time`
-    std::int64_t size_, checked_, begun_ = 0;  // the first instances that are fine, and those that were begun
-    cuda::past past_;
+    std::int64_t size_;
+    std::atomic<std::int64_t> checked_{0};  // so many are fine, or marked
+    std::atomic<cuda::past> past_;
+    std::shared_future<void> checking_;
+    std::optional<std::size_t> most_engines_;
     std::vector<std::unique_ptr<engine>> engines_;
     std::deque<part> under_way_;
     void* clock_ = nullptr;
     double kernels_until_ = 0;
     work_count work_before_{}, work_after_{};
-    background background_;  // destroyed first: it uses all of the above
+    lent_background background_;  // destroyed first: it uses all of the above
 };
 
 }  // namespace myriad::host

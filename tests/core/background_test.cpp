@@ -3,8 +3,10 @@
 #include <atomic>
 #include <future>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "myriad/core/background.hpp"
@@ -57,4 +59,31 @@ TEST_CASE("the end of a background thread waits for the task at work and drops t
         end.join();
     }
     CHECK(done == 1);
+}
+
+TEST_CASE("a background thread that was lent and given back works for the next one, without what was left") {
+    std::thread::id first, second;
+    std::promise<void> begun, go;
+    std::atomic<int> done{0};
+    std::future<void> left;
+    std::optional<myriad::host::lent_background> lent(std::in_place);
+    (*lent)->ask([&, may = go.get_future().share()] {
+        first = std::this_thread::get_id();
+        begun.set_value();
+        may.wait();
+        ++done;
+    });
+    begun.get_future().get();
+    left = (*lent)->ask([&] { ++done; });
+    std::thread end([&] { lent.reset(); });
+    CHECK_THROWS_AS(left.get(), std::future_error);  // broken promise
+    CHECK(done == 0);
+    go.set_value();
+    end.join();
+    CHECK(done == 1);
+    myriad::host::lent_background next, beside_it;
+    next->ask([&] { second = std::this_thread::get_id(); }).get();
+    CHECK(first == second);
+    beside_it->ask([&] { second = std::this_thread::get_id(); }).get();
+    CHECK(first != second);
 }

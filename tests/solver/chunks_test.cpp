@@ -257,6 +257,24 @@ TEST_CASE("a restarted ensemble gives the bits of a new one, on engines that wer
     CHECK(same(small, small_after));
 }
 
+TEST_CASE("next steps are zero with fixed steps, kept from an adaptive method over these, and zero after a restart") {
+    for (const bool pinned : {false, true}) {
+        auto e = filled(40'000);
+        if (pinned) e.pin(test_device());
+        const auto o = quarter_steps(15'000);
+        myriad::solve<runge_kutta_4>(test_device(), e, o);
+        CHECK((e.next_step() == 0).all());
+        myriad::solve<myriad::cash_karp>(test_device(), e, o);
+        const Eigen::ArrayXd kept = e.next_step();
+        CHECK((kept > 0).count() > 0);  // zero of those that ended before
+        myriad::solve<runge_kutta_4>(test_device(), e, o);
+        CHECK((e.next_step() == kept).all());
+        e.restart();
+        CHECK((e.next_step() == 0).all());
+        CHECK((e.phases_done() == 0).all());
+    }
+}
+
 TEST_CASE("progress of chunks rises to the total, and an exception of it ends the work after what is under way") {
     if (tests::tests_cpu()) return;  // where it is told otherwise
     auto o = quarter_steps(50'000);

@@ -6,9 +6,11 @@
 #include <deque>
 #include <functional>
 #include <future>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace myriad::host {
 
@@ -17,14 +19,13 @@ public:
     background() = default;
     background(const background&) = delete;
     background& operator=(const background&) = delete;
-    /// Waits for the task at work; those after it are dropped.
     ~background() {
+        forget();
         {
             const std::lock_guard lock(mutex_);
             over_ = true;
-            tasks_.clear();
         }
-        changed_.notify_one();
+        changed_.notify_all();
         if (thread_.joinable()) thread_.join();
     }
 
@@ -37,8 +38,14 @@ public:
             tasks_.push_back(std::move(packed));
             if (!thread_.joinable()) thread_ = std::thread([this] { work(); });
         }
-        changed_.notify_one();
+        changed_.notify_all();
         return done;
+    }
+    /// Waits for the task at work; those after it are dropped.
+    void forget() {
+        std::unique_lock lock(mutex_);
+        tasks_.clear();
+        changed_.wait(lock, [this] { return !at_work_; });
     }
 
 private:
@@ -49,17 +56,58 @@ private:
             if (over_) return;
             std::packaged_task<void()> next = std::move(tasks_.front());
             tasks_.pop_front();
+            at_work_ = true;
             lock.unlock();
             next();
             lock.lock();
+            at_work_ = false;
+            changed_.notify_all();
         }
     }
 
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<std::packaged_task<void()>> tasks_;
-    bool over_ = false;
+    bool over_ = false, at_work_ = false;
     std::thread thread_;
+};
+
+/// One that is borrowed for a while, as a new thread and those that it takes for its loops cost as much as copying a million
+/// instances.
+class lent_background {
+public:
+    lent_background() : taken_(take()) {}
+    lent_background(const lent_background&) = delete;
+    lent_background& operator=(const lent_background&) = delete;
+    /// Waits for the task at work; those after it are dropped.
+    ~lent_background() {
+        taken_->forget();
+        pool& all = idle();
+        const std::lock_guard lock(all.mutex);
+        all.threads.push_back(std::move(taken_));
+    }
+    background* operator->() const { return taken_.get(); }
+
+private:
+    struct pool {
+        std::mutex mutex;
+        std::vector<std::unique_ptr<background>> threads;
+    };
+    /// Never destroyed: what the threads' ends would wait for may be gone first.
+    static pool& idle() {
+        static pool* const all = new pool;
+        return *all;
+    }
+    static std::unique_ptr<background> take() {
+        pool& all = idle();
+        const std::lock_guard lock(all.mutex);
+        if (all.threads.empty()) return std::make_unique<background>();
+        auto taken = std::move(all.threads.back());
+        all.threads.pop_back();
+        return taken;
+    }
+
+    std::unique_ptr<background> taken_;
 };
 
 }  // namespace myriad::host

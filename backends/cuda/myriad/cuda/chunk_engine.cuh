@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "myriad/cuda/launch.cuh"
 #include "myriad/cuda/resources.cuh"
 #include "myriad/cuda/schedule.cuh"
+#include "myriad/cuda/staging.cuh"
 #include "myriad/cuda/transfers.cuh"
 
 namespace myriad::cuda {
@@ -58,12 +60,13 @@ public:
         };
         arrays(stage);
         records(stage);
-        staged_.reserve(std::max(to_stage, little));
+        // Made now, since that waits for all work of the device: for an upload, a download, and one that is asked for.
+        if (to_stage > little_transfer::most) lent_staging::provide(device_, 3);
     }
 
     void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances) override {
         const current_device here(device_);
-        staged_.finish_download();
+        finish_download();
         first_ = first;
         count_ = count;
         scheduler_.forget_costs();
@@ -79,7 +82,11 @@ public:
             if (!is_cleared(kind)) list.push_back(rows_of(source, host.size, target, components));
         });
         copy_directly(take_pinned(list), cudaMemcpyHostToDevice, stream_.get());
-        staged_.upload(list, stream_.get());
+        if (bytes_of(list) <= little_transfer::most) {
+            little_.upload(list, stream_.get());
+        } else {
+            lent_staging(device_)->upload(list, stream_.get());
+        }
         // After the copies: clearing takes multiprocessors, and would have them wait for kernels of other chunks.
         std::byte *zeros = nullptr, *end_of_zeros = nullptr;
         walk(from, [&](auto*&, auto* target, std::int64_t components, array_access, array_kind kind) {
@@ -99,7 +106,7 @@ public:
     void integrate(const arguments& host) override {
         require(count_ > 0, "nothing was uploaded yet: call upload before integrate");
         const current_device here(device_);
-        staged_.finish_asking();
+        if (fetching_ && !(*fetching_)->asked_for_all()) finish_download();
         arguments now = host;
         walk(now, [](auto*& array, auto* on_device, std::int64_t, array_access, array_kind) { array = on_device; });
         now.size = count_;
@@ -141,12 +148,18 @@ public:
         const row_list& upper = after ? list : of_arrays;
         lower.insert(lower.end(), upper.begin(), upper.end());
         copy_directly(take_pinned(lower), cudaMemcpyDeviceToHost, stream_.get());
-        staged_.begin_download(lower, stream_.get());
+        finish_download();
+        if (bytes_of(lower) <= little_transfer::most) {
+            little_.begin_download(lower, stream_.get());
+        } else {
+            fetching_ = std::make_unique<lent_staging>(device_);
+            (*fetching_)->begin_download(lower, stream_.get());
+        }
     }
 
     void wait() override {
         const current_device here(device_);
-        staged_.finish_download();
+        finish_download();
         check(cudaStreamSynchronize(stream_.get()), "the integration on the GPU");
     }
     bool idle() override {
@@ -233,15 +246,18 @@ private:
         return {reinterpret_cast<std::byte*>(host + first_), reinterpret_cast<std::byte*>(device),
                 bytes_of(host, count_), static_cast<std::size_t>(components), bytes_of(host, size)};
     }
-    /// So little that the number of copies counts.
-    static constexpr std::size_t little = 65'536;
     /// Takes the rows of pinned memory out of a list, unless it is of so little.
     static row_list take_pinned(row_list& list) {
-        if (bytes_of(list) <= little) return {};
+        if (bytes_of(list) <= little_transfer::most) return {};
         const auto first = std::stable_partition(list.begin(), list.end(), [](const array_rows& rows) { return !is_pinned(rows.host); });
         row_list pinned(first, list.end());
         list.erase(first, list.end());
         return pinned;
+    }
+
+    void finish_download() {
+        little_.finish_download();
+        if (const auto lent = std::move(fetching_)) (*lent)->finish_download();
     }
 
     /// NaN for reals, as nothing was written there, and 0 for integers.
@@ -294,7 +310,8 @@ private:
     phase_scheduler<Model, Method, R> scheduler_;
     stream stream_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};
-    staged_transfer staged_;
+    little_transfer little_;
+    std::unique_ptr<lent_staging> fetching_;  // of the download under way, if it is more
     shared_parameters<R> shared_on_device_{};
     std::int64_t first_ = 0, count_ = 0;
 };

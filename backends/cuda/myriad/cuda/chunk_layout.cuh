@@ -18,7 +18,7 @@ std::size_t bytes_of(const T*, std::int64_t values) {
 
 /// Bytes of an array, rounded up so that the next one begins where memory transactions do.
 inline std::size_t padded(std::int64_t values, std::size_t element) {
-    constexpr std::size_t unit = staged_transfer::padding;
+    constexpr std::size_t unit = piece::padding;
     return (static_cast<std::size_t>(values) * element + unit - 1) / unit * unit;
 }
 
@@ -29,7 +29,7 @@ std::size_t bytes_for(std::int64_t count, Each&& each) {
     each([&](auto* array, std::int64_t components, array_access, array_kind) {
         bytes += padded(components * count, sizeof(*array));
     });
-    return bytes == 0 ? 0 : bytes + staged_transfer::padding;  // so that no copy goes from one allocation on to another
+    return bytes == 0 ? 0 : bytes + piece::padding;  // so that no copy goes from one allocation on to another
 }
 
 /// For `for_each_array` and `for_each_record`: calls `visit(pointer, on the device, components, access, kind)` for each array,

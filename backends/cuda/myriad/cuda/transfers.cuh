@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Copies between an ensemble's arrays on the host and a chunk on the device: directly where the host's memory is pinned, else
-// through small pinned buffers that several threads fill and empty, since pinning everything would take longer than the copy.
+// Copies between an ensemble's arrays on the host and a chunk on the device: which rows there are, copied directly where the
+// host's memory is pinned, or cut into pieces for those who copy through pinned buffers (cuda/staging.cuh).
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <utility>
 #include <vector>
 
-#include "myriad/core/parallel.hpp"
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include "myriad/cuda/check.cuh"
-#include "myriad/cuda/resources.cuh"
 
 namespace myriad::cuda {
 
@@ -55,132 +56,87 @@ inline void copy_directly(const row_list& list, cudaMemcpyKind way, cudaStream_t
     }
 }
 
-/// Copies through two pinned buffers, in pieces as large as one, of which each is a single transfer whatever arrays it holds.
-class staged_transfer {
+/// A part of the device's memory that is a single transfer, whatever arrays it holds, and those rows that it has a part of.
+class piece {
 public:
-    /// Arrays begin at multiples of it; what is between them is copied along.
+    /// Arrays on the device begin at multiples of it; what is between them is copied along.
     static constexpr std::size_t padding = 256;
 
-    /// Takes the pinned memory for transfers of so many bytes, since that waits for all work of the device.
-    void reserve(std::size_t bytes) {
-        for (std::size_t i = 0; i < (bytes > largest ? buffers : 1); ++i) buffers_[i].make_room(std::min(bytes, largest));
-    }
-    /// The host's memory is free on return.
-    void upload(const row_list& list, cudaStream_t stream) {
-        finish_download();
-        for (const piece& p : cut(list)) {
-            buffer& b = buffers_[turn_++ % buffers];
-            b.make_room(p.bytes);
-            b.wait();
-            exchange(p, b, [](std::byte* host, std::byte* staged, std::size_t n) { std::memcpy(staged, host, n); });
-            MYRIAD_CUDA(cudaMemcpyAsync(p.device, b.data(), p.bytes, cudaMemcpyHostToDevice, stream));
-            b.mark(stream);
-        }
-    }
-    /// Asks for the first pieces, and returns.
-    void begin_download(const row_list& list, cudaStream_t stream) {
-        finish_download();
-        std::vector<piece> pieces = cut(list);
-        for (std::size_t i = 0; i < std::min(pieces.size(), buffers); ++i) ask(pieces[i], buffers_[i], stream);
-        pieces_ = std::move(pieces);
-        stream_ = stream;
-    }
-    /// To be called before the device changes what is downloaded: not all pieces may have been asked for.
-    void finish_asking() {
-        if (pieces_.size() > buffers) finish_download();
-    }
-    /// Waits for what `begin_download` began, and puts it in its place.
-    void finish_download() {
-        const std::vector<piece> pieces = std::exchange(pieces_, {});
-        for (std::size_t done = 0; done < pieces.size(); ++done) {
-            buffer& b = buffers_[done % buffers];
-            b.wait();
-            exchange(pieces[done], b, [](std::byte* host, std::byte* staged, std::size_t n) { std::memcpy(host, staged, n); });
-            if (done + buffers < pieces.size()) ask(pieces[done + buffers], b, stream_);
-        }
-    }
-
-private:
-    static constexpr std::size_t buffers = 2, largest = std::size_t{4} << 20, smallest = std::size_t{64} << 10;
-    /// A part of the device's memory, and those rows that it has a part of.
-    struct piece {
-        std::byte* device;
-        std::size_t bytes;
-        row_list rows;
-    };
-
-    class buffer {
-    public:
-        buffer() = default;
-        buffer(const buffer&) = delete;
-        buffer& operator=(const buffer&) = delete;
-        ~buffer() { cudaFreeHost(data_); }
-        /// What it held is lost if it grows.
-        void make_room(std::size_t bytes) {
-            if (bytes <= bytes_) return;
-            wait();
-            MYRIAD_CUDA(cudaFreeHost(std::exchange(data_, nullptr)));
-            bytes_ = 0;
-            const std::size_t wanted = bytes <= smallest ? smallest : largest;
-            MYRIAD_CUDA(cudaHostAlloc(&data_, wanted, cudaHostAllocPortable));
-            bytes_ = wanted;
-        }
-        std::byte* data() const { return static_cast<std::byte*>(data_); }
-        void mark(cudaStream_t stream) { MYRIAD_CUDA(cudaEventRecord(copied_.get(), stream)); }
-        void wait() { check(cudaEventSynchronize(copied_.get()), "the integration on the GPU"); }
-
-    private:
-        void* data_ = nullptr;
-        std::size_t bytes_ = 0;
-        event copied_{event::kind::plain};
-    };
-
-    static std::vector<piece> cut(const row_list& list) {
+    static std::vector<piece> cut(const row_list& list, std::size_t largest) {
         std::vector<piece> pieces;
         for (const array_rows& rows : list) {
             std::byte* from = rows.device;
             while (from != rows.end()) {
-                const bool joins = !pieces.empty() && from < end_of(pieces.back()) + padding &&
-                                   from < pieces.back().device + largest;
-                if (!joins) pieces.push_back({from, 0, {}});
+                const bool joins = !pieces.empty() && from < pieces.back().end() + padding &&
+                                   from < pieces.back().device_ + largest;
+                if (!joins) pieces.push_back(piece(from));
                 piece& p = pieces.back();
-                from = std::min(rows.end(), p.device + largest);
-                p.bytes = static_cast<std::size_t>(from - p.device);
-                p.rows.push_back(rows);
+                from = std::min(rows.end(), p.device_ + largest);
+                p.bytes_ = static_cast<std::size_t>(from - p.device_);
+                p.rows_.push_back(rows);
             }
         }
         return pieces;
     }
-    static std::byte* end_of(const piece& p) { return p.device + p.bytes; }
+
+    std::size_t bytes() const { return bytes_; }
+    /// From the host's arrays to a buffer, and back.
+    void gather(std::byte* buffer) const {
+        each_run(buffer, [](std::byte* host, std::byte* staged, std::size_t n) { std::memcpy(staged, host, n); });
+    }
+    void scatter(std::byte* buffer) const {
+        each_run(buffer, [](std::byte* host, std::byte* staged, std::size_t n) { copy_past_caches(host, staged, n); });
+    }
+    /// A pinned buffer to the device, and back.
+    cudaError_t begin_upload(const std::byte* buffer, cudaStream_t stream) const {
+        return cudaMemcpyAsync(device_, buffer, bytes_, cudaMemcpyHostToDevice, stream);
+    }
+    cudaError_t begin_download(std::byte* buffer, cudaStream_t stream) const {
+        return cudaMemcpyAsync(buffer, device_, bytes_, cudaMemcpyDeviceToHost, stream);
+    }
+
+private:
+    explicit piece(std::byte* device) : device_(device) {}
+    std::byte* end() const { return device_ + bytes_; }
 
     /// Calls `copy(host, staged, bytes)` for all that the piece has of each row.
     template <class Copy>
-    static void exchange(const piece& p, const buffer& b, Copy&& copy) {
-        host::in_parallel(static_cast<std::int64_t>(p.bytes), 262'144, [&](std::int64_t first, std::int64_t last) {
-            for (const array_rows& rows : p.rows) {
-                std::byte* at = std::max(p.device + first, rows.device);
-                std::byte* const end = std::min(p.device + last, rows.end());
-                while (at < end) {
-                    const auto offset = static_cast<std::size_t>(at - rows.device);
-                    const std::size_t row = offset / rows.width, column = offset % rows.width;
-                    const std::size_t n = std::min(rows.width - column, static_cast<std::size_t>(end - at));
-                    copy(rows.host + row * rows.pitch + column, b.data() + (at - p.device), n);
-                    at += n;
-                }
+    void each_run(std::byte* buffer, Copy&& copy) const {
+        for (const array_rows& rows : rows_) {
+            std::byte* at = std::max(device_, rows.device);
+            std::byte* const last = std::min(end(), rows.end());
+            while (at < last) {
+                const auto offset = static_cast<std::size_t>(at - rows.device);
+                const std::size_t row = offset / rows.width, column = offset % rows.width;
+                const std::size_t n = std::min(rows.width - column, static_cast<std::size_t>(last - at));
+                copy(rows.host + row * rows.pitch + column, buffer + (at - device_), n);
+                at += n;
             }
-        });
+        }
+    }
+    /// Writes results without reading what was there before: twice as fast as memcpy for what caches do not hold.
+    static void copy_past_caches(std::byte* to, const std::byte* from, std::size_t bytes) {
+#if defined(__SSE2__)
+        constexpr std::size_t line = 64, part = sizeof(__m128i), worthwhile = 32 * line;
+        if (bytes >= worthwhile) {
+            const std::size_t before = (line - reinterpret_cast<std::uintptr_t>(to) % line) % line;
+            std::memcpy(to, from, before);
+            to += before;
+            from += before;
+            bytes -= before;
+            for (; bytes >= line; to += line, from += line, bytes -= line)
+                for (std::size_t k = 0; k < line; k += part)
+                    _mm_stream_si128(reinterpret_cast<__m128i*>(to + k),
+                                     _mm_loadu_si128(reinterpret_cast<const __m128i*>(from + k)));
+            _mm_sfence();
+        }
+#endif
+        std::memcpy(to, from, bytes);
     }
 
-    static void ask(const piece& p, buffer& b, cudaStream_t stream) {
-        b.make_room(p.bytes);
-        MYRIAD_CUDA(cudaMemcpyAsync(b.data(), p.device, p.bytes, cudaMemcpyDeviceToHost, stream));
-        b.mark(stream);
-    }
-
-    buffer buffers_[buffers];
-    std::size_t turn_ = 0;
-    std::vector<piece> pieces_;  // of the download under way
-    cudaStream_t stream_ = nullptr;
+    std::byte* device_;
+    std::size_t bytes_ = 0;
+    row_list rows_;
 };
 
 }  // namespace myriad::cuda

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// Copies to and from a GPU through small pinned buffers, for memory of the host that is not pinned: pinning all of it would take
+// longer than the copy.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "myriad/core/parallel.hpp"
+#include "myriad/cuda/check.cuh"
+#include "myriad/cuda/resources.cuh"
+#include "myriad/cuda/transfers.cuh"
+
+namespace myriad::cuda {
+
+/// Pinned memory of the host.
+class pinned_memory {
+public:
+    explicit pinned_memory(std::size_t bytes) {
+        void* taken = nullptr;
+        MYRIAD_CUDA(cudaHostAlloc(&taken, bytes, cudaHostAllocPortable));
+        data_ = static_cast<std::byte*>(taken);
+    }
+    pinned_memory(const pinned_memory&) = delete;
+    pinned_memory& operator=(const pinned_memory&) = delete;
+    ~pinned_memory() { cudaFreeHost(data_); }
+    std::byte* data() const { return data_; }
+
+private:
+    std::byte* data_ = nullptr;
+};
+
+/// For transfers of so little that their number counts: as few as there can be, through a buffer of its own.
+class little_transfer {
+public:
+    /// The most bytes of a transfer.
+    static constexpr std::size_t most = 65'536;
+
+    /// The host's memory is free on return.
+    void upload(const row_list& list, cudaStream_t stream) {
+        finish_download();
+        check(cudaEventSynchronize(done_.get()), "an upload");
+        std::byte* at = memory_.data();
+        for (const piece& p : piece::cut(list, capacity)) {
+            p.gather(at);
+            MYRIAD_CUDA(p.begin_upload(at, stream));
+            at += p.bytes();
+        }
+        MYRIAD_CUDA(cudaEventRecord(done_.get(), stream));
+    }
+    void begin_download(const row_list& list, cudaStream_t stream) {
+        finish_download();
+        pieces_ = piece::cut(list, capacity);
+        std::byte* at = memory_.data();
+        for (const piece& p : pieces_) {
+            MYRIAD_CUDA(p.begin_download(at, stream));
+            at += p.bytes();
+        }
+        MYRIAD_CUDA(cudaEventRecord(done_.get(), stream));
+    }
+    /// Waits for what `begin_download` began, and puts it in its place.
+    void finish_download() {
+        const std::vector<piece> pieces = std::exchange(pieces_, {});
+        if (pieces.empty()) return;
+        check(cudaEventSynchronize(done_.get()), "the integration on the GPU");
+        std::byte* at = memory_.data();
+        for (const piece& p : pieces) {
+            p.scatter(at);
+            at += p.bytes();
+        }
+    }
+
+private:
+    static constexpr std::size_t capacity = 2 * most;  // with what is between arrays
+
+    pinned_memory memory_{capacity};
+    event done_{event::kind::plain};
+    std::vector<piece> pieces_;  // of the download under way
+};
+
+/// For all others: buffers of several threads, which fill and empty each their own, without waiting for each other. Two for each
+/// thread, so that one is copied by the GPU meanwhile.
+class staging {
+public:
+    explicit staging(int device) : device_(device) {
+        for (std::size_t i = 0; i < buffers; ++i) buffers_[i].data = memory_.data() + i * largest;
+    }
+
+    /// The host's memory is free on return.
+    void upload(const row_list& list, cudaStream_t stream) {
+        each_piece(cut(list), [&](const piece& p, std::size_t, buffer& b) {
+            if (const cudaError_t status = b.wait(); status != cudaSuccess) return status;
+            p.gather(b.data);
+            const cudaError_t status = p.begin_upload(b.data, stream);
+            return status == cudaSuccess ? b.mark(stream) : status;
+        });
+    }
+    /// Asks for the first pieces, and returns.
+    void begin_download(const row_list& list, cudaStream_t stream) {
+        for (buffer& b : buffers_) check(b.wait(), "a copy to the GPU");
+        pieces_ = cut(list);
+        stream_ = stream;
+        for (std::size_t i = 0; i < std::min(pieces_.size(), buffers); ++i) check(ask(pieces_[i], buffers_[i]), "a download");
+    }
+    /// Whether the device may change what is downloaded, in the same stream: all pieces are asked for.
+    bool asked_for_all() const { return pieces_.size() <= buffers; }
+    /// Waits for what `begin_download` began, and puts it in its place.
+    void finish_download() {
+        const std::vector<piece> pieces = std::exchange(pieces_, {});
+        check(buffers_[0].wait(), "the integration on the GPU");  // one thread alone, as this may take long
+        each_piece(pieces, [&](const piece& p, std::size_t i, buffer& b) {
+            if (const cudaError_t status = b.wait(); status != cudaSuccess) return status;
+            p.scatter(b.data);
+            return i + buffers < pieces.size() ? ask(pieces[i + buffers], b) : cudaSuccess;
+        });
+    }
+
+private:
+    static constexpr std::size_t workers = static_cast<std::size_t>(host::most_threads), buffers = 2 * workers,
+                                 smallest = std::size_t{128} << 10, largest = std::size_t{1} << 20;
+
+    struct buffer {
+        std::byte* data = nullptr;
+        event copied{event::kind::plain};
+
+        cudaError_t mark(cudaStream_t stream) { return cudaEventRecord(copied.get(), stream); }
+        cudaError_t wait() { return cudaEventSynchronize(copied.get()); }
+    };
+
+    /// Large enough for the bus, and one for each thread if there can be.
+    static std::vector<piece> cut(const row_list& list) {
+        return piece::cut(list, std::clamp(bytes_of(list) / workers / smallest * smallest + smallest, smallest, largest));
+    }
+
+    /// Calls `work(piece, its number, its buffer)` for each, in several threads; for those that share a buffer in one, in order.
+    /// Throws `error` if any returns anything but success.
+    template <class Work>
+    void each_piece(const std::vector<piece>& pieces, Work&& work) {
+        std::atomic<cudaError_t> failed{cudaSuccess};
+        const auto side_by_side = static_cast<std::int64_t>(std::min(workers, pieces.size()));
+        host::in_parallel(side_by_side, 1, [&](std::int64_t first, std::int64_t last) {
+            int before = device_;
+            cudaGetDevice(&before);
+            cudaSetDevice(device_);
+            for (std::size_t turn = 0; turn < pieces.size(); turn += workers) {
+                const std::size_t end = std::min(turn + static_cast<std::size_t>(last), pieces.size());
+                for (std::size_t i = turn + static_cast<std::size_t>(first); i < end && failed == cudaSuccess; ++i) {
+                    const cudaError_t status = work(pieces[i], i, buffers_[i % buffers]);
+                    if (status != cudaSuccess) failed = status;
+                }
+            }
+            cudaSetDevice(before);
+        });
+        check(failed, "a copy to or from the GPU");
+    }
+
+    cudaError_t ask(const piece& p, buffer& b) {
+        const cudaError_t status = p.begin_download(b.data, stream_);
+        return status == cudaSuccess ? b.mark(stream_) : status;
+    }
+
+    int device_;
+    pinned_memory memory_{buffers * largest};
+    buffer buffers_[buffers];
+    std::vector<piece> pieces_;  // of the download under way
+    cudaStream_t stream_ = nullptr;
+};
+
+/// Staging memory of a device, borrowed for one transfer: there is as much of it as there were transfers at a time.
+class lent_staging {
+public:
+    explicit lent_staging(int device) : device_(device), taken_(take(device)) {}
+    lent_staging(const lent_staging&) = delete;
+    lent_staging& operator=(const lent_staging&) = delete;
+    ~lent_staging() {
+        pool& all = pool_of(device_);
+        const std::lock_guard lock(all.mutex);
+        all.idle.push_back(std::move(taken_));
+    }
+    staging* operator->() const { return taken_.get(); }
+
+    /// Sees to it that there are so many for the device.
+    static void provide(int device, std::size_t count) {
+        pool& all = pool_of(device);
+        const std::lock_guard lock(all.mutex);
+        for (; all.made < count; ++all.made) all.idle.push_back(std::make_unique<staging>(device));
+    }
+
+private:
+    struct pool {
+        std::mutex mutex;
+        std::size_t made = 0;
+        std::vector<std::unique_ptr<staging>> idle;
+    };
+    /// Never destroyed: when a program ends, CUDA may be gone first.
+    static pool& pool_of(int device) {
+        static std::mutex mutex;
+        static auto* const all = new std::map<int, pool>;
+        const std::lock_guard lock(mutex);
+        return (*all)[device];
+    }
+    static std::unique_ptr<staging> take(int device) {
+        pool& all = pool_of(device);
+        const std::lock_guard lock(all.mutex);
+        if (all.idle.empty()) {
+            auto another = std::make_unique<staging>(device);
+            ++all.made;
+            return another;
+        }
+        auto taken = std::move(all.idle.back());
+        all.idle.pop_back();
+        return taken;
+    }
+
+    int device_;
+    std::unique_ptr<staging> taken_;
+};
+
+}  // namespace myriad::cuda
