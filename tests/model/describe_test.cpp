@@ -43,6 +43,7 @@ struct with_declarations : bare {
     static constexpr bool writes_time_domain = true;
     static constexpr bool accessories_are_outputs = true;
     static constexpr bool scalar_only = true;
+    static constexpr bool rare_events = true;
 };
 struct with_declarations_denied : bare {
     static constexpr bool writes_parameters = false;
@@ -116,7 +117,7 @@ TEST_CASE("scalar and generic forms of after_step are told apart", "[describe]")
 }
 
 TEST_CASE("declarations show, but not those that are denied", "[describe]") {
-    CHECK(has(describe<with_declarations>(), "declares: writes_parameters, writes_time_domain, accessories_are_outputs, scalar_only\n"));
+    CHECK(has(describe<with_declarations>(), "declares: writes_parameters, writes_time_domain, accessories_are_outputs, scalar_only, rare_events\n"));
     CHECK(has(describe<with_declarations_denied>(), "declares: nothing\n"));
     CHECK(has(describe<branching>(), "declares: scalar_only\n"));
 }

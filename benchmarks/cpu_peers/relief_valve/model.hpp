@@ -10,14 +10,13 @@ namespace cpu_peers {
 /// impact; a valve that stays where it is for 50 steps ends its phase too.
 struct relief_valve_model {
     static constexpr bool accessories_are_outputs = true;
+    static constexpr bool rare_events = true;
     enum state { y, v, u, n_state };
     enum parameter { q, n_parameter };
     enum shared { kappa, delta, beta, restitution, rest_band, n_shared };
     enum accessory { lowest, highest, rest_at, n_accessory };
     enum integer_accessory { steps_at_rest, n_integer_accessory };
     enum event { section, seat, n_event };
-    static constexpr int pack_batches =
-        2;  // not one, the default with events, since there are hundreds of steps between them
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {

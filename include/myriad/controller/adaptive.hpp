@@ -69,9 +69,9 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
     }
     factor = limited(factor, shrink_limit, C(static_cast<R>(args.growth_limit)));
 
-    const mask not_finite_before = s.last_not_finite;
-    s.last_not_finite = s.last_not_finite & !within;
-    const mask rejected = s.running() & !within;
+    const mask rejected = s.running() & !within, not_finite_before = s.last_not_finite;
+    // In a pack a test is cheaper than to write it in every turn.
+    if (lanes_of<S> == 1 || any(not_finite_before)) s.last_not_finite = not_finite_before & !within;
     if (any(rejected)) {
         const mask finite = valid & (error.worst > C(R(1))) & (error.worst <= C(largest_of<R>));
         factor = select(within | finite, factor, shrink_limit);

@@ -3,11 +3,9 @@
 // which would cost as much as a right-hand side. Plain reals and packs give the same bits.
 #pragma once
 
-#include <bit>
-#include <cmath>
 #include <cstdint>
-#include <type_traits>
 
+#include "myriad/scalar/arithmetic.hpp"
 #include "myriad/scalar/math.hpp"
 #include "myriad/scalar/select.hpp"
 
@@ -18,69 +16,52 @@ template <class R>
 struct float_format;
 template <>
 struct float_format<double> {
-    using bits = std::int64_t;
     static constexpr int mantissa = 52;
-    static constexpr bits one = 0x3ff0000000000000, mantissa_mask = 0x000fffffffffffff;
-    static constexpr bits magic_bits = 0x4330000000000000;  // 2^52: an integer below it is its mantissa
-    static constexpr double magic = 4503599627370496.0, round_magic = 6755399441055744.0, bias = 1023;
+    static constexpr std::uint64_t one = 0x3ff0000000000000, mantissa_mask = 0x000fffffffffffff;
+    static constexpr std::uint64_t magic_bits = 0x4330000000000000;  // 2^52: an integer below it is its mantissa
+    static constexpr double magic = 4503599627370496.0, bias = 1023;
 };
 template <>
 struct float_format<float> {
-    using bits = std::int32_t;
     static constexpr int mantissa = 23;
-    static constexpr bits one = 0x3f800000, mantissa_mask = 0x007fffff;
-    static constexpr bits magic_bits = 0x4b000000;  // 2^23
-    static constexpr float magic = 8388608.0f, round_magic = 12582912.0f, bias = 127;
+    static constexpr std::uint32_t one = 0x3f800000, mantissa_mask = 0x007fffff;
+    static constexpr std::uint32_t magic_bits = 0x4b000000;  // 2^23
+    static constexpr float magic = 8388608.0f, bias = 127;
 };
 
-/// log2(x) of one real or one SIMD batch (`B`, with integers `I`) of positive normal numbers, with the fused multiply-add of
-/// that kind of number. Chebyshev fit on [1, 2) within 1.6e-5.
-template <class R, class B, class I, class MultiplyAdd>
-MYRIAD_FUNCTION B fast_log2(const B& x, MultiplyAdd&& multiply_add) {
+/// log2(x) of one real or one SIMD batch of positive normal numbers. Chebyshev fit on [1, 2) within 1.6e-5. The shift is one
+/// of unsigned numbers, as AVX2 has no other for 64 bits.
+template <class B>
+MYRIAD_FUNCTION B fast_log2_of(const B& x) {
+    using A = arithmetic<B>;
+    using R = typename A::real;
     using format = float_format<R>;
-    const I bits = std::bit_cast<I>(x);
-    const B e = std::bit_cast<B>((bits >> format::mantissa) | I(format::magic_bits)) - B(format::magic + format::bias);
-    const B m = std::bit_cast<B>((bits & I(format::mantissa_mask)) | I(format::one));  // in [1, 2)
-    B log2_m = B(R(0.0439286278));
-    for (const R c : {R(-0.409475586), R(1.61017755), R(-3.52021884), R(5.06975632), R(-2.79415368)})
-        log2_m = multiply_add(log2_m, m, B(c));
-    return e + log2_m;
+    using bits = typename A::bits;
+    const bits x_bits = A::to_bits(x);
+    const B e = A::from_bits((x_bits >> format::mantissa) | bits(format::magic_bits)) - B(format::magic + format::bias);
+    const B m = A::from_bits((x_bits & bits(format::mantissa_mask)) | bits(format::one));  // in [1, 2)
+    return e + polynomial(m, R(-2.79415368), R(5.06975632), R(-3.52021884), R(1.61017755), R(-0.409475586), R(0.0439286278));
 }
 /// 2^z likewise. Chebyshev fit on [-1/2, 1/2] within 4e-6.
-template <class R, class B, class I, class MultiplyAdd>
-MYRIAD_FUNCTION B fast_exp2(const B& z, MultiplyAdd&& multiply_add) {
-    using format = float_format<R>;
-    const B shifted = z + B(format::round_magic);
-    const B f = z - (shifted - B(format::round_magic));
-    B power = B(R(0.0096760371));
-    for (const R c : {R(0.0559220356), R(0.240221074), R(0.693121034), R(1.00000008)})
-        power = multiply_add(power, f, B(c));
-    return std::bit_cast<B>(std::bit_cast<I>(power) + (std::bit_cast<I>(shifted) << format::mantissa));
+template <class B>
+MYRIAD_FUNCTION B fast_exp2_of(const B& z) {
+    using A = arithmetic<B>;
+    using R = typename A::real;
+    const B shifted = z + B(round_to_whole<R>);
+    const B f = z - (shifted - B(round_to_whole<R>));
+    const B power = polynomial(f, R(1.00000008), R(0.693121034), R(0.240221074), R(0.0559220356), R(0.0096760371));
+    return A::from_bits(A::to_bits(power) + (A::to_bits(shifted) << float_format<R>::mantissa));
 }
 
-/// The integers as wide as the reals of B, which is S or the batch that its packs are made of.
-template <class S, class B>
-struct integers_beside {
-    using type = typename integer_of<S>::batch_type;
-};
-template <class S>
-struct integers_beside<S, S> {
-    using type = typename float_format<S>::bits;
-};
-
-/// Calls `part(x, multiply_add)` for a real, or for every batch of a pack.
+/// Calls `part(x)` for a real, or for every batch of a pack.
 template <class S, class Part>
 MYRIAD_FUNCTION S part_by_part(const S& x, Part&& part) {
-    using R = real_of<S>;
     if constexpr (lanes_of<S> == 1) {
-        return part(x, [](const R& a, const R& b, const R& c) MYRIAD_LAMBDA { return fma(a, b, c); });
+        return part(x);
     } else {
         S result;
-        using B = typename S::batch_type;
         MYRIAD_UNROLL
-        for (std::size_t i = 0; i < sizeof(result.parts) / sizeof(B); ++i)
-            result.parts[i] = part(
-                x.parts[i], [](const B& a, const B& b, const B& c) MYRIAD_LAMBDA { return S::batch_fma(a, b, c); });
+        for (std::size_t i = 0; i < sizeof(result.parts) / sizeof(result.parts[0]); ++i) result.parts[i] = part(x.parts[i]);
         return result;
     }
 }
@@ -95,10 +76,7 @@ MYRIAD_FUNCTION S fast_log2(const S& x) {
     asm("lg2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(static_cast<float>(x)));
     return static_cast<S>(y);
 #else
-    return detail::part_by_part(x, []<class B>(const B& part, auto&& multiply_add) MYRIAD_LAMBDA {
-        using I = typename detail::integers_beside<S, B>::type;
-        return detail::fast_log2<real_of<S>, B, I>(part, multiply_add);
-    });
+    return detail::part_by_part(x, [](const auto& part) MYRIAD_LAMBDA { return detail::fast_log2_of(part); });
 #endif
 }
 
@@ -110,10 +88,7 @@ MYRIAD_FUNCTION S fast_exp2(const S& z) {
     asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(static_cast<float>(z)));
     return static_cast<S>(y);
 #else
-    return detail::part_by_part(z, []<class B>(const B& part, auto&& multiply_add) MYRIAD_LAMBDA {
-        using I = typename detail::integers_beside<S, B>::type;
-        return detail::fast_exp2<real_of<S>, B, I>(part, multiply_add);
-    });
+    return detail::part_by_part(z, [](const auto& part) MYRIAD_LAMBDA { return detail::fast_exp2_of(part); });
 #endif
 }
 

@@ -81,25 +81,26 @@ MYRIAD_FUNCTION double largest_ratio(const vec<double, n>& a) {
 template <class S, int n>
 struct error_scale {
     vec<S, n> of;       // max(atol, rtol * max(|y|, |y1|)), or what was chosen instead
-    mask_of<S> finite;  // every component of y1 is
+    mask_of<S> finite;  // no component of y1 is infinite; one that is NaN makes its ratio NaN
 };
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION error_scale<S, n_state<Model>> scale_of_errors(const kernel_arguments<Model, real_of<S>>& args,
                                                                const vec<S, n_state<Model>>& y,
                                                                const vec<S, n_state<Model>>& y1) {
     error_scale<S, n_state<Model>> scale;
-    scale.finite = mask_of<S>(true);
+    S largest = S(real_of<S>(0));  // which may pass over NaN
     MYRIAD_UNROLL
     for (int c = 0; c < n_state<Model>; ++c) {
         const S atol = S(args.absolute_tolerance[c]), rtol = S(args.relative_tolerance[c]);
         const S size = larger_magnitude(y[c], y1[c]);
-        if constexpr (!tells_infinity<S>) scale.finite = scale.finite & is_finite(size);
+        if constexpr (!tells_infinity<S>) largest = c == 0 ? size : larger(largest, size);
         if constexpr (adds_tolerances<Method>) {
             scale.of[c] = fma(rtol, size, atol);
         } else {
             scale.of[c] = larger_scale(atol, rtol * size);
         }
     }
+    scale.finite = tells_infinity<S> ? mask_of<S>(true) : largest <= S(largest_of<real_of<S>>);
     return scale;
 }
 
@@ -127,7 +128,7 @@ MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const
 template <class S>
 struct error_norm {
     control_of<S> worst;  // largest ratio of error to tolerance; NaN where one of them is
-    mask_of<S> finite;    // every new value is
+    mask_of<S> finite;    // no new value is infinite
 };
 
 /// The size of a trial's error. Two estimates of orders q and q - 2 are combined into e_q^2 / sqrt(e_q^2 + 0.01 e_(q-2)^2),

@@ -112,7 +112,26 @@ struct event_locator {
                 for (int j = 0; j < m; ++j) e.value[j] = select(accepted, g1[j], e.value[j]);
                 return;
             }
+            // Copies, so that only they and not the caller's registers need an address.
+            const rk_trial<Method, S, n> trial_copy = trial;
+            const S t1_copy = t1;
+            const values g1_copy = g1;
+            mask still_accepted = accepted;
+            look_out_of_line(trial_copy, t1_copy, g1_copy, still_accepted);
+            accepted = still_accepted;
+        } else {
+            look(trial, t1, g1, accepted);
         }
+    }
+
+private:
+    /// Out of line, as the loop would carry what it needs through every step.
+    [[gnu::noinline]] void look_out_of_line(const rk_trial<Method, S, n>& trial, const S& t1, const values& g1, mask& accepted) {
+        look(trial, t1, g1, accepted);
+    }
+
+    /// The same where something may have happened.
+    MYRIAD_FUNCTION void look(const rk_trial<Method, S, n>& trial, const S& t1, const values& g1, mask& accepted) {
         find_open_sides(accepted);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) e.firing[j] = mask(false);
@@ -145,7 +164,6 @@ struct event_locator {
         }
     }
 
-private:
     /// Lanes on their way to no event, whose event functions have left their tolerance and end the trial beyond it, on the side
     /// where they were.
     MYRIAD_FUNCTION mask undisturbed(const values& g1) const {

@@ -23,16 +23,20 @@ struct hook_driver {
     /// Calls after_step on the lanes whose step was accepted.
     MYRIAD_FUNCTION void after_step(const mask& accepted) {
         const lane_data<Model, S> before = s.data;
+        mask changed = mask(false);
         if constexpr (has_generic_after_step<Model, R>) {
             lane_data<Model, S> after = s.data;
             lane<Model, S> view(after);
+            mask stops = mask(false);
             if constexpr (std::is_void_v<decltype(Model::template after_step<S>(view))>) {
                 Model::template after_step<S>(view);
             } else {
-                const mask stops = accepted & Model::template after_step<S>(view);
-                if (MYRIAD_UNLIKELY(any(stops))) s.end_lanes(stops, status::stopped_by_user);
+                stops = accepted & Model::template after_step<S>(view);
             }
-            adopt(accepted, after);
+            // By what the hook was given and left, so that the compiler sees what it leaves alone.
+            changed = accepted & differs(before, after);
+            adopt(accepted, before, after);
+            if (MYRIAD_UNLIKELY(any(stops))) s.end_lanes(stops, status::stopped_by_user);
             if constexpr (writes_time_domain<Model>) {
                 for_each_lane(accepted & (before.t_end != s.data.t_end), [&](int i) MYRIAD_LAMBDA { retarget(i); });
             }
@@ -40,10 +44,10 @@ struct hook_driver {
             for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA {
                 run_hook(i, [](auto& lane) MYRIAD_LAMBDA { return Model::after_step(lane); });
             });
+            changed = accepted & differs(before, s.data);
         }
         // Where the slope at the end of the step may be known, as the first of the next.
         if constexpr (Method::first_same_as_last || has_events<Model> || samples_trajectory<Method>) {
-            const mask changed = accepted & differs(before, s.data);
             if (any(changed)) follow_up(changed, before.y);
         } else {
             check_finite(accepted, before.y);
@@ -104,23 +108,23 @@ private:
         if constexpr (!is_adaptive<Method>) lay_fixed_steps(args, s, i, t);
     }
 
-    /// Takes over what a generic hook wrote, in the given lanes.
-    MYRIAD_FUNCTION void adopt(const mask& lanes, const lane_data<Model, S>& after) {
+    /// Takes over what a generic hook made of `before`, in the given lanes.
+    MYRIAD_FUNCTION void adopt(const mask& lanes, const lane_data<Model, S>& before, const lane_data<Model, S>& after) {
         lane_data<Model, S>& d = s.data;
-        const auto blend_all = [&](auto& to, const auto& from, int size) MYRIAD_LAMBDA {
+        const auto blend_all = [&](auto& to, const auto& from, const auto& old, int size) MYRIAD_LAMBDA {
             MYRIAD_UNROLL
-            for (int c = 0; c < size; ++c) to[c] = select(lanes, from[c], to[c]);
+            for (int c = 0; c < size; ++c) to[c] = select(lanes, from[c], old[c]);
         };
-        blend_all(d.y, after.y, n);
-        blend_all(d.accessory, after.accessory, n_accessory<Model>);
-        blend_all(d.integer_accessory, after.integer_accessory, n_integer_accessory<Model>);
-        const mask rescaled = lanes & (after.h_next != d.h_next);
-        d.h_next = select(lanes, after.h_next, d.h_next);
+        blend_all(d.y, after.y, before.y, n);
+        blend_all(d.accessory, after.accessory, before.accessory, n_accessory<Model>);
+        blend_all(d.integer_accessory, after.integer_accessory, before.integer_accessory, n_integer_accessory<Model>);
+        const mask rescaled = lanes & differs_in_bits(after.h_next, before.h_next);
+        d.h_next = select(lanes, after.h_next, before.h_next);
         if (any(rescaled)) for_each_lane(rescaled, [&](int i) MYRIAD_LAMBDA { s.bound_step(args, i); });
-        if constexpr (writes_parameters<Model>) blend_all(d.parameter, after.parameter, n_parameter<Model>);
+        if constexpr (writes_parameters<Model>) blend_all(d.parameter, after.parameter, before.parameter, n_parameter<Model>);
         if constexpr (writes_time_domain<Model>) {
-            d.t_begin = select(lanes, after.t_begin, d.t_begin);
-            d.t_end = select(lanes, after.t_end, d.t_end);
+            d.t_begin = select(lanes, after.t_begin, before.t_begin);
+            d.t_end = select(lanes, after.t_end, before.t_end);
         }
     }
 

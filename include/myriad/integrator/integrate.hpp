@@ -153,7 +153,13 @@ struct integrator {
             s.h = select(e.locating, e.h_redo, s.h);
             s.final_step = s.final_step & !e.locating;
         }
-        if constexpr (keeps_slope && loses_slope) s.renew_slope(mask(true));
+        if constexpr (keeps_slope && loses_slope) {
+            if constexpr (adaptive && !Method::first_same_as_last) {
+                s.renew_slopes();
+            } else {
+                s.renew_slope(mask(true));
+            }
+        }
     }
 
     MYRIAD_FUNCTION void take_step(trial_step& trial) {
@@ -190,7 +196,7 @@ struct integrator {
     MYRIAD_FUNCTION void commit(const trial_step& trial, const mask& accepted) {
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]);
-        s.data.h = select(accepted, s.h, s.data.h);
+        if constexpr (shows_step) s.data.h = select(accepted, s.h, s.data.h);
         if constexpr (adaptive) {
             const S t1 = end_time();
             if constexpr (compensates_time)
@@ -257,6 +263,8 @@ private:
     static constexpr bool knows_slope_end = has_events<Model> || samples;
     /// In single precision the rounding of t would cost steps and accuracy.
     static constexpr bool compensates_time = std::is_same_v<R, float>;
+    /// Only hooks see the step just taken.
+    static constexpr bool shows_step = has_after_step<Model> || has_after_event<Model> || has_finalise<Model>;
     /// Fixed steps count time; it is only written down where someone looks at it.
     static constexpr bool shows_time = has_after_step<Model> || has_events<Model>;
 

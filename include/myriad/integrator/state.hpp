@@ -154,6 +154,14 @@ struct integration_state {
         extra_evaluations = count_where(needed, extra_evaluations);
         slope_valid = slope_valid | needed;
     }
+    /// The same in every lane, of a method that computes its first slope itself: where it is known, it has the same bits.
+    MYRIAD_FUNCTION void renew_slopes() {
+        const mask needed = !slope_valid;
+        if (!any(needed)) return;
+        slope = evaluate_rhs<Model>(now(), data.y, data);
+        extra_evaluations = count_where(needed, extra_evaluations);
+        slope_valid = mask(true);
+    }
 
     /// Keeps a step that a hook or an earlier call left within the options' limits.
     MYRIAD_FUNCTION void bound_step(const kernel_arguments<Model, R>& args, int i) {

@@ -49,6 +49,8 @@ MYRIAD_MODEL_DECLARATION(writes_time_domain)
 MYRIAD_MODEL_DECLARATION(accessories_are_outputs)
 /// The model branches on its state, so it runs one instance at a time on the CPU.
 MYRIAD_MODEL_DECLARATION(scalar_only)
+/// Many steps lie between events, so that on the CPU the model is worth as large packs as one without.
+MYRIAD_MODEL_DECLARATION(rare_events)
 #undef MYRIAD_MODEL_DECLARATION
 
 // Does a model have a member of that name, whatever its signature? A class that inherits the name twice finds it

@@ -30,6 +30,7 @@ std::string describe() {
     add(declares, writes_time_domain<Model>, "writes_time_domain");
     add(declares, accessories_are_outputs<Model>, "accessories_are_outputs");
     add(declares, scalar_only<Model>, "scalar_only");
+    add(declares, rare_events<Model>, "rare_events");
     return message("components: ", n_state<Model>, " state, ", n_parameter<Model>, " parameter, ", n_shared<Model>,
                    " shared, ", n_shared_integer<Model>, " shared integer, ", n_accessory<Model>, " accessory, ",
                    n_integer_accessory<Model>, " integer accessory, ", n_event<Model>, " event\nhooks: ", hooks,

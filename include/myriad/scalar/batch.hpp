@@ -101,6 +101,24 @@ MYRIAD_FUNCTION xsimd::batch_bool<To> mask_cast(const xsimd::batch_bool<From>& m
     return xsimd::batch_bool<To>(__builtin_bit_cast(to_register, static_cast<from_register>(mask)));
 }
 
+/// Calls f with the registers of masks, as integers that a compiler can compute with and fold. What xsimd calls for masks
+/// in vectors g++ cannot see through: a negation costs it two instructions more, and so does a mask known to be all true.
+template <int bytes>
+struct register_bits {
+    typedef long long type __attribute__((vector_size(bytes)));
+};
+template <class F, class B, class... More>
+MYRIAD_FUNCTION B join_masks(F&& f, const B& a, const More&... more) {
+    using register_type = typename B::register_type;
+    if constexpr (has_bit_mask<B>) {
+        return B(static_cast<register_type>(f(static_cast<register_type>(a), static_cast<register_type>(more)...)));
+    } else {
+        using integers = typename register_bits<sizeof(register_type)>::type;
+        return B(__builtin_bit_cast(register_type, f(__builtin_bit_cast(integers, static_cast<register_type>(a)),
+                                                     __builtin_bit_cast(integers, static_cast<register_type>(more))...)));
+    }
+}
+
 /// The bits of a batch as numbers of another type of the same width.
 template <class To, class From>
 MYRIAD_FUNCTION xsimd::batch<To> bits_as(const xsimd::batch<From>& x) {

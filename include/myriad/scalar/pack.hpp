@@ -34,10 +34,11 @@ public:
     batch_type parts[batches];
 
     pack_mask() = default;
-    // Batch by batch, as g++ copies trivial arrays of them in pieces of 16 bytes, which wider loads then wait for.
-    MYRIAD_FUNCTION pack_mask(const pack_mask& other) { MYRIAD_EACH_BATCH(parts[i] = other.parts[i]); }
+    // Batch by batch, as g++ copies trivial arrays of them in pieces of 16 bytes, which wider loads then wait for; and by their
+    // registers, as it takes copies of whole batches through memory.
+    MYRIAD_FUNCTION pack_mask(const pack_mask& other) { MYRIAD_EACH_BATCH(parts[i].data = other.parts[i].data); }
     MYRIAD_FUNCTION pack_mask& operator=(const pack_mask& other) {
-        MYRIAD_EACH_BATCH(parts[i] = other.parts[i]);
+        MYRIAD_EACH_BATCH(parts[i].data = other.parts[i].data);
         return *this;
     }
     /// The same value in every lane.
@@ -56,24 +57,25 @@ public:
 #define MYRIAD_MASK_OPERATOR(symbol, expression)                                                                   \
     friend MYRIAD_FUNCTION pack_mask operator symbol(const pack_mask& a, const pack_mask& b) {                     \
         pack_mask result;                                                                                          \
-        MYRIAD_EACH_BATCH(result.parts[i] = expression);                                                           \
+        const auto join = [](auto x, auto y) MYRIAD_LAMBDA { return expression; };                                 \
+        MYRIAD_EACH_BATCH(result.parts[i].data = detail::join_masks(join, a.parts[i], b.parts[i]).data);           \
         return result;                                                                                             \
     }                                                                                                              \
     friend MYRIAD_FUNCTION pack_mask operator symbol(const pack_mask& a, bool b) { return a symbol pack_mask(b); } \
     friend MYRIAD_FUNCTION pack_mask operator symbol(bool a, const pack_mask& b) { return pack_mask(a) symbol b; }
-    MYRIAD_MASK_OPERATOR(&, a.parts[i] & b.parts[i])
-    MYRIAD_MASK_OPERATOR(|, a.parts[i] | b.parts[i])
-    // xsimd 8 to 13 has | for the ^ of AVX-512 masks, and a wrong != for those of SSE2.
-    MYRIAD_MASK_OPERATOR(^, (a.parts[i] | b.parts[i]) & ~(a.parts[i] & b.parts[i]))
-    MYRIAD_MASK_OPERATOR(&&, a.parts[i] & b.parts[i])
-    MYRIAD_MASK_OPERATOR(||, a.parts[i] | b.parts[i])
-    MYRIAD_MASK_OPERATOR(!=, (a.parts[i] | b.parts[i]) & ~(a.parts[i] & b.parts[i]))
-    MYRIAD_MASK_OPERATOR(==, (a.parts[i] & b.parts[i]) | ~(a.parts[i] | b.parts[i]))
+    MYRIAD_MASK_OPERATOR(&, x & y)
+    MYRIAD_MASK_OPERATOR(|, x | y)
+    MYRIAD_MASK_OPERATOR(^, x ^ y)
+    MYRIAD_MASK_OPERATOR(&&, x & y)
+    MYRIAD_MASK_OPERATOR(||, x | y)
+    MYRIAD_MASK_OPERATOR(!=, x ^ y)
+    MYRIAD_MASK_OPERATOR(==, ~(x ^ y))
 #undef MYRIAD_MASK_OPERATOR
 
     friend MYRIAD_FUNCTION pack_mask operator!(const pack_mask& a) {
         pack_mask result;
-        MYRIAD_EACH_BATCH(result.parts[i] = ~a.parts[i]);
+        const auto invert = [](auto x) MYRIAD_LAMBDA { return ~x; };
+        MYRIAD_EACH_BATCH(result.parts[i].data = detail::join_masks(invert, a.parts[i]).data);
         return result;
     }
     MYRIAD_FUNCTION pack_mask& operator&=(const pack_mask& b) { return *this = *this & b; }
@@ -150,9 +152,9 @@ public:
 
     pack() = default;
     // Batch by batch, for the reason given at masks.
-    MYRIAD_FUNCTION pack(const pack& other) { MYRIAD_EACH_BATCH(parts[i] = other.parts[i]); }
+    MYRIAD_FUNCTION pack(const pack& other) { MYRIAD_EACH_BATCH(parts[i].data = other.parts[i].data); }
     MYRIAD_FUNCTION pack& operator=(const pack& other) {
-        MYRIAD_EACH_BATCH(parts[i] = other.parts[i]);
+        MYRIAD_EACH_BATCH(parts[i].data = other.parts[i].data);
         return *this;
     }
     MYRIAD_FUNCTION pack(T value) { MYRIAD_EACH_BATCH(parts[i] = batch_type(value)); }

@@ -112,6 +112,11 @@ struct trigonometry {
     }
     static MYRIAD_FUNCTION B cosine_of_rest(const angle& a) {
         const B z = a.rest * a.rest;
+        return A::multiply_add(z, A::multiply_add(z, constants::cosine(z), B(T(-0.5))), B(T(1)));
+    }
+    /// With what the rounding of 1 - z / 2 lost put back, for five operations more: in a tangent it shows (2.9 ulps, else 3.0).
+    static MYRIAD_FUNCTION B careful_cosine_of_rest(const angle& a) {
+        const B z = a.rest * a.rest;
         const B half = B(T(0.5)) * z;
         const B head = B(T(1)) - half;
         const B lost = (B(T(1)) - head) - half;
@@ -142,7 +147,7 @@ struct trigonometry {
     static MYRIAD_FUNCTION B tan(const B& x) {
         const angle a = reduce(A::abs(x));
         const B s = sine_of_rest(a);
-        const B c = cosine_of_rest(a);
+        const B c = careful_cosine_of_rest(a);
         const auto odd = is_odd(a.quarters);
         const B quotient = A::select(odd, c, s) / A::select(odd, s, c);
         return with_sign(quotient, sign_from_bit_1(a.quarters + a.quarters) ^ sign_of(x));

@@ -20,10 +20,11 @@ namespace myriad::inline MYRIAD_TARGET {
 
 /// SIMD batches per pack: enough independent work to hide the latency of a batch, few enough that the stages of a large
 /// state stay in the first-level cache, and one where events make lanes part ways at every step. Measured on a Zen 4, CPU
-/// time per step and instance with 1, 2, 3, 4 batches: Lorenz with RK4 -, 1.35, 1.46, 1.40 ns with AVX-512, whose 32
-/// registers hold two batches, and -, 2.38, 2.10, 2.07 with AVX2, whose 16 hold none; Duffing with Cash-Karp 14.1, 13.2,
-/// 13.5, 14.0 and 23.7, 19.0, 18.6, -; with events every 5 steps 46, 48, 76, - and 63, 71, 78, -. A model may choose by
-/// `static constexpr int pack_batches = 2;`, as where events are rare.
+/// time per step and instance with 1, 2, 3, 4 batches: with AVX-512, whose 32 registers hold two batches, Lorenz with RK4
+/// -, 1.35, 1.46, 1.40 ns and Duffing with Cash-Karp -, 11.6, 12.2, -; with AVX2, whose 16 hold none, -, 2.38, 2.10, 2.07 and
+/// -, 16.6, 15.7, 15.9, but the bubble of cpu_peers, with its 13 parameters, -, 54, 56, -; with events every 5 steps 46, 48, 76, -
+/// and 63, 71, 78, -, with hundreds of steps between them (the valve of cpu_peers) -, 12.4, 13.0, - and -, 19.4, 17.3, 18.7. A
+/// model may choose by `static constexpr bool rare_events = true;` or `static constexpr int pack_batches = 2;`.
 template <class Model, class Method>
 constexpr int default_batches() {
 #if defined(MYRIAD_SCALAR_LANES)  // with sanitizers, which take minutes to compile the kernel of a pack
@@ -35,11 +36,12 @@ constexpr int default_batches() {
         return 0;
     } else if constexpr (requires { Model::pack_batches; }) {
         return Model::pack_batches;
-    } else if constexpr (has_events<Model> || n_state<Model> > 16) {
+    } else if constexpr ((has_events<Model> && !rare_events<Model>) || n_state<Model> > 16) {
         return 1;
     } else {
         constexpr bool two_fit = pack<double, 1>::lanes == 8;  // AVX-512
-        return two_fit || is_adaptive<Method> || n_state<Model> > 4 ? 2 : 3;
+        constexpr bool small = n_state<Model> <= 4 && n_state<Model> + n_parameter<Model> <= 8 && Method::stages <= 7;
+        return two_fit || !small ? 2 : 3;
     }
 }
 
