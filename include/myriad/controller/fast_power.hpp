@@ -29,6 +29,8 @@ struct float_format<float> {
     static constexpr float magic = 8388608.0f, bias = 127;
 };
 
+// Both polynomials by Estrin's scheme, as the next step waits for them: Horner's costs a tenth of the time of a cheap step.
+
 /// log2(x) of one real or one SIMD batch of positive normal numbers. Chebyshev fit on [1, 2) within 1.6e-5. The shift is one
 /// of unsigned numbers, as AVX2 has no other for 64 bits.
 template <class B>
@@ -40,7 +42,11 @@ MYRIAD_FUNCTION B fast_log2_of(const B& x) {
     const bits x_bits = A::to_bits(x);
     const B e = A::from_bits((x_bits >> format::mantissa) | bits(format::magic_bits)) - B(format::magic + format::bias);
     const B m = A::from_bits((x_bits & bits(format::mantissa_mask)) | bits(format::one));  // in [1, 2)
-    return e + polynomial(m, R(-2.79415368), R(5.06975632), R(-3.52021884), R(1.61017755), R(-0.409475586), R(0.0439286278));
+    const B m2 = m * m;
+    const B low = A::multiply_add(B(R(5.06975632)), m, B(R(-2.79415368)) + e);
+    const B middle = A::multiply_add(B(R(1.61017755)), m, B(R(-3.52021884)));
+    const B high = A::multiply_add(B(R(0.0439286278)), m, B(R(-0.409475586)));
+    return A::multiply_add(m2, A::multiply_add(m2, high, middle), low);
 }
 /// 2^z likewise. Chebyshev fit on [-1/2, 1/2] within 4e-6.
 template <class B>
@@ -49,7 +55,10 @@ MYRIAD_FUNCTION B fast_exp2_of(const B& z) {
     using R = typename A::real;
     const B shifted = z + B(round_to_whole<R>);
     const B f = z - (shifted - B(round_to_whole<R>));
-    const B power = polynomial(f, R(1.00000008), R(0.693121034), R(0.240221074), R(0.0559220356), R(0.0096760371));
+    const B f2 = f * f;
+    const B low = A::multiply_add(B(R(0.693121034)), f, B(R(1.00000008)));
+    const B middle = A::multiply_add(B(R(0.0559220356)), f, B(R(0.240221074)));
+    const B power = A::multiply_add(f2, A::multiply_add(f2, B(R(0.0096760371)), middle), low);
     return A::from_bits(A::to_bits(power) + (A::to_bits(shifted) << float_format<R>::mantissa));
 }
 
