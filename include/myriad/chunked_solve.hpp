@@ -10,7 +10,6 @@
 #include <deque>
 #include <future>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -18,6 +17,7 @@
 
 #include "myriad/backend.hpp"
 #include "myriad/core/background.hpp"
+#include "myriad/core/kept.hpp"
 #include "myriad/device.hpp"
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/input_check.hpp"
@@ -43,47 +43,24 @@ template <class Model, class R>
 class idle_engines {
     using engine = std::unique_ptr<cuda::engine<Model, R>>;
     using maker = engine_maker<Model, R>;
+    struct use {
+        maker make;
+        cuda::engine_options how;
+        bool operator==(const use& other) const { return make == other.make && how == other.how; }
+    };
+    using idle = kept<use, cuda::engine<Model, R>>;
 
 public:
     static engine take(maker make, const cuda::engine_options& how) {
-        {
-            idle_engines& all = instance();
-            const std::lock_guard lock(all.mutex_);
-            for (auto place = all.idle_.begin(); place != all.idle_.end(); ++place) {
-                if (place->make != make || !(place->how == how)) continue;
-                engine taken = std::move(place->idle);
-                all.idle_.erase(place);
-                return taken;
-            }
-        }
-        return make(how);
+        engine found = idle::all().take({make, how});
+        return found != nullptr ? std::move(found) : make(how);
     }
     /// Only for engines that have finished without an error. Of each method the last few are kept.
     static void give(maker make, const cuda::engine_options& how, engine e) {
         e->rest();
-        idle_engines& all = instance();
-        const std::lock_guard lock(all.mutex_);
-        all.idle_.push_back({make, how, std::move(e)});
-        const auto of_this = [make](const entry& other) { return other.make == make; };
-        if (static_cast<std::size_t>(std::count_if(all.idle_.begin(), all.idle_.end(), of_this)) > most_chunks_held)
-            all.idle_.erase(std::find_if(all.idle_.begin(), all.idle_.end(), of_this));
+        idle::all().give({make, how}, std::move(e));
+        idle::all().keep_at_most(most_chunks_held, [make](const use& other) { return other.make == make; });
     }
-
-private:
-    struct entry {
-        maker make;
-        cuda::engine_options how;
-        engine idle;
-    };
-
-    /// Never destroyed: when a program ends, CUDA may be gone first.
-    static idle_engines& instance() {
-        static idle_engines* const all = new idle_engines;
-        return *all;
-    }
-
-    std::mutex mutex_;
-    std::vector<entry> idle_;
 };
 
 /// For a thread that waits for one of several things: it looks again at once while that may save some of the time of a chunk, and
@@ -125,7 +102,8 @@ public:
         first.reserve(arguments_, chunk);
         check(chunk);
         if (chunk == size_) {
-            open_for_results();
+            count_earlier_work();
+            instances_.touch();
             begin(first, 0, chunk);
             first.download(arguments_);
             bring_back(first, 0, chunk);
@@ -149,12 +127,15 @@ private:
     /// This thread begins chunks. A second one checks those that come, and afterwards brings back those that went: it asks for
     /// the results of a chunk before it puts those of the one before in their places.
     void run_chunks(std::int64_t chunk) {
-        checking_ = background_->ask([this, chunk] {
-            while (checked_ < size_) check(std::min(checked_ + chunk, size_));
-            open_for_results();
+        // All before the first result is written: where there is no memory for them, the ensemble is as it was.
+        while (engines_.size() < chunks_at_a_time && static_cast<std::int64_t>(engines_.size()) * chunk < size_) add_engine(chunk);
+        checking_ = background_->ask([this, step = std::max(chunk, worth_chunks)] {
+            while (checked_ < size_) check(std::min(checked_ + step, size_));
+            count_earlier_work();
+            instances_.touch();
         }).share();
         for (std::int64_t first = 0; first < size_; first += chunk) {
-            engine* const worker = first == 0 ? engines_.front().get() : &free_engine(chunk);
+            engine* const worker = &free_engine(chunk);
             if (relay_.failure) break;
             const std::int64_t count = std::min(chunk, size_ - first);
             wait_for_check(first + count);
@@ -163,13 +144,14 @@ private:
                 checking_.get();  // nothing is brought back if that was refused
                 worker->download(arguments_);
             });
-            if (!under_way_.empty()) bring_back(under_way_.back());
+            if (!under_way_.empty()) ask_back(under_way_.back());
             under_way_.push_back({first, count, worker, asked.share(), {}});
         }
-        bring_back(under_way_.back());
+        ask_back(under_way_.back());
         while (!under_way_.empty()) wait_for_oldest();
     }
-    void bring_back(part& p) {
+    /// Has the second thread bring back a chunk whose results were asked for.
+    void ask_back(part& p) {
         p.back = background_->ask([this, worker = p.worker, first = p.first, count = p.count, asked = p.asked] {
             asked.get();
             bring_back(*worker, first, count);
@@ -208,13 +190,13 @@ private:
                    : std::clamp(fits / static_cast<std::int64_t>(chunks_at_a_time), std::int64_t{1}, chunk);
     }
 
-    /// An engine that has finished, or another one: the first ones anyhow, more where too few of them keep the device busy, as
-    /// nothing may be brought back yet.
+    /// An engine with nothing to do: one that has finished, or another one, where too few keep the device busy since nothing may
+    /// be brought back yet.
     engine& free_engine(std::int64_t chunk) {
-        if (engines_.size() < chunks_at_a_time) return add_engine(chunk);
+        if (under_way_.size() < engines_.size()) return *engines_[under_way_.size()];
         for (patience waiting;;) {
             if (waiting.is_over(under_way_.front().back)) return wait_for_oldest();
-            if (may_hold_more(chunk) && keeps_too_few_busy()) {
+            if (checked_ < size_ && may_hold_more(chunk) && keeps_too_few_busy()) {
                 try {
                     return add_engine(chunk);
                 } catch (const error&) {  // someone else has taken the memory since
@@ -259,9 +241,8 @@ private:
             if (waiting.is_over(checking_)) checking_.get();
     }
 
-    void open_for_results() {
+    void count_earlier_work() {
         if (past_ == cuda::past::kept) add_work(work_before_, 0, size_);
-        instances_.touch();
     }
 
     void begin(engine& worker, std::int64_t first, std::int64_t count) {

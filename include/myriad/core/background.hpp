@@ -10,7 +10,9 @@
 #include <mutex>
 #include <thread>
 #include <utility>
-#include <vector>
+#include <variant>
+
+#include "myriad/core/kept.hpp"
 
 namespace myriad::host {
 
@@ -76,36 +78,20 @@ private:
 /// instances.
 class lent_background {
 public:
-    lent_background() : taken_(take()) {}
+    lent_background() : taken_(idle::all().take({})) {
+        if (taken_ == nullptr) taken_ = std::make_unique<background>();
+    }
     lent_background(const lent_background&) = delete;
     lent_background& operator=(const lent_background&) = delete;
     /// Waits for the task at work; those after it are dropped.
     ~lent_background() {
         taken_->forget();
-        pool& all = idle();
-        const std::lock_guard lock(all.mutex);
-        all.threads.push_back(std::move(taken_));
+        idle::all().give({}, std::move(taken_));
     }
     background* operator->() const { return taken_.get(); }
 
 private:
-    struct pool {
-        std::mutex mutex;
-        std::vector<std::unique_ptr<background>> threads;
-    };
-    /// Never destroyed: what the threads' ends would wait for may be gone first.
-    static pool& idle() {
-        static pool* const all = new pool;
-        return *all;
-    }
-    static std::unique_ptr<background> take() {
-        pool& all = idle();
-        const std::lock_guard lock(all.mutex);
-        if (all.threads.empty()) return std::make_unique<background>();
-        auto taken = std::move(all.threads.back());
-        all.threads.pop_back();
-        return taken;
-    }
+    using idle = kept<std::monostate, background>;
 
     std::unique_ptr<background> taken_;
 };

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <type_traits>
 #include <utility>
 
@@ -277,6 +278,8 @@ private:
     }
 
     component_array<R>& next_steps() const {
+        static std::mutex mutex;  // for threads that read one ensemble
+        const std::lock_guard lock(mutex);
         if (h_next_.components() == 0) {
             h_next_ = component_array<R>(1, size_, R(0));
             if (pinned_for_ >= 0) h_next_.pin(pinned_for_);

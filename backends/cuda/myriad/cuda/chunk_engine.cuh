@@ -60,8 +60,11 @@ public:
         };
         arrays(stage);
         records(stage);
-        // Made now, since that waits for all work of the device: for an upload, a download, and one that is asked for.
-        if (to_stage > little_transfer::most) lent_staging::provide(device_, 3);
+        if (to_stage > little_transfer::most && !has_staged_) {
+            // Made now, since that waits for all work of the device: for an upload, a download, and one that is asked for.
+            const lent_staging up(device_), down(device_), next(device_);
+            has_staged_ = true;
+        }
     }
 
     void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances) override {
@@ -82,7 +85,7 @@ public:
             if (!is_cleared(kind)) list.push_back(rows_of(source, host.size, target, components));
         });
         copy_directly(take_pinned(list), cudaMemcpyHostToDevice, stream_.get());
-        if (bytes_of(list) <= little_transfer::most) {
+        if (little_transfer::takes(list)) {
             little_.upload(list, stream_.get());
         } else {
             lent_staging(device_)->upload(list, stream_.get());
@@ -135,6 +138,7 @@ public:
                 if (wanted(context, kind, c))
                     list.push_back(rows_of(target + c * host.size, host.size, source + c * count_, 1));
         };
+        finish_download();
         arguments to = host;
         walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access access, array_kind kind) {
             if (access != array_access::read) add(target, source, components, kind);
@@ -148,8 +152,7 @@ public:
         const row_list& upper = after ? list : of_arrays;
         lower.insert(lower.end(), upper.begin(), upper.end());
         copy_directly(take_pinned(lower), cudaMemcpyDeviceToHost, stream_.get());
-        finish_download();
-        if (bytes_of(lower) <= little_transfer::most) {
+        if (little_transfer::takes(lower)) {
             little_.begin_download(lower, stream_.get());
         } else {
             fetching_ = std::make_unique<lent_staging>(device_);
@@ -248,8 +251,9 @@ private:
     }
     /// Takes the rows of pinned memory out of a list, unless it is of so little.
     static row_list take_pinned(row_list& list) {
-        if (bytes_of(list) <= little_transfer::most) return {};
-        const auto first = std::stable_partition(list.begin(), list.end(), [](const array_rows& rows) { return !is_pinned(rows.host); });
+        if (little_transfer::takes(list)) return {};
+        const auto in_pages = [](const array_rows& rows) { return !is_pinned(rows.host); };
+        const auto first = std::stable_partition(list.begin(), list.end(), in_pages);
         row_list pinned(first, list.end());
         list.erase(first, list.end());
         return pinned;
@@ -312,6 +316,7 @@ private:
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};
     little_transfer little_;
     std::unique_ptr<lent_staging> fetching_;  // of the download under way, if it is more
+    bool has_staged_ = false;
     shared_parameters<R> shared_on_device_{};
     std::int64_t first_ = 0, count_ = 0;
 };

@@ -7,12 +7,11 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <utility>
 #include <vector>
 
+#include "myriad/core/kept.hpp"
 #include "myriad/core/parallel.hpp"
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/resources.cuh"
@@ -40,8 +39,9 @@ private:
 /// For transfers of so little that their number counts: as few as there can be, through a buffer of its own.
 class little_transfer {
 public:
-    /// The most bytes of a transfer.
+    /// The most bytes of a transfer, without what is between arrays.
     static constexpr std::size_t most = 65'536;
+    static bool takes(const row_list& list) { return bytes_of(list) <= most && list.size() <= most / piece::padding; }
 
     /// The host's memory is free on return.
     void upload(const row_list& list, cudaStream_t stream) {
@@ -78,7 +78,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t capacity = 2 * most;  // with what is between arrays
+    static constexpr std::size_t capacity = 2 * most;
 
     pinned_memory memory_{capacity};
     event done_{event::kind::plain};
@@ -176,48 +176,16 @@ private:
 /// Staging memory of a device, borrowed for one transfer: there is as much of it as there were transfers at a time.
 class lent_staging {
 public:
-    explicit lent_staging(int device) : device_(device), taken_(take(device)) {}
+    explicit lent_staging(int device) : device_(device), taken_(idle::all().take(device)) {
+        if (taken_ == nullptr) taken_ = std::make_unique<staging>(device);
+    }
     lent_staging(const lent_staging&) = delete;
     lent_staging& operator=(const lent_staging&) = delete;
-    ~lent_staging() {
-        pool& all = pool_of(device_);
-        const std::lock_guard lock(all.mutex);
-        all.idle.push_back(std::move(taken_));
-    }
+    ~lent_staging() { idle::all().give(device_, std::move(taken_)); }
     staging* operator->() const { return taken_.get(); }
 
-    /// Sees to it that there are so many for the device.
-    static void provide(int device, std::size_t count) {
-        pool& all = pool_of(device);
-        const std::lock_guard lock(all.mutex);
-        for (; all.made < count; ++all.made) all.idle.push_back(std::make_unique<staging>(device));
-    }
-
 private:
-    struct pool {
-        std::mutex mutex;
-        std::size_t made = 0;
-        std::vector<std::unique_ptr<staging>> idle;
-    };
-    /// Never destroyed: when a program ends, CUDA may be gone first.
-    static pool& pool_of(int device) {
-        static std::mutex mutex;
-        static auto* const all = new std::map<int, pool>;
-        const std::lock_guard lock(mutex);
-        return (*all)[device];
-    }
-    static std::unique_ptr<staging> take(int device) {
-        pool& all = pool_of(device);
-        const std::lock_guard lock(all.mutex);
-        if (all.idle.empty()) {
-            auto another = std::make_unique<staging>(device);
-            ++all.made;
-            return another;
-        }
-        auto taken = std::move(all.idle.back());
-        all.idle.pop_back();
-        return taken;
-    }
+    using idle = host::kept<int, staging>;
 
     int device_;
     std::unique_ptr<staging> taken_;
