@@ -91,6 +91,7 @@ public:
                   report<Model, R>& result)
         : options_(o), make_(make), instances_(instances), arguments_(arguments), check_(check), relay_(relay), result_(result),
           how_{where.number(), o.block_size, o.shared_placement, o.schedule}, size_(instances.size()),
+          checked_(size_ <= worth_chunks ? size_ : 0),  // small ones by `solve`
           past_(instances.untouched() ? cuda::past::none : cuda::past::kept) {}
 
     /// Nothing is written to the ensemble before all of it is checked.
@@ -227,6 +228,7 @@ private:
 
     /// Sees to it that the data of the first `count` instances are fine, or marked.
     void check(std::int64_t count) {
+        if (checked_ >= count) return;
         if (check_.passes(checked_, count - checked_)) {
             checked_ = count;
             return;
@@ -285,7 +287,7 @@ private:
     report<Model, R>& result_;
     cuda::engine_options how_;
     std::int64_t size_;
-    std::atomic<std::int64_t> checked_{0};  // so many are fine, or marked
+    std::atomic<std::int64_t> checked_;  // so many are fine, or marked
     std::atomic<cuda::past> past_;
     std::shared_future<void> checking_;
     std::optional<std::size_t> most_engines_;

@@ -91,9 +91,9 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     check_options<Model, Method, R>(options);
     const auto kernel = host::require_kernel<Model, Method, R>(where);
     host::check_uses<Method>(instances, options, instances.size());
-    // On a GPU the data are checked chunk by chunk, while it works on others.
+    // On a GPU the data of large ensembles are checked chunk by chunk, while it works on others.
     host::input_check<Model, R> check(instances, options, instances.size());
-    if (where.which() == device::kind::cpu) check.run();
+    if (where.which() == device::kind::cpu || instances.size() <= host::worth_chunks) check.run();
 
     report<Model, R> result;
     host::prepared_arguments<Model, R> prepared(instances, options, host::traits_of<Method>);
