@@ -96,6 +96,7 @@ struct problem {
     double fixed_step = 0.01;
     /// Whether the error follows the tolerance: no, where stability bounds the step.
     bool error_follows_tolerance = true;
+    double error_of_a_step = 1;  // accepted, at most, in tolerances
     bool stiff = false;
 
     std::vector<method_entry> methods;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Errors over a range of tolerances. What bounds them: every accepted step adds an error below the tolerance, since the
-// solution that goes on is better than the one that is estimated, and a rounding; each event adds what it was located to;
-// and each of these may have grown until it is looked at by the problem's conditioning.
+// solution that goes on is better than the one that is estimated (or a few tolerances, where stability and not accuracy bounds the
+// steps), and a rounding; each event adds what it was located to; and each of these may have grown until it is looked at by the
+// problem's conditioning.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -73,7 +74,7 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
         const solution& known = r.known[i];
         const conditioning& c = r.conditions[i];
         failed += myriad::is_failure(plain.status[i]);
-        const double made = plain.accepted[i] * (tolerance + m.eps) + located + r.error[i];
+        const double made = plain.accepted[i] * (p.error_of_a_step * tolerance + m.eps) + located + r.error[i];
         const double error = distance(is.end, known.end);
         errors.push_back(error);
         const solution& half = finer == nullptr ? is : finer->instances[i];
