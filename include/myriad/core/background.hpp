@@ -74,8 +74,8 @@ private:
     std::thread thread_;
 };
 
-/// One that is borrowed for a while, as a new thread and those that it takes for its loops cost as much as copying a million
-/// instances.
+/// One that is borrowed for a while, as a new thread, and those that it takes for its loops, take long to make beside a short
+/// kernel.
 class lent_background {
 public:
     lent_background() : taken_(idle::all().take({})) {

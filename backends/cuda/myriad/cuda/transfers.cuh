@@ -114,7 +114,7 @@ private:
             }
         }
     }
-    /// Writes results without reading what was there before: twice as fast as memcpy for what caches do not hold.
+    /// Writes results without reading what was there before, as memcpy would.
     static void copy_past_caches(std::byte* to, const std::byte* from, std::size_t bytes) {
 #if defined(__SSE2__)
         constexpr std::size_t line = 64, part = sizeof(__m128i), worthwhile = 32 * line;
