@@ -3,81 +3,28 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <future>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "myriad/backend.hpp"
+#include "myriad/chunk_plan.hpp"
 #include "myriad/core/background.hpp"
-#include "myriad/core/kept.hpp"
+#include "myriad/core/patience.hpp"
 #include "myriad/device.hpp"
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/input_check.hpp"
 #include "myriad/ensemble/report.hpp"
+#include "myriad/idle_engines.hpp"
 #include "myriad/integrator/options.hpp"
 #include "myriad/progress_relay.hpp"
 
 namespace myriad::host {
-
-/// Chunks under way at a time: one is copied in, one is integrated, one is copied out by a thread of its own.
-inline constexpr std::size_t chunks_at_a_time = 3;
-/// Chunks on the device while the last ones are still being checked and none may be copied out.
-inline constexpr std::size_t most_chunks_held = 16;
-/// Ensembles of fewer instances are not worth several.
-inline constexpr std::int64_t worth_chunks = 131'072;
-
-/// What makes an engine of a model and a real type: one for each method.
-template <class Model, class R>
-using engine_maker = std::unique_ptr<cuda::engine<Model, R>> (*)(const cuda::engine_options&);
-
-/// Engines between two calls of `solve`, since making one takes longer than integrating a small ensemble.
-template <class Model, class R>
-class idle_engines {
-    using engine = std::unique_ptr<cuda::engine<Model, R>>;
-    using maker = engine_maker<Model, R>;
-    struct use {
-        maker make;
-        cuda::engine_options how;
-        bool operator==(const use& other) const { return make == other.make && how == other.how; }
-    };
-    using idle = kept<use, cuda::engine<Model, R>>;
-
-public:
-    static engine take(maker make, const cuda::engine_options& how) {
-        engine found = idle::all().take({make, how});
-        return found != nullptr ? std::move(found) : make(how);
-    }
-    /// Only for engines that have finished without an error. Of each method the last few are kept.
-    static void give(maker make, const cuda::engine_options& how, engine e) {
-        e->rest();
-        idle::all().give({make, how}, std::move(e));
-        idle::all().keep_at_most(most_chunks_held, [make](const use& other) { return other.make == make; });
-    }
-};
-
-/// For a thread that waits for one of several things: it looks again at once while that may save some of the time of a chunk, and
-/// later sleeps in between.
-class patience {
-public:
-    /// Whether what the future promises has come.
-    template <class Future>
-    bool is_over(const Future& awaited) {
-        const bool sleeps = std::chrono::steady_clock::now() - begin_ > std::chrono::milliseconds{5};
-        if (!sleeps) std::this_thread::yield();
-        return awaited.wait_for(std::chrono::microseconds{sleeps ? 50 : 0}) == std::future_status::ready;
-    }
-
-private:
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
 
 /// One call of `solve` on a GPU.
 template <class Model, class R>
@@ -99,18 +46,19 @@ public:
         engines_.push_back(engines::take(make_, how_));
         engine& first = *engines_.front();
         clock_ = first.start_clock();
-        const std::int64_t chunk = chunk_size();
-        first.reserve(arguments_, chunk);
-        check(chunk);
-        if (chunk == size_) {
+        plan_ = chunk_plan(options_, arguments_, first);
+        first.reserve(arguments_, plan_.largest());
+        check(plan_.count_from(0));
+        if (plan_.is_one()) {
             count_earlier_work();
             instances_.touch();
-            begin(first, 0, chunk);
+            begin(first, 0, size_);
             first.download(arguments_);
-            bring_back(first, 0, chunk);
-            progress_relay::call(&relay_, chunk);
+            first.wait();
+            take_back(first, size_);
+            look_at_results();
         } else {
-            run_chunks(chunk);
+            run_chunks();
         }
         if (options_.counting == counting::on) set_work(result_, work_before_, work_after_);
         result_.kernel = first.facts();
@@ -118,27 +66,39 @@ public:
     }
 
 private:
+    /// A chunk under way.
     struct part {
-        std::int64_t first, count;
+        std::int64_t end;
         engine* worker;
-        std::shared_future<void> asked;
+        std::shared_future<void> asked;  // for its results
         std::future<void> back;
+        std::atomic<bool> taken = false;  // by a thread that brings it back
+
+        part(std::int64_t e, engine* w, std::shared_future<void> a) : end(e), worker(w), asked(std::move(a)) {}
+        /// Puts results that were asked for into the ensemble. False if another thread does so.
+        bool bring_back() {
+            asked.get();
+            if (taken.exchange(true)) return false;
+            worker->wait();
+            return true;
+        }
     };
 
-    /// This thread begins chunks. A second one checks those that come, and afterwards brings back those that went: it asks for
-    /// the results of a chunk before it puts those of the one before in their places.
-    void run_chunks(std::int64_t chunk) {
+    /// This thread begins chunks, and looks at the results of those that are back. A second one checks those that come, and
+    /// afterwards brings back those that went: it asks for the results of a chunk before it puts those of the one before in
+    /// their places. When all are begun, this thread helps it.
+    void run_chunks() {
         // All before the first result is written: where there is no memory for them, the ensemble is as it was.
-        while (engines_.size() < chunks_at_a_time && static_cast<std::int64_t>(engines_.size()) * chunk < size_) add_engine(chunk);
-        checking_ = background_->ask([this, step = std::max(chunk, worth_chunks)] {
-            while (checked_ < size_) check(std::min(checked_ + step, size_));
+        while (engine_count() < chunks_at_a_time && engine_count() * plan_.largest() < size_) add_engine();
+        checking_ = background_->ask([this] {
+            while (checked_ < size_) check(std::min(checked_ + std::max(plan_.count_from(checked_), worth_chunks / 4), size_));
             count_earlier_work();
             instances_.touch();
         }).share();
-        for (std::int64_t first = 0; first < size_; first += chunk) {
-            engine* const worker = &free_engine(chunk);
+        for (std::int64_t first = 0, count = 0; first < size_; first += count) {
+            engine* const worker = &free_engine();
             if (relay_.failure) break;
-            const std::int64_t count = std::min(chunk, size_ - first);
+            count = plan_.count_from(first);
             wait_for_check(first + count);
             begin(*worker, first, count);
             auto asked = background_->ask([this, worker] {
@@ -146,85 +106,65 @@ private:
                 worker->download(arguments_);
             });
             if (!under_way_.empty()) ask_back(under_way_.back());
-            under_way_.push_back({first, count, worker, asked.share(), {}});
+            under_way_.emplace_back(first + count, worker, asked.share());
+            look_at_results();
         }
         ask_back(under_way_.back());
-        while (!under_way_.empty()) wait_for_oldest();
+        for (patience waiting; !under_way_.empty(); look_at_results()) {
+            if (waiting.is_over(under_way_.front().back)) {
+                wait_for_oldest();
+            } else {
+                help_to_bring_back();
+            }
+        }
+    }
+    /// One chunk that the device has finished, if there is one which the other thread has not taken.
+    void help_to_bring_back() {
+        for (part& p : under_way_) {
+            if (!is_over(p.asked)) return;
+            if (!p.taken && p.worker->idle() && p.bring_back()) return;
+        }
     }
     /// Has the second thread bring back a chunk whose results were asked for.
     void ask_back(part& p) {
-        p.back = background_->ask([this, worker = p.worker, first = p.first, count = p.count, asked = p.asked] {
-            asked.get();
-            bring_back(*worker, first, count);
-        });
-    }
-
-    struct bytes {
-        std::int64_t kept = 0, copied = 0;
-    };
-    bytes of_an_instance() const {
-        bytes sum;
-        const auto add = [&](auto* array, std::int64_t components, array_access access, array_kind) {
-            const auto all = components * static_cast<std::int64_t>(sizeof(*array));
-            sum.kept += all;
-            sum.copied += access == array_access::update ? 2 * all : all;
-        };
-        for_each_array(arguments_, add);
-        for_each_record(arguments_.record, add);
-        return sum;
-    }
-
-    /// As many chunks as overlap most of the transfers, each with enough to do for the GPU and for the bus.
-    std::int64_t chunk_size() const {
-        if (options_.chunk_size > 0) return std::min(options_.chunk_size, size_);
-        const auto [memory, copied] = of_an_instance();
-        constexpr std::int64_t most_chunks = 32, worthwhile_bytes = std::int64_t{8} << 20, all_memory_has = std::int64_t{64} << 20;
-        const std::int64_t least =
-            std::max({worth_chunks, engines_.front()->full_load(), worthwhile_bytes / copied});
-        const std::int64_t chunks = std::clamp(size_ / least, std::int64_t{1}, most_chunks);
-        const std::int64_t chunk = (size_ + chunks - 1) / chunks;
-        const std::int64_t at_a_time = std::min(chunks, static_cast<std::int64_t>(chunks_at_a_time));
-        if (at_a_time * chunk * memory <= all_memory_has) return chunk;
-        const std::int64_t fits = engines_.front()->affordable(memory);
-        return fits >= at_a_time * chunk
-                   ? chunk
-                   : std::clamp(fits / static_cast<std::int64_t>(chunks_at_a_time), std::int64_t{1}, chunk);
+        p.back = background_->ask([&p] { p.bring_back(); });
     }
 
     /// An engine with nothing to do: one that has finished, or another one, where too few keep the device busy since nothing may
     /// be brought back yet.
-    engine& free_engine(std::int64_t chunk) {
+    engine& free_engine() {
         if (under_way_.size() < engines_.size()) return *engines_[under_way_.size()];
         for (patience waiting;;) {
             if (waiting.is_over(under_way_.front().back)) return wait_for_oldest();
-            if (checked_ < size_ && may_hold_more(chunk) && keeps_too_few_busy()) {
+            if (checked_ < size_ && may_hold_more() && keeps_too_few_busy()) {
                 try {
-                    return add_engine(chunk);
+                    return add_engine();
                 } catch (const error&) {  // someone else has taken the memory since
                     most_engines_ = engines_.size();
                 }
             }
         }
     }
-    engine& add_engine(std::int64_t chunk) {
+    engine& add_engine() {
         auto another = engines::take(make_, how_);
-        another->reserve(arguments_, chunk);
+        another->reserve(arguments_, plan_.largest());
         engines_.push_back(std::move(another));
         return *engines_.back();
     }
     /// Whether there is memory for more than `chunks_at_a_time`: half of what the device then has left stays free.
-    bool may_hold_more(std::int64_t chunk) {
+    bool may_hold_more() {
         if (options_.chunk_size > 0) return false;
         if (!most_engines_) {
-            const std::int64_t fit = engines_.front()->affordable(of_an_instance().kept) / (2 * chunk);
+            const std::int64_t fit = engines_.front()->affordable(plan_.bytes_per_instance()) / (2 * plan_.largest());
             most_engines_ = std::min(most_chunks_held, engines_.size() + static_cast<std::size_t>(fit));
         }
         return engines_.size() < *most_engines_;
     }
     bool keeps_too_few_busy() const {
         const auto idle = std::count_if(engines_.begin(), engines_.end(), [](const auto& e) { return e->idle(); });
-        return engines_.size() - static_cast<std::size_t>(idle) < chunks_at_a_time;
+        return engine_count() - idle < chunks_at_a_time;
     }
+    std::int64_t engine_count() const { return static_cast<std::int64_t>(engines_.size()); }
 
     /// Sees to it that the data of the first `count` instances are fine, or marked.
     void check(std::int64_t count) {
@@ -252,24 +192,32 @@ private:
         worker.integrate(arguments_);
     }
 
-    /// Puts results that were asked for into the ensemble, and looks at them; in the order of chunks.
-    void bring_back(engine& worker, std::int64_t first, std::int64_t count) {
-        worker.wait();
+    /// To be called in the order of chunks, when the results of those up to `end` are in the ensemble.
+    void take_back(engine& worker, std::int64_t end) {
+        back_until_ = end;
         // Kernels may overlap: a new one fills the places that the one before leaves.
         const auto [from, to] = worker.kernel_interval(clock_);
         result_.kernel_seconds += std::max(0.0, to - std::max(from, kernels_until_));
         kernels_until_ = std::max(kernels_until_, to);
-        add_work(work_after_, first, count);
-        add_summary(instances_, result_, first, count);
+    }
+    /// Those that are back since the last time.
+    void look_at_results() {
+        const std::int64_t count = back_until_ - seen_until_;
+        if (count == 0) return;
+        add_work(work_after_, seen_until_, count);
+        add_summary(instances_, result_, seen_until_, count);
+        seen_until_ = back_until_;
+        progress_relay::call(&relay_, seen_until_);
     }
 
     /// Returns the engine that is free then.
     engine& wait_for_oldest() {
-        part p = std::move(under_way_.front());
-        under_way_.pop_front();
+        part& p = under_way_.front();
         p.back.get();
-        progress_relay::call(&relay_, p.first + p.count);
-        return *p.worker;
+        engine& worker = *p.worker;
+        take_back(worker, p.end);
+        under_way_.pop_front();
+        return worker;
     }
 
     void add_work(work_count& sum, std::int64_t first, std::int64_t count) const {
@@ -287,6 +235,8 @@ private:
     report<Model, R>& result_;
     cuda::engine_options how_;
     std::int64_t size_;
+    chunk_plan plan_{size_};
+    std::int64_t back_until_ = 0, seen_until_ = 0;  // so many are back in the ensemble, and looked at
     std::atomic<std::int64_t> checked_;  // so many are fine, or marked
     std::atomic<cuda::past> past_;
     std::shared_future<void> checking_;

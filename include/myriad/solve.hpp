@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "myriad/backend.hpp"
+#include "myriad/chunk_plan.hpp"
 #include "myriad/chunked_solve.hpp"
 #include "myriad/cpu_kernel.hpp"
 #include "myriad/device.hpp"

@@ -147,6 +147,24 @@ TEST_CASE("fixed steps are counted exactly", "[report]") {
     CHECK(report.rhs_evaluations == 7 * 8 * 4);
 }
 
+TEST_CASE("counters that nothing can add to take no memory until they are asked for, and then are zero", "[report]") {
+    auto e = good_decays(7);
+    options o;
+    o.step = 0.125;
+    solve<runge_kutta_4>(one_thread, e, o);
+    CHECK(e.counters()[0] != nullptr);
+    CHECK(e.counters()[1] == nullptr);  // fixed steps
+    CHECK(e.counters()[2] == nullptr);  // no events
+    CHECK((e.located_steps() == 0).all());
+    solve<cash_karp>(one_thread, e, o);
+    CHECK(e.counters()[1] != nullptr);
+    const auto rejected = e.rejected_steps().sum();
+    const auto accepted = e.accepted_steps().sum();
+    const auto report = solve<runge_kutta_4>(one_thread, e, o);
+    CHECK(e.rejected_steps().sum() == rejected);  // those of the method before
+    CHECK(e.accepted_steps().sum() == accepted + report.accepted_steps);
+}
+
 TEST_CASE("without counting there are no counters, and reading them is refused", "[report]") {
     auto e = good_decays(), counted = good_decays();
     options o;

@@ -3,6 +3,7 @@
 // maps. Host code only.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <mutex>
@@ -93,11 +94,7 @@ public:
 
     /// What both tolerances are multiplied by in each instance, one until set, for a method
     /// `controlled<Method, tolerance_per_instance>`. Takes memory from the first call on.
-    map<R> tolerance_scale() {
-        if (!scales_tolerances()) tolerance_scale_ = component_array<R>(1, size_, R(1));
-        pin_later_ones();
-        return view(tolerance_scale_, 0, "tolerance scale");
-    }
+    map<R> tolerance_scale() { return view(on_demand(tolerance_scale_, 1, R(1)), 0, "tolerance scale"); }
     bool scales_tolerances() const { return tolerance_scale_.components() > 0; }
 
     /// A parameter that all instances share; NaN until set. With an index beyond the model's: throws `error`.
@@ -124,14 +121,20 @@ public:
     const_map<std::int32_t> phases_done() const { return view(phase_, 0, "phase"); }
     /// Step size the instance would try next; zero before the first phase, and with fixed steps. The first of these calls takes
     /// memory unless an adaptive method did.
-    const_map<R> next_step() const { return view(std::as_const(next_steps()), 0, "step"); }
-    /// Work since the start: accepted and rejected steps, steps redone to locate events, evaluations of rhs. Throws
-    /// `error` if no call has counted.
-    const_map<std::int64_t> accepted_steps() const { return counter(0); }
-    const_map<std::int64_t> rejected_steps() const { return counter(1); }
-    const_map<std::int64_t> located_steps() const { return counter(2); }
-    const_map<std::int64_t> rhs_evaluations() const { return counter(3); }
-    bool counted() const { return work_.components() > 0; }
+    const_map<R> next_step() const { return view(std::as_const(on_demand(h_next_, 1, R(0))), 0, "step"); }
+    /// Work since the start: accepted and rejected steps, steps redone to locate events, evaluations of rhs. A fixed step is
+    /// never rejected: one whose result is not finite ends the instance, and only its evaluations count. Throws `error` if no
+    /// call has counted.
+    const_map<std::int64_t> accepted_steps() const { return counter(accepted_); }
+    const_map<std::int64_t> rejected_steps() const { return counter(rejected_); }
+    const_map<std::int64_t> located_steps() const { return counter(located_); }
+    const_map<std::int64_t> rhs_evaluations() const { return counter(evaluations_); }
+    bool counted() const { return accepted_.components() > 0; }
+    /// The same in this order, null where all are zero since nothing can have been counted: rejected steps by methods with fixed
+    /// ones, located steps of models without events.
+    std::array<const std::int64_t*, 4> counters() const {
+        return {accepted_.data(), rejected_.data(), located_.data(), evaluations_.data()};
+    }
 
     /// Dense output, if options::samples asked for any.
     const trajectory_samples<Model, R>& samples() const { return samples_; }
@@ -148,7 +151,7 @@ public:
             side_.fill_instances(first, last, 0);
             ended_.fill_instances(first, last, 0);
             status_.fill_instances(first, last, status::not_started);
-            work_.fill_instances(first, last, 0);
+            for (auto* const counter : {&accepted_, &rejected_, &located_, &evaluations_}) counter->fill_instances(first, last, 0);
         });
         samples_.clear();
     }
@@ -160,17 +163,15 @@ public:
     void pin(const device& where) {
         if (where.which() != device::kind::cuda) return;
         const int gpu = where.number();
-        state_.pin(gpu);
-        parameter_.pin(gpu);
-        accessory_.pin(gpu);
+        for (auto* const array : {&state_, &parameter_, &accessory_, &t_, &domain_, &h_next_, &tolerance_scale_}) array->pin(gpu);
+        for (auto* const counter : {&accepted_, &rejected_, &located_, &evaluations_}) counter->pin(gpu);
         integer_accessory_.pin(gpu);
-        t_.pin(gpu);
         phase_.pin(gpu);
         side_.pin(gpu);
         ended_.pin(gpu);
         status_.pin(gpu);
+        samples_.pin(gpu);
         pinned_for_ = gpu;
-        pin_later_ones();
     }
 
     /// Whether `pin` has pinned it.
@@ -192,18 +193,17 @@ public:
         a.accessory = accessory_.data();
         a.integer_accessory = integer_accessory_.data();
         a.tolerance_scale = scales_tolerances() ? tolerance_scale_.data() : nullptr;
-        a.h_next = steps == step_sizes::kept ? next_steps().data() : nullptr;
+        a.h_next = steps == step_sizes::kept ? on_demand(h_next_, 1, R(0)).data() : nullptr;
         a.phase = phase_.data();
         a.side = side_.data();
         a.ended = ended_.data();
         a.status = status_.data();
         if (count == counting::on) {
-            if (!counted()) work_ = component_array<std::int64_t>(4, size_, 0);
-            pin_later_ones();
-            a.accepted = work_.component(0);
-            a.rejected = work_.component(1);
-            a.located = work_.component(2);
-            a.evaluations = work_.component(3);
+            const auto values = [this](auto& counter) { return on_demand(counter, 1, std::int64_t{0}).data(); };
+            a.accepted = values(accepted_);
+            a.rejected = steps == step_sizes::kept ? values(rejected_) : nullptr;
+            a.located = n_event<Model> > 0 ? values(located_) : nullptr;
+            a.evaluations = values(evaluations_);
         }
         a.shared = {shared_.data(), shared_integer_.data()};
     }
@@ -221,7 +221,7 @@ public:
     void describe_samples(sample_arguments<Model, R>& a, const sample_options& o) {
         if (o.empty()) return;
         if (samples_.empty()) samples_ = trajectory_samples<Model, R>(o, size_);
-        pin_later_ones();
+        if (pinned()) samples_.pin(pinned_for_);
         require(samples_.fits(o), "samples asks for other states or another capacity (", o.capacity, ") than the samples there "
                 "are (", samples_.capacity(), "): use the same in all calls, or a new ensemble");
         samples_.describe(a);
@@ -269,32 +269,21 @@ private:
 #undef MYRIAD_COMPONENT_INDEX
 
     component_array<R>& own_domains() const {
-        if (has_common_domain()) {
-            domain_ = component_array<R>(2, size_, common_begin_);
-            domain_.fill_component(1, common_end_);
-            if (pinned_for_ >= 0) domain_.pin(pinned_for_);
-        }
+        if (has_common_domain()) on_demand(domain_, 2, common_begin_).fill_component(1, common_end_);
         return domain_;
     }
 
-    component_array<R>& next_steps() const {
+    /// An array that takes no memory before it is asked for.
+    template <class T>
+    component_array<T>& on_demand(component_array<T>& array, int components, T value) const {
         static std::mutex mutex;  // for threads that read one ensemble
         const std::lock_guard lock(mutex);
-        if (h_next_.components() == 0) {
-            h_next_ = component_array<R>(1, size_, R(0));
-            if (pinned_for_ >= 0) h_next_.pin(pinned_for_);
+        if (array.components() == 0) {
+            component_array<T> made(components, size_, value);
+            if (pinned()) made.pin(pinned_for_);
+            array = std::move(made);
         }
-        return h_next_;
-    }
-
-    /// What is allocated when it is first needed.
-    void pin_later_ones() {
-        if (pinned_for_ < 0) return;
-        domain_.pin(pinned_for_);
-        h_next_.pin(pinned_for_);
-        tolerance_scale_.pin(pinned_for_);
-        work_.pin(pinned_for_);
-        samples_.pin(pinned_for_);
+        return array;
     }
 
     template <class Array>
@@ -308,9 +297,9 @@ private:
         }
     }
 
-    const_map<std::int64_t> counter(int c) const {
+    const_map<std::int64_t> counter(component_array<std::int64_t>& values) const {
         require(counted(), "no work was counted: integrate with counting = counting::on");
-        return view(work_, c, "counter");
+        return view(std::as_const(on_demand(values, 1, std::int64_t{0})), 0, "counter");
     }
 
     std::int64_t size_;
@@ -323,14 +312,14 @@ private:
     component_array<R> t_{1, size_, unset};
     component_array<R> shared_{n_shared<Model>, 1, unset};
     component_array<std::int32_t> shared_integer_{n_shared_integer<Model>, 1, 0};
-    component_array<R> tolerance_scale_;  // allocated when it is asked for
-    mutable component_array<R> h_next_;  // allocated when it is asked for
+    component_array<R> tolerance_scale_;  // on demand, as what is mutable
+    mutable component_array<R> h_next_;
     component_array<std::int32_t> phase_{1, size_, 0};
     component_array<std::int8_t> side_{n_event<Model>, size_, 0};
     component_array<std::uint8_t> ended_{1, size_, 0};
     component_array<myriad::status> status_{1, size_, status::not_started};
     trajectory_samples<Model, R> samples_;
-    component_array<std::int64_t> work_;  // allocated by the first call that counts
+    mutable component_array<std::int64_t> accepted_, rejected_, located_, evaluations_;  // by the first call that counts them
     bool untouched_ = true;
     int pinned_for_ = -1;  // the GPU for which memory is pinned; none
 };

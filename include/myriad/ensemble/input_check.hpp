@@ -25,7 +25,7 @@ namespace myriad::host {
 template <class Fine>
 bool all_parts(std::int64_t count, Fine&& fine) {
     std::atomic<bool> all_fine{true};
-    in_parallel(count, 32'768, [&](std::int64_t first, std::int64_t last) {
+    in_parallel(count, 16'384, [&](std::int64_t first, std::int64_t last) {
         if (!fine(first, last)) all_fine = false;
     });
     return all_fine;

@@ -204,16 +204,14 @@ template <class Model, class R>
 work_count counted_work(const ensemble<Model, R>& e, std::int64_t count, std::int64_t first = 0) {
     work_count work{};
     if (!e.counted() || e.untouched()) return work;
-    const std::int64_t* const counters[] = {e.accepted_steps().data(), e.rejected_steps().data(), e.located_steps().data(),
-                                            e.rhs_evaluations().data()};
-    for (std::size_t c = 0; c < work.size(); ++c) {
-        std::atomic<std::int64_t> sum{0};
-        const std::int64_t* const values = counters[c] + first;
-        in_parallel(count, 32'768, [&](std::int64_t begin, std::int64_t end) {
-            sum += std::accumulate(values + begin, values + end, std::int64_t{0});
-        });
-        work[c] = sum;
-    }
+    const auto counters = e.counters();
+    std::array<std::atomic<std::int64_t>, 4> sums{};
+    in_parallel(count, 16'384, [&](std::int64_t begin, std::int64_t end) {
+        for (std::size_t c = 0; c < sums.size(); ++c)
+            if (counters[c] != nullptr)
+                sums[c] += std::accumulate(counters[c] + first + begin, counters[c] + first + end, std::int64_t{0});
+    });
+    for (std::size_t c = 0; c < sums.size(); ++c) work[c] = sums[c];
     return work;
 }
 

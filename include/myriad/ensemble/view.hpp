@@ -92,8 +92,8 @@ struct kernel_arguments {
     myriad::status* status;  // how the last phase ended
     // work done in all calls, or null when counting is off
     std::int64_t* accepted;
-    std::int64_t* rejected;
-    std::int64_t* located;      // steps redone to locate an event
+    std::int64_t* rejected;     // with adaptive methods
+    std::int64_t* located;      // steps redone to locate an event, in models that have some
     std::int64_t* evaluations;  // of the right-hand side
 
     shared_parameters<R> shared;

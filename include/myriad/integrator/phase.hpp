@@ -133,8 +133,8 @@ private:
         const auto rejected = static_cast<std::int64_t>(get_lane(s.rejected, i));
         const auto located = static_cast<std::int64_t>(get_lane(s.located, i));
         args.accepted[index] += trials - rejected - located;
-        args.rejected[index] += rejected;
-        args.located[index] += located;
+        if constexpr (is_adaptive<Method>) args.rejected[index] += rejected;
+        if constexpr (m > 0) args.located[index] += located;
         args.evaluations[index] += trials * evaluations_per_trial<Model, Method> +
                                    static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
     }

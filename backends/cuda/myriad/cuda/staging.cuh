@@ -124,7 +124,7 @@ public:
 
 private:
     static constexpr std::size_t workers = static_cast<std::size_t>(host::most_threads), buffers = 2 * workers,
-                                 smallest = std::size_t{128} << 10, largest = std::size_t{1} << 20;
+                                 smallest = std::size_t{128} << 10, largest = std::size_t{1} << 20, unit = 4096;
 
     struct buffer {
         std::byte* data = nullptr;
@@ -134,9 +134,11 @@ private:
         cudaError_t wait() { return cudaEventSynchronize(copied.get()); }
     };
 
-    /// Large enough for the bus, and one for each thread if there can be.
+    /// Large enough for the bus, and as many for each thread.
     static std::vector<piece> cut(const row_list& list) {
-        return piece::cut(list, std::clamp(bytes_of(list) / workers / smallest * smallest + smallest, smallest, largest));
+        const std::size_t bytes = bytes_of(list) + list.size() * piece::padding, turns = (bytes - 1) / (workers * largest) + 1;
+        const std::size_t each = bytes / (turns * workers) / unit * unit + unit;
+        return piece::cut(list, std::clamp(each, smallest, largest));
     }
 
     /// Calls `work(piece, its number, its buffer)` for each, in several threads; for those that share a buffer in one, in order.

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// How `solve` cuts an ensemble into chunks for a GPU. Host code only.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "myriad/backend.hpp"
+#include "myriad/ensemble/arrays.hpp"
+#include "myriad/ensemble/view.hpp"
+#include "myriad/integrator/options.hpp"
+
+namespace myriad::host {
+
+/// Chunks under way at a time: one is copied in, one is integrated, one is copied out by a thread of its own.
+inline constexpr std::int64_t chunks_at_a_time = 3;
+/// Ensembles of fewer instances are not worth several.
+inline constexpr std::int64_t worth_chunks = 131'072;
+
+class chunk_plan {
+public:
+    /// One chunk of all instances.
+    explicit chunk_plan(std::int64_t size) : size_(size), largest_(size), smallest_(size) {}
+    /// What the options say, or as many chunks as overlap most of the transfers, each with enough to do for the GPU and for the bus.
+    template <class Model, class R>
+    chunk_plan(const options& o, kernel_arguments<Model, R>& arguments, const cuda::engine<Model, R>& worker)
+        : chunk_plan(arguments.size) {
+        std::int64_t copied = 0;
+        const auto add = [&](auto* array, std::int64_t components, array_access access, array_kind) {
+            const auto all = components * static_cast<std::int64_t>(sizeof(*array));
+            bytes_ += all;
+            copied += access == array_access::update ? 2 * all : all;
+        };
+        for_each_array(arguments, add);
+        for_each_record(arguments.record, add);
+        if (o.chunk_size > 0) {
+            largest_ = smallest_ = std::min(o.chunk_size, size_);
+            return;
+        }
+        constexpr std::int64_t most_chunks = 32, worthwhile_bytes = std::int64_t{8} << 20, all_memory_has = std::int64_t{64} << 20;
+        const std::int64_t least = std::max({worth_chunks, worker.full_load(), worthwhile_bytes / copied});
+        const std::int64_t chunks = std::clamp(size_ / least, std::int64_t{1}, most_chunks);
+        largest_ = (size_ + chunks - 1) / chunks;
+        const std::int64_t at_a_time = std::min(chunks, chunks_at_a_time) * largest_;
+        if (at_a_time * bytes_ > all_memory_has) {
+            const std::int64_t fits = worker.affordable(bytes_);
+            if (fits < at_a_time) largest_ = std::clamp(fits / chunks_at_a_time, std::int64_t{1}, largest_);
+        }
+        smallest_ = largest_ == size_ ? size_ : std::max(largest_ / 4, std::int64_t{1});
+    }
+
+    bool is_one() const { return largest_ == size_; }
+    /// Instances of the largest chunk, and how many bytes each has.
+    std::int64_t largest() const { return largest_; }
+    std::int64_t bytes_per_instance() const { return bytes_; }
+    /// How many instances the chunk from `first` on has. The first chunks are smaller, so that the GPU has something to do soon,
+    /// and so are the last ones, so that little is left to bring back when it has done.
+    std::int64_t count_from(std::int64_t first) const {
+        const std::int64_t left = size_ - first;
+        return std::min(left, std::clamp(std::min(first, left / 2), smallest_, largest_));
+    }
+
+private:
+    std::int64_t size_, largest_, smallest_, bytes_ = 0;
+};
+
+}  // namespace myriad::host

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Engines of GPUs between two calls of `solve`, since making one takes longer than integrating a small ensemble. Host code only.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+#include "myriad/backend.hpp"
+#include "myriad/core/kept.hpp"
+
+namespace myriad::host {
+
+/// Chunks on the device while the last ones are still being checked and none may be copied out.
+inline constexpr std::size_t most_chunks_held = 16;
+
+/// What makes an engine of a model and a real type: one for each method.
+template <class Model, class R>
+using engine_maker = std::unique_ptr<cuda::engine<Model, R>> (*)(const cuda::engine_options&);
+
+/// Those of all methods of a model.
+template <class Model, class R>
+class idle_engines {
+    using engine = std::unique_ptr<cuda::engine<Model, R>>;
+    using maker = engine_maker<Model, R>;
+    struct use {
+        maker make;
+        cuda::engine_options how;
+        bool operator==(const use& other) const { return make == other.make && how == other.how; }
+    };
+    using idle = kept<use, cuda::engine<Model, R>>;
+
+public:
+    static engine take(maker make, const cuda::engine_options& how) {
+        engine found = idle::all().take({make, how});
+        return found != nullptr ? std::move(found) : make(how);
+    }
+    /// Only for engines that have finished without an error. Of each method the last few are kept.
+    static void give(maker make, const cuda::engine_options& how, engine e) {
+        e->rest();
+        idle::all().give({make, how}, std::move(e));
+        idle::all().keep_at_most(most_chunks_held, [make](const use& other) { return other.make == make; });
+    }
+};
+
+}  // namespace myriad::host
