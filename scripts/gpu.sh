@@ -8,14 +8,15 @@ source scripts/lib.sh
 
 usage() {
     cat <<'END'
-Usage: scripts/gpu.sh [--tests] [--sanitize] [--bench] [--methods] [--deps DIR] [--output DIR] [--jobs N] [--help]
+Usage: scripts/gpu.sh [--tests] [--sanitize] [--bench] [--profile] [--methods] [--deps DIR] [--output DIR] [--jobs N] [--help]
 
 Needs nvcc, cmake, ninja, g++, Eigen, Catch2, Boost and a GPU. Nothing is installed and nothing fetched.
-Without --tests, --sanitize, --bench or --methods: the first three, in this order.
+Without --tests, --sanitize, --bench, --profile or --methods: the first three, in this order.
 
   --tests        the test programs on the GPU, then those of the solver on the CPU too
   --sanitize     compute-sanitizer memcheck and racecheck on small cases
   --bench        the benchmarks, as CSV, and a table of registers, stack and spills per kernel
+  --profile      what Nsight Compute counts in four kernels of the benchmark; needs ncu
   --methods      the methods beside each other, as CSV; its kernels take minutes to compile
   --deps DIR     folder with the headers of what is not installed: DIR/xsimd, DIR/CLI (default: .deps, if it is there)
   --output DIR   where logs and CSV files go (default: results/gpu)
@@ -30,7 +31,7 @@ parts=()
 while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
-        --tests | --sanitize | --bench | --methods) parts+=("${1#--}") ;;
+        --tests | --sanitize | --bench | --profile | --methods) parts+=("${1#--}") ;;
         --deps | --output | --jobs)
             (($# > 1)) || usage_error "$1 needs a value"
             case $1 in --deps) deps=$2 ;; --output) output=$2 ;; --jobs) jobs=$2 ;; esac
@@ -54,6 +55,7 @@ cmake --preset cuda "${options[@]}" >"$output/configure.log" 2>&1 || { tail -30 
 targets=()
 if wants tests || wants sanitize; then targets+=(check_gpu); fi
 if wants bench; then targets+=(gpu_ensembles end_to_end several_gpus); fi
+if wants profile; then targets+=(gpu_ensembles); fi
 if wants methods; then targets+=(methods); fi
 cmake --build --preset cuda --parallel "$jobs" --target "${targets[@]}" -- -k 0 >"$output/build.log" 2>&1 || {
     grep -E "error|FAILED" "$output/build.log" | head -40 || true
@@ -103,8 +105,35 @@ if wants bench; then
         build/cuda/benchmarks/several_gpus/several_gpus | tee "$output/several_gpus.csv" || failed+=(several_gpus)
     fi
     cuobjdump --dump-resource-usage build/cuda/benchmarks/gpu_ensembles/gpu_ensembles 2>/dev/null | c++filt |
-        sed -nE '/Function/{s/.*Function (void )?//;s/\(.*//;h};/REG:/{s/.*(REG:[0-9]+).*(STACK:[0-9]+).*(LOCAL:[0-9]+).*/\1 \2 \3/;G;s/\n/  /p}' |
+        sed -nE '/Function/{s/.*Function (void )?//;s/(, )?\(.*//;h};/REG:/{s/.*(REG:[0-9]+).*(STACK:[0-9]+).*(LOCAL:[0-9]+).*/\1 \2 \3/;G;s/\n/  /p}' |
         tee "$output/kernels.txt" || failed+=(kernels)
+fi
+
+# profile CASE SCALE: rows "CASE,SCALE,metric,unit,value" of the first kernel of a case, with its first number of instances times
+# SCALE; shares are of the peak, at the GPU's base clocks.
+profile() {
+    local log=$output/profile_$1.log metrics=(gpu__time_duration.sum
+        sm__inst_executed_pipe_fp64.avg.pct_of_peak_sustained_active sm__inst_executed_pipe_fp64.sum # double precision
+        smsp__issue_active.avg.pct_of_peak_sustained_active smsp__inst_executed.sum
+        sm__warps_active.avg.pct_of_peak_sustained_active   # of the warps that fit
+        smsp__thread_inst_executed_per_inst_executed.ratio) # threads that take part, of 32
+    ncu --kernel-name integrate_ensemble --launch-count 1 --kill yes --csv --print-units base \
+        --metrics "$(IFS=, && printf '%s' "${metrics[*]}")" \
+        build/cuda/benchmarks/gpu_ensembles/gpu_ensembles --cases "$1" --instances-scale "$2" --repetitions 1 >"$log" 2>&1 || true
+    python3 - "$log" "$1,$2" <<'END'
+import csv, sys
+rows = [row for row in csv.reader(line for line in open(sys.argv[1]) if line.startswith('"')) if len(row) > 3]
+for row in rows[1:]:
+    print(sys.argv[2], row[-3], row[-2], row[-1].replace(",", ""), sep=",")
+sys.exit(len(rows) < 2)
+END
+}
+if wants profile; then
+    say "Profiles"
+    {
+        printf 'case,instances_scale,metric,unit,value\n'
+        profile lorenz_rk4 8 && profile lorenz_tsit5_1e-6 16 && profile keller_miksis 1 && profile relief_valve 3.75
+    } | tee "$output/profile.csv" || failed+=(profile)
 fi
 
 if wants methods; then
