@@ -14,6 +14,8 @@ namespace myriad::host {
 
 /// Chunks under way at a time: one is copied in, one is integrated, one is copied out by a thread of its own.
 inline constexpr std::int64_t chunks_at_a_time = 3;
+/// Chunks on the device while the last ones are still being checked and none may be copied out.
+inline constexpr std::int64_t most_chunks_held = 16;
 /// Ensembles of fewer instances are not worth several.
 inline constexpr std::int64_t worth_chunks = 131'072;
 
@@ -35,21 +37,26 @@ public:
         for_each_record(arguments.record, add);
         if (o.chunk_size > 0) {
             largest_ = smallest_ = std::min(o.chunk_size, size_);
+            at_a_time_ = std::min((size_ - 1) / largest_ + 1, chunks_at_a_time);
             return;
         }
         constexpr std::int64_t most_chunks = 32, worthwhile_bytes = std::int64_t{8} << 20, all_memory_has = std::int64_t{64} << 20;
         const std::int64_t least = std::max({worth_chunks, worker.full_load(), worthwhile_bytes / copied});
         const std::int64_t chunks = std::clamp(size_ / least, std::int64_t{1}, most_chunks);
         largest_ = (size_ + chunks - 1) / chunks;
-        const std::int64_t at_a_time = std::min(chunks, chunks_at_a_time) * largest_;
-        if (at_a_time * bytes_ > all_memory_has) {
+        const std::int64_t held = largest_ * (has_one_chunk() ? 1 : chunks_at_a_time);
+        if (held * bytes_ > all_memory_has) {
             const std::int64_t fits = worker.affordable(bytes_);
-            if (fits < at_a_time) largest_ = std::clamp(fits / chunks_at_a_time, std::int64_t{1}, largest_);
+            if (fits < held) largest_ = std::clamp(fits / chunks_at_a_time, std::int64_t{1}, largest_);
         }
-        smallest_ = largest_ == size_ ? size_ : std::max(largest_ / 4, std::int64_t{1});
+        if (has_one_chunk()) return;
+        smallest_ = std::max(largest_ / 4, std::int64_t{1});
+        at_a_time_ = chunks_at_a_time;
     }
 
-    bool is_one() const { return largest_ == size_; }
+    bool has_one_chunk() const { return largest_ == size_; }
+    /// Chunks that are to be under way at a time.
+    std::int64_t at_a_time() const { return at_a_time_; }
     /// Instances of the largest chunk, and how many bytes each has.
     std::int64_t largest() const { return largest_; }
     std::int64_t bytes_per_instance() const { return bytes_; }
@@ -57,11 +64,12 @@ public:
     /// and so are the last ones, so that little is left to bring back when it has done.
     std::int64_t count_from(std::int64_t first) const {
         const std::int64_t left = size_ - first;
-        return std::min(left, std::clamp(std::min(first, left / 2), smallest_, largest_));
+        const std::int64_t count = std::min(left, std::clamp(std::min(first, left / 2), smallest_, largest_));
+        return left - count < smallest_ && left <= largest_ ? left : count;
     }
 
 private:
-    std::int64_t size_, largest_, smallest_, bytes_ = 0;
+    std::int64_t size_, largest_, smallest_, at_a_time_ = 1, bytes_ = 0;
 };
 
 }  // namespace myriad::host

@@ -49,14 +49,14 @@ public:
         plan_ = chunk_plan(options_, arguments_, first);
         first.reserve(arguments_, plan_.largest());
         check(plan_.count_from(0));
-        if (plan_.is_one()) {
+        if (plan_.has_one_chunk()) {
             count_earlier_work();
             instances_.touch();
             begin(first, 0, size_);
             first.download(arguments_);
             first.wait();
             take_back(first, size_);
-            look_at_results();
+            sum_up_results();
         } else {
             run_chunks();
         }
@@ -84,12 +84,12 @@ private:
         }
     };
 
-    /// This thread begins chunks, and looks at the results of those that are back. A second one checks those that come, and
+    /// This thread begins chunks, and sums up the results of those that are back. A second one checks those that come, and
     /// afterwards brings back those that went: it asks for the results of a chunk before it puts those of the one before in
     /// their places. When all are begun, this thread helps it.
     void run_chunks() {
         // All before the first result is written: where there is no memory for them, the ensemble is as it was.
-        while (engine_count() < chunks_at_a_time && engine_count() * plan_.largest() < size_) add_engine();
+        while (engine_count() < plan_.at_a_time()) add_engine();
         checking_ = background_->ask([this] {
             while (checked_ < size_) check(std::min(checked_ + std::max(plan_.count_from(checked_), worth_chunks / 4), size_));
             count_earlier_work();
@@ -107,12 +107,13 @@ private:
             });
             if (!under_way_.empty()) ask_back(under_way_.back());
             under_way_.emplace_back(first + count, worker, asked.share());
-            look_at_results();
+            sum_up_results();
         }
         ask_back(under_way_.back());
-        for (patience waiting; !under_way_.empty(); look_at_results()) {
+        for (patience waiting; !under_way_.empty();) {
             if (waiting.is_over(under_way_.front().back)) {
                 wait_for_oldest();
+                sum_up_results();
             } else {
                 help_to_bring_back();
             }
@@ -140,7 +141,7 @@ private:
                 try {
                     return add_engine();
                 } catch (const error&) {  // someone else has taken the memory since
-                    most_engines_ = engines_.size();
+                    most_engines_ = engine_count();
                 }
             }
         }
@@ -156,9 +157,9 @@ private:
         if (options_.chunk_size > 0) return false;
         if (!most_engines_) {
             const std::int64_t fit = engines_.front()->affordable(plan_.bytes_per_instance()) / (2 * plan_.largest());
-            most_engines_ = std::min(most_chunks_held, engines_.size() + static_cast<std::size_t>(fit));
+            most_engines_ = std::min(most_chunks_held, engine_count() + fit);
         }
-        return engines_.size() < *most_engines_;
+        return engine_count() < *most_engines_;
     }
     bool keeps_too_few_busy() const {
         const auto idle = std::count_if(engines_.begin(), engines_.end(), [](const auto& e) { return e->idle(); });
@@ -195,19 +196,19 @@ private:
     /// To be called in the order of chunks, when the results of those up to `end` are in the ensemble.
     void take_back(engine& worker, std::int64_t end) {
         back_until_ = end;
+        progress_relay::call(&relay_, end);
         // Kernels may overlap: a new one fills the places that the one before leaves.
         const auto [from, to] = worker.kernel_interval(clock_);
         result_.kernel_seconds += std::max(0.0, to - std::max(from, kernels_until_));
         kernels_until_ = std::max(kernels_until_, to);
     }
-    /// Those that are back since the last time.
-    void look_at_results() {
+    /// Sums up those that are back since the last time.
+    void sum_up_results() {
         const std::int64_t count = back_until_ - seen_until_;
         if (count == 0) return;
         add_work(work_after_, seen_until_, count);
         add_summary(instances_, result_, seen_until_, count);
         seen_until_ = back_until_;
-        progress_relay::call(&relay_, seen_until_);
     }
 
     /// Returns the engine that is free then.
@@ -236,11 +237,11 @@ private:
     cuda::engine_options how_;
     std::int64_t size_;
     chunk_plan plan_{size_};
-    std::int64_t back_until_ = 0, seen_until_ = 0;  // so many are back in the ensemble, and looked at
-    std::atomic<std::int64_t> checked_;  // so many are fine, or marked
+    std::int64_t back_until_ = 0, seen_until_ = 0;  // so many are back in the ensemble, and summed up
+    std::atomic<std::int64_t> checked_;             // so many are fine, or marked
     std::atomic<cuda::past> past_;
     std::shared_future<void> checking_;
-    std::optional<std::size_t> most_engines_;
+    std::optional<std::int64_t> most_engines_;
     std::vector<std::unique_ptr<engine>> engines_;
     std::deque<part> under_way_;
     void* clock_ = nullptr;

@@ -7,12 +7,10 @@
 #include <utility>
 
 #include "myriad/backend.hpp"
+#include "myriad/chunk_plan.hpp"
 #include "myriad/core/kept.hpp"
 
 namespace myriad::host {
-
-/// Chunks on the device while the last ones are still being checked and none may be copied out.
-inline constexpr std::size_t most_chunks_held = 16;
 
 /// What makes an engine of a model and a real type: one for each method.
 template <class Model, class R>
@@ -35,11 +33,11 @@ public:
         engine found = idle::all().take({make, how});
         return found != nullptr ? std::move(found) : make(how);
     }
-    /// Only for engines that have finished without an error. Of each method the last few are kept.
+    /// Only for engines that have finished without an error. Of each method as many are kept as a call may use.
     static void give(maker make, const cuda::engine_options& how, engine e) {
         e->rest();
         idle::all().give({make, how}, std::move(e));
-        idle::all().keep_at_most(most_chunks_held, [make](const use& other) { return other.make == make; });
+        idle::all().keep_at_most(static_cast<std::size_t>(most_chunks_held), [make](const use& other) { return other.make == make; });
     }
 };
 

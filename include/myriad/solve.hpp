@@ -14,6 +14,7 @@
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/notes.hpp"
 #include "myriad/ensemble/report.hpp"
+#include "myriad/idle_engines.hpp"
 #include "myriad/integrator/arguments.hpp"
 #include "myriad/integrator/options.hpp"
 #include "myriad/progress_relay.hpp"

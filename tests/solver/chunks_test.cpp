@@ -275,6 +275,30 @@ TEST_CASE("next steps are zero with fixed steps, kept from an adaptive method ov
     }
 }
 
+TEST_CASE("rejected steps that an adaptive method counted stay while a fixed-step one goes on, in chunks too") {
+    auto o = usual();
+    o.phases = 1;
+    o.chunk_size = 300;
+    for (const bool pin : {false, true}) {
+        myriad::ensemble<swing> e(1000);
+        fill(e);
+        if (pin) e.pin(test_device());
+        o.step = 0.01;
+        CHECK(myriad::solve<runge_kutta_4>(test_device(), e, o).rejected_steps == 0);
+        CHECK(e.counters()[1] == nullptr);
+        o.step = 1;  // too long for the tolerances
+        const auto report = myriad::solve<myriad::cash_karp>(test_device(), e, o);
+        const Eigen::ArrayX<std::int64_t> rejected = e.rejected_steps(), accepted = e.accepted_steps();
+        CHECK(rejected.minCoeff() > 0);
+        CHECK(report.rejected_steps == rejected.sum());
+        o.step = 0.01;
+        const auto after = myriad::solve<runge_kutta_4>(test_device(), e, o);
+        CHECK(after.rejected_steps == 0);
+        CHECK((e.rejected_steps() == rejected).all());
+        CHECK(e.accepted_steps().sum() == accepted.sum() + after.accepted_steps);
+    }
+}
+
 TEST_CASE("progress of chunks rises to the total, and an exception of it ends the work after what is under way") {
     if (tests::tests_cpu()) return;  // where it is told otherwise
     auto o = quarter_steps(50'000);

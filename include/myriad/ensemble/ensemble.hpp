@@ -94,7 +94,7 @@ public:
 
     /// What both tolerances are multiplied by in each instance, one until set, for a method
     /// `controlled<Method, tolerance_per_instance>`. Takes memory from the first call on.
-    map<R> tolerance_scale() { return view(on_demand(tolerance_scale_, 1, R(1)), 0, "tolerance scale"); }
+    map<R> tolerance_scale() { return view(on_demand(tolerance_scale_, R(1)), 0, "tolerance scale"); }
     bool scales_tolerances() const { return tolerance_scale_.components() > 0; }
 
     /// A parameter that all instances share; NaN until set. With an index beyond the model's: throws `error`.
@@ -121,19 +121,19 @@ public:
     const_map<std::int32_t> phases_done() const { return view(phase_, 0, "phase"); }
     /// Step size the instance would try next; zero before the first phase, and with fixed steps. The first of these calls takes
     /// memory unless an adaptive method did.
-    const_map<R> next_step() const { return view(std::as_const(on_demand(h_next_, 1, R(0))), 0, "step"); }
+    const_map<R> next_step() const { return view(std::as_const(on_demand(h_next_, R(0))), 0, "step"); }
     /// Work since the start: accepted and rejected steps, steps redone to locate events, evaluations of rhs. A fixed step is
     /// never rejected: one whose result is not finite ends the instance, and only its evaluations count. Throws `error` if no
-    /// call has counted.
-    const_map<std::int64_t> accepted_steps() const { return counter(accepted_); }
-    const_map<std::int64_t> rejected_steps() const { return counter(rejected_); }
-    const_map<std::int64_t> located_steps() const { return counter(located_); }
-    const_map<std::int64_t> rhs_evaluations() const { return counter(evaluations_); }
-    bool counted() const { return accepted_.components() > 0; }
+    /// call has counted. The first call for what none has counted takes memory.
+    const_map<std::int64_t> accepted_steps() const { return counter(0); }
+    const_map<std::int64_t> rejected_steps() const { return counter(1); }
+    const_map<std::int64_t> located_steps() const { return counter(2); }
+    const_map<std::int64_t> rhs_evaluations() const { return counter(3); }
+    bool counted() const { return counted_[0].components() > 0; }
     /// The same in this order, null where all are zero since nothing can have been counted: rejected steps by methods with fixed
     /// ones, located steps of models without events.
     std::array<const std::int64_t*, 4> counters() const {
-        return {accepted_.data(), rejected_.data(), located_.data(), evaluations_.data()};
+        return {counted_[0].data(), counted_[1].data(), counted_[2].data(), counted_[3].data()};
     }
 
     /// Dense output, if options::samples asked for any.
@@ -151,7 +151,7 @@ public:
             side_.fill_instances(first, last, 0);
             ended_.fill_instances(first, last, 0);
             status_.fill_instances(first, last, status::not_started);
-            for (auto* const counter : {&accepted_, &rejected_, &located_, &evaluations_}) counter->fill_instances(first, last, 0);
+            for (auto& counter : counted_) counter.fill_instances(first, last, 0);
         });
         samples_.clear();
     }
@@ -164,7 +164,7 @@ public:
         if (where.which() != device::kind::cuda) return;
         const int gpu = where.number();
         for (auto* const array : {&state_, &parameter_, &accessory_, &t_, &domain_, &h_next_, &tolerance_scale_}) array->pin(gpu);
-        for (auto* const counter : {&accepted_, &rejected_, &located_, &evaluations_}) counter->pin(gpu);
+        for (auto& counter : counted_) counter.pin(gpu);
         integer_accessory_.pin(gpu);
         phase_.pin(gpu);
         side_.pin(gpu);
@@ -193,17 +193,17 @@ public:
         a.accessory = accessory_.data();
         a.integer_accessory = integer_accessory_.data();
         a.tolerance_scale = scales_tolerances() ? tolerance_scale_.data() : nullptr;
-        a.h_next = steps == step_sizes::kept ? on_demand(h_next_, 1, R(0)).data() : nullptr;
+        a.h_next = steps == step_sizes::kept ? on_demand(h_next_, R(0)).data() : nullptr;
         a.phase = phase_.data();
         a.side = side_.data();
         a.ended = ended_.data();
         a.status = status_.data();
         if (count == counting::on) {
-            const auto values = [this](auto& counter) { return on_demand(counter, 1, std::int64_t{0}).data(); };
-            a.accepted = values(accepted_);
-            a.rejected = steps == step_sizes::kept ? values(rejected_) : nullptr;
-            a.located = n_event<Model> > 0 ? values(located_) : nullptr;
-            a.evaluations = values(evaluations_);
+            const auto values = [this](std::size_t c) { return on_demand(counted_[c], std::int64_t{0}).data(); };
+            a.accepted = values(0);
+            a.rejected = steps == step_sizes::kept ? values(1) : nullptr;
+            a.located = n_event<Model> > 0 ? values(2) : nullptr;
+            a.evaluations = values(3);
         }
         a.shared = {shared_.data(), shared_integer_.data()};
     }
@@ -269,17 +269,22 @@ private:
 #undef MYRIAD_COMPONENT_INDEX
 
     component_array<R>& own_domains() const {
-        if (has_common_domain()) on_demand(domain_, 2, common_begin_).fill_component(1, common_end_);
+        if (has_common_domain()) {
+            component_array<R> made(2, size_, common_begin_);
+            made.fill_component(1, common_end_);
+            if (pinned()) made.pin(pinned_for_);
+            domain_ = std::move(made);
+        }
         return domain_;
     }
 
-    /// An array that takes no memory before it is asked for.
+    /// An array of one component, that takes no memory before it is asked for.
     template <class T>
-    component_array<T>& on_demand(component_array<T>& array, int components, T value) const {
+    component_array<T>& on_demand(component_array<T>& array, T value) const {
         static std::mutex mutex;  // for threads that read one ensemble
         const std::lock_guard lock(mutex);
         if (array.components() == 0) {
-            component_array<T> made(components, size_, value);
+            component_array<T> made(1, size_, value);
             if (pinned()) made.pin(pinned_for_);
             array = std::move(made);
         }
@@ -297,9 +302,10 @@ private:
         }
     }
 
-    const_map<std::int64_t> counter(component_array<std::int64_t>& values) const {
+    const_map<std::int64_t> counter(std::size_t c) const {
         require(counted(), "no work was counted: integrate with counting = counting::on");
-        return view(std::as_const(on_demand(values, 1, std::int64_t{0})), 0, "counter");
+        const bool exists = counted_[c].components() > 0;
+        return view(exists ? counted_[c] : std::as_const(on_demand(zeros_, std::int64_t{0})), 0, "counter");
     }
 
     std::int64_t size_;
@@ -312,14 +318,15 @@ private:
     component_array<R> t_{1, size_, unset};
     component_array<R> shared_{n_shared<Model>, 1, unset};
     component_array<std::int32_t> shared_integer_{n_shared_integer<Model>, 1, 0};
-    component_array<R> tolerance_scale_;  // on demand, as what is mutable
-    mutable component_array<R> h_next_;
+    component_array<R> tolerance_scale_;   // made when it is asked for
+    mutable component_array<R> h_next_;    // likewise
     component_array<std::int32_t> phase_{1, size_, 0};
     component_array<std::int8_t> side_{n_event<Model>, size_, 0};
     component_array<std::uint8_t> ended_{1, size_, 0};
     component_array<myriad::status> status_{1, size_, status::not_started};
     trajectory_samples<Model, R> samples_;
-    mutable component_array<std::int64_t> accepted_, rejected_, located_, evaluations_;  // by the first call that counts them
+    std::array<component_array<std::int64_t>, 4> counted_;  // accepted, rejected, located, evaluations: by the first call that counts
+    mutable component_array<std::int64_t> zeros_;           // those that no call has counted, when they are asked for
     bool untouched_ = true;
     int pinned_for_ = -1;  // the GPU for which memory is pinned; none
 };

@@ -6,33 +6,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
-
 #include "myriad/core/error.hpp"
+#include "myriad/core/pages.hpp"
 #include "myriad/core/parallel.hpp"
 #include "myriad/core/pinned.hpp"
 
 namespace myriad {
-namespace host {
-
-/// Pages of memory, for `std::free`, or null where there is too little. Many are asked for as huge ones, of which the system
-/// clears fewer, and finds them faster.
-inline void* new_pages(std::size_t bytes) {
-    constexpr std::size_t page = 4096, huge = std::size_t{2} << 20;
-    const std::size_t unit = bytes >= 2 * huge ? huge : page, whole = (bytes + unit - 1) / unit * unit;
-    void* const memory = std::aligned_alloc(unit, whole);
-#if defined(MADV_HUGEPAGE)
-    if (memory != nullptr && unit == huge) madvise(memory, whole, MADV_HUGEPAGE);  // a wish: it may be refused
-#endif
-    return memory;
-}
-
-}  // namespace host
 
 /// `components` arrays of `size` values each, one after the other; component c of instance i is at `[c * size + i]`.
 template <class T>
@@ -76,25 +57,27 @@ private:
         });
     }
     struct release {
+        std::size_t bytes = 0;
         bool pinned = false;
         void operator()(T* p) const {
             if (pinned) host::unpin_memory(p);
-            std::free(p);
+            host::delete_pages(p, bytes);
         }
     };
-    static T* allocate(std::size_t components, std::size_t size) {
+    using memory = std::unique_ptr<T[], release>;
+    static memory allocate(std::size_t components, std::size_t size) {
         if (components == 0 || size == 0) return nullptr;
         const double wanted = static_cast<double>(components) * static_cast<double>(size) * sizeof(T);
         const std::size_t bytes = components * size * sizeof(T);
-        void* const memory = wanted > 9e18 ? nullptr : host::new_pages(bytes);
-        require(memory != nullptr, "out of memory: ", wanted / 1e9, " GB are wanted for ", components,
+        void* const found = wanted > 9e18 ? nullptr : host::new_pages(bytes);
+        require(found != nullptr, "out of memory: ", wanted / 1e9, " GB are wanted for ", components,
                 " components of ", size, " values: integrate the ensemble in smaller parts");
-        return static_cast<T*>(memory);
+        return memory(static_cast<T*>(found), release{bytes});
     }
 
     int components_ = 0;
     std::int64_t size_ = 0;
-    std::unique_ptr<T[], release> data_;
+    memory data_;
 };
 
 }  // namespace myriad

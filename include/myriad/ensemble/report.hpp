@@ -151,7 +151,8 @@ struct report {
             if (is_failure(static_cast<status>(s))) sum += by_status[static_cast<std::size_t>(s)];
         return sum;
     }
-    /// Share of lane turns in which the lane had nothing to do, from 0 to 1; zero with `counting::off`.
+    /// Share of lane turns in which the lane had nothing to do, from 0 to 1; zero with `counting::off`. A fixed step that ends an
+    /// instance, since its result is not finite, counts as such a turn.
     double idle_share() const {
         const std::int64_t used = accepted_steps + rejected_steps + located_steps;
         return used == 0 || lane_turns == 0 ? 0 : 1 - static_cast<double>(used) / static_cast<double>(lane_turns);
