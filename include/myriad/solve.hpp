@@ -16,6 +16,7 @@
 #include "myriad/ensemble/report.hpp"
 #include "myriad/idle_engines.hpp"
 #include "myriad/integrator/arguments.hpp"
+#include "myriad/integrator/option_checks.hpp"
 #include "myriad/integrator/options.hpp"
 #include "myriad/progress_relay.hpp"
 

@@ -14,6 +14,7 @@
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/report.hpp"
 #include "myriad/integrator/arguments.hpp"
+#include "myriad/integrator/option_checks.hpp"
 #include "myriad/integrator/options.hpp"
 #include "myriad/solve.hpp"
 
