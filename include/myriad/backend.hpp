@@ -92,7 +92,8 @@ protected:
 
 /// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and uploads
 /// of host memory that is not pinned, return before the work is done; work is done in the order in which it was asked for.
-/// What is downloaded is on the host after the next `wait`, not before.
+/// What is downloaded is on the host after the next `wait`, not before. One thread at a time uses an engine, but `idle` and
+/// `affordable` may be called by another meanwhile.
 /// Arguments are the host's, for the whole ensemble; `first` and `count` say which of its instances are meant. Errors of
 /// the device, those of earlier work too, are thrown as `error`.
 template <class Model, class R>
