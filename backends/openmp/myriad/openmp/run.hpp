@@ -23,9 +23,9 @@ namespace myriad::inline MYRIAD_TARGET {
 /// time per step and instance with 1, 2, 3, 4 batches: with AVX-512, whose 32 registers hold two batches, Lorenz with RK4
 /// -, 1.35, 1.46, 1.40 ns and Duffing with Cash-Karp -, 11.6, 12.2, -; with AVX2, whose 16 hold none, -, 2.38, 2.10, 2.07 and
 /// -, 16.6, 15.7, 15.9, but the bubble of cpu_peers, with its 13 parameters, -, 54, 56, -; with events every 5 steps 46, 48, 76, -
-/// and 63, 71, 78, -, with hundreds of steps between them (the valve of cpu_peers) -, 12.4, 13.0, - and -, 19.4, 17.3, 18.7. That is
-/// g++'s code; clang++'s has fewer spills, with AVX-512 on an Intel Xeon -, 1.25, 0.98, -, Duffing -, 9.6, 9.3, -, the valve -, 11.3,
-/// 12.1, -. A model may choose by `static constexpr bool rare_events = true;` or `static constexpr int pack_batches = 2;`.
+/// and 63, 71, 78, -, with hundreds of steps between them (the valve of cpu_peers) -, 12.4, 13.0, - and -, 19.4, 17.3, 18.7. That
+/// is g++'s code; clang++'s with AVX-512 on an Intel Xeon takes -, 1.25, 0.98, -, Duffing -, 9.6, 9.3, -, the valve -, 11.3, 12.1,
+/// -. A model may choose by `static constexpr bool rare_events = true;` or `static constexpr int pack_batches = 2;`.
 template <class Model, class Method>
 constexpr int default_batches() {
 #if defined(MYRIAD_SCALAR_LANES)  // with sanitizers, which take minutes to compile the kernel of a pack
