@@ -114,7 +114,7 @@ TEST_CASE("the combined estimate of dormand_prince_8 falls with the step to the 
         const myriad::vec<double, 2> y = model::exact(0.5);
         myriad::rk_trial<method, double, 2> trial;
         trial.k[0] = myriad::evaluate_rhs<model>(0.5, y, p);
-        myriad::explicit_rk_step<method, model>(0.5, h, y, p, trial);
+        myriad::explicit_rk_step<method, model>(0.5, h, 0.5 + h, y, p, trial);
         return myriad::scaled_error<model, method>(args, y, h, trial).worst;
     };
     // e5 ~ h^6 and e3 ~ h^4, so e5^2 / e3 ~ h^8 (1 + O(h))

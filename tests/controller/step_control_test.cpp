@@ -93,6 +93,9 @@ options tolerance(double relative, double absolute) {
     return o;
 }
 
+/// Steps are rounded to the resolution of t, here below 32.
+constexpr double resolution = 16 * std::numeric_limits<double>::epsilon();
+
 /// A step whose error is `q` times the tolerance.
 template <class Method>
 options with_ratio(double h, double q) {
@@ -143,9 +146,9 @@ TEST_CASE("each component of the state is held to its own tolerance") {
 
 TEST_CASE("a step that grows without limit by its error grows by exactly the growth limit") {
     options o = with_ratio<cash_karp>(0.01, 1e-9);
-    CHECK(first_trial<cash_karp>(o).next_step == 0.01 * 5.0);
+    CHECK(std::abs(first_trial<cash_karp>(o).next_step - 0.01 * 5.0) <= 5 * resolution);
     o.growth_limit = 1;
-    CHECK(first_trial<cash_karp>(o).next_step == 0.01);
+    CHECK(std::abs(first_trial<cash_karp>(o).next_step - 0.01) <= resolution);
 }
 TEST_CASE("a rejected step shrinks by the shrink limit at most") {
     options o = with_ratio<cash_karp>(0.5, 1e9);
@@ -194,7 +197,7 @@ TEST_CASE("no step of an integration is above the maximum step") {
     o.maximum_step = 0.07;
     const auto steps = steps_of<tsitouras_5, log_circle>(o, 5);
     // The last may be stretched by a thousandth to end the domain without a sliver.
-    for (std::size_t i = 0; i + 1 < steps.size(); ++i) CHECK(steps[i].h <= 0.07);
+    for (std::size_t i = 0; i + 1 < steps.size(); ++i) CHECK(steps[i].h <= 0.07 + resolution);
     CHECK(steps.back().h <= 0.07 * 1.001);
     CHECK(steps.size() >= 71);  // 5 / 0.07
 }
@@ -211,7 +214,7 @@ TEST_CASE("no step of an integration is below the minimum step but the last") {
     // The safety factor leaves room for steps longer by a tenth: the shortest ones can be, and still pass the error test.
     o.minimum_step = 1.05 * shortest;
     const auto steps = steps_of<cash_karp, log_circle>(o, 20);
-    for (std::size_t i = 0; i + 1 < steps.size(); ++i) CHECK(steps[i].h >= o.minimum_step);
+    for (std::size_t i = 0; i + 1 < steps.size(); ++i) CHECK(steps[i].h >= o.minimum_step - resolution);
 }
 
 TEST_CASE("steps without error grow by the growth limit, one after the other") {
@@ -221,7 +224,7 @@ TEST_CASE("steps without error grow by the growth limit, one after the other") {
         o.growth_limit = growth;
         const auto steps = steps_of<cash_karp, problems::uniform>(o, 10);
         REQUIRE(steps.size() > 5);
-        for (std::size_t i = 0; i + 2 < steps.size(); ++i) CHECK(steps[i + 1].h == steps[i].h * growth);
+        for (std::size_t i = 0; i + 2 < steps.size(); ++i) CHECK(std::abs(steps[i + 1].h - steps[i].h * growth) <= resolution);
     }
 }
 TEST_CASE("an accepted step shortens its successor by no more than the safety factor") {
@@ -232,8 +235,8 @@ TEST_CASE("the step that follows is the one that was announced, unless it was re
     const auto steps = steps_of<cash_karp, log_circle>(tolerance(1e-9, 1e-9), 20);
     std::size_t kept = 0;
     for (std::size_t i = 0; i + 2 < steps.size(); ++i) {
-        CHECK(steps[i + 1].h <= steps[i].h_next);
-        if (steps[i + 1].h == steps[i].h_next) ++kept;
+        CHECK(steps[i + 1].h <= steps[i].h_next + resolution);
+        if (steps[i + 1].h >= steps[i].h_next - resolution) ++kept;
     }
     CHECK(kept * 2 > steps.size());  // and rejections are the exception
 }

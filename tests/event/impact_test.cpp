@@ -145,6 +145,21 @@ TEMPLATE_TEST_CASE("impacts that a step happens to end on are not taken for accu
     }
 }
 
+TEMPLATE_TEST_CASE("impacts far from t = 0 take no time from the flights between them", "", ALL_METHODS) {
+    // 137 impacts on walls two units apart; where t has a resolution of 1e-7, each of them would take about half of that
+    constexpr double speed = 1.1, flight = 249;
+    for (const double t_begin : {0.0, 1e6, 1e9}) {
+        CAPTURE(t_begin);
+        auto e = ensemble_of(motion{.v = speed}, {position(1, watch::bounce), position(-1, watch::bounce), never()}, t_begin,
+                             t_begin + flight);
+        solve<TestType>(e, options_for(1e-12, 0.1));
+        CHECK(e.status(0) == myriad::status::success);
+        REQUIRE(count_of(e) == 137);
+        // the 137th was on the upper wall; an impact within its tolerance shifts all that follows by twice as much
+        CHECK(std::abs(e.state(watch::x)[0] - (2 * 137 - speed * flight)) <= 2 * 137 * 2e-12);
+    }
+}
+
 TEMPLATE_TEST_CASE("the period of a pendulum is right to 1e-10", "", ALL_METHODS) {
     myriad::ensemble<pendulum> e(1);
     e.state(pendulum::x) = 0.05;

@@ -109,6 +109,48 @@ TEST_CASE("a domain of n steps up to rounding has n steps, for every n") {
 TEST_CASE("a thousand steps far from t = 0 are a thousand steps") {
     each_method([]<class Method> { check_steps<Method>(1e9, 1e9 + 1, fixed_step(1e-3), 1000); });
 }
+TEST_CASE("the state advances by as much as t, however coarse the resolution of t") {
+    each_method([]<class Method> {
+        const auto check = [](double t_begin, double length, double step, double tolerance) {
+            CAPTURE(t_begin, length, step);
+            options o = fixed_step(step);
+            o.minimum_step = 0;  // steps may be rounded to shorter ones
+            ensemble<uniform> e(1);
+            e.state(0) = 0;
+            e.time_domain(t_begin, t_begin + length);
+            solve<Method>(tests::test_device(1), e, o);
+            CHECK(e.status(0) == status::success);
+            CHECK(std::abs(e.state(0)[0] - length) <= tolerance);
+        };
+        // t is a multiple of two here, and of 2^-23 there; the sums of the state are rounded to a few 1e-13
+        for (const double direction : {1.0, -1.0}) {
+            check(1e16, direction * 1000, 3, 1e-9);
+            check(1e9, direction * 1000, 0.1, 1e-9);
+            check(1e9, direction, 1e-5, 1e-9);
+        }
+    });
+}
+
+TEST_CASE("an oscillator far from t = 0 ends where it does near it") {
+    each_method([]<class Method> {
+        const auto end = [](double t_begin) {
+            options o = with_tolerance(1e-10, 1e-3);
+            o.maximum_step = 1e-3;
+            ensemble<problems::oscillator> e(1);
+            e.state(problems::oscillator::x) = 1;
+            e.state(problems::oscillator::v) = 0;
+            e.time_domain(t_begin, t_begin + 64);
+            solve<Method>(tests::test_device(1), e, o);
+            return e.state(problems::oscillator::x)[0];
+        };
+        // 64 000 steps, each rounded by half an ulp of one at most
+        for (const double t_begin : {0.0, 1e6, 1e9}) {
+            CAPTURE(t_begin);
+            CHECK(std::abs(end(t_begin) - std::cos(64.0)) <= 64'000 * eps<double> / 2);
+        }
+    });
+}
+
 TEST_CASE("a remainder of the domain gets a step of its own") {
     each_method([]<class Method> {
         check_steps<Method>(0.0, 1.0, fixed_step(0.3), 4);

@@ -42,7 +42,7 @@ struct single_step {
     single_step(R from, R length) : t(from), h(length), start(Model::exact(from)) {
         const myriad::inputs<Model, R> p{};
         trial.k[0] = myriad::evaluate_rhs<Model>(t, start, p);
-        myriad::explicit_rk_step<Method, Model>(t, h, start, p, trial);
+        myriad::explicit_rk_step<Method, Model>(t, h, t + h, start, p, trial);
         slope_end = myriad::evaluate_rhs<Model>(t + h, trial.y, p);
     }
     state at(R theta) const {

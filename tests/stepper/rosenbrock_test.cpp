@@ -33,7 +33,7 @@ struct single_step {
     single_step(double from, double length) : t(from), h(length), start(Model::exact(from)) {
         const myriad::inputs<Model, double> p{};
         trial.k[0] = myriad::evaluate_rhs<Model>(t, start, p);
-        myriad::take_trial_step<Method, Model>(t, h, start, p, trial);
+        myriad::take_trial_step<Method, Model>(t, h, t + h, start, p, trial);
     }
     state at(double theta) const {
         const myriad::step_data<Method, double, n> step{t, h, start, trial, {}, {}};

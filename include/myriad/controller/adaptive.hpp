@@ -9,13 +9,17 @@
 namespace myriad::inline MYRIAD_TARGET {
 
 /// The next step of every lane: the one wanted, or what is left of the domain. A step that falls short of t_end by less
-/// than 1/1024 of itself is stretched, so that no sliver is left over; its error is tested like any other.
+/// than 1/1024 of itself is stretched, so that no sliver is left over; its error is tested like any other. The state
+/// advances by exactly the step by which t does, else the difference adds up over the steps.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION void propose_adaptive_step(integration_state<Model, Method, S>& s) {
     using R = real_of<S>;
-    const S remaining = s.data.t_end - s.data.t;
+    S remaining = s.data.t_end - s.data.t;
+    if constexpr (keeps_time_low<Model, Method, R>) remaining = remaining - s.time_low;
     s.final_step = abs(remaining) <= abs(s.data.h_next) * S(R(1 + 1.0 / 1024));
-    s.h = select(s.final_step, remaining, copysign(s.data.h_next, remaining));
+    S h = copysign(s.data.h_next, remaining);
+    if constexpr (!keeps_time_low<Model, Method, R>) h = (s.data.t + h) - s.data.t;
+    s.h = select(s.final_step, remaining, h);
 }
 
 /// Ends lanes that can make no step, as not_finite or singular_jacobian where that was why their last trial failed.
@@ -75,12 +79,18 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
     if (any(rejected)) {
         const mask finite = valid & (error.worst > C(R(1))) & (error.worst <= C(largest_of<R>));
         factor = select(within | finite, factor, shrink_limit);
+        // Of a few roundings of t, nine tenths may be the same step again.
+        const S rounding = S(epsilon_of<real_of<S>>) * abs(s.data.t);
+        if constexpr (!keeps_time_low<Model, Method, real_of<S>>)
+            factor = select(rejected & (abs(s.h) <= S(R(16)) * rounding), smaller(factor, C(R(0.45))), factor);
         s.rejected = count_where(rejected, s.rejected);
-        s.last_not_finite = select(rejected, !finite, s.last_not_finite);
+        // A step that did not get anywhere says nothing about why the one before it failed.
+        const mask moved = rejected & (t1 != s.data.t);
+        s.last_not_finite = select(moved, !finite, s.last_not_finite);
         // No Jacobian can be had where the right-hand side itself is not finite.
         if constexpr (solves_linear_systems<Method>)
-            s.last_singular = select(rejected & !finite, trial.singular & all_finite(trial.k[0]), s.last_singular);
-        const mask smallest = rejected & (abs(s.h) <= S(args.minimum_step));
+            s.last_singular = select(moved & !finite, trial.singular & all_finite(trial.k[0]), s.last_singular);
+        const mask smallest = rejected & (abs(s.h) <= S(args.minimum_step) + rounding);
         if (MYRIAD_UNLIKELY(any(smallest))) end_stuck_lanes(s, smallest);
     }
     S next = s.h * S(factor);
@@ -93,7 +103,6 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
         next = copysign(size, s.h);
         s.rejected = count_where(stuck & accepted, s.rejected);
         accepted = accepted & !stuck;
-        // a step that did not get anywhere says nothing about why the one before it failed
         s.last_not_finite = s.last_not_finite | (stuck & not_finite_before);
         end_stuck_lanes(s, stuck);
     }

@@ -8,6 +8,16 @@
 
 namespace myriad::inline MYRIAD_TARGET {
 
+/// base + done * step - t, without the rounding of such times: that of base - t is added (Knuth, The Art of Computer
+/// Programming 2, 4.2.2, theorem B).
+template <class R>
+MYRIAD_FUNCTION R elapsed_beyond(R base, R t, R done, R step) {
+    const R difference = base - t;
+    const R subtracted = base - difference;
+    const R rounding = (base - (difference + subtracted)) + (subtracted - t);
+    return fma(done, step, difference) + rounding;
+}
+
 /// Lays the steps of lane i from t to t_end: their number, and the last one, which ends exactly at t_end. A domain that
 /// is a whole number of steps up to rounding gets that number, without a sliver at the end.
 template <class Model, class Method, class S>
@@ -26,6 +36,17 @@ MYRIAD_FUNCTION void lay_fixed_steps(const kernel_arguments<Model, real_of<S>>& 
     set_lane(s.step, i, signed_step);
     set_count(s.done, i, 0);
     set_count(s.left, i, bounded);
+}
+
+/// Lays the steps of lane i anew from t, where it is after `done` steps up to rounding, which time_low keeps, or after the
+/// last one.
+template <class Model, class Method, class S>
+MYRIAD_FUNCTION void move_fixed_steps(const kernel_arguments<Model, real_of<S>>& args,
+                                      integration_state<Model, Method, S>& s, int i, real_of<S> t) {
+    using R = real_of<S>;
+    const R taken = elapsed_beyond(get_lane(s.base, i), t, static_cast<R>(get_lane(s.done, i)), get_lane(s.step, i));
+    set_lane(s.time_low, i, get_lane(s.left, i) == 0 ? R(0) : get_lane(s.time_low, i) + taken);
+    lay_fixed_steps(args, s, i, t);
 }
 
 /// The end of lane i's time domain, for rare use: from the ensemble, so that it need not stay in a register.
@@ -54,8 +75,12 @@ MYRIAD_FUNCTION void propose_fixed_step(const kernel_arguments<Model, real_of<S>
     s.final_step = s.left <= count(1);
     s.h = s.step;
     if (MYRIAD_UNLIKELY(any(s.final_step))) {
+        using R = real_of<S>;
         for_each_lane(s.running() & s.final_step, [&](int i) MYRIAD_LAMBDA {
-            set_lane(s.h, i, domain_end(args, s, i) - fixed_step_time(args, s, i));
+            R beyond = elapsed_beyond(args.t[s.instance[i]], domain_end(args, s, i), static_cast<R>(get_lane(s.done, i)),
+                                      get_lane(s.step, i));
+            if constexpr (keeps_time_low<Model, Method, R>) beyond += get_lane(s.time_low, i);
+            set_lane(s.h, i, -beyond);
         });
     }
 }

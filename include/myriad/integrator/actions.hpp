@@ -105,7 +105,7 @@ private:
         const bool there = t == t_end;
         if (s.ending[i] == status::success) set_lane(s.ended, i, there);  // other endings stand
         if (there) return;
-        if constexpr (!is_adaptive<Method>) lay_fixed_steps(args, s, i, t);
+        if constexpr (!is_adaptive<Method>) move_fixed_steps(args, s, i, t);
     }
 
     /// Takes over what a generic hook made of `before`, in the given lanes.

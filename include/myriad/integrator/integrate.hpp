@@ -124,7 +124,7 @@ struct integrator {
                 trial_step trial;
                 const S t = fma(S(done + count(static_cast<lane_of<count>>(i))), step, base);
                 trial.k[0] = evaluate_rhs<Model>(t, now, p);
-                take_trial_step<Method, Model>(t, step, now, p, trial);
+                take_trial_step<Method, Model>(t, step, t + step, now, p, trial);
                 now = trial.y;
             }
             if (MYRIAD_UNLIKELY(any(s.running() & !all_finite(now)))) {
@@ -169,7 +169,7 @@ struct integrator {
         } else {
             trial.k[0] = evaluate_rhs<Model>(s.now(), s.data.y, s.data);
         }
-        take_trial_step<Method, Model>(s.now(), s.h, s.data.y, s.data, trial);
+        take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
     }
 
     /// Accepts or rejects the trial: error, finiteness, and that it does not go beyond an event.
@@ -197,10 +197,9 @@ struct integrator {
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]);
         if constexpr (shows_step) s.data.h = select(accepted, s.h, s.data.h);
+        [[maybe_unused]] const S t1 = end_time();
         if constexpr (adaptive) {
-            const S t1 = end_time();
-            if constexpr (compensates_time)
-                s.time_low = select(accepted, (s.h + s.time_low) - (t1 - s.data.t), s.time_low);
+            if constexpr (keeps_low) s.time_low = select(accepted, (s.h + s.time_low) - (t1 - s.data.t), s.time_low);
             s.data.t = select(accepted, t1, s.data.t);
             // The last step ends there, and so may one before it, by rounding or at an event.
             s.ended = s.ended | (accepted & (t1 == s.data.t_end));
@@ -209,10 +208,9 @@ struct integrator {
             s.left = select(accepted, s.left - count(1), s.left);
             if constexpr (has_events<Model>) {
                 for_each_lane(accepted & any_event(e.firing) & !s.final_step, [&](int i) MYRIAD_LAMBDA {
-                    const R t = get_lane(s.base, i);
-                    const R done = static_cast<R>(get_lane(s.done, i)) - R(1);
-                    const R start = fma(done, get_lane(s.step, i), t);
-                    lay_fixed_steps(args, s, i, start + get_lane(s.h, i));
+                    // the last step taken was shorter than the others
+                    set_lane(s.time_low, i, get_lane(s.time_low, i) + (get_lane(s.h, i) - get_lane(s.step, i)));
+                    move_fixed_steps(args, s, i, get_lane(t1, i));
                 });
             }
             if constexpr (shows_time) {
@@ -261,8 +259,7 @@ private:
     static constexpr bool loses_slope = !Method::first_same_as_last || has_after_step<Model> || has_events<Model>;
     /// Events and samples may need the slope at the end of a step, which is then the first of the next.
     static constexpr bool knows_slope_end = has_events<Model> || samples;
-    /// In single precision the rounding of t would cost steps and accuracy.
-    static constexpr bool compensates_time = std::is_same_v<R, float>;
+    static constexpr bool keeps_low = keeps_time_low<Model, Method, R>;
     /// Only hooks see the step just taken.
     static constexpr bool shows_step = has_after_step<Model> || has_after_event<Model> || has_finalise<Model>;
     /// Fixed steps count time; it is only written down where someone looks at it.
@@ -274,8 +271,11 @@ private:
         if constexpr (!adaptive) {
             // the time at which the next step begins, bit for bit, so that it may take over the slope
             t1 = fma(S(s.done + count(1)), s.step, s.base);
-            if constexpr (has_events<Model>) t1 = select(s.h == s.step, t1, s.now() + s.h);  // a step redone to an event
-        } else if constexpr (compensates_time) {
+            if constexpr (has_events<Model>) {
+                const S redone = s.now() + (s.h + s.time_low);  // to an event
+                t1 = select(s.h == s.step, t1, redone);
+            }
+        } else if constexpr (keeps_low) {
             t1 = s.data.t + (s.h + s.time_low);
         } else {
             t1 = s.data.t + s.h;

@@ -26,6 +26,12 @@ template <class Model, class Method>
 inline constexpr bool stepper_keeps_slope =
     is_adaptive<Method> || has_events<Model> || samples_trajectory<Method> || Method::first_same_as_last;
 
+/// Whether the part of the time that rounding takes from t is kept beside it, so that it does not add up: where steps are too
+/// short for the resolution of t, as in single precision and to events. Other steps are rounded to that resolution.
+template <class Model, class Method, class R>
+inline constexpr bool keeps_time_low =
+    has_events<Model> || (is_adaptive<Method> ? std::is_same_v<R, float> : writes_time_domain<Model>);
+
 /// Evaluations of the right-hand side in every trial step; others are counted where they happen.
 template <class Model, class Method>
 inline constexpr int evaluations_per_trial = stepper_keeps_slope<Model, Method> ? Method::stages - 1 : Method::stages;
@@ -98,7 +104,7 @@ struct integration_state {
     mask slope_valid;
     vec<S, n> slope_end;   // f at the end of the trial, where slope_end_known holds
     mask slope_end_known;
-    S time_low;        // what rounding took from t (float models)
+    S time_low;            // what rounding took from t, or from base, where keeps_time_low
 
     // the trial step
     S h;               // its length, signed

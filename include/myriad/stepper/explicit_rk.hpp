@@ -9,6 +9,7 @@
 #include "myriad/model/lane.hpp"
 #include "myriad/scalar/math.hpp"
 #include "myriad/scalar/select.hpp"
+#include "myriad/stepper/weights.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -29,10 +30,6 @@ struct rk_trial {
     MYRIAD_FUNCTION const vec<S, n>& slope_end() const { return k[Method::stages - 1]; }
 };
 
-/// Whether a method has a second error estimate, of lower order.
-template <class Method>
-inline constexpr bool has_coarse_estimate = requires { Method::coarse_error_weight(0); };
-
 /// The order that a method's error estimate falls with, less one: that of the embedded solution, where that is all there is.
 template <class Method>
 inline constexpr int estimate_order = [] {
@@ -42,41 +39,6 @@ inline constexpr int estimate_order = [] {
         return Method::embedded_order;
     }
 }();
-
-/// Rows of weights: the arguments of stages 1, 2, ... come first.
-template <class Method>
-struct row_of {
-    static constexpr int solution = Method::stages;
-    static constexpr int error = Method::stages + 1;
-    static constexpr int coarse_error = Method::stages + 2;
-};
-template <class Method>
-constexpr double weight_in(int row, int stage) {
-    if constexpr (has_coarse_estimate<Method>) {
-        if (row == row_of<Method>::coarse_error) return Method::coarse_error_weight(stage);
-    }
-    return Method::tableau().weight(row, stage);
-}
-
-// The tableau's entries as constants, which device code may use where it may not call the functions behind them.
-
-/// First stage whose weight in `row` is not zero.
-template <class Method, int row>
-inline constexpr int first_stage = [] {
-    int j = 0;
-    while (weight_in<Method>(row, j) == 0) ++j;
-    return j;
-}();
-/// Its weight.
-template <class Method, int row, class R>
-inline constexpr R first_weight = static_cast<R>(weight_in<Method>(row, first_stage<Method, row>));
-/// The weight of stage j over the first one.
-template <class Method, int row, int j, class R>
-inline constexpr R relative_weight =
-    static_cast<R>(weight_in<Method>(row, j) / weight_in<Method>(row, first_stage<Method, row>));
-/// The node of stage i.
-template <class Method, int i, class R>
-inline constexpr R node = static_cast<R>(Method::tableau().c[static_cast<std::size_t>(i)]);
 
 // A GPU's instruction can carry a number whose lower half is zero; of others it takes two more to load one, and one if the
 // number is in constant memory.
@@ -157,10 +119,11 @@ MYRIAD_FUNCTION S error_sum(const rk_trial<Method, S, n>& trial, int component) 
     return scaled_sum<Method, row>(trial.k, component);
 }
 
-/// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given. The new state is summed up stage by stage, so
-/// that slopes which no later stage needs can leave their registers.
+/// Steps from (t, y) over h to t1; `trial.k[0]`, the slope at the start, is given. A last stage that is the first of the next
+/// step is taken at t1, which may be t + h up to rounding. The new state is summed up stage by stage, so that slopes which
+/// no later stage needs can leave their registers.
 template <class Method, class Model, class S>
-MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const vec<S, n_state<Model>>& y,
+MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                       const inputs<Model, S>& p, rk_trial<Method, S, n_state<Model>>& trial) {
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
@@ -181,8 +144,12 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const vec<S, n_sta
     static_for<1, Method::stages>([&](auto i) MYRIAD_LAMBDA {
         constexpr int stage = decltype(i)::value;
         const auto argument = combine<Method, stage>(y, h, trial.k);
-        if constexpr (Method::first_same_as_last && stage == last - 1) trial.y = argument;
-        trial.k[stage] = evaluate_rhs<Model>(fma(S(node<Method, stage, R>), h, t), argument, p);
+        if constexpr (Method::first_same_as_last && stage == last - 1) {
+            trial.y = argument;
+            trial.k[stage] = evaluate_rhs<Model>(t1, argument, p);
+        } else {
+            trial.k[stage] = evaluate_rhs<Model>(fma(S(node<Method, stage, R>), h, t), argument, p);
+        }
         if constexpr (!Method::first_same_as_last) add_stage(i);
     });
     if constexpr (!Method::first_same_as_last) {

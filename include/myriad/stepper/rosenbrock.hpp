@@ -10,6 +10,7 @@
 #include "myriad/scalar/select.hpp"
 #include "myriad/stepper/explicit_rk.hpp"
 #include "myriad/stepper/lu.hpp"
+#include "myriad/stepper/weights.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -52,8 +53,6 @@ constexpr double rosenbrock_coefficient(rosenbrock_row kind, int row, int j) {
             return t.dense[i][stage];
     }
 }
-template <class Method, rosenbrock_row kind, int row, int j, class R>
-inline constexpr R rosenbrock_weight = static_cast<R>(rosenbrock_coefficient<Method>(kind, row, j));
 template <class Method, class R>
 inline constexpr R reciprocal_gamma = static_cast<R>(1 / Method::tableau().gamma);
 template <class Method, int i, class R>
@@ -69,6 +68,55 @@ inline constexpr int first_new_stage = [] {
     while (j < row - 1 && Method::tableau().weight(row, j) == Method::tableau().weight(row - 1, j)) ++j;
     return j == row - 1 ? j : 0;
 }();
+
+/// The weights of one row of a kind.
+template <class Method>
+constexpr auto rosenbrock_weights(rosenbrock_row kind, std::size_t row) {
+    stage_numbers<Method::stages> w{};
+    for (std::size_t j = 0; j < w.size(); ++j)
+        w[j] = rosenbrock_coefficient<Method>(kind, static_cast<int>(row), static_cast<int>(j));
+    return w;
+}
+
+/// The row sums of gamma, by which a stage answers to a constant slope, of the tableau and as rounded to R.
+template <class Method, class R>
+inline constexpr auto rosenbrock_row_sums = [] {
+    constexpr auto stages = static_cast<std::size_t>(Method::stages);
+    struct {
+        std::array<std::array<R, stages>, stages> coupling{};
+        stage_numbers<stages> exact{}, kept{};
+    } rows;
+    for (std::size_t i = 0; i < stages; ++i) {
+        const auto w = rosenbrock_weights<Method>(rosenbrock_row::coupling, i);
+        rows.coupling[i] = rounded_weights<R>(w, 1, 0, i, rows.exact, {}, rows.kept, {});
+        double exact = 1, kept = 1;
+        for (std::size_t j = 0; j < i; ++j) {
+            exact += w[j] * rows.exact[j];
+            kept += static_cast<double>(rows.coupling[i][j]) * rows.kept[j];
+        }
+        rows.exact[i] = exact * Method::tableau().gamma;
+        rows.kept[i] = kept / static_cast<double>(reciprocal_gamma<Method, R>);
+    }
+    return rows;
+}();
+
+/// One row of weights in the kernel's precision.
+template <class Method, rosenbrock_row kind, int row, class R>
+inline constexpr auto kept_rosenbrock_weights = [] {
+    constexpr auto& sums = rosenbrock_row_sums<Method, R>;
+    if constexpr (kind == rosenbrock_row::coupling) {
+        return sums.coupling[static_cast<std::size_t>(row)];
+    } else {
+        // What a stiffly accurate method repeats is summed up once.
+        constexpr int first = [] {
+            if constexpr (kind == rosenbrock_row::argument) return first_new_stage<Method, row>;
+            return 0;
+        }();
+        return rounded_weights<R>(rosenbrock_weights<Method>(kind, row), 1, first, Method::stages, sums.exact, {}, sums.kept, {});
+    }
+}();
+template <class Method, rosenbrock_row kind, int row, int j, class R>
+inline constexpr R rosenbrock_weight = kept_rosenbrock_weights<Method, kind, row, R>[static_cast<std::size_t>(j)];
 
 /// First stage whose weight is not zero.
 template <class Method, rosenbrock_row kind, int row>
@@ -128,10 +176,11 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
     return factorise(lu);
 }
 
-/// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given.
+/// Steps from (t, y) over h to t1; `trial.k[0]`, the slope at the start, is given. As in an explicit step, a last stage that
+/// is the first of the next step is taken at t1.
 template <class Method, class Model, class S>
-MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
-                                     rk_trial<Method, S, n_state<Model>>& trial) {
+MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
+                                     const inputs<Model, S>& p, rk_trial<Method, S, n_state<Model>>& trial) {
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
     using loop = matrix_loop<S, n>;
@@ -158,8 +207,9 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const vec<S, n_stat
         constexpr R time_weight = rosenbrock_time_weight<Method, i, R>;
         if constexpr (i > 0) {
             advance(stage);
-            slope = evaluate_rhs<Model>(fma(S(node<Method, i, R>), h, t), trial.y, p);
-            if constexpr (Method::first_same_as_last && i == Method::stages - 1) trial.k[1] = slope;
+            constexpr bool at_end = Method::first_same_as_last && i == Method::stages - 1;
+            slope = evaluate_rhs<Model>(at_end ? t1 : fma(S(node<Method, i, R>), h, t), trial.y, p);
+            if constexpr (at_end) trial.k[1] = slope;
         }
         loop::all([&](auto c) MYRIAD_LAMBDA {
             S right = slope[c];

@@ -7,16 +7,16 @@
 
 namespace myriad::inline MYRIAD_TARGET {
 
-/// Steps from (t, y) over h; `trial.k[0]`, the slope at the start, is given.
+/// Steps from (t, y) over h to t1, which is t + h up to rounding; `trial.k[0]`, the slope at the start, is given.
 template <class Method, class Model, class S>
-MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
-                                     rk_trial<Method, S, n_state<Model>>& trial) {
+MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
+                                     const inputs<Model, S>& p, rk_trial<Method, S, n_state<Model>>& trial) {
     if constexpr (rosenbrock_method<Method>) {
         static_assert(n_tangent<Model> == 0, "stiff methods do not take with_tangents: their Jacobian would need second "
                                              "derivatives of rhs; use an explicit method");
-        rosenbrock_step<Method, Model>(t, h, y, p, trial);
+        rosenbrock_step<Method, Model>(t, h, t1, y, p, trial);
     } else {
-        explicit_rk_step<Method, Model>(t, h, y, p, trial);
+        explicit_rk_step<Method, Model>(t, h, t1, y, p, trial);
     }
 }
 
