@@ -78,6 +78,7 @@ int validate(const arguments& chosen) {
                   << seconds(referred, std::chrono::steady_clock::now()) << " s for the rest" << std::endl;
     }
     if (chosen.wants("chaos")) measure_chaos(s);
+    if (chosen.wants("orbit")) measure_rounding(s);
 
     rows.write(chosen.output + "/report.csv", comments);
     if (s.record != nullptr) record.write(chosen.record, comments);
@@ -99,7 +100,7 @@ int main(int argc, char** argv) {
     app.add_option("--record", chosen.record, "Write the results as reference data for other backends")
         ->type_name("FILE");
     app.add_option("--compare", chosen.compare, "Compare with results recorded on another backend")->type_name("FILE");
-    app.add_option("--problems", chosen.problems, "Only these, such as lorenz,kepler,chaos")
+    app.add_option("--problems", chosen.problems, "Only these, such as lorenz,kepler,orbit,chaos")
         ->delimiter(',')
         ->type_name("NAME");
     app.add_flag("--quick", chosen.quick, "Fewer tolerances and shorter statistics");

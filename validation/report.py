@@ -133,6 +133,14 @@ def write(comments, rows, images, command):
                        f'{r["low"]:.5g} to {r["high"]:.5g}' if r["verdict"] and r["low"] > float("-inf") else
                        (f'at most {short(r["high"])}' if r["verdict"] else "")] for r in chaos if r["measure"] != "failed instances"])
 
+    rounding = [r for r in rows if r["problem"].startswith("orbit")]
+    if rounding:
+        out += ["## Rounding over long times", "", "A circular orbit from another time, where the resolution of t is coarse, against the "
+                "same from t = 0; and the mean change of energy of 1024 orbits in single precision, beside that in double precision.", ""]
+        out += table(["problem", "method", "t_begin or tolerance", "value", "at most"],
+                     [[r["problem"], r["method"], f'{r["setting"]:g}', short(r["value"]),
+                       short(r["high"])] for r in rounding])
+
     against = [r for r in rows if r["measure"].startswith("against")]
     if against:
         out += ["## Between backends", "", "Adaptive runs on two backends differ by no more than twice the bound of the error; fixed "

@@ -53,6 +53,8 @@ void measure_estimate(session&, const problem&, const method_entry&);
 void measure_work(session&, const problem&, const references&);
 /// Lyapunov exponents and statistics of chaotic solutions.
 void measure_chaos(session&);
+/// What rounding adds up to over long times, far from t = 0, and in single precision.
+void measure_rounding(session&);
 
 // What several measures use ------------------------------------------------------------------------------------------
 

@@ -40,6 +40,9 @@ MUTATIONS = {
                          "accepted = accepted & crossing;\n        s.located", "bouncing_ball"),
     "event_counted_twice": ("integrator/actions.hpp", "get_lane(s.data.event_count[j], i)) + 1;",
                             "get_lane(s.data.event_count[j], i)) + 2;", "bouncing_ball"),
+    "step_other_than_that_of_t": ("controller/adaptive.hpp", "h = (s.data.t + h) - s.data.t;", "h = h + R(0) * s.data.t;", "orbit"),
+    "weights_rounded_one_by_one": ("stepper/weights.hpp", "sizeof(R) >= sizeof(double)) return rounded;", "true) return rounded;",
+                                   "orbit"),
     "side_forgotten": ("event/locator.hpp", "e.side[j] = select(accepted, seen, e.side[j]);", "", "bouncing_ball"),
 }
 DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_accepted"]
