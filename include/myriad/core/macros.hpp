@@ -3,6 +3,8 @@
 // (in math.hpp, fast_power.hpp and norm.hpp) and controller/kind.hpp, the only place that knows which compiler is at work.
 #pragma once
 
+#include "myriad/core/ieee.hpp"
+
 #if defined(__CUDACC__)
 /// A function of the kernel body: device code under nvcc, inlined host code elsewhere. Required on a model's functions
 /// and on its own helpers, so that no copy of them is shared between files compiled for different instruction sets.
