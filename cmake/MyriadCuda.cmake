@@ -5,6 +5,11 @@
 set(MYRIAD_CUDA_ARCHITECTURES "" CACHE STRING "GPUs to compile for, as CMAKE_CUDA_ARCHITECTURES; empty: this machine's")
 get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
 if(NOT CUDA IN_LIST languages)
+    if(PROJECT_NAME STREQUAL "myriad" AND NOT PROJECT_IS_TOP_LEVEL) # CMake would say "CMAKE_CUDA_COMPILE_OBJECT not set"
+        message(FATAL_ERROR "MYRIAD_ENABLE_CUDA is ON, and Myriad is part of project ${CMAKE_PROJECT_NAME}, which has not the language "
+                            "CUDA: write project(${CMAKE_PROJECT_NAME} LANGUAGES CXX CUDA), as CMake turns it on for "
+                            "subdirectories alone otherwise")
+    endif()
     if(MYRIAD_CUDA_ARCHITECTURES)
         set(CMAKE_CUDA_ARCHITECTURES "${MYRIAD_CUDA_ARCHITECTURES}")
     elseif(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)

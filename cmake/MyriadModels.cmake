@@ -10,6 +10,8 @@ set(MYRIAD_ARCH "" CACHE STRING
 # writes its fused multiply-adds itself.
 set(MYRIAD_FP_CONTRACT off CACHE STRING
     "Contraction of a * b + c in model files: off, or fast, which gives up bit-identical results")
+set(MYRIAD_MODEL_FLAGS "" CACHE STRING
+    "Further flags of model files, after the library's own, which they override: -O0 for a debugger")
 set_property(CACHE MYRIAD_ARCH PROPERTY STRINGS native x86-64-v4 x86-64-v3 x86-64-v2)
 set_property(CACHE MYRIAD_FP_CONTRACT PROPERTY STRINGS fast off)
 
@@ -47,9 +49,12 @@ function(myriad_model_flags result)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         list(APPEND flags "--param=sra-max-scalarization-size-Ospeed=2048")
     endif()
-    # Release as CMake has it; RelWithDebInfo gets more than CMake's -O2. Debug cannot go without: the AVX-512 part of
-    # xsimd 8.1 compiles with optimisation only, and lanes that are not inlined are useless at any speed.
-    list(APPEND flags "$<$<CONFIG:Release,RelWithDebInfo>:-O3>" "$<$<CONFIG:Debug>:-O1>")
+    # In every configuration, none and a user's own among them: without optimisation kernels take 50 to 250 times as
+    # long. Debug cannot go without either: the AVX-512 part of xsimd 8.1 compiles with optimisation only, and lanes
+    # that are not inlined are useless at any speed.
+    list(APPEND flags "$<IF:$<CONFIG:Debug>,-O1,-O3>")
+    separate_arguments(further UNIX_COMMAND "${MYRIAD_MODEL_FLAGS}")
+    list(APPEND flags ${further})
     set(${result} "${flags}" PARENT_SCOPE)
 endfunction()
 
@@ -63,9 +68,37 @@ function(myriad_add_model_source target file arch)
     myriad_model_flags(flags ${arch})
     set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY MYRIAD_MODEL TRUE)
     set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS ${flags})
+    set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_DEFINITIONS MYRIAD_MODEL_FILE)
     # A unity file or a precompiled header would mix these flags with those of other files.
     set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
     set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
+# Refuses a file that is no model: its flags would part it from the other files of the program.
+function(myriad_require_model target file)
+    if(NOT EXISTS "${file}") # made by the build
+        return()
+    endif()
+    file(READ "${file}" text)
+    if(text MATCHES "(^|\n)[ \t]*(auto|int)[ \t\n]+main[ \t\n]*\\(" AND NOT text MATCHES "MYRIAD_INSTANTIATE")
+        message(FATAL_ERROR "myriad_add_models(${target} ...): ${file} has the function main and no MYRIAD_INSTANTIATE. Model files "
+                            "get other flags than the rest of a program, on which the memory layout of Eigen's objects depends: "
+                            "name ${file} in add_executable, and here the files with MYRIAD_INSTANTIATE alone")
+    endif()
+endfunction()
+
+# Refuses what nvcc's preprocessor, and so core/ieee.hpp, does not see.
+function(myriad_require_exact_cuda target)
+    set(flags "${CMAKE_CUDA_FLAGS}")
+    foreach(config IN ITEMS ${CMAKE_BUILD_TYPE} ${CMAKE_CONFIGURATION_TYPES})
+        string(TOUPPER "${config}" config)
+        string(APPEND flags " ${CMAKE_CUDA_FLAGS_${config}}")
+    endforeach()
+    get_target_property(options ${target} COMPILE_OPTIONS)
+    if("${flags} ${options}" MATCHES "(^|[ ;:-])(-?use_fast_math|-?ftz=true|-?prec-div=false|-?prec-sqrt=false)")
+        message(FATAL_ERROR "myriad_add_models(${target} ...): nvcc is given ${CMAKE_MATCH_2}, with which single precision loses "
+                            "the accuracy that step-size control and the mathematical functions rely on: remove the option")
+    endif()
 endfunction()
 
 # The name, without extension, of files that are made from a model file.
@@ -97,6 +130,7 @@ function(myriad_add_models target)
     list(LENGTH MYRIAD_ARCH sets)
     foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
         cmake_path(ABSOLUTE_PATH file NORMALIZE)
+        myriad_require_model(${target} "${file}")
         myriad_twin_name(name "${file}")
         if(sets LESS_EQUAL 1)
             myriad_add_model_source(${target} "${file}" "${MYRIAD_ARCH}")
@@ -112,11 +146,16 @@ function(myriad_add_models target)
             set(twin "${CMAKE_CURRENT_BINARY_DIR}/cuda/${name}.cu")
             file(CONFIGURE OUTPUT "${twin}" CONTENT "#include \"${file}\"\n")
             target_sources(${target} PRIVATE "${twin}")
+            # The host's part of it, where the configuration's own flags have no level of optimisation, which nvcc puts
+            # last.
+            set_property(SOURCE "${twin}" TARGET_DIRECTORY ${target} PROPERTY COMPILE_OPTIONS
+                         "$<$<NOT:$<CONFIG:Debug>>:-Xcompiler=-O3>")
             set_property(SOURCE "${twin}" TARGET_DIRECTORY ${target} PROPERTY OBJECT_DEPENDS "${file}")
         endif()
     endforeach()
     target_link_libraries(${target} PRIVATE myriad::openmp)
     if(TARGET myriad::cuda AND NOT arg_CPU_ONLY)
+        myriad_require_exact_cuda(${target})
         target_link_libraries(${target} PRIVATE myriad::cuda)
     endif()
 endfunction()

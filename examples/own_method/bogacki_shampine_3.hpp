@@ -24,6 +24,4 @@ struct bogacki_shampine_3 {
         return t;
     }
 };
-// A wrong coefficient does not compile.
-static_assert(myriad::satisfies_order_conditions(bogacki_shampine_3::tableau(), bogacki_shampine_3::tableau().b, 3));
 // end of snippet

@@ -32,6 +32,7 @@ struct run_statistics {
     int lanes = 1;                ///< instances side by side in one pack, or CUDA threads in a block
     int threads = 1;
     const char* instruction_set = "";  ///< of the CPU's kernel
+    bool computed_as_written = true;   ///< else the kernel's file was compiled so that nothing was integrated: core/ieee.hpp
 };
 
 // Everything below is weak, so that a program that names a method nobody instantiated, or a backend it was built without,

@@ -103,6 +103,7 @@ run_statistics run_kernel(const cpu_kernel<Model, R>& kernel, const kernel_argum
     require(kernel.run != nullptr, "this model was not instantiated for this method and real type");
     const bool sorted = options.schedule == schedule::by_cost && arguments.phases > 1 && arguments.size <= most_sorted;
     run_statistics used = sorted ? run_by_cost(kernel, arguments, options) : kernel.run(arguments, options);
+    require(used.computed_as_written, "the model's file ", not_as_written);
     used.instruction_set = name_of(kernel.set);
     return used;
 }

@@ -6,6 +6,21 @@
 #include "myriad/core/macros.hpp"
 #include MYRIAD_BACKEND_HEADER
 #include "myriad/methods.hpp"
+#include "myriad/stepper/method_check.hpp"
+
+namespace myriad::host {
+
+/// A macro that is not defined expands to its own name.
+constexpr bool is_number(const char* text) { return *text >= '0' && *text <= '9'; }
+
+}  // namespace myriad::host
+#define MYRIAD_TEXT_OF(macro) MYRIAD_TEXT(macro)
+#define MYRIAD_TEXT(text) #text
+#define MYRIAD_REFUSE_EIGEN                                                                                                   \
+    static_assert(!myriad::host::is_number(MYRIAD_TEXT_OF(EIGEN_WORLD_VERSION)),                                              \
+                  "this model file includes Eigen, perhaps through <myriad/myriad.hpp>. The memory layout of Eigen's objects " \
+                  "depends on the flags of model files, so that the program would end in a double free: keep what needs "     \
+                  "Eigen in other files");
 
 /// Compiles the kernels of a model for the given methods in double precision (`_FLOAT`: in single precision):
 /// `MYRIAD_INSTANTIATE(duffing, myriad::cash_karp, myriad::tsitouras_5)`.
@@ -13,8 +28,10 @@
 #define MYRIAD_INSTANTIATE_FLOAT(Model, ...) MYRIAD_INSTANTIATE_EACH(Model, float, __VA_ARGS__)
 
 #define MYRIAD_INSTANTIATE_EACH(Model, R, ...) \
+    MYRIAD_REFUSE_EIGEN                        \
     __VA_OPT__(MYRIAD_EXPAND(MYRIAD_INSTANTIATE_NEXT(Model, R, __VA_ARGS__)))
 #define MYRIAD_INSTANTIATE_NEXT(Model, R, Method, ...) \
+    static_assert(myriad::check_method<Method>());     \
     MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)       \
     __VA_OPT__(MYRIAD_INSTANTIATE_AGAIN MYRIAD_PARENS(Model, R, __VA_ARGS__))
 #define MYRIAD_INSTANTIATE_AGAIN() MYRIAD_INSTANTIATE_NEXT

@@ -93,7 +93,7 @@ template <class Method, class Model, class R>
 report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
     check_options<Model, Method, R>(options);
     const auto kernel = host::require_kernel<Model, Method, R>(where);
-    host::check_uses<Method>(instances, options, instances.size());
+    const auto before = host::check_uses<Method>(instances, options, instances.size());
     // On a GPU the data of large ensembles are checked chunk by chunk, while it works on others.
     host::input_check<Model, R> check(instances, options, instances.size());
     if (where.which() == device::kind::cpu || instances.size() <= host::worth_chunks) check.run();
@@ -102,6 +102,7 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     host::prepared_arguments<Model, R> prepared(instances, options, host::traits_of<Method>);
     host::integrate_all(where, options, kernel, instances, prepared.get(), check, result);
     result.records = std::move(prepared.records());
+    host::note_event_tolerances(result, instances, options, before, instances.size());
     host::note_stiffness<Method>(result, instances, options);
     return result;
 }

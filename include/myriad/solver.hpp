@@ -98,7 +98,7 @@ public:
                         "restart() and set the instances anew, or download() all of them before");
         }
         uploaded_ = downloadable_ = false;
-        host::check_uses<Method>(instances_, options_, wanted);
+        before_ = host::check_uses<Method>(instances_, options_, wanted);
         host::input_check<Model, R> data(instances_, options_, wanted);
         instances_.describe_domain(prepared_.get());
         const auto copy = [&] {
@@ -200,6 +200,7 @@ public:
         host::summarise(instances_, report_, count_);
         report_.notes.clear();
         host::note_tolerances(report_, options_);
+        if (results_ == held::on_host) host::note_event_tolerances(report_, instances_, options_, before_, count_);
         report_.device = where_.name();
         if (engine_) {
             report_.kernel = engine_->facts();
@@ -264,6 +265,7 @@ private:
     bool integrated_ = false;
     bool has_records_ = true;  // those there are belong to what was uploaded last
     host::work_count work_before_{};
+    host::functions_within_tolerance<Model> before_;
     myriad::report<Model, R> report_;
     std::unique_ptr<cuda::engine<Model, R>> engine_;  // destroyed first: it holds on to the memory above
 };

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks, in a finished Ninja build, that no file compiled for an instruction set includes Eigen.
+"""Checks, in a finished Ninja build, that no file compiled for an instruction set includes Eigen, and that none shares functions.
 
 The alignment of Eigen's objects depends on the instruction set, so such a file and main would disagree about it, which
-ends in a "double free". Exit status: 0 none does, 1 at least one does.
+ends in a "double free". A function that a model calls without MYRIAD_FUNCTION, if it is not inlined, is shared by all files that
+have it, and the linker keeps one of them, whatever its flags. Exit status: 0 all is well, 1 at least one file is wrong.
 """
 import json
 import re
@@ -13,10 +14,33 @@ import sys
 from pathlib import Path
 
 
+def shared_functions(build, nm, entries):
+    """Of model files that are fully optimised, so that functions of the standard library are inlined."""
+    wrong, seen = [], 0
+    for entry in entries:
+        words, source = shlex.split(entry["command"]), Path(entry["file"])
+        levels = [word for word in words if re.match(r"-O\w*$", word)]
+        if "-DMYRIAD_MODEL_FILE" not in words or levels[-1:] != ["-O3"] or not source.exists():
+            continue
+        target = build / words[words.index("-o") + 1]
+        if not target.exists() or not re.search(r"^MYRIAD_INSTANTIATE", source.read_text(encoding="utf-8"), re.MULTILINE):
+            continue
+        seen += 1
+        symbols = subprocess.run([nm, "-C", "--defined-only", str(target)], capture_output=True, text=True, check=True).stdout
+        for line in symbols.splitlines():
+            name = re.match(r"[0-9a-f]+ W (.*)", line)
+            # Those of the kernels carry their instruction set; that of clang++ only ends the program.
+            if name and not re.search(r"openmp_|instruction_set\)|__clang_call_terminate", name.group(1)):
+                wrong.append(f"{source} shares {name.group(1)}: put MYRIAD_FUNCTION before it")
+    return seen, wrong
+
+
 def main():
     build = Path(sys.argv[1])
+    nm = sys.argv[2]
     compiled_for_isa = {}
-    for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+    entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
+    for entry in entries:
         words = shlex.split(entry["command"])
         if any(word.startswith("-march=") for word in words):
             compiled_for_isa[words[words.index("-o") + 1]] = entry["file"]
@@ -34,7 +58,10 @@ def main():
     print(f"{seen} files are compiled for an instruction set")
     for file in wrong:
         print(f"{file} includes Eigen: list it after FILES instead of MODELS, or leave Eigen out")
-    return 1 if wrong or not seen else 0
+    models, shared = shared_functions(build, nm, entries)
+    print(f"{models} model files are looked at for functions that others may have, too")
+    print(*shared, sep="\n")
+    return 1 if wrong or shared or not seen else 0
 
 
 if __name__ == "__main__":

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "myriad/core/ieee.hpp"
+
 namespace myriad {
 
 /// Thrown by every check on the host before any work is done.

@@ -3,7 +3,12 @@
 // (in math.hpp, fast_power.hpp and norm.hpp) and controller/kind.hpp, the only place that knows which compiler is at work.
 #pragma once
 
+#include "myriad/core/ieee.hpp"
+
 #if defined(__CUDACC__)
+// What kernels call without MYRIAD_FUNCTION is host code: nvcc would only warn of it, and leave the call out of the
+// kernel.
+#pragma nv_diag_error 20011, 20013, 20014, 20015
 /// A function of the kernel body: device code under nvcc, inlined host code elsewhere. Required on a model's functions
 /// and on its own helpers, so that no copy of them is shared between files compiled for different instruction sets.
 #define MYRIAD_FUNCTION __host__ __device__ __forceinline__

@@ -3,6 +3,8 @@
 // maps. Host code only.
 #pragma once
 
+#include "myriad/core/host_only.hpp"
+
 #include <array>
 #include <cstdint>
 #include <limits>

@@ -2,6 +2,8 @@
 // What a call to solve did: how the instances ended, the first that failed with its inputs, the work, the records.
 #pragma once
 
+#include "myriad/core/host_only.hpp"
+
 #include <algorithm>
 #include <array>
 #include <atomic>

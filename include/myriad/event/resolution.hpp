@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Refuses event tolerances that rounding cannot meet. Host code; it calls the model's `events` on some initial states.
+// Refuses event tolerances that rounding cannot meet, and looks for those that a function never leaves. Host code; it
+// calls the model's `events` on some states.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -45,6 +47,38 @@ struct event_resolution {
     }
 };
 
+inline double event_tolerance(const options& o, int event) {
+    return o.events.empty() ? event_options{}.tolerance : o.events[static_cast<std::size_t>(event)].tolerance;
+}
+
+/// Of the instances looked at, those in which each event function is within its tolerance.
+template <class Model>
+struct functions_within_tolerance {
+    std::int64_t looked_at = 0;
+    std::array<std::int64_t, static_cast<std::size_t>(n_event<Model>)> within{};
+
+    bool everywhere(int event) const { return looked_at > 0 && within[static_cast<std::size_t>(event)] == looked_at; }
+};
+
+/// Looks at a thousand or so of the first `count` instances that have not ended for good, at their states and
+/// `time_of(i)`. At none for models with `initialise`, before which `events` cannot be called.
+template <class Model, class R, class Time>
+functions_within_tolerance<Model> find_functions_within(ensemble<Model, R>& e, const options& o, std::int64_t count,
+                                                        Time&& time_of) {
+    functions_within_tolerance<Model> found;
+    if constexpr (has_events<Model> && !has_initialise<Model>) {
+        for_sampled_instances(e, count, [&](std::int64_t i) {
+            vec<R, n_state<Model>> y;
+            for (int c = 0; c < n_state<Model>; ++c) y[c] = e.state(c)[i];
+            const auto g = Model::template events<R>(time_of(i), y, inputs_of(e, i));
+            ++found.looked_at;
+            for (int j = 0; j < n_event<Model>; ++j)
+                found.within[static_cast<std::size_t>(j)] += std::abs(g[j]) <= static_cast<R>(event_tolerance(o, j));
+        });
+    }
+    return found;
+}
+
 /// Throws `error` if an event tolerance is below the resolution of its function in most instances; in single ones, whose
 /// state may be huge, crossings are located as well as rounding lets them. Looks at a thousand or so of the first `count`
 /// instances, spread over them. Not for models with `initialise`, before which `events` cannot be called.
@@ -56,9 +90,7 @@ void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_
             double least = 0;
         } too_fine[n_event<Model>];
         std::int64_t looked_at = 0;
-        const auto tolerance_of = [&](int j) {
-            return o.events.empty() ? event_options{}.tolerance : o.events[static_cast<std::size_t>(j)].tolerance;
-        };
+        const auto tolerance_of = [&](int j) { return event_tolerance(o, j); };
         for_sampled_instances(e, count, [&](std::int64_t i) {
             ++looked_at;
             const event_resolution<Model, R> finest(e, i);

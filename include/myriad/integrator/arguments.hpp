@@ -107,9 +107,10 @@ private:
 };
 
 /// Checks what the options say of the first `count` instances: sample times, event tolerances, and a model's own Jacobian in
-/// builds with assertions. Throws `error`.
+/// builds with assertions. Throws `error`. Returns which event functions are within their tolerances before the
+/// integration.
 template <class Method, class Model, class R>
-void check_uses(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
+functions_within_tolerance<Model> check_uses(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
     require(scales_tolerances<Method> || !instances.scales_tolerances(),
             "tolerance_scale is set, but the method has the same tolerances for all instances: use controlled<Method, "
             "tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE");
@@ -118,6 +119,7 @@ void check_uses(ensemble<Model, R>& instances, const options& o, std::int64_t co
 #if !defined(NDEBUG)
     check_jacobian(instances, count);
 #endif
+    return find_functions_within(instances, o, count, [&](std::int64_t i) { return instances.t_begin_of(i); });
 }
 
 /// Checks the first `count` instances of an ensemble against the options, and their data; throws `error`.

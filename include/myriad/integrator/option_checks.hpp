@@ -180,6 +180,7 @@ inline void option_limits::check(const options& o) const {
 /// Checks everything about the options that does not need the ensemble's data; throws `error`.
 template <class Model, class Method, class R>
 void check_options(const options& o) {
+    require(computes_as_written(), "this file of the program ", not_as_written);
     constexpr host::option_limits limits{n_state<Model>,
                                          n_event<Model>,
                                          n_accessory<Model>,

@@ -30,7 +30,8 @@ struct explicit_tableau {
 };
 
 /// Order conditions up to order five (Hairer, Norsett, Wanner, Solving ODE I, Table II.2.1, 17 trees) of the given
-/// weights, each within `tolerance`, and the row-sum condition. The full set for higher orders is in the tests.
+/// weights, each within `tolerance`, the row-sum condition, and four of each higher order. The full set is in the
+/// tests.
 template <int stages>
 constexpr bool satisfies_order_conditions(const explicit_tableau<stages>& t,
                                           const typename explicit_tableau<stages>::row& w, int order, double tolerance = 2e-14) {
@@ -80,6 +81,18 @@ constexpr bool satisfies_order_conditions(const explicit_tableau<stages>& t,
         check(times(c, apply(c2)), 1.0 / 15), check(times(c, apply(ac)), 1.0 / 30);
         check(apply(c3), 1.0 / 20), check(apply(times(c, ac)), 1.0 / 40);
         check(apply(apply(c2)), 1.0 / 60), check(apply(apply(ac)), 1.0 / 120);
+    }
+    // of each higher order, those of a bushy tree, of its neighbours, and of a tall one
+    column power = c3, chain = apply(apply(ac));
+    double factorial = 120;
+    for (int q = 6; q <= order; ++q) {
+        check(times(power, ac), 1.0 / (2 * q));
+        power = times(power, c);
+        check(apply(power), 1.0 / (q * (q - 1)));
+        check(times(power, c), 1.0 / q);
+        chain = apply(chain);
+        factorial *= q;
+        check(chain, 1 / factorial);
     }
     return satisfied;
 }

@@ -89,6 +89,7 @@ namespace myriad::openmp {
 template <class Model, class Method, class R>
 run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const kernel_arguments<Model, R>& arguments,
                       const run_options& options) {
+    if (!computes_as_written()) return {.computed_as_written = false};
     return run_packs<Model, Method, R, default_batches<Model, Method>()>(arguments, options);
 }
 
