@@ -5,7 +5,7 @@
 #   check.sh COMPILER [FLAG...] FILE
 #
 # The file begins with one or more lines "// expect: <extended regular expression>"; the compiler's errors and notes must
-# match each of them. Exit status 0 if so, else 1.
+# match each of them. Lines "// flags: <flag>..." below those give it further flags. Exit status 0 if so, else 1.
 set -uo pipefail
 
 file=${!#}
@@ -16,10 +16,11 @@ if ((${#expectations[@]} == 0)); then
     echo "$file has no line '// expect: <regular expression>' at its beginning"
     exit 1
 fi
+read -r -a flags < <(sed -n '/^\/\//!q; s|^// flags: ||p' "$file" | tr '\n' ' '; echo)
 
 # Not -fsyntax-only: some templates are instantiated only when code is made. Not -O0: the AVX-512 part of xsimd 8.1 needs
 # optimisation. In the C locale the compiler's quotes are the same everywhere.
-if output=$(LC_ALL=C "${command[@]}" -O1 -fno-diagnostics-color -S -o /dev/null "$file" 2>&1); then
+if output=$(LC_ALL=C "${command[@]}" "${flags[@]}" -O1 -fno-diagnostics-color -S -o /dev/null "$file" 2>&1); then
     echo "$file compiles, but must not"
     exit 1
 fi
