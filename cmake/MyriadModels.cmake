@@ -111,7 +111,7 @@ function(myriad_twin_name result file)
 endfunction()
 
 # myriad_add_models(<target> [CPU_ONLY] <file>...) adds model files, those with MYRIAD_INSTANTIATE, to a target of the same
-# directory. Such a file includes no Eigen. With a list of instruction sets in MYRIAD_ARCH it is compiled once for each, and
+# directory: a program, an OBJECT library or a SHARED one. Such a file includes no Eigen. With a list of instruction sets in MYRIAD_ARCH it is compiled once for each, and
 # may then define nothing but the kernels; of x86-64-v2, -v3 and -v4 each at most once, since two that are told apart by
 # nothing else (SSE2, AVX2, AVX-512) would define the same kernel. Only with optimisation are the standard library's inline
 # functions inlined, of which the linker else keeps one for all instruction sets. Links myriad::openmp and, if the CUDA backend is on, compiles each file for GPUs
@@ -126,6 +126,20 @@ function(myriad_add_models target)
     if(type STREQUAL "STATIC_LIBRARY")
         message(FATAL_ERROR "myriad_add_models(${target} ...): a linker takes no models out of a static library, as nothing "
                             "refers to them by name; make ${target} an OBJECT library, or add the models to the program")
+    endif()
+    if(type STREQUAL "INTERFACE_LIBRARY")
+        message(FATAL_ERROR "myriad_add_models(${target} ...): an INTERFACE library compiles no files; make ${target} an "
+                            "OBJECT library, or add the models to the program")
+    endif()
+    if(type STREQUAL "SHARED_LIBRARY")
+        get_target_property(visibility ${target} CXX_VISIBILITY_PRESET)
+        if(visibility STREQUAL "hidden")
+            message(FATAL_ERROR "myriad_add_models(${target} ...): with CXX_VISIBILITY_PRESET hidden no program sees the "
+                                "kernels of a SHARED library; set it to default for ${target} and the programs that link it, "
+                                "or make ${target} an OBJECT library")
+        endif()
+        # Programs refer to kernels weakly, for which alone a linker may leave a library out.
+        target_link_options(${target} INTERFACE "LINKER:--no-as-needed")
     endif()
     list(LENGTH MYRIAD_ARCH sets)
     foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)

@@ -3,6 +3,7 @@
 // file only, which is compiled with the instruction-set flags and includes no Eigen.
 #pragma once
 
+#include "myriad/core/language.hpp"
 #include "myriad/core/macros.hpp"
 #include MYRIAD_BACKEND_HEADER
 #include "myriad/methods.hpp"
@@ -30,12 +31,17 @@ constexpr bool is_number(const char* text) { return *text >= '0' && *text <= '9'
 #define MYRIAD_INSTANTIATE_EACH(Model, R, ...) \
     MYRIAD_REFUSE_EIGEN                        \
     __VA_OPT__(MYRIAD_EXPAND(MYRIAD_INSTANTIATE_NEXT(Model, R, __VA_ARGS__)))
-#define MYRIAD_INSTANTIATE_NEXT(Model, R, Method, ...) \
-    static_assert(myriad::check_method<Method>());     \
-    MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)       \
+#define MYRIAD_INSTANTIATE_NEXT(Model, R, Method, ...)     \
+    static_assert(myriad::check_linkage<Model, Method>()); \
+    static_assert(myriad::check_method<Method>());         \
+    MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)           \
     __VA_OPT__(MYRIAD_INSTANTIATE_AGAIN MYRIAD_PARENS(Model, R, __VA_ARGS__))
 #define MYRIAD_INSTANTIATE_AGAIN() MYRIAD_INSTANTIATE_NEXT
 #define MYRIAD_PARENS ()
+// Every expansion takes up one more method: 365 in all, after which an error would name MYRIAD_INSTANTIATE_AGAIN.
 #define MYRIAD_EXPAND(...) MYRIAD_EXPAND_1(MYRIAD_EXPAND_1(MYRIAD_EXPAND_1(__VA_ARGS__)))
 #define MYRIAD_EXPAND_1(...) MYRIAD_EXPAND_2(MYRIAD_EXPAND_2(MYRIAD_EXPAND_2(__VA_ARGS__)))
-#define MYRIAD_EXPAND_2(...) __VA_ARGS__
+#define MYRIAD_EXPAND_2(...) MYRIAD_EXPAND_3(MYRIAD_EXPAND_3(MYRIAD_EXPAND_3(__VA_ARGS__)))
+#define MYRIAD_EXPAND_3(...) MYRIAD_EXPAND_4(MYRIAD_EXPAND_4(MYRIAD_EXPAND_4(__VA_ARGS__)))
+#define MYRIAD_EXPAND_4(...) MYRIAD_EXPAND_5(MYRIAD_EXPAND_5(MYRIAD_EXPAND_5(__VA_ARGS__)))
+#define MYRIAD_EXPAND_5(...) __VA_ARGS__

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "myriad/controller/choices.hpp"
+#include "myriad/core/language.hpp"
 #include "myriad/stepper/methods/cash_karp.hpp"
 #include "myriad/stepper/methods/dense.hpp"
 #include "myriad/stepper/methods/dormand_prince_5.hpp"

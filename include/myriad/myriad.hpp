@@ -2,6 +2,7 @@
 // The library for host code: ensembles, devices, options, solve and reports.
 #pragma once
 
+#include "myriad/core/language.hpp"
 #include "myriad/device.hpp"
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/exponents.hpp"

@@ -33,6 +33,7 @@ struct device_kernel {
 /// The kernel of the model and method for that device. Throws `error` if the program has none.
 template <class Model, class Method, class R>
 device_kernel<Model, R> require_kernel(const device& where) {
+    static_assert(check_linkage<Model, Method>());
     const bool on_cpu = where.which() == device::kind::cpu;
     device_kernel<Model, R> found;
     if (on_cpu) {

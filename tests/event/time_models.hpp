@@ -58,7 +58,7 @@ struct gate {
     }
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto t, const myriad::vec<R, n_state>&, const auto& p) {
-        const auto* code = p.shared_integer;
+        const auto& code = p.shared_integer;
         return myriad::vec<R, n_event>{myriad::select(
             t < p[c], value<R>(code[before]), myriad::select(t > p[c], value<R>(code[after]), value<R>(code[at])))};
     }

@@ -30,3 +30,4 @@ run_step("configure" "${CMAKE_COMMAND}" -S "${CONSUMER_SOURCE_DIR}" -B "${WORK_D
          "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wconversion -Werror")
 run_step("build" "${CMAKE_COMMAND}" --build "${WORK_DIR}/build")
 run_step("run" "${WORK_DIR}/build/decay")
+run_step("run with a shared library" "${WORK_DIR}/build/decay_shared")

@@ -5,7 +5,7 @@
 #   check.sh COMPILER [FLAG...] FILE
 #
 # The file begins with one or more lines "// expect: <extended regular expression>"; the compiler's errors and notes must
-# match each of them. Lines "// flag: <flag>" after them add flags of the file's own. Exit status 0 if so, else 1.
+# match each of them. Lines "// flags: <flag>..." below those give it further flags. Exit status 0 if so, else 1.
 set -uo pipefail
 
 file=${!#}
@@ -16,7 +16,7 @@ if ((${#expectations[@]} == 0)); then
     echo "$file has no line '// expect: <regular expression>' at its beginning"
     exit 1
 fi
-mapfile -t flags < <(sed -n '/^\/\//!q; s|^// flag: ||p' "$file")
+read -r -a flags < <(sed -n '/^\/\//!q; s|^// flags: ||p' "$file" | tr '\n' ' '; echo)
 
 # Not -fsyntax-only: some templates are instantiated only when code is made. Not -O0: the AVX-512 part of xsimd 8.1 needs
 # optimisation. In the C locale the compiler's quotes are the same everywhere.

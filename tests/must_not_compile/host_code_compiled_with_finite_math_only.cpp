@@ -1,5 +1,5 @@
 // expect: Myriad is compiled with -ffast-math
-// flag: -ffinite-math-only
+// flags: -ffinite-math-only
 // SPDX-License-Identifier: MIT
 // What was never set is NaN, and would not be found.
 #include "myriad/myriad.hpp"

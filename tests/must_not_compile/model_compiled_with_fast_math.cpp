@@ -1,5 +1,5 @@
 // expect: Myriad is compiled with -ffast-math
-// flag: -ffast-math
+// flags: -ffast-math
 // SPDX-License-Identifier: MIT
 // Steps that end in NaN would be taken for good ones.
 #include "myriad/instantiate.hpp"

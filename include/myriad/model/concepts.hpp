@@ -2,6 +2,7 @@
 // What a model is: its counts of components, which hooks it names and what it declares, all read at compile time.
 #pragma once
 
+#include <string_view>
 #include <type_traits>
 
 namespace myriad {
@@ -28,6 +29,60 @@ MYRIAD_MODEL_COUNT(n_event)
 /// States, at the end of all, that event functions do not read (`with_tangents`).
 MYRIAD_MODEL_COUNT(n_tangent)
 #undef MYRIAD_MODEL_COUNT
+
+// Enumerations: `enum state { ..., n_state };`, or an unnamed one, which is known by its count.
+// enumerates_<kind>: whether E is the model's enumeration of such components. counts_<kind>: whether a model that has the
+// enumeration has the count too.
+#define MYRIAD_MODEL_ENUMERATION(kind)                                                                            \
+    template <class Model, class E>                                                                               \
+    constexpr bool enumerates_##kind() {                                                                          \
+        bool same = false;                                                                                        \
+        if constexpr (requires { typename Model::kind; }) same = std::is_same_v<E, typename Model::kind>;         \
+        if constexpr (requires { Model::n_##kind; })                                                              \
+            same = same || (std::is_enum_v<E> && std::is_same_v<E, std::remove_cv_t<decltype(Model::n_##kind)>>); \
+        return same;                                                                                              \
+    }                                                                                                             \
+    template <class Model>                                                                                        \
+    constexpr bool counts_##kind() {                                                                              \
+        if constexpr (requires { typename Model::kind; }) {                                                       \
+            return !std::is_enum_v<typename Model::kind> || requires { Model::n_##kind; };                        \
+        } else {                                                                                                  \
+            return true;                                                                                          \
+        }                                                                                                         \
+    }
+MYRIAD_MODEL_ENUMERATION(state)
+MYRIAD_MODEL_ENUMERATION(parameter)
+MYRIAD_MODEL_ENUMERATION(shared)
+MYRIAD_MODEL_ENUMERATION(shared_integer)
+MYRIAD_MODEL_ENUMERATION(accessory)
+MYRIAD_MODEL_ENUMERATION(integer_accessory)
+MYRIAD_MODEL_ENUMERATION(event)
+#undef MYRIAD_MODEL_ENUMERATION
+
+/// Whether E is an enumeration that the model is known to have for components of any kind.
+template <class Model, class E>
+inline constexpr bool enumerates_any =
+    enumerates_state<Model, E>() || enumerates_parameter<Model, E>() || enumerates_shared<Model, E>() ||
+    enumerates_shared_integer<Model, E>() || enumerates_accessory<Model, E>() ||
+    enumerates_integer_accessory<Model, E>() || enumerates_event<Model, E>();
+
+// Refuses an index of type I into components of a kind: any where the model has none, an enumerator of another kind.
+#define MYRIAD_INDEX_CHECK(kind)                                                                                      \
+    template <class Model, class I>                                                                                   \
+    constexpr bool check_##kind##_index() {                                                                           \
+        static_assert(n_##kind<Model> > 0,                                                                            \
+                      "the model has no " #kind ": end its enumeration with the enumerator n_" #kind                  \
+                      ", which counts them");                                                                         \
+        static_assert(!enumerates_any<Model, I> || enumerates_##kind<Model, I>(),                                     \
+                      "this enumerator is not a " #kind " of the model: name each component by its own enumeration"); \
+        return true;                                                                                                  \
+    }                                                                                                                 \
+    template <class Model, class I>                                                                                   \
+    inline constexpr bool kind##_index_fits = check_##kind##_index<Model, I>();
+MYRIAD_INDEX_CHECK(parameter)
+MYRIAD_INDEX_CHECK(shared)
+MYRIAD_INDEX_CHECK(shared_integer)
+#undef MYRIAD_INDEX_CHECK
 
 // Declarations: `static constexpr bool name = true;` in the model.
 #define MYRIAD_MODEL_DECLARATION(name)                    \
@@ -81,7 +136,36 @@ MYRIAD_HOOK_NAME(initialise)
 MYRIAD_HOOK_NAME(after_step)
 MYRIAD_HOOK_NAME(after_event)
 MYRIAD_HOOK_NAME(finalise)
+MYRIAD_HOOK_NAME(n_state)
+MYRIAD_HOOK_NAME(n_parameter)
+MYRIAD_HOOK_NAME(n_shared)
+MYRIAD_HOOK_NAME(n_shared_integer)
+MYRIAD_HOOK_NAME(n_accessory)
+MYRIAD_HOOK_NAME(n_integer_accessory)
+MYRIAD_HOOK_NAME(n_event)
 #undef MYRIAD_HOOK_NAME
+
+/// Whether other files can name a type: one in an anonymous namespace is another type in each file. The compiler tells it
+/// by how it writes the name.
+template <class T>
+constexpr bool is_known_elsewhere() {
+    constexpr std::string_view name = __PRETTY_FUNCTION__;
+    return name.find("{anonymous}") == name.npos && name.find("(anonymous") == name.npos &&
+           name.find("<unnamed>") == name.npos;
+}
+/// Refuses kernels that no other file could call.
+template <class Model, class Method>
+constexpr bool check_linkage() {
+    static_assert(
+        is_known_elsewhere<Model>(),
+        "the model is in an anonymous namespace, where the file of its kernels and the files that use them do not see "
+        "the same type: move it out, into a header that both include");
+    static_assert(
+        is_known_elsewhere<Method>(),
+        "the method is in an anonymous namespace, where the file of the kernels and the files that use them do not "
+        "see the same type: move it out, into a header that both include");
+    return true;
+}
 
 /// Whether a model has a Jacobian of its own. One that a model with tangents has inherited is that of the states without them.
 template <class Model>
@@ -93,6 +177,21 @@ constexpr bool check_model() {
     static_assert(std::is_class_v<Model>, "a model is a struct with static member functions");
     static_assert(!std::is_final_v<Model>,
                   "the model is declared final: its hooks cannot be found by name; remove `final`");
+#define MYRIAD_COUNT_CHECK(kind)                                                                    \
+    static_assert(counts_##kind<Model>(),                                                           \
+                  "the model has an enumeration `" #kind "` without its count: make n_" #kind       \
+                  " its last enumerator, `enum " #kind " { ..., n_" #kind " };`, without `class`"); \
+    static_assert(                                                                                  \
+        !has_n_##kind<Model> || requires { Model::n_##kind; },                                      \
+        "the model's n_" #kind " is private: a model is a struct, whose enumerations and functions are public");
+    MYRIAD_COUNT_CHECK(state)
+    MYRIAD_COUNT_CHECK(parameter)
+    MYRIAD_COUNT_CHECK(shared)
+    MYRIAD_COUNT_CHECK(shared_integer)
+    MYRIAD_COUNT_CHECK(accessory)
+    MYRIAD_COUNT_CHECK(integer_accessory)
+    MYRIAD_COUNT_CHECK(event)
+#undef MYRIAD_COUNT_CHECK
     static_assert(n_state<Model> > 0,
                   "the model has no state: give it `enum state { x, ..., n_state };` with at least one component");
     static_assert(has_rhs<Model>,

@@ -23,76 +23,79 @@ concept generic_hook_result = std::is_void_v<T> || std::same_as<T, mask_of<R>>;
 template <class T>
 concept hook_result = std::is_void_v<T> || std::same_as<T, action>;
 
-/// Refuses hooks whose signature does not fit, each with the signature that would.
+// Refuses a call that does not compile or has another result, with the message, and then makes the call for the compiler to
+// say what is wrong with it: an argument, or that the hook is private.
+#define MYRIAD_CHECK_CALL(call, result, what)                    \
+    static_assert(                                               \
+        requires {                                               \
+            { call } -> result;                                  \
+        },                                                       \
+        what);                                                   \
+    if constexpr (!requires { call; }) {                         \
+        [[maybe_unused]] decltype(call)* what_the_compiler_says; \
+    }
+
+/// Refuses hooks whose signature does not fit, each with the signature that would. The arguments are never looked at.
 template <class Model, class R>
-constexpr bool check_hooks() {
+constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inputs<Model, R>* p = nullptr,
+                           lane<Model, R>* l = nullptr) {
     check_model<Model>();
-    using inputs_t = inputs<Model, R>;
-    using lane_t = lane<Model, R>;
-    static_assert(
-        !has_rhs<Model> || n_state<Model> == 0 || requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {
-            { Model::template rhs<R>(R{}, y, p) } -> std::same_as<vec<R, n_state<Model>>>;
-        },
-        "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
-        "rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`");
+    static_cast<void>(y), static_cast<void>(p), static_cast<void>(l);
+    using slopes = vec<R, n_state<Model>>;
+    using square = matrix<R, n_state<Model>>;
+    using event_values = vec<R, n_event<Model>>;
+    if constexpr (has_rhs<Model> && (n_state<Model> > 0)) {
+        MYRIAD_CHECK_CALL(
+            (Model::template rhs<R>(R{}, *y, *p)), std::same_as<slopes>,
+            "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
+            "rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
+    }
     if constexpr (gives_jacobian<Model>) {
-        static_assert(
-            requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {
-                { Model::template jacobian<R>(R{}, y, p) } -> std::same_as<matrix<R, n_state<Model>>>;
-            },
+        MYRIAD_CHECK_CALL(
+            (Model::template jacobian<R>(R{}, *y, *p)), std::same_as<square>,
             "jacobian has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::matrix<R, "
-            "n_state> jacobian(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, df_i/dy_j in row i, column j");
+            "n_state> jacobian(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, df_i/dy_j in row i, column "
+            "j, and public")
     }
     if constexpr (has_events<Model> && n_event<Model> > 0) {
-        static_assert(
-            requires(const vec<R, n_state<Model>>& y, const inputs_t& p) {
-                { Model::template events<R>(R{}, y, p) } -> std::same_as<vec<R, n_event<Model>>>;
-            },
+        MYRIAD_CHECK_CALL(
+            (Model::template events<R>(R{}, *y, *p)), std::same_as<event_values>,
             "events has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
-            "n_event> events(auto t, const myriad::vec<R, n_state>& y, const auto& p)`");
+            "n_event> events(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
     }
     if constexpr (has_initialise<Model>) {
-        static_assert(
-            requires(lane_t& l) {
-                { Model::initialise(l) } -> std::same_as<void>;
-            },
-            "initialise has a wrong signature: it must be `MYRIAD_FUNCTION static void initialise(auto& lane)`");
+        MYRIAD_CHECK_CALL((Model::initialise(*l)), std::same_as<void>,
+                          "initialise has a wrong signature: it must be `MYRIAD_FUNCTION static void initialise(auto& "
+                          "lane)`, and public")
     }
     if constexpr (has_generic_after_step<Model, R>) {
-        static_assert(
-            requires(lane_t& l) {
-                { Model::template after_step<R>(l) } -> generic_hook_result<R>;
-            },
-            "after_step has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static "
-            "myriad::mask_of<R> after_step(auto& lane)` (true ends the phase) or return void; to return an action, leave "
-            "out the template parameter");
+        MYRIAD_CHECK_CALL((Model::template after_step<R>(*l)), generic_hook_result<R>,
+                          "after_step has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static "
+                          "myriad::mask_of<R> after_step(auto& lane)` (true ends the phase) or return void; to return "
+                          "an action, leave out the template parameter")
     }
     if constexpr (has_after_step<Model> && !has_generic_after_step<Model, R>) {
-        static_assert(
-            requires(lane_t& l) {
-                { Model::after_step(l) } -> hook_result;
-            },
+        MYRIAD_CHECK_CALL(
+            (Model::after_step(*l)), hook_result,
             "after_step has a wrong signature: it must be `MYRIAD_FUNCTION static myriad::action after_step(auto& "
             "lane)` (one instance at a time; may return void) or, to stay vectorised, `template <class R> "
-            "MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane)` (true ends the phase; may return void)");
+            "MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane)` (true ends the phase; may return void), "
+            "and public")
     }
     if constexpr (has_after_event<Model>) {
-        static_assert(
-            requires(lane_t& l) {
-                { Model::after_event(int{}, l) } -> hook_result;
-            },
+        MYRIAD_CHECK_CALL(
+            (Model::after_event(int{}, *l)), hook_result,
             "after_event has a wrong signature: it must be `MYRIAD_FUNCTION static myriad::action after_event(int "
-            "event, auto& lane)`; it may return void");
+            "event, auto& lane)`, and public; it may return void")
     }
     if constexpr (has_finalise<Model>) {
-        static_assert(
-            requires(lane_t& l) {
-                { Model::finalise(l) } -> std::same_as<void>;
-            },
-            "finalise has a wrong signature: it must be `MYRIAD_FUNCTION static void finalise(auto& lane)`");
+        MYRIAD_CHECK_CALL(
+            (Model::finalise(*l)), std::same_as<void>,
+            "finalise has a wrong signature: it must be `MYRIAD_FUNCTION static void finalise(auto& lane)`, and public")
     }
     return true;
 }
+#undef MYRIAD_CHECK_CALL
 
 template <class Model, class R>
 inline constexpr bool hooks_fit = check_hooks<Model, R>();

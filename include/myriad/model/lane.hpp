@@ -38,16 +38,42 @@ struct accessories {
 template <class Model, class S>
 struct accessories<Model, S, false> {};
 
+/// What all instances share, real numbers or integers: a pointer to them, which refuses the components of other kinds.
+template <class Model, class T>
+struct shared_values {
+    static constexpr bool integers = std::is_integral_v<T>;
+    static constexpr int size = integers ? n_shared_integer<Model> : n_shared<Model>;
+    const T* values;
+
+    shared_values() = default;
+    MYRIAD_FUNCTION shared_values(const T* all) : values(all) {}
+    MYRIAD_FUNCTION operator const T*() const { return values; }
+
+    template <class I>
+    MYRIAD_FUNCTION const T& operator[](I i) const MYRIAD_WARN_OF_INDEX(static_cast<int>(i), size) {
+        if constexpr (integers) {
+            static_assert(shared_integer_index_fits<Model, I>);
+        } else {
+            static_assert(shared_index_fits<Model, I>);
+        }
+        return values[checked_index<size>(static_cast<int>(i))];
+    }
+};
+
 /// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value all instances share. It has no
 /// accessories in a model that declares them outputs.
 template <class Model, class S>
 struct inputs : accessories<Model, S, !accessories_are_outputs<Model>> {
     using real = real_of<S>;
     [[no_unique_address]] vec<S, n_parameter<Model>> parameter;
-    const real* shared;
-    const std::int32_t* shared_integer;
+    shared_values<Model, real> shared;
+    shared_values<Model, std::int32_t> shared_integer;
 
-    MYRIAD_FUNCTION const S& operator[](int i) const { return parameter[i]; }
+    template <class I>
+    MYRIAD_FUNCTION const S& operator[](I i) const MYRIAD_WARN_OF_INDEX(static_cast<int>(i), n_parameter<Model>) {
+        static_assert(parameter_index_fits<Model, I>);
+        return parameter[static_cast<int>(i)];
+    }
 };
 
 /// Everything of one instance (or of one pack of them) that hooks may see.
@@ -79,8 +105,8 @@ struct lane {
     S& h_next;
     vec<S, n_state<Model>>& y;
     ref<vec<S, n_parameter<Model>>, writes_parameters<Model>> parameter;
-    const real_of<S>* shared;
-    const std::int32_t* shared_integer;
+    shared_values<Model, real_of<S>> shared;
+    shared_values<Model, std::int32_t> shared_integer;
     vec<S, n_accessory<Model>>& accessory;
     vec<integer_of<S>, n_integer_accessory<Model>>& integer_accessory;
     const index_of<S>& index;

@@ -187,8 +187,9 @@ private:
                 t, vec<dual<R>, n_original>{dual<R>(y[c], y[tangent(c, decltype(k)::value)])...}, p);
         };
         const vec<dual<R>, n_original> f[vectors] = {along_tangent(constant_index<i>{})...};
-        return vec<R, n_state>{(all < n_original ? f[0][all].value
-                                                 : f[all / n_original - (all >= n_original)][all % n_original].derivative)...};
+        return vec<R, n_state>{(all < n_original
+                                    ? f[0][all % n_original].value
+                                    : f[all / n_original - (all >= n_original)][all % n_original].derivative)...};
     }
 };
 

@@ -47,8 +47,8 @@ MYRIAD_FUNCTION inputs<Model, S> inputs_in(const lane<W, S>& l) {
         p.accessory = part<n_accessory<Model>>(l.accessory);
         p.integer_accessory = l.integer_accessory;
     }
-    p.shared = l.shared;
-    p.shared_integer = l.shared_integer;
+    p.shared = l.shared.values;
+    p.shared_integer = l.shared_integer.values;
     return p;
 }
 
@@ -62,8 +62,8 @@ MYRIAD_FUNCTION lane_data<Model, dual<S>> moving_lane(const lane<W, S>& l, const
     MYRIAD_UNROLL
     for (int c = 0; c < n_accessory<Model>; ++c) d.accessory[c] = l.accessory[c];
     d.integer_accessory = l.integer_accessory;
-    d.shared = l.shared;
-    d.shared_integer = l.shared_integer;
+    d.shared = l.shared.values;
+    d.shared_integer = l.shared_integer.values;
     d.t = dual<S>(l.t, dt);
     d.t_begin = l.t_begin;
     d.t_end = l.t_end;

@@ -20,9 +20,35 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> evaluate_rhs(const S& t, const vec<S, n_s
     return Model::template rhs<S>(t, y, p);
 }
 
+/// Refuses a method whose tableau is not filled.
+template <class Method>
+constexpr bool check_tableau() {
+    constexpr auto t = Method::tableau();
+    constexpr auto given = [](const auto& weights) {
+        for (const double w : weights)
+            if (w != 0) return true;
+        return false;
+    };
+    static_assert(given(t.b), "the method's tableau has no weights b: tableau() must set those of the solution");
+    constexpr bool every_stage = [t, given] {
+        for (std::size_t i = 1; i < t.a.size(); ++i)
+            if (!given(t.a[i])) return false;
+        return true;
+    }();
+    static_assert(
+        every_stage,
+        "the method's tableau has a stage without weights: tableau() must set a[1] to the row of the last stage");
+    static_assert(
+        Method::embedded_order <= 0 || given(t.e),
+        "the method has an embedded_order, but no error weights e, with which it would accept every step: "
+        "tableau() must set e to b less the embedded solution's weights, or embedded_order be 0, for fixed steps");
+    return true;
+}
+
 /// What a trial step leaves behind: the slopes of its stages (the first is the slope at its start) and the new state.
 template <class Method, class S, int n>
 struct rk_trial {
+    static_assert(check_tableau<Method>());
     vec<vec<S, n>, Method::stages> k;
     vec<S, n> y;
 

@@ -26,6 +26,14 @@ template <class Method, class S, int n>
 requires rosenbrock_method<Method>
 struct rk_trial<Method, S, n> {
     static_assert(Method::embedded_order > 0, "a lane with a singular matrix needs a method that can shorten its step");
+    static constexpr bool estimates_error = [] {
+        for (const double w : Method::tableau().e)
+            if (w != 0) return true;
+        return false;
+    }();
+    static_assert(
+        estimates_error,
+        "the method's tableau has no error weights e, with which it would accept every step: tableau() must set them");
     vec<vec<S, n>, Method::first_same_as_last ? 2 : 1> k;
     vec<vec<S, n>, Method::stages> u;
     vec<S, n> y;

@@ -1,0 +1,17 @@
+// expect: an enumeration .shared_integer. without its count: make n_shared_integer its last enumerator
+// SPDX-License-Identifier: MIT
+// A misspelt count would be none.
+#include "myriad/instantiate.hpp"
+#include "myriad/model.hpp"
+
+struct model {
+    enum state { x, n_state };
+    enum shared_integer { c, n_shared_integers };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>& y, const auto&) {
+        return myriad::vec<R, 1>{-y[0]};
+    }
+};
+
+MYRIAD_INSTANTIATE(model, myriad::runge_kutta_4)

@@ -1,0 +1,19 @@
+// expect: the model is in an anonymous namespace.*move it out
+// SPDX-License-Identifier: MIT
+// Every file has a model of that name of its own.
+#include "myriad/instantiate.hpp"
+#include "myriad/model.hpp"
+
+namespace {
+
+struct model {
+    enum state { x, n_state };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>& y, const auto&) {
+        return myriad::vec<R, 1>{-y[0]};
+    }
+};
+}  // namespace
+
+MYRIAD_INSTANTIATE(model, myriad::runge_kutta_4)

@@ -1,0 +1,19 @@
+// expect: rhs has a wrong signature: .* and public
+// expect: private (within this context|member of)
+// SPDX-License-Identifier: MIT
+// The library must be able to call it.
+#include "myriad/instantiate.hpp"
+#include "myriad/model.hpp"
+
+struct model {
+    enum state { x, n_state };
+
+
+private:
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>& y, const auto&) {
+        return myriad::vec<R, 1>{-y[0]};
+    }
+};
+
+MYRIAD_INSTANTIATE(model, myriad::runge_kutta_4)
