@@ -3,7 +3,9 @@
 // type, declared here and defined where the model is instantiated. Host programs include no backend.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,7 +20,7 @@ namespace myriad {
 
 /// What a backend needs beside the kernel's arguments.
 struct run_options {
-    int threads = 0;  ///< OpenMP threads; 0: as OMP_NUM_THREADS or the machine says
+    int threads = 0;  ///< at most; 0: as OMP_NUM_THREADS or the machine says
     /// Called from the calling thread with the number of instances begun; may be null.
     bool (*progress)(void* context, std::int64_t begun) = nullptr;  ///< returns whether to go on
     void* context = nullptr;
@@ -30,8 +32,11 @@ struct run_options {
 struct run_statistics {
     std::int64_t lane_turns = 0;  ///< trial steps times lanes, those of idle lanes included; 0: not counted
     int lanes = 1;                ///< instances side by side in one pack, or CUDA threads in a block
-    int threads = 1;
+    int threads = 1;                   ///< that have worked
     const char* instruction_set = "";  ///< of the CPU's kernel
+    std::exception_ptr failure = {};   ///< what a function of the model has thrown
+    std::size_t stack = 0;             ///< bytes that the kernel needs of a thread's stack,
+    std::size_t least_stack = 0;       ///< and that a thread has; if fewer, nothing was integrated
 };
 
 // Everything below is weak, so that a program that names a method nobody instantiated, or a backend it was built without,

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <exception>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -87,6 +88,7 @@ run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_argu
     run_options silent = options;  // progress is that of the main part
     silent.progress = nullptr;
     const run_statistics first = kernel.run(now, silent);
+    if (first.failure || first.least_stack < first.stack) return first;
     const std::vector<std::uint32_t> order = order_by_cost(cost.data(), count);
     now = arguments;
     now.first_phase = 1;
@@ -96,13 +98,17 @@ run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_argu
     return used;
 }
 
-/// Integrates on the CPU. Throws `error` if there is no kernel.
+/// Integrates on the CPU. Throws `error` if there is no kernel, or too little stack for it, and what the model's functions throw.
 template <class Model, class R>
 run_statistics run_kernel(const cpu_kernel<Model, R>& kernel, const kernel_arguments<Model, R>& arguments,
                           const run_options& options) {
     require(kernel.run != nullptr, "this model was not instantiated for this method and real type");
     const bool sorted = options.schedule == schedule::by_cost && arguments.phases > 1 && arguments.size <= most_sorted;
     run_statistics used = sorted ? run_by_cost(kernel, arguments, options) : kernel.run(arguments, options);
+    require(used.least_stack >= used.stack, "a thread has ", used.least_stack, " bytes of stack, and the kernel of this model and "
+            "method takes about ", used.stack, ": set OMP_STACKSIZE to more, such as 8M, or unset it; a thread of your own that "
+            "solves needs as much");
+    if (used.failure) std::rethrow_exception(used.failure);
     used.instruction_set = name_of(kernel.set);
     return used;
 }
