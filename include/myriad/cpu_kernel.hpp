@@ -13,6 +13,7 @@
 #include "myriad/backend.hpp"
 #include "myriad/core/error.hpp"
 #include "myriad/core/instruction_set.hpp"
+#include "myriad/core/memory.hpp"
 #include "myriad/ensemble/cost_order.hpp"
 
 namespace myriad {
@@ -81,6 +82,9 @@ template <class Model, class R>
 run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_arguments<Model, R>& arguments,
                            const run_options& options) {
     const std::int64_t count = options.count > 0 ? options.count : arguments.size;
+    memory_need need;
+    need.add("costs", static_cast<double>(arguments.size + count) * sizeof(std::uint32_t));
+    need.check(message("sorting ", count, " instances by cost"), "take another schedule, or integrate the ensemble in smaller parts");
     std::vector<std::uint32_t> cost(static_cast<std::size_t>(arguments.size));
     kernel_arguments<Model, R> now = arguments;
     now.cost = cost.data();

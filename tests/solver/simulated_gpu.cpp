@@ -55,6 +55,7 @@ namespace myriad::cuda {
 std::vector<device_facts> list_devices(std::string&) { return {{"simulated GPU", simulated::the_gpu.memory, 1, 90}}; }
 
 void pin_memory(int, void* memory, std::size_t bytes) {
+    simulated::the_gpu.meet(simulated::call::pin);
     const std::lock_guard lock(simulated::pinned().mutex);
     const bool is_new = simulated::pinned().blocks.emplace(static_cast<std::byte*>(memory), bytes).second;
     simulated::demand(is_new, "memory is pinned twice");

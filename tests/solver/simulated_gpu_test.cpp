@@ -359,6 +359,17 @@ TEST_CASE("an error of one solver is thrown by the call that meets it, and anoth
     }
 }
 
+TEST_CASE("pinning that fails in the middle names the ensemble as a whole, which goes on without") {
+    auto e = filled<drifts>(1'000'000);
+    the_gpu.fail(call::pin, 2);
+    const std::string said = error_of([&] { e.pin(gpu); });
+    CHECK(said == "an ensemble that takes 42 MB or more was not pinned: the simulated GPU failed");
+    CHECK_FALSE(e.pinned());
+    CHECK(myriad::solve<runge_kutta_4>(gpu, e, two_phases(0)).failed() == 0);
+    e.pin(gpu);  // what was pinned is not pinned twice
+    CHECK(e.pinned());
+}
+
 TEST_CASE("a solver's bad instances are marked before they are copied") {
     auto o = usual();
     o.invalid_instances = myriad::invalid_instances::mark;

@@ -7,9 +7,11 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <locale>
 #include <mutex>
 #include <numeric>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,7 @@
 
 #include "myriad/backend.hpp"
 #include "myriad/core/error.hpp"
+#include "myriad/core/left_behind.hpp"
 #include "myriad/core/parallel.hpp"
 #include "myriad/core/status.hpp"
 #include "myriad/ensemble/ensemble.hpp"
@@ -54,6 +57,13 @@ public:
         for (const int c : o.integer_accessories) integer_accessory_[static_cast<std::size_t>(c)] = integer_columns_++;
         values_ = component_array<R>(columns_, size * phases_, std::numeric_limits<R>::quiet_NaN());
         integers_ = component_array<std::int32_t>(integer_columns_, size * phases_, 0);
+    }
+
+    /// What they take.
+    static double bytes_for(const record_options& o, std::int64_t phases, std::int64_t size) {
+        const std::size_t reals = o.states.size() + o.accessories.size() + (o.time ? 1 : 0);
+        return static_cast<double>(size) * static_cast<double>(phases - o.from_phase) *
+               static_cast<double>(sizeof(R) * reals + sizeof(std::int32_t) * o.integer_accessories.size());
     }
 
     /// Number of recorded phases.
@@ -102,10 +112,12 @@ private:
     map<T> column(const Columns& columns, int c, const char* what, const component_array<T>& from) const {
         require(c >= 0 && static_cast<std::size_t>(c) < columns.size() && columns[static_cast<std::size_t>(c)] >= 0,
                 what, " ", c, " was not recorded: name it in options::record");
+        require(size_ > 0, "these records were moved away: ask those that they were moved to");
         return map<T>(from.component(columns[static_cast<std::size_t>(c)]), size_, phases_);
     }
 
-    std::int64_t size_ = 0, phases_ = 0, from_phase_ = 0;
+    host::moved_number<std::int64_t> size_ = 0, phases_ = 0;
+    std::int64_t from_phase_ = 0;
     int columns_ = 0, integer_columns_ = 0;
     std::array<int, static_cast<std::size_t>(n_state<Model>)> state_ = none<n_state<Model>>();
     std::array<int, static_cast<std::size_t>(n_accessory<Model>)> accessory_ = none<n_accessory<Model>>();
@@ -159,9 +171,12 @@ struct report {
     }
 };
 
-/// Prints a report for people.
+/// Prints a report for people, with the stream's precision, but not its locale.
 template <class Model, class R>
-std::ostream& operator<<(std::ostream& out, const report<Model, R>& r) {
+std::ostream& operator<<(std::ostream& stream, const report<Model, R>& r) {
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out.precision(stream.precision());
     out << r.instances << " instances:";
     const char* separator = " ";
     for (int s = 0; s < status_count; ++s) {
@@ -192,7 +207,7 @@ std::ostream& operator<<(std::ostream& out, const report<Model, R>& r) {
         out << '\n';
     }
     for (const std::string& note : r.notes) out << "note: " << note << '\n';
-    return out;
+    return stream << out.str();
 }
 
 namespace host {

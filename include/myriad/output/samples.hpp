@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "myriad/core/error.hpp"
+#include "myriad/core/left_behind.hpp"
 #include "myriad/ensemble/layout.hpp"
 #include "myriad/ensemble/view.hpp"
 #include "myriad/integrator/options.hpp"
@@ -33,6 +34,12 @@ public:
         const std::int64_t cells = size * capacity_;
         time_ = component_array<R>(1, cells, std::numeric_limits<R>::quiet_NaN());
         values_ = component_array<R>(static_cast<int>(columns_), cells, std::numeric_limits<R>::quiet_NaN());
+    }
+
+    /// What it takes for an ensemble of that size.
+    static double bytes_for(const sample_options& o, std::int64_t size) {
+        const auto cells = static_cast<double>(o.capacity) * static_cast<double>(o.states.size() + 1);
+        return static_cast<double>(size) * (sizeof(std::int32_t) + sizeof(R) * cells);
     }
 
     /// Samples there is room for, per instance.
@@ -75,7 +82,8 @@ private:
         return columns;
     }
 
-    std::int64_t size_ = 0, capacity_ = 0, columns_ = 0;
+    host::moved_number<std::int64_t> size_ = 0, capacity_ = 0;
+    std::int64_t columns_ = 0;
     std::vector<int> chosen_;
     std::array<int, static_cast<std::size_t>(n_state<Model>)> column_ = no_columns();
     component_array<std::int32_t> stored_;
