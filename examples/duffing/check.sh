@@ -27,13 +27,17 @@ check_arguments
 expect 2 'phases' "$program" --phases many
 expect 2 'no file name' "$program" --output ''
 expect 2 'folder cannot be created' "$program" --output no/such/folder/table.csv
-expect 2 'MB are needed' "$program" --instances 100000000 --phases 100000000
+expect 2 'at least 8e\+08 GB are needed, and [0-9.]+ [kMG]B are free' "$program" --instances 100000000 --phases 100000000
 echo old >old.csv
 expect 2 'File too large' bash -c "ulimit -f 2; exec '$program' --instances 400 --transient 1 --phases 2 --output old.csv"
 [[ $(<old.csv) == old ]] || fail 'a file of an earlier run was harmed'
 
 expect 0 'Integrating 1000 instances over 128 . 16 phases' "$program" --small --output small.csv
 expect 2 '' "$program" --transient none
+
+check_full_output "${small[@]}" --output full.csv
+expect 3 'picture.png was not drawn' bash -c "mkdir no; PYTHONPATH=no exec '$program' ${small[*]} --quiet --output undrawn.csv --plot no/such/picture.png"
+[[ -s undrawn.csv ]] || fail 'no table of a picture that was not drawn'
 
 check_plot new/table.csv
 : >empty.csv

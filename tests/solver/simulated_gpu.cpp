@@ -65,7 +65,7 @@ void unpin_memory(void* memory) {
     simulated::demand(simulated::pinned().blocks.erase(static_cast<std::byte*>(memory)) == 1, "no such memory is pinned");
 }
 
-template <class Model, class Method, class R>
+template <class Model, class Method, class R, class Counts>
 std::unique_ptr<engine<Model, R>> make_engine(const engine_options&) {
     simulated::the_gpu.meet(simulated::call::make_engine);
     return std::make_unique<simulated::engine<Model, Method, R>>();

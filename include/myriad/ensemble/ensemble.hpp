@@ -52,35 +52,35 @@ public:
 
     /// State component c: initial values before a call, end values after it.
     template <class C>
-    map<R> state(C c) { return view(state_, state_index(c), "state"); }
+    map<R> state(C c) & { return view(state_, state_index(c), "state"); }
     template <class C>
-    const_map<R> state(C c) const { return view(state_, state_index(c), "state"); }
+    const_map<R> state(C c) const& { return view(state_, state_index(c), "state"); }
     /// Control parameter c.
     template <class C>
-    map<R> parameter(C c) { return view(parameter_, parameter_index(c), "parameter"); }
+    map<R> parameter(C c) & { return view(parameter_, parameter_index(c), "parameter"); }
     template <class C>
-    const_map<R> parameter(C c) const { return view(parameter_, parameter_index(c), "parameter"); }
+    const_map<R> parameter(C c) const& { return view(parameter_, parameter_index(c), "parameter"); }
     /// The user's own real storage; NaN until set.
     template <class C>
-    map<R> accessory(C c) { return view(accessory_, accessory_index(c), "accessory"); }
+    map<R> accessory(C c) & { return view(accessory_, accessory_index(c), "accessory"); }
     template <class C>
-    const_map<R> accessory(C c) const { return view(accessory_, accessory_index(c), "accessory"); }
+    const_map<R> accessory(C c) const& { return view(accessory_, accessory_index(c), "accessory"); }
     /// The user's own integer storage; 0 until set.
     template <class C>
-    map<std::int32_t> integer_accessory(C c) {
+    map<std::int32_t> integer_accessory(C c) & {
         return view(integer_accessory_, integer_accessory_index(c), "integer accessory");
     }
     template <class C>
-    const_map<std::int32_t> integer_accessory(C c) const {
+    const_map<std::int32_t> integer_accessory(C c) const& {
         return view(integer_accessory_, integer_accessory_index(c), "integer accessory");
     }
 
     /// Time domain of each instance; t_end may be before t_begin, to integrate backwards. The first of these calls after
     /// time_domain takes memory, also on an ensemble that is const: threads that share one ask t_begin_of and t_end_of.
-    map<R> t_begin() { return view(own_domains(), 0, "time"); }
-    const_map<R> t_begin() const { return view(std::as_const(own_domains()), 0, "time"); }
-    map<R> t_end() { return view(own_domains(), 1, "time"); }
-    const_map<R> t_end() const { return view(std::as_const(own_domains()), 1, "time"); }
+    map<R> t_begin() & { return view(own_domains(), 0, "time"); }
+    const_map<R> t_begin() const& { return view(std::as_const(own_domains()), 0, "time"); }
+    map<R> t_end() & { return view(own_domains(), 1, "time"); }
+    const_map<R> t_end() const& { return view(std::as_const(own_domains()), 1, "time"); }
     /// The same domain for all instances. Unless t_begin or t_end are asked for, it takes no memory, and no copies to a GPU.
     void time_domain(R t_begin_of_all, R t_end_of_all) {
         common_begin_ = t_begin_of_all;
@@ -97,7 +97,7 @@ public:
 
     /// What both tolerances are multiplied by in each instance, one until set, for a method
     /// `controlled<Method, tolerance_per_instance>`. Takes memory from the first call on.
-    map<R> tolerance_scale() { return view(on_demand(tolerance_scale_, R(1)), 0, "tolerance scale"); }
+    map<R> tolerance_scale() & { return view(on_demand(tolerance_scale_, R(1)), 0, "tolerance scale"); }
     bool scales_tolerances() const { return tolerance_scale_.components() > 0; }
 
     /// A parameter that all instances share; NaN until set. With an index beyond the model's: throws `error`.
@@ -114,24 +114,24 @@ public:
     }
 
     /// Results: where the last phase ended, and how.
-    const_map<R> t() const { return view(t_, 0, "time"); }
+    const_map<R> t() const& { return view(t_, 0, "time"); }
     myriad::status status(std::int64_t i) const {
         require(i >= 0 && i < present(size_), "instance ", i, " does not exist: the ensemble has ", size_, " instances");
         return status_.data()[i];
     }
     const myriad::status* statuses() const { return status_.data(); }
     /// Phases completed since the start.
-    const_map<std::int32_t> phases_done() const { return view(phase_, 0, "phase"); }
+    const_map<std::int32_t> phases_done() const& { return view(phase_, 0, "phase"); }
     /// Step size the instance would try next; zero before the first phase, and with fixed steps. The first of these calls takes
     /// memory unless an adaptive method did.
-    const_map<R> next_step() const { return view(std::as_const(on_demand(h_next_, R(0))), 0, "step"); }
+    const_map<R> next_step() const& { return view(std::as_const(on_demand(h_next_, R(0))), 0, "step"); }
     /// Work since the start: accepted and rejected steps, steps redone to locate events, evaluations of rhs. A fixed step is
     /// never rejected: one whose result is not finite ends the instance, and only its evaluations count. Throws `error` if no
     /// call has counted. The first call for what none has counted takes memory.
-    const_map<std::int64_t> accepted_steps() const { return counter(0); }
-    const_map<std::int64_t> rejected_steps() const { return counter(1); }
-    const_map<std::int64_t> located_steps() const { return counter(2); }
-    const_map<std::int64_t> rhs_evaluations() const { return counter(3); }
+    const_map<std::int64_t> accepted_steps() const& { return counter(0); }
+    const_map<std::int64_t> rejected_steps() const& { return counter(1); }
+    const_map<std::int64_t> located_steps() const& { return counter(2); }
+    const_map<std::int64_t> rhs_evaluations() const& { return counter(3); }
     bool counted() const { return counted_[0].components() > 0; }
     /// The same in this order, null where all are zero since nothing can have been counted: rejected steps by methods with fixed
     /// ones, located steps of models without events.
@@ -140,7 +140,28 @@ public:
     }
 
     /// Dense output, if options::samples asked for any.
-    const trajectory_samples<Model, R>& samples() const { return samples_; }
+    const trajectory_samples<Model, R>& samples() const& { return samples_; }
+
+    // What points into a temporary would point to nothing after the line.
+    template <class C>
+    map<R> state(C) && = delete;
+    template <class C>
+    map<R> parameter(C) && = delete;
+    template <class C>
+    map<R> accessory(C) && = delete;
+    template <class C>
+    map<std::int32_t> integer_accessory(C) && = delete;
+    map<R> t_begin() && = delete;
+    map<R> t_end() && = delete;
+    map<R> tolerance_scale() && = delete;
+    const_map<R> t() && = delete;
+    const_map<std::int32_t> phases_done() && = delete;
+    const_map<R> next_step() && = delete;
+    const_map<std::int64_t> accepted_steps() && = delete;
+    const_map<std::int64_t> rejected_steps() && = delete;
+    const_map<std::int64_t> located_steps() && = delete;
+    const_map<std::int64_t> rhs_evaluations() && = delete;
+    const trajectory_samples<Model, R>& samples() && = delete;
 
     /// Forgets all phases done: the next call starts every instance afresh, failed ones too, from the states, parameters
     /// and accessories it then has.

@@ -39,7 +39,8 @@ inline const char* name_of(status s) {
 }
 
 /// States and accessories kept at the end of every recorded phase. Each accessor returns a map with one row per instance
-/// and one column per recorded phase. An instance that ended before a phase did has NaN there (and 0 for integers).
+/// and one column per recorded phase. An instance that ended before a phase did has NaN there (and 0 for integers). Maps point
+/// into the records, so those of a temporary, as in `solve(...).records.state(0)`, are refused: give the report a name.
 template <class Model, class R>
 class phase_records {
 public:
@@ -68,13 +69,17 @@ public:
 
     /// Number of recorded phases.
     std::int64_t phases() const { return phases_; }
-    map<R> state(int c) const { return column(state_, c, "state", values_); }
-    map<R> accessory(int c) const { return column(accessory_, c, "accessory", values_); }
-    map<std::int32_t> integer_accessory(int c) const {
+    map<R> state(int c) const& { return column(state_, c, "state", values_); }
+    map<R> accessory(int c) const& { return column(accessory_, c, "accessory", values_); }
+    map<std::int32_t> integer_accessory(int c) const& {
         return column(integer_accessory_, c, "integer accessory", integers_);
     }
+    map<R> state(int) const&& = delete;
+    map<R> accessory(int) const&& = delete;
+    map<std::int32_t> integer_accessory(int) const&& = delete;
     /// Time at the end of the phase.
-    map<R> time() const { return column(std::array<int, 1>{time_}, 0, "time", values_); }
+    map<R> time() const& { return column(std::array<int, 1>{time_}, 0, "time", values_); }
+    map<R> time() const&& = delete;
 
     /// Forgets what was recorded.
     void clear() {
@@ -146,7 +151,7 @@ struct report {
     std::int64_t rhs_evaluations = 0;
     std::int64_t lane_turns = 0;  ///< trial steps times lanes, idle lanes included
     int lanes = 1;
-    int threads = 1;
+    int threads = 1;              ///< that worked: fewer than the device has where there was not enough to do, or to be had
     double seconds = 0;           ///< wall time of the integration, on a GPU with its transfers
     std::string device;           ///< its name, as in device::parse
     std::string instruction_set;  ///< on the CPU: avx512, avx2, sse2 or generic, as the kernel was compiled for

@@ -19,7 +19,7 @@
 namespace myriad {
 
 /// Samples of all instances, kept over phases and calls until `ensemble::restart`. The accessors return maps with one
-/// row per instance and one column per sample; columns from `stored()(i)` on are NaN in row i.
+/// row per instance and one column per sample; columns from `stored()(i)` on are NaN in row i. Those of a temporary are refused.
 template <class Model, class R>
 class trajectory_samples {
 public:
@@ -45,9 +45,12 @@ public:
     /// Samples there is room for, per instance.
     std::int64_t capacity() const { return capacity_; }
     /// Samples stored, per instance; `capacity()` where there was no room for more.
-    Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const { return {stored_.data(), size_}; }
-    map time() const { return map(time_.data(), size_, capacity_); }
-    map state(int c) const {
+    Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const& { return {stored_.data(), size_}; }
+    Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const&& = delete;
+    map time() const& { return map(time_.data(), size_, capacity_); }
+    map time() const&& = delete;
+    map state(int) const&& = delete;
+    map state(int c) const& {
         require(c >= 0 && static_cast<std::size_t>(c) < column_.size() && column_[static_cast<std::size_t>(c)] >= 0, "state ",
                 c, " was not sampled: name it in options::samples.states");
         return map(values_.component(column_[static_cast<std::size_t>(c)]), size_, capacity_);

@@ -120,7 +120,7 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
 
 namespace myriad::openmp {
 
-template <class Model, class Method, class R>
+template <class Model, class Method, class R, class Counts>
 run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const kernel_arguments<Model, R>& arguments,
                       const run_options& options) {
     return run_packs<Model, Method, R, default_batches<Model, Method>()>(arguments, options);
@@ -130,6 +130,9 @@ run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const ke
 
 /// Compiles the kernel of one model, method and real type.
 #define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                              \
+    template <>                                                                                   \
+    void myriad::instantiated_in_one_file_alone<                                                  \
+        myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, Model, Method, R>() {} \
     template myriad::run_statistics myriad::openmp::run_on<Model, Method, R>(                     \
         myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>,         \
         const myriad::kernel_arguments<Model, R>&, const myriad::run_options&);
