@@ -14,6 +14,7 @@
 
 #include "cases.hpp"
 #include "equal_error.hpp"
+#include "examples/common/exit_status.hpp"
 #include "lorenz_rk4/equations.hpp"
 #include "machine.hpp"
 #include "measure.hpp"
@@ -204,9 +205,9 @@ int main(int argc, char** argv) {
             chosen.measure.instances_scale *= 0.25;
             if (repetitions->count() == 0) chosen.measure.repetitions = 3;
         }
-        return (chosen.check ? check(chosen.slack) : run(chosen)) ? 0 : 1;
+        return examples::after_output((chosen.check ? check(chosen.slack) : run(chosen)) ? 0 : 1);
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : 2;
+        return examples::after_output(app.exit(e) == 0 ? 0 : 2);
     } catch (const std::exception& e) {
         std::cerr << e.what() << '\n';
     }

@@ -15,6 +15,7 @@
 
 #include <myriad/myriad.hpp>
 
+#include "../../examples/common/exit_status.hpp"
 #include "models.hpp"
 
 namespace {
@@ -110,5 +111,5 @@ int main(int argc, char** argv) {
     as_before = compare<myriad::cash_karp>("cash_karp", check) && as_before;
     as_before = compare<myriad::tsitouras_5>("tsitouras_5", check) && as_before;
     if (!as_before) std::cerr << "Dense output takes memory although it is off\n";
-    return as_before ? EXIT_SUCCESS : EXIT_FAILURE;
+    return examples::after_output(as_before ? EXIT_SUCCESS : EXIT_FAILURE);
 }

@@ -21,6 +21,7 @@
 #include "benchmarks/gpu_ensembles/by_hand.hpp"
 #include "benchmarks/gpu_ensembles/measure.hpp"
 #include "benchmarks/gpu_ensembles/models.hpp"
+#include "examples/common/exit_status.hpp"
 
 namespace {
 
@@ -292,7 +293,7 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
         return run(chosen);
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : 2;
+        return examples::after_output(app.exit(e) == 0 ? 0 : 2);
     } catch (const std::exception& e) {
         std::cerr << e.what() << '\n';
     }

@@ -16,6 +16,7 @@
 
 #include "by_hand.hpp"
 #include "cases.hpp"
+#include "examples/common/exit_status.hpp"
 #include "reference.hpp"
 
 namespace {
@@ -163,7 +164,7 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
         return run(chosen);
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : 2;
+        return examples::after_output(app.exit(e) == 0 ? 0 : 2);
     } catch (const std::bad_alloc&) {
         std::cerr << "There is not enough memory: give a smaller --instances-scale\n";
     } catch (const std::exception& e) {

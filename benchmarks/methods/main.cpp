@@ -10,6 +10,7 @@
 
 #include "examples/common/csv_file.hpp"
 #include "examples/common/device_option.hpp"
+#include "examples/common/exit_status.hpp"
 #include "measure.hpp"
 
 namespace {
@@ -75,8 +76,8 @@ bool run_chosen(const std::vector<std::string>& names, const settings& chosen, c
     for (const choice& c : all_cases())
         if (names.empty() || std::find(names.begin(), names.end(), c.name) != names.end())
             right = c.run(chosen, out) && right;
-    if (file) file->commit();
     if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
+    if (file) file->commit();
     return right;
 }
 
@@ -106,7 +107,7 @@ int main(int argc, char** argv) {
         chosen.device = myriad::device::parse(device);
         return run_chosen(names, chosen, device, path) ? 0 : 1;
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : 2;
+        return examples::after_output(app.exit(e) == 0 ? 0 : 2);
     } catch (const std::bad_alloc&) {
         std::cerr << "There is not enough memory: give fewer --instances\n";
     } catch (const std::exception& e) {

@@ -16,6 +16,7 @@
 
 #include <myriad/myriad.hpp>
 
+#include "examples/common/exit_status.hpp"
 #include "examples/duffing/duffing.hpp"
 
 namespace {
@@ -150,7 +151,7 @@ int main(int argc, char** argv) {
         }
     }
     try {
-        return run(chosen);
+        return examples::after_output(run(chosen));
     } catch (const std::exception& e) {
         std::cerr << e.what() << '\n';
     }

@@ -48,6 +48,12 @@ check_arguments() {
     expect 2 'not a regular file' "$program" --output /dev/null
 }
 
+# check_full_output ARGUMENT...: what standard output cannot take is an error, whether or not there is a file by then.
+check_full_output() {
+    expect 3 'standard output cannot be written' bash -c '"$0" "$@" >/dev/full' "$program" "$@"
+    expect 2 'standard output cannot be written' bash -c '"$0" --help >/dev/full' "$program"
+}
+
 # check_small ROWS HEADER: the size for two cores gives such a table.
 check_small() {
     expect 0 '' "$program" --small --quiet --output small.csv

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The options that every sweep has, and the exit statuses of every example: 0 all is well, 1 some instances failed,
-// 2 an error, with its reason on stderr, and no file was written.
+// 2 an error, with its reason on stderr, and no file was written, 3 an error after a file was written: its picture, another file
+// or standard output was not.
 #pragma once
 
 #include <csignal>
@@ -18,7 +19,9 @@
 
 #include "myriad/device.hpp"
 
+#include "csv_file.hpp"
 #include "device_option.hpp"
+#include "exit_status.hpp"
 #include "plot.hpp"
 
 namespace examples {
@@ -67,6 +70,9 @@ private:
     std::int64_t full_, small_;
 };
 
+/// That of an error, which depends on what was done before it.
+inline int error_status() { return csv_file::any_is_there() ? 3 : 2; }
+
 /// Parses the command line and calls `sweep(options, device)`, which returns the exit status. Draws the picture after it.
 template <class Sweep>
 int run_sweep(int argc, const char* const* argv, const study& offered, Sweep&& sweep) {
@@ -111,16 +117,15 @@ int run_sweep(int argc, const char* const* argv, const study& offered, Sweep&& s
             picture->draw(MYRIAD_PLOT_SCRIPT, options.output, options.picture);
             if (!options.quiet) std::cout << "Drawn to " << options.picture << '\n';
         }
-        if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
-        return status;
+        return after_output(status, error_status());
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : 2;
+        return after_output(app.exit(e) == 0 ? 0 : 2);
     } catch (const std::bad_alloc&) {
         std::cerr << "There is not enough memory: take fewer instances, or fewer recorded phases\n";
     } catch (const std::exception& e) {
         std::cerr << e.what() << '\n';
     }
-    return 2;
+    return error_status();
 }
 
 }  // namespace examples

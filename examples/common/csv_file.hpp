@@ -2,6 +2,7 @@
 // A table of results in comma-separated values: fast enough for millions of rows, and either complete or not there.
 #pragma once
 
+#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -17,6 +18,8 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+
+#include "myriad/core/memory.hpp"
 
 namespace examples {
 
@@ -46,8 +49,7 @@ public:
         }
         const fs::space_info space = fs::space(folder, failure);
         if (!failure && space.capacity > 0 && space.available < least_bytes)
-            fail("cannot be written: at least " + megabytes(least_bytes) + " are needed, and " +
-                 megabytes(space.available) + " are free");
+            fail_for_lack_of_space(static_cast<double>(least_bytes), static_cast<double>(space.available));
 
         temporary_ = target_;
         temporary_ += '.' + std::to_string(::getpid()) + ".part";
@@ -88,7 +90,10 @@ public:
         std::filesystem::rename(temporary_, target_, failure);
         if (failure) fail("cannot be written: " + failure.message());
         created_ = false;
+        any_is_there_ = true;
     }
+    /// Whether the program has put any file in its place.
+    static bool any_is_there() { return any_is_there_; }
 
 private:
     // Longest text of a number is 24 characters; a line is a few dozen of them at most.
@@ -149,9 +154,9 @@ private:
         }
     }
 
-    static std::string megabytes(std::uintmax_t bytes) {
-        const std::uintmax_t tenths = bytes / 100'000;
-        return std::to_string(tenths / 10) + '.' + std::to_string(tenths % 10) + " MB";
+    [[noreturn]] void fail_for_lack_of_space(double needed, double free) const {
+        const auto [least, there] = myriad::host::bytes_texts(needed, free);
+        fail("cannot be written: at least " + least + " are needed, and " + there + " are free");
     }
     [[noreturn]] void fail(const std::string& why) const {
         throw std::runtime_error((target_.empty() ? "\"\"" : target_.string()) + ' ' + why +
@@ -159,6 +164,7 @@ private:
     }
     [[noreturn]] void fail_writing() const { fail(std::string("cannot be written: ") + std::strerror(errno)); }
 
+    static inline std::atomic<bool> any_is_there_ = false;
     std::filesystem::path target_, temporary_;
     int file_ = -1;
     bool created_ = false;

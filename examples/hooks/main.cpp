@@ -187,5 +187,5 @@ int main() {
     // A last bit may decide whether a step over the kink is accepted, so the results agree to its error only.
     compare("difference of select and branch", (swing<stop_by_select>() - swing<stop_by_branch>()).abs().maxCoeff(), 0,
             1e-4);
-    return all_right ? EXIT_SUCCESS : EXIT_FAILURE;
+    return all_right && std::cout.flush() ? EXIT_SUCCESS : EXIT_FAILURE;
 }

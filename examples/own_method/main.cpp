@@ -56,5 +56,5 @@ int main() {
         well = integrate<bogacki_shampine_3>("bogacki_shampine_3", tolerance) && well;
         well = integrate<myriad::tsitouras_5>("tsitouras_5", tolerance) && well;
     }
-    return well ? 0 : 1;
+    return well && std::fflush(stdout) == 0 && std::ferror(stdout) == 0 ? 0 : 1;
 }

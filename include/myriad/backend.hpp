@@ -3,9 +3,12 @@
 // type, declared here and defined where the model is instantiated. Host programs include no backend.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "myriad/core/weak.hpp"
@@ -13,12 +16,13 @@
 #include "myriad/ensemble/arrays.hpp"
 #include "myriad/ensemble/view.hpp"
 #include "myriad/integrator/options.hpp"
+#include "myriad/model/concepts.hpp"
 
 namespace myriad {
 
 /// What a backend needs beside the kernel's arguments.
 struct run_options {
-    int threads = 0;  ///< OpenMP threads; 0: as OMP_NUM_THREADS or the machine says
+    int threads = 0;  ///< at most; 0: as OMP_NUM_THREADS or the machine says
     /// Called from the calling thread with the number of instances begun; may be null.
     bool (*progress)(void* context, std::int64_t begun) = nullptr;  ///< returns whether to go on
     void* context = nullptr;
@@ -30,10 +34,24 @@ struct run_options {
 struct run_statistics {
     std::int64_t lane_turns = 0;  ///< trial steps times lanes, those of idle lanes included; 0: not counted
     int lanes = 1;                ///< instances side by side in one pack, or CUDA threads in a block
-    int threads = 1;
+    int threads = 1;                   ///< that have worked
     const char* instruction_set = "";  ///< of the CPU's kernel
     bool computed_as_written = true;   ///< else the kernel's file was compiled so that nothing was integrated: core/ieee.hpp
+    std::exception_ptr failure = {};   ///< what a function of the model has thrown
+    std::size_t stack = 0;             ///< bytes that the kernel needs of a thread's stack,
+    std::size_t least_stack = 0;       ///< and that a thread has; if fewer, nothing was integrated
 };
+
+/// How many components of each kind a model has. In the names of its kernels, so that host code that was compiled with another
+/// model of the same name finds none.
+template <class Model>
+using component_counts = std::integer_sequence<int, n_state<Model>, n_parameter<Model>, n_shared<Model>, n_shared_integer<Model>,
+                                               n_accessory<Model>, n_integer_accessory<Model>, n_event<Model>>;
+
+/// What MYRIAD_INSTANTIATE defines beside the kernels, and not weakly, so that linkers refuse a program with two models of one
+/// name, of which the kernels of one would run for both.
+template <class Backend, class Model, class Method, class R>
+void instantiated_in_one_file_alone();
 
 // Everything below is weak, so that a program that names a method nobody instantiated, or a backend it was built without,
 // gets a readable error instead of one by the linker.
@@ -42,7 +60,7 @@ namespace openmp {
 /// The kernel for one instruction set. A program may hold several (MYRIAD_ARCH as a list), of which host code chooses
 /// one by the CPU it runs on: cpu_kernel.hpp.
 #define MYRIAD_DECLARE_KERNEL(set)                                                                                    \
-    template <class Model, class Method, class R>                                                                     \
+    template <class Model, class Method, class R, class Counts = component_counts<Model>>                             \
     __attribute__((weak)) run_statistics run_on(for_set<instruction_set::set>, const kernel_arguments<Model, R>&, \
                                                 const run_options&);
 MYRIAD_DECLARE_KERNEL(avx512)
@@ -135,7 +153,7 @@ public:
 };
 
 /// The engine for a model, method and real type. Throws `error` if the device does not exist or cannot run the kernel.
-template <class Model, class Method, class R>
+template <class Model, class Method, class R, class Counts = component_counts<Model>>
 __attribute__((weak)) std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options);
 
 /// A device of this machine.

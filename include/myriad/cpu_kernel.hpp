@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <exception>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "myriad/backend.hpp"
 #include "myriad/core/error.hpp"
 #include "myriad/core/instruction_set.hpp"
+#include "myriad/core/memory.hpp"
 #include "myriad/ensemble/cost_order.hpp"
 
 namespace myriad {
@@ -80,6 +82,9 @@ template <class Model, class R>
 run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_arguments<Model, R>& arguments,
                            const run_options& options) {
     const std::int64_t count = options.count > 0 ? options.count : arguments.size;
+    memory_need need;
+    need.add("costs", static_cast<double>(arguments.size + count) * sizeof(std::uint32_t));
+    need.check(message("sorting ", count, " instances by cost"), "take another schedule, or integrate the ensemble in smaller parts");
     std::vector<std::uint32_t> cost(static_cast<std::size_t>(arguments.size));
     kernel_arguments<Model, R> now = arguments;
     now.cost = cost.data();
@@ -87,6 +92,7 @@ run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_argu
     run_options silent = options;  // progress is that of the main part
     silent.progress = nullptr;
     const run_statistics first = kernel.run(now, silent);
+    if (first.failure || first.least_stack < first.stack) return first;
     const std::vector<std::uint32_t> order = order_by_cost(cost.data(), count);
     now = arguments;
     now.first_phase = 1;
@@ -96,7 +102,7 @@ run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_argu
     return used;
 }
 
-/// Integrates on the CPU. Throws `error` if there is no kernel.
+/// Integrates on the CPU. Throws `error` if there is no kernel, or too little stack for it, and what the model's functions throw.
 template <class Model, class R>
 run_statistics run_kernel(const cpu_kernel<Model, R>& kernel, const kernel_arguments<Model, R>& arguments,
                           const run_options& options) {
@@ -104,6 +110,10 @@ run_statistics run_kernel(const cpu_kernel<Model, R>& kernel, const kernel_argum
     const bool sorted = options.schedule == schedule::by_cost && arguments.phases > 1 && arguments.size <= most_sorted;
     run_statistics used = sorted ? run_by_cost(kernel, arguments, options) : kernel.run(arguments, options);
     require(used.computed_as_written, "the model's file ", not_as_written);
+    require(used.least_stack >= used.stack, "a thread has ", used.least_stack, " bytes of stack, and the kernel of this model and "
+            "method takes about ", used.stack, ": set OMP_STACKSIZE to more, such as 8M, or unset it; a thread of your own that "
+            "solves needs as much");
+    if (used.failure) std::rethrow_exception(used.failure);
     used.instruction_set = name_of(kernel.set);
     return used;
 }

@@ -12,7 +12,7 @@
 
 namespace myriad {
 
-/// A device: the CPU with a number of threads (0 stands for OMP_NUM_THREADS or all cores), or a CUDA GPU by its number.
+/// A device: the CPU with at most so many threads (0 stands for OMP_NUM_THREADS or all cores), or a CUDA GPU by its number.
 class device {
 public:
     enum class kind { cpu, cuda };
@@ -98,7 +98,7 @@ private:
 };
 
 /// All devices that the program can use, the best first.
-inline std::vector<device> devices() {
+[[nodiscard]] inline std::vector<device> devices() {
     std::vector<device> found;
     std::string why_none;
     const auto count = static_cast<int>(device::gpus(why_none).size());

@@ -2,15 +2,26 @@
 // Engines of GPUs between two calls of `solve`, since making one takes longer than integrating a small ensemble. Host code only.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <utility>
+
+#include <unistd.h>
 
 #include "myriad/backend.hpp"
 #include "myriad/chunk_plan.hpp"
 #include "myriad/core/kept.hpp"
 
 namespace myriad::host {
+
+/// Whether this process is the first to use GPUs, and not a child of that one: it would wait for threads of the driver, and for
+/// engines, that it does not have.
+inline bool may_use_gpus() {
+    static std::atomic<pid_t> user{0};
+    pid_t first = 0;
+    return user.compare_exchange_strong(first, getpid()) || first == getpid();
+}
 
 /// What makes an engine of a model and a real type: one for each method.
 template <class Model, class R>

@@ -9,6 +9,7 @@
 #include "myriad/backend.hpp"
 #include "myriad/chunk_plan.hpp"
 #include "myriad/chunked_solve.hpp"
+#include "myriad/core/floating_point.hpp"
 #include "myriad/cpu_kernel.hpp"
 #include "myriad/device.hpp"
 #include "myriad/ensemble/ensemble.hpp"
@@ -43,10 +44,13 @@ device_kernel<Model, R> require_kernel(const device& where) {
     }
     require(on_cpu ? found.cpu.run != nullptr : found.make_engine != nullptr,
             "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
-            ", or its source file was not linked: write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for "
+            ", or with other numbers of components, or its source file was not linked: write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for "
             "float) in the model's source file, and name that file in myriad_add_models for the program or an OBJECT "
             "library",
             on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
+    require(on_cpu || may_use_gpus(),
+            "this process was forked from one that has used a GPU, which it cannot use too: fork before that, use the CPU, or "
+            "start a program anew (exec)");
     return found;
 }
 
@@ -88,16 +92,21 @@ void integrate_all(const device& where, const options& o, const device_kernel<Mo
 /// Takes every instance of the ensemble through `options.phases` integration phases with the given method, in place, and
 /// reports. A further call goes on from there with the next phases; instances that failed or ended themselves stay as
 /// they are until `ensemble::restart`. The result of an instance depends on nothing but its own data and the options.
-/// Throws `error`, and leaves all instances as they are, if an input is invalid, if the device is not there, or if the program
-/// has no kernel for the model and method.
+/// Throws `error`, and leaves all instances as they are, if an input is invalid, if the device is not there, if the program
+/// has no kernel for the model and method, or if the ensemble is being integrated already. On the CPU it throws what a function
+/// of the model throws; what the ensemble then holds is good for nothing but to be set anew, after `restart`.
+/// The report may be left alone, as in a call for transients: how instances ended is kept in the ensemble.
 template <class Method, class Model, class R>
 report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
+    const default_arithmetic here;
+    const auto turn = instances.take();
     check_options<Model, Method, R>(options);
     const auto kernel = host::require_kernel<Model, Method, R>(where);
     const auto before = host::check_uses<Method>(instances, options, instances.size());
     // On a GPU the data of large ensembles are checked chunk by chunk, while it works on others.
     host::input_check<Model, R> check(instances, options, instances.size());
     if (where.which() == device::kind::cpu || instances.size() <= host::worth_chunks) check.run();
+    instances.expect_phases(options.phases);
 
     report<Model, R> result;
     host::prepared_arguments<Model, R> prepared(instances, options, host::traits_of<Method>);

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "myriad/backend.hpp"
+#include "myriad/core/floating_point.hpp"
+#include "myriad/core/left_behind.hpp"
 #include "myriad/device.hpp"
 #include "myriad/ensemble/ensemble.hpp"
 #include "myriad/ensemble/report.hpp"
@@ -65,14 +67,16 @@ public:
     /// to them; throws `error` after an `integrate` without a `download`. A reference kept over an `upload` or `download` is
     /// valid, but the data may be under way: ask again.
     ensemble<Model, R>& instances() {
-        wait();
+        const auto turn = take();
+        finish();
         require_results("instances");
         uploaded_ = false;
         return instances_;
     }
     /// The same data, to be read.
     const ensemble<Model, R>& results() {
-        wait();
+        const auto turn = take();
+        finish();
         require_results("results");
         return instances_;
     }
@@ -81,15 +85,14 @@ public:
     /// go on from their phase. Waits for what was asked before. Throws `error` if their data are invalid, or are results of
     /// which the host has not got all.
     void upload(std::int64_t count = 0) {
+        const default_arithmetic here;
+        const auto turn = take();
         require(count >= 0 && count <= capacity(), "upload asks for ", count,
                 " instances (must be from 1 to the capacity, ", capacity(), ", or 0 for all)");
-        wait();
+        finish();
         require_results("upload");
         const std::int64_t wanted = count > 0 ? count : capacity();
-        require(
-            instances_.statuses() == prepared_.get().status,
-            "the solver's ensemble was replaced by another or moved away, and its memory with it: set the values of "
-            "instances() instead");
+        require_memory();
         if (results_ == held::partly_on_host) {
             for (std::int64_t i = 0; i < wanted; ++i)
                 require(instances_.status(i) == status::not_started,
@@ -126,6 +129,7 @@ public:
     /// Integrates `phases` phases (0: as the options say). With records, the number is that of the options; they are those
     /// of the last call.
     void integrate(std::int64_t phases = 0) {
+        const auto turn = take();
         require(uploaded_,
                 "integrate has no instances to work on, or instances() may have changed them since the upload: call "
                 "upload first, and read with results()");
@@ -133,8 +137,10 @@ public:
                 "integrate asks for ", phases, " phases, but records and samples were laid out for ", options_.phases,
                 ": give that number in the options");
         if (phases != 0) host::check_count("phases", phases, 1, 1'000'000'000);
+        require_memory();
         auto& arguments = prepared_.get();
         arguments.phases = static_cast<std::int32_t>(phases > 0 ? phases : options_.phases);
+        instances_.expect_phases(arguments.phases);
         results_ = held::on_device;
         instances_.touch();
         has_records_ = true;
@@ -149,7 +155,9 @@ public:
         how.schedule = options_.schedule;
         how.count = count_;
         const auto begin = std::chrono::steady_clock::now();
+        uploaded_ = false;  // if a function of the model throws
         const run_statistics used = openmp::run<Model, Method, R>(arguments, how);
+        uploaded_ = true;
         report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         report_.lane_turns += used.lane_turns;
         report_.lanes = used.lanes;
@@ -159,6 +167,8 @@ public:
 
     /// Brings everything back that a kernel may have written.
     void download() {
+        const auto turn = take();
+        require_memory();
         require(downloadable_, "download has no instances to bring: call upload first");
         if (engine_) engine_->download(prepared_.get());
         results_ = held::on_host;
@@ -166,6 +176,8 @@ public:
     /// The same, but of states and accessories only those that are named. What the others on the host are then is not said:
     /// their old values on a GPU, the new ones on the CPU.
     void download(const components& chosen) {
+        const auto turn = take();
+        require_memory();
         require(downloadable_, "download has no instances to bring: call upload first");
         host::check_components("components.states", chosen.states, n_state<Model>);
         host::check_components("components.accessories", chosen.accessories, n_accessory<Model>);
@@ -177,15 +189,19 @@ public:
 
     /// Waits for everything asked of this solver. Throws `error` if any of it failed.
     void wait() {
-        if (engine_) engine_->wait();
+        const auto turn = take();
+        finish();
     }
     /// What is asked of this solver from now on begins when all that was asked of `other` before is done. The host goes on.
     template <class OtherModel, class OtherMethod, class OtherR>
     void wait_for(solver<OtherModel, OtherMethod, OtherR>& other) {
+        const auto turn = take();
+        if (static_cast<void*>(&other) == this) return;
+        const auto turn_of_other = other.take();
         if (engine_ && other.engine_) {
             engine_->wait_for(*other.engine_);
         } else {
-            other.wait();
+            other.finish();
         }
     }
     /// Whether nothing is under way.
@@ -194,8 +210,11 @@ public:
     /// How the instances uploaded last have ended, and the work since. Times are those of the last `integrate`, of its kernel
     /// on a GPU. Waits; throws `error` after an `integrate` without a `download`.
     const myriad::report<Model, R>& report() {
-        wait();
+        const default_arithmetic here;
+        const auto turn = take();
+        finish();
         require_results("report");
+        require_memory();
         host::set_work(report_, work_before_, counted_work());
         host::summarise(instances_, report_, count_);
         report_.notes.clear();
@@ -211,7 +230,8 @@ public:
     }
     /// The records of the last `integrate`, empty (NaN, 0) if there was none since the upload. Waits; throws `error` after an `integrate` without a `download`.
     const phase_records<Model, R>& records() {
-        wait();
+        const auto turn = take();
+        finish();
         require_results("records");
         if (!has_records_) prepared_.records().clear();
         return prepared_.records();
@@ -223,6 +243,18 @@ private:
 
     enum class held { on_host, on_device, partly_on_host };
 
+    [[nodiscard]] host::occupancy::turn take() {
+        return occupancy_.take("two threads use one solver at the same time: give each a solver of its own");
+    }
+    void finish() {
+        if (engine_) engine_->wait();
+    }
+    /// The kernel's arguments point to the memory of the ensemble that was there at first.
+    void require_memory() const {
+        require(instances_.identity() == identity_,
+                "the solver's ensemble was replaced by another or moved away, and its memory with it: set the values of "
+                "instances() instead");
+    }
     void require_results(const char* what) const {
         require(results_ != held::on_device, what,
                 " needs the results of integrate on the host: call download before (download({}) brings no component)");
@@ -232,6 +264,9 @@ private:
         require(capacity > 0, "the solver's capacity is ", capacity,
                 " (must be positive): give the number of instances it holds");
         check_options<Model, Method, R>(o);
+        host::memory_need need = ensemble<Model, R>::memory_of(capacity);
+        host::add_memory_of_call<Model, R>(need, capacity, nullptr, o, host::traits_of<Method>);
+        need.check(message("a solver for ", capacity, " instances"), "give it a smaller capacity, and integrate part by part");
         return o;
     }
     host::work_count counted_work() const {
@@ -258,6 +293,8 @@ private:
     options options_;
     ensemble<Model, R> instances_;
     host::prepared_arguments<Model, R> prepared_;
+    std::uint64_t identity_ = instances_.identity();
+    host::occupancy occupancy_;
     std::int64_t count_ = 0;
     bool uploaded_ = false;      // and not handed out to be set since
     bool downloadable_ = false;  // uploaded, and found fine

@@ -2,6 +2,9 @@
 // The ensemble's Eigen maps: whole components read and written in place, wrong components refused, and restart.
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <thread>
 #include <type_traits>
 #include <utility>
 
@@ -89,6 +92,81 @@ TEST_CASE("a constant ensemble is read only, and results always are", "[ensemble
     CHECK(std::is_same_v<decltype(std::declval<ensemble<bare, float>&>().state(0)), ensemble<bare, float>::map<float>>);
     CHECK_FALSE(std::is_copy_constructible_v<e>);
     CHECK(std::is_nothrow_move_constructible_v<e>);
+}
+
+TEST_CASE("an ensemble that was moved away has no instances, and says so to whoever uses it", "[ensemble]") {
+    auto a = good_oscillators();
+    options o;
+    o.phases = 2;
+    o.record.states = {complete::x};
+    auto report = solve<cash_karp>(one_thread, a, o);
+    auto b = std::move(a);
+    CHECK(a.size() == 0);
+    const auto& read = a;
+    const auto uses = {
+        +[](ensemble<complete>& e) { e.state(complete::x) = 1; },
+        +[](ensemble<complete>& e) { e.parameter(complete::rate) = 1; },
+        +[](ensemble<complete>& e) { e.accessory(complete::peak) = 1; },
+        +[](ensemble<complete>& e) { e.integer_accessory(complete::turns) = 1; },
+        +[](ensemble<complete>& e) { e.shared(complete::scale) = 1; },
+        +[](ensemble<complete>& e) { e.shared_integer(complete::sign) = 1; },
+        +[](ensemble<complete>& e) { e.t_begin() = 1; },
+        +[](ensemble<complete>& e) { e.t_end() = 1; },
+        +[](ensemble<complete>& e) { e.tolerance_scale() = 1; },
+        +[](ensemble<complete>& e) { e.t(); },
+        +[](ensemble<complete>& e) { e.phases_done(); },
+        +[](ensemble<complete>& e) { e.next_step(); },
+        +[](ensemble<complete>& e) { e.status(0); },
+        +[](ensemble<complete>& e) { solve<cash_karp>(one_thread, e); },
+    };
+    for (auto* const use : uses) refused([&] { use(a); }, {"this ensemble was moved away"});
+    refused([&] { read.state(complete::x); }, {"this ensemble was moved away"});
+    CHECK_FALSE(a.counted());
+    a.restart();
+    const auto records = std::move(report.records);
+    refused([&] { report.records.state(complete::x); }, {"these records were moved away"});
+    CHECK(records.state(complete::x).cols() == 2);
+    a = std::move(b);
+    CHECK(a.size() == 5);
+    CHECK(b.size() == 0);
+    a = ensemble<complete>(3);
+    CHECK(a.state(complete::x).size() == 3);
+}
+
+TEST_CASE("an ensemble that is being integrated is refused to a second call, from another thread or from progress", "[ensemble]") {
+    auto e = good_decays(1000), expected = good_decays(1000);
+    solve<cash_karp>(one_thread, expected);
+    bool tried = false;
+    options o;
+    o.progress = [&](std::int64_t, std::int64_t) {
+        if (std::exchange(tried, true)) return;
+        std::thread([&] { refused([&] { solve<cash_karp>(one_thread, e); }, {"is being integrated already"}); }).join();
+        refused([&] { solve<cash_karp>(one_thread, e); }, {"is being integrated already", "an ensemble of its own"});
+    };
+    solve<cash_karp>(one_thread, e, o);
+    CHECK(tried);
+    CHECK((e.phases_done() == 1).all());
+    CHECK((e.state(bare::x) == expected.state(bare::x)).all());
+    o.progress = [](std::int64_t, std::int64_t) { throw std::runtime_error("enough"); };
+    CHECK_THROWS_AS(solve<cash_karp>(one_thread, e, o), std::runtime_error);
+    refused([&] { solve<cash_karp>(one_thread, e, options{.max_steps = 0}); }, {"max_steps"});
+    CHECK(solve<cash_karp>(one_thread, e).count(status::success) == 1000);  // no turn was left behind
+}
+
+TEST_CASE("phases that would be more than an instance can count are refused until restart", "[ensemble]") {
+    auto e = good_decays(3);
+    constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
+    const_cast<std::int32_t*>(e.phases_done().data())[1] = most - 5;  // as billions of phases would leave it
+    e.expect_phases(most - 5);
+    options o;
+    o.phases = 3;
+    solve<cash_karp>(one_thread, e, o);
+    CHECK(e.phases_done()[1] == most - 2);
+    refused([&] { solve<cash_karp>(one_thread, e, o); }, {"3 phases are asked for after 2147483645", "2147483647", "restart()"});
+    CHECK(e.phases_done()[1] == most - 2);
+    e.restart();
+    CHECK(solve<cash_karp>(one_thread, e, o).count(status::success) == 3);
+    for (int turn = 0; turn < 10; ++turn) e.expect_phases(1'000'000'000);  // of which instances that have ended did none
 }
 
 TEST_CASE("an ensemble that was moved keeps its memory", "[ensemble]") {

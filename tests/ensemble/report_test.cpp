@@ -2,6 +2,8 @@
 // What a call reports: instances by status, the first failing one with its inputs, work, idle lanes, progress.
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -107,6 +109,35 @@ TEST_CASE("a printed report has all a person asks for", "[report]") {
     CHECK(has(text, "first failure: instance 6 ended as not_finite at t = 0 of [0, 1]"));
     CHECK(has(text, "state 1e+10 0.5; parameters 1e+308"));
     CHECK(text.back() == '\n');
+}
+
+/// As in Germany: 1.234.567,5.
+struct german : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+};
+
+TEST_CASE("messages, reports and names of devices are the same whatever locale the program has chosen", "[report]") {
+    auto e = good_decays(1000), bad = good_decays(1500);
+    bad.state(bare::x)[1234] = std::numeric_limits<double>::infinity();
+    options o;
+    o.relative_tolerance = 1e-17;
+    const auto report = solve<cash_karp>(one_thread, e, o);
+    std::ostringstream expected;
+    expected << report;
+    const std::locale before = std::locale::global(std::locale(std::locale::classic(), new german));
+    std::ostringstream printed;
+    printed << report;
+    const std::string name = device::cpu(2000).name(), note = solve<cash_karp>(one_thread, e, o).notes.at(0);
+    const int threads = device::parse(name).threads();
+    refused([&] { solve<cash_karp>(one_thread, bad); }, {"1 of 1500 instances, first in instance 1234 "});
+    refused([] { device::parse("cpu:5000"); }, {"5000 threads"});
+    std::locale::global(before);
+    CHECK(name == "cpu:2000");
+    CHECK(threads == 2000);
+    CHECK(printed.str() == expected.str());
+    CHECK(note == report.notes.at(0));
 }
 
 TEST_CASE("a printed report without failures or counts has no line about them", "[report]") {
@@ -289,7 +320,7 @@ TEST_CASE("an exception of the progress function reaches the caller of solve, on
 }
 
 TEST_CASE("the number of threads is the device's, or that of OpenMP", "[report]") {
-    auto e = good_decays();
+    auto e = good_decays(1000);
     CHECK(solve<cash_karp>(device::parse("cpu:3"), e).threads == 3);
     CHECK(solve<cash_karp>(device::cpu(), e).threads == omp_get_max_threads());
 }

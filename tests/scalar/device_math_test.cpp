@@ -109,8 +109,8 @@ TEMPLATE_TEST_CASE("sqrt is rounded correctly on the device, and special values 
         CHECK(got == wanted);
     }
     CHECK(wrong == 0);
-    CHECK(std::isnan(evaluate<R>({R(-1)}, 1).accessory(values::root)[0]));
-    CHECK(std::isnan(evaluate<R>({-limits::min()}, 1).accessory(values::root)[0]));
+    const auto negative = evaluate<R>({R(-1), -limits::min()}, 1);
+    CHECK(negative.accessory(values::root).isNaN().all());
 }
 
 TEST_CASE("min and max choose on the device") {
@@ -133,7 +133,8 @@ TEST_CASE("powr of zero, infinity, negative numbers and beyond the range is that
     check(2, {0, inf, 0, 0, 4});
     check(-2, {inf, 0, inf, inf, 0.25});
     check(0, {nan, 1, 1, nan, 1});
-    CHECK(std::isnan(evaluate<double>({-1}, 2).accessory(values::power)[0]));
+    const auto negative = evaluate<double>({-1}, 2);
+    CHECK(std::isnan(negative.accessory(values::power)[0]));
 }
 
 TEST_CASE("sincos and sincospi are NaN, and not wrong, beyond their range on the device") {

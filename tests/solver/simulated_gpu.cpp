@@ -55,6 +55,7 @@ namespace myriad::cuda {
 std::vector<device_facts> list_devices(std::string&) { return {{"simulated GPU", simulated::the_gpu.memory, 1, 90}}; }
 
 void pin_memory(int, void* memory, std::size_t bytes) {
+    simulated::the_gpu.meet(simulated::call::pin);
     const std::lock_guard lock(simulated::pinned().mutex);
     const bool is_new = simulated::pinned().blocks.emplace(static_cast<std::byte*>(memory), bytes).second;
     simulated::demand(is_new, "memory is pinned twice");
@@ -64,7 +65,7 @@ void unpin_memory(void* memory) {
     simulated::demand(simulated::pinned().blocks.erase(static_cast<std::byte*>(memory)) == 1, "no such memory is pinned");
 }
 
-template <class Model, class Method, class R>
+template <class Model, class Method, class R, class Counts>
 std::unique_ptr<engine<Model, R>> make_engine(const engine_options&) {
     simulated::the_gpu.meet(simulated::call::make_engine);
     return std::make_unique<simulated::engine<Model, Method, R>>();

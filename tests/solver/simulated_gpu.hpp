@@ -21,8 +21,8 @@ private:
     std::atomic<T> value_;
 };
 
-/// What can fail: calls of an engine, or a kernel, of which calls after `integrate` are told.
-enum class call { none, make_engine, reserve, upload, integrate, kernel, download, wait };
+/// What can fail: pinning, calls of an engine, or a kernel, of which calls after `integrate` are told.
+enum class call { none, make_engine, reserve, upload, integrate, kernel, download, wait, pin };
 
 struct gpu {
     unordered<std::int64_t> memory = std::int64_t{1} << 40, used;  // bytes

@@ -17,6 +17,9 @@
 #include <variant>
 #include <vector>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "tests/catch.hpp"
 #include "tests/ensemble/refusal.hpp"
 #include "tests/solver/fill.hpp"
@@ -357,6 +360,39 @@ TEST_CASE("an error of one solver is thrown by the call that meets it, and anoth
         CHECK(other.report().count(status::success) == 50);
         CHECK(the_gpu.under_way == 0);
     }
+}
+
+#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+TEST_CASE("a child process of one that has used a GPU is refused it, and may use the CPU") {
+    auto e = filled<drifts>(1000);
+    myriad::solve<runge_kutta_4>(gpu, e, two_phases(0));
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        alarm(60);
+        auto mine = filled<drifts>(1000);
+        const auto said = error_of([&] { myriad::solve<runge_kutta_4>(gpu, mine, two_phases(0)); });
+        const auto said_by_solver = error_of([] { myriad::solver<swing, cash_karp>(gpu, 10, usual()); });
+        const auto forked = [](const std::string& text) { return text.find("forked from one that has used a GPU") != text.npos; };
+        const bool solved = myriad::solve<runge_kutta_4>(myriad::device::cpu(2), mine, two_phases(0)).failed() == 0;
+        _exit(!forked(said) ? 1 : !forked(said_by_solver) ? 2 : !solved ? 3 : 0);
+    }
+    int ended = 0;
+    REQUIRE(waitpid(child, &ended, 0) == child);
+    CHECK(WIFEXITED(ended));
+    CHECK(WEXITSTATUS(ended) == 0);
+}
+#endif
+
+TEST_CASE("pinning that fails in the middle names the ensemble as a whole, which goes on without") {
+    auto e = filled<drifts>(1'000'000);
+    the_gpu.fail(call::pin, 2);
+    const std::string said = error_of([&] { e.pin(gpu); });
+    CHECK(said == "an ensemble that takes 42 MB or more was not pinned: the simulated GPU failed");
+    CHECK_FALSE(e.pinned());
+    CHECK(myriad::solve<runge_kutta_4>(gpu, e, two_phases(0)).failed() == 0);
+    e.pin(gpu);  // what was pinned is not pinned twice
+    CHECK(e.pinned());
 }
 
 TEST_CASE("a solver's bad instances are marked before they are copied") {

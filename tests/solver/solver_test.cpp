@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The solver object, on the CPU and on a GPU alike: what it copies, how several of them work side by side, and what it
 // refuses.
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <string>
+#include <thread>
 
 #include "tests/catch.hpp"
 #include "tests/ensemble/refusal.hpp"
@@ -181,6 +185,50 @@ TEST_CASE("a solver's ensemble cannot be replaced") {
     const auto theirs = std::move(s.instances());
     s.instances() = std::move(mine);
     refused([&] { s.upload(); }, {"was replaced", "set the values of instances()"});
+}
+
+TEST_CASE("a solver whose ensemble was replaced after the upload does not read memory that is gone") {
+    solver s(test_device(), 20, usual());
+    auto& kept = s.instances();
+    fill(kept);
+    s.upload();
+    kept = myriad::ensemble<swing>(5);
+    const char* const said = "was replaced by another";
+    refused([&] { s.integrate(); }, {said});
+    refused([&] { s.download(); }, {said});
+    refused([&] { s.download({.states = {swing::x}}); }, {said});
+    refused([&] { s.report(); }, {said});
+    kept = myriad::ensemble<swing>(20);  // perhaps in the memory of the first one
+    fill(kept);
+    refused([&] { s.integrate(); }, {said});
+    refused([&] { s.upload(); }, {said});
+}
+
+TEST_CASE("two threads that use one solver at the same time are refused, and it goes on") {
+    solver s(test_device(), 64, usual()), alone(test_device(), 64, usual());
+    for (solver* const one : {&s, &alone}) {
+        fill(one->instances());
+        one->upload();
+        one->integrate();
+        one->download();
+    }
+    std::atomic<int> met{0};
+    const auto begin = std::chrono::steady_clock::now();
+    const auto use = [&] {
+        while (met < 1 && std::chrono::steady_clock::now() - begin < std::chrono::seconds(20)) {
+            try {
+                s.report();
+            } catch (const myriad::error& e) {
+                CHECK(std::string(e.what()).find("two threads use one solver") != std::string::npos);
+                ++met;
+            }
+        }
+    };
+    std::thread other(use);
+    use();
+    other.join();
+    CHECK(met >= 1);
+    CHECK(same_results(s.results(), alone.results()));
 }
 
 TEST_CASE("records of an earlier call do not stay behind") {

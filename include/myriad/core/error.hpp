@@ -2,6 +2,7 @@
 // The exception of the host side. A message names the problem, why it is one, and what to do.
 #pragma once
 
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -16,10 +17,11 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Joins its arguments into one message.
+/// Joins its arguments into one message, whatever locale the program has chosen: names of devices are read again.
 template <class... Parts>
 std::string message(const Parts&... parts) {
     std::ostringstream out;
+    out.imbue(std::locale::classic());
     out.precision(9);
     (out << ... << parts);
     return out.str();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -13,11 +14,21 @@
 namespace myriad {
 namespace openmp {
 
-#define MYRIAD_DECLARE_THREADS(set)                                                              \
-    __attribute__((weak)) void in_parts(for_set<instruction_set::set>, int parts,                 \
-                                        void (*body)(void* context, int part), void* context);    \
+/// Work in parts, for several threads.
+struct team {
+    void (*body)(void* context, int part);  ///< throws nothing
+    void* context;
+    int parts;              ///< from 0 on; the calling thread does part 0
+    std::size_t stack = 0;  ///< bytes that it takes of a thread's stack, where they are many
+    // What came of it:
+    int threads = 1;              ///< that have shared the work
+    std::size_t least_stack = 0;  ///< bytes that one of them has; if fewer than `stack`, nothing was done
+};
+
+#define MYRIAD_DECLARE_THREADS(set)                                                               \
+    __attribute__((weak)) void in_parts(for_set<instruction_set::set>, team&);                    \
     __attribute__((weak)) int most_parts(for_set<instruction_set::set>);
-/// `in_parts` calls `body(context, part)` for every part from 0 on, each in a thread of its own; `most_parts` are the threads
+/// `in_parts` has all parts done, each by a thread of its own as far as there are so many; `most_parts` are the threads
 /// worth using, those that OpenMP would take. Weak: provided by the OpenMP backend, which is in every program with a kernel,
 /// for the instruction sets that kernels are compiled for.
 MYRIAD_DECLARE_THREADS(avx512)
@@ -41,15 +52,15 @@ constexpr std::int64_t team_size(std::int64_t available) {
 
 /// What the OpenMP backend provides for this CPU; null if nothing.
 struct lent_threads {
-    void (*in_parts)(int, void (*)(void*, int), void*) = nullptr;
+    void (*in_parts)(openmp::team&) = nullptr;
     int (*most_parts)() = nullptr;
 };
 template <openmp::instruction_set set>
 lent_threads threads_for() {
     using tag = openmp::for_set<set>;
-    void (*const compiled)(tag, int, void (*)(void*, int), void*) = &openmp::in_parts;
+    void (*const compiled)(tag, openmp::team&) = &openmp::in_parts;
     if (!cpu_has(set) || if_defined(compiled) == nullptr) return {};
-    return {[](int parts, void (*body)(void*, int), void* context) { openmp::in_parts(tag{}, parts, body, context); },
+    return {[](openmp::team& all) { openmp::in_parts(tag{}, all); },
             [] { return openmp::most_parts(tag{}); }};
 }
 inline lent_threads lend_threads() {
@@ -77,13 +88,12 @@ void in_parallel(std::int64_t size, std::int64_t grain, Body&& body) {
         if (size > 0) body(std::int64_t{0}, size);
         return;
     }
-    threads.in_parts(
-        static_cast<int>(team),
-        [](void* context, int part) {
-            const auto& w = *static_cast<const whole*>(context);
-            if (part < w.parts) (*w.body)(w.begin(part), w.begin(part + 1));
-        },
-        &all);
+    openmp::team members{[](void* context, int part) {
+                          const auto& w = *static_cast<const whole*>(context);
+                          if (part < w.parts) (*w.body)(w.begin(part), w.begin(part + 1));
+                      },
+                      &all, static_cast<int>(team)};
+    threads.in_parts(members);
 }
 
 }  // namespace host

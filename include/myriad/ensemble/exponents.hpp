@@ -34,7 +34,7 @@ void initial_tangents(ensemble<with_tangents<Model, vectors>, R>& e) {
 /// with the natural logarithm. NaN where no phase was. Of a solution that runs backwards they are those of the flow
 /// forwards, the smallest first.
 template <class Model, int vectors, class R>
-Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic> exponents(const ensemble<with_tangents<Model, vectors>, R>& e) {
+[[nodiscard]] Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic> exponents(const ensemble<with_tangents<Model, vectors>, R>& e) {
     using wrapped = with_tangents<Model, vectors>;
     Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic> out(e.size(), vectors);
     for (int i = 0; i < vectors; ++i)
@@ -44,7 +44,7 @@ Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic> exponents(const ensemble<with_ta
 
 /// Tolerances for `options` under which only the states of the model choose the steps: as for the model alone.
 template <class Wrapped>
-per_component without_tangents(const per_component& of_model) {
+[[nodiscard]] per_component without_tangents(const per_component& of_model) {
     std::vector<double> values(static_cast<std::size_t>(Wrapped::n_state), 1e30);
     for (std::size_t c = 0; c < static_cast<std::size_t>(Wrapped::n_original); ++c) values[c] = of_model[c];
     return values;

@@ -9,6 +9,8 @@
 #include <memory>
 
 #include "myriad/core/error.hpp"
+#include "myriad/core/left_behind.hpp"
+#include "myriad/core/memory.hpp"
 #include "myriad/core/pages.hpp"
 #include "myriad/core/parallel.hpp"
 #include "myriad/core/pinned.hpp"
@@ -68,15 +70,19 @@ private:
     static memory allocate(std::size_t components, std::size_t size) {
         if (components == 0 || size == 0) return nullptr;
         const double wanted = static_cast<double>(components) * static_cast<double>(size) * sizeof(T);
+        const char* const advice = "integrate the ensemble in smaller parts";
+        host::memory_need need;
+        need.add("values", wanted);
+        need.check(message(components, " components of ", size, " values"), advice);
         const std::size_t bytes = components * size * sizeof(T);
         void* const found = wanted > 9e18 ? nullptr : host::new_pages(bytes);
-        require(found != nullptr, "out of memory: ", wanted / 1e9, " GB are wanted for ", components,
-                " components of ", size, " values: integrate the ensemble in smaller parts");
+        require(found != nullptr, "out of memory: ", host::bytes_text(wanted), " are wanted for ", components,
+                " components of ", size, " values: ", advice);
         return memory(static_cast<T*>(found), release{bytes});
     }
 
-    int components_ = 0;
-    std::int64_t size_ = 0;
+    host::moved_number<int> components_ = 0;
+    host::moved_number<std::int64_t> size_ = 0;
     memory data_;
 };
 

@@ -9,9 +9,11 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <locale>
 #include <mutex>
 #include <numeric>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,7 @@
 
 #include "myriad/backend.hpp"
 #include "myriad/core/error.hpp"
+#include "myriad/core/left_behind.hpp"
 #include "myriad/core/parallel.hpp"
 #include "myriad/core/status.hpp"
 #include "myriad/ensemble/ensemble.hpp"
@@ -38,7 +41,8 @@ inline const char* name_of(status s) {
 }
 
 /// States and accessories kept at the end of every recorded phase. Each accessor returns a map with one row per instance
-/// and one column per recorded phase. An instance that ended before a phase did has NaN there (and 0 for integers).
+/// and one column per recorded phase. An instance that ended before a phase did has NaN there (and 0 for integers). Maps point
+/// into the records, so those of a temporary, as in `solve(...).records.state(0)`, are refused: give the report a name.
 template <class Model, class R>
 class phase_records {
 public:
@@ -58,15 +62,26 @@ public:
         integers_ = component_array<std::int32_t>(integer_columns_, size * phases_, 0);
     }
 
+    /// What they take.
+    static double bytes_for(const record_options& o, std::int64_t phases, std::int64_t size) {
+        const std::size_t reals = o.states.size() + o.accessories.size() + (o.time ? 1 : 0);
+        return static_cast<double>(size) * static_cast<double>(phases - o.from_phase) *
+               static_cast<double>(sizeof(R) * reals + sizeof(std::int32_t) * o.integer_accessories.size());
+    }
+
     /// Number of recorded phases.
     std::int64_t phases() const { return phases_; }
-    map<R> state(int c) const { return column(state_, c, "state", values_); }
-    map<R> accessory(int c) const { return column(accessory_, c, "accessory", values_); }
-    map<std::int32_t> integer_accessory(int c) const {
+    map<R> state(int c) const& { return column(state_, c, "state", values_); }
+    map<R> accessory(int c) const& { return column(accessory_, c, "accessory", values_); }
+    map<std::int32_t> integer_accessory(int c) const& {
         return column(integer_accessory_, c, "integer accessory", integers_);
     }
+    map<R> state(int) const&& = delete;
+    map<R> accessory(int) const&& = delete;
+    map<std::int32_t> integer_accessory(int) const&& = delete;
     /// Time at the end of the phase.
-    map<R> time() const { return column(std::array<int, 1>{time_}, 0, "time", values_); }
+    map<R> time() const& { return column(std::array<int, 1>{time_}, 0, "time", values_); }
+    map<R> time() const&& = delete;
 
     /// Forgets what was recorded.
     void clear() {
@@ -104,10 +119,12 @@ private:
     map<T> column(const Columns& columns, int c, const char* what, const component_array<T>& from) const {
         require(c >= 0 && static_cast<std::size_t>(c) < columns.size() && columns[static_cast<std::size_t>(c)] >= 0,
                 what, " ", c, " was not recorded: name it in options::record");
+        require(size_ > 0, "these records were moved away: ask those that they were moved to");
         return map<T>(from.component(columns[static_cast<std::size_t>(c)]), size_, phases_);
     }
 
-    std::int64_t size_ = 0, phases_ = 0, from_phase_ = 0;
+    host::moved_number<std::int64_t> size_ = 0, phases_ = 0;
+    std::int64_t from_phase_ = 0;
     int columns_ = 0, integer_columns_ = 0;
     std::array<int, static_cast<std::size_t>(n_state<Model>)> state_ = none<n_state<Model>>();
     std::array<int, static_cast<std::size_t>(n_accessory<Model>)> accessory_ = none<n_accessory<Model>>();
@@ -136,7 +153,7 @@ struct report {
     std::int64_t rhs_evaluations = 0;
     std::int64_t lane_turns = 0;  ///< trial steps times lanes, idle lanes included
     int lanes = 1;
-    int threads = 1;
+    int threads = 1;              ///< that worked: fewer than the device has where there was not enough to do, or to be had
     double seconds = 0;           ///< wall time of the integration, on a GPU with its transfers
     std::string device;           ///< its name, as in device::parse
     std::string instruction_set;  ///< on the CPU: avx512, avx2, sse2 or generic, as the kernel was compiled for
@@ -161,9 +178,12 @@ struct report {
     }
 };
 
-/// Prints a report for people.
+/// Prints a report for people, with the stream's precision, but not its locale.
 template <class Model, class R>
-std::ostream& operator<<(std::ostream& out, const report<Model, R>& r) {
+std::ostream& operator<<(std::ostream& stream, const report<Model, R>& r) {
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out.precision(stream.precision());
     out << r.instances << " instances:";
     const char* separator = " ";
     for (int s = 0; s < status_count; ++s) {
@@ -194,7 +214,7 @@ std::ostream& operator<<(std::ostream& out, const report<Model, R>& r) {
         out << '\n';
     }
     for (const std::string& note : r.notes) out << "note: " << note << '\n';
-    return out;
+    return stream << out.str();
 }
 
 namespace host {

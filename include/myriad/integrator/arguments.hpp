@@ -58,13 +58,23 @@ void describe_options(kernel_arguments<Model, R>& a, const options& o) {
     describe_options(a, o, traits_of<Method>);
 }
 
+/// Adds what a call takes for `size` instances, but for what an ensemble, if there is one, has kept from earlier ones.
+template <class Model, class R>
+void add_memory_of_call(memory_need& need, std::int64_t size, const ensemble<Model, R>* there, const options& o,
+                        const method_traits& method) {
+    if (!o.record.empty()) need.add("records", phase_records<Model, R>::bytes_for(o.record, o.phases, size));
+    need.add("sample times", static_cast<double>(sizeof(R) * o.samples.times_of_instances.size()));
+    ensemble<Model, R>::add_memory_of_call(need, size, there, o, method.adaptive ? step_sizes::kept : step_sizes::fixed,
+                                           method.scales_tolerances);
+}
+
 /// The arguments for an ensemble, with what they point to: the records, and the sample times in the ensemble's real type.
 template <class Model, class R>
 class prepared_arguments {
 public:
-    /// Throws `error` if an option is invalid.
+    /// Throws `error` if an option is invalid, or if there is not enough memory.
     prepared_arguments(ensemble<Model, R>& instances, const options& o, const method_traits& method)
-        : records_(o.record, o.phases, instances.size()),
+        : records_(affordable(instances, o, method).record, o.phases, instances.size()),
           sample_times_(o.samples.times.begin(), o.samples.times.end()) {
         describe_options(arguments_, o, method);
         if (method.scales_tolerances) instances.tolerance_scale();  // there from now on
@@ -100,6 +110,15 @@ public:
     phase_records<Model, R>& records() { return records_; }
 
 private:
+    /// The options, if there is memory for all they ask for.
+    static const options& affordable(const ensemble<Model, R>& instances, const options& o, const method_traits& method) {
+        memory_need need;
+        add_memory_of_call(need, instances.size(), &instances, o, method);
+        need.check(message("this call for ", instances.size(), " instances"),
+                   "ask for fewer phases, components or samples at a time, or integrate the ensemble in smaller parts");
+        return o;
+    }
+
     kernel_arguments<Model, R> arguments_{};
     phase_records<Model, R> records_;
     std::vector<R> sample_times_;

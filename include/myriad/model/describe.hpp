@@ -14,7 +14,7 @@ namespace myriad {
 /// A few lines for people: the model's counts of components, its hooks, its declarations, and what methods for stiff
 /// systems make of it.
 template <class Model>
-std::string describe() {
+[[nodiscard]] std::string describe() {
     static_assert(hooks_fit<Model, double>);
     std::string hooks = "rhs", declares;
     const auto add = [](std::string& to, bool present, const char* name) {

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "myriad/core/error.hpp"
+#include "myriad/core/left_behind.hpp"
 #include "myriad/ensemble/layout.hpp"
 #include "myriad/ensemble/view.hpp"
 #include "myriad/integrator/options.hpp"
@@ -18,7 +19,7 @@
 namespace myriad {
 
 /// Samples of all instances, kept over phases and calls until `ensemble::restart`. The accessors return maps with one
-/// row per instance and one column per sample; columns from `stored()(i)` on are NaN in row i.
+/// row per instance and one column per sample; columns from `stored()(i)` on are NaN in row i. Those of a temporary are refused.
 template <class Model, class R>
 class trajectory_samples {
 public:
@@ -35,12 +36,21 @@ public:
         values_ = component_array<R>(static_cast<int>(columns_), cells, std::numeric_limits<R>::quiet_NaN());
     }
 
+    /// What it takes for an ensemble of that size.
+    static double bytes_for(const sample_options& o, std::int64_t size) {
+        const auto cells = static_cast<double>(o.capacity) * static_cast<double>(o.states.size() + 1);
+        return static_cast<double>(size) * (sizeof(std::int32_t) + sizeof(R) * cells);
+    }
+
     /// Samples there is room for, per instance.
     std::int64_t capacity() const { return capacity_; }
     /// Samples stored, per instance; `capacity()` where there was no room for more.
-    Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const { return {stored_.data(), size_}; }
-    map time() const { return map(time_.data(), size_, capacity_); }
-    map state(int c) const {
+    Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const& { return {stored_.data(), size_}; }
+    Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const&& = delete;
+    map time() const& { return map(time_.data(), size_, capacity_); }
+    map time() const&& = delete;
+    map state(int) const&& = delete;
+    map state(int c) const& {
         require(c >= 0 && static_cast<std::size_t>(c) < column_.size() && column_[static_cast<std::size_t>(c)] >= 0, "state ",
                 c, " was not sampled: name it in options::samples.states");
         return map(values_.component(column_[static_cast<std::size_t>(c)]), size_, capacity_);
@@ -75,7 +85,8 @@ private:
         return columns;
     }
 
-    std::int64_t size_ = 0, capacity_ = 0, columns_ = 0;
+    host::moved_number<std::int64_t> size_ = 0, capacity_ = 0;
+    std::int64_t columns_ = 0;
     std::vector<int> chosen_;
     std::array<int, static_cast<std::size_t>(n_state<Model>)> column_ = no_columns();
     component_array<std::int32_t> stored_;

@@ -51,7 +51,7 @@ __attribute__((weak)) void unpin_memory(void* memory) {
     cudaGetLastError();  // of a CUDA that is gone, when a program ends
 }
 
-template <class Model, class Method, class R>
+template <class Model, class Method, class R, class Counts>
 std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options) {
     std::string why_none;
     const int count = count_devices(why_none);
@@ -66,5 +66,7 @@ std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options) {
 
 /// Compiles the kernels of one model, method and real type.
 #define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                      \
+    template <>                                                                                           \
+    void myriad::instantiated_in_one_file_alone<myriad::cuda::engine_options, Model, Method, R>() {}      \
     template std::unique_ptr<myriad::cuda::engine<Model, R>> myriad::cuda::make_engine<Model, Method, R>( \
         const myriad::cuda::engine_options&);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <type_traits>
 
 #include <omp.h>
@@ -14,7 +16,7 @@
 // the loop comes after the packs, whose functions it calls
 #include "myriad/integrator/integrate.hpp"
 #include "myriad/openmp/instances.hpp"
-#include "myriad/openmp/parts.hpp"
+#include "myriad/openmp/team.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -60,25 +62,57 @@ struct lane_kind<R, 0> {
     using type = R;
 };
 
+/// Bytes that a kernel takes of a thread's stack: what it is known to hold, twice, since the compiler keeps parts of it apart, and
+/// some states for what a step computes. g++ was seen to take half to nine tenths of that.
+template <class Model, class Method, class S>
+constexpr std::size_t stack_of_kernel() {
+    constexpr std::size_t state = sizeof(vec<S, n_state<Model>>), few = 4096;
+    constexpr std::size_t matrix = solves_linear_systems<Method> ? n_state<Model> * state : 0;
+    return 2 * (sizeof(integrator<Model, Method, S>) + sizeof(rk_trial<Method, S, n_state<Model>>)) + matrix + 16 * state + few;
+}
+
+/// One run of a kernel by a team of threads.
+template <class Model, class Method, class S>
+struct team_run {
+    const kernel_arguments<Model, real_of<S>>& arguments;
+    const run_options& options;
+    std::int64_t count, chunk;
+    std::atomic<std::int64_t> begun{0}, turns{0};
+    std::atomic<bool> failed{false};
+    std::exception_ptr failure{};
+
+    /// What a function of the model throws ends the run: no further instance is begun.
+    static void work(void* context, int part) noexcept {
+        auto& run = *static_cast<team_run*>(context);
+        chunked_instances instances(run.begun, run.count, run.chunk, run.arguments.order, run.options, part == 0);
+        try {
+            run.turns += integrate<Model, Method, S>(run.arguments, run.arguments.shared, instances);
+        } catch (...) {
+            if (!run.failed.exchange(true)) run.failure = std::current_exception();
+            run.begun = run.count;
+        }
+    }
+};
+
 /// Integrates the ensemble with packs of the given number of batches.
 template <class Model, class Method, class R, int batches>
 run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_options& options) {
     using S = typename lane_kind<R, batches>::type;
-    const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
-    run_statistics used{0, lanes_of<S>, threads};
+    constexpr int lanes = lanes_of<S>;
     const std::int64_t count = options.count > 0 ? options.count : arguments.size;
+    const std::int64_t packs = (count + lanes - 1) / lanes;  // a thread more would find nothing to do
+    const std::int64_t threads = std::min<std::int64_t>(options.threads > 0 ? options.threads : omp_get_max_threads(), packs);
     // In order, there is one chunk for every thread.
     const std::int64_t chunk = options.schedule == schedule::in_order
                                    ? (count + threads - 1) / threads
                                    : std::clamp<std::int64_t>(count / (64 * threads), 1, 64);
-    std::atomic<std::int64_t> begun{0};
-    std::atomic<std::int64_t> turns{0};
-#pragma omp parallel num_threads(threads)
-    {
-        chunked_instances instances(begun, count, chunk, arguments.order, options, omp_get_thread_num() == 0);
-        turns += integrate<Model, Method, S>(arguments, arguments.shared, instances);
-    }
-    used.lane_turns = turns.load() * used.lanes;
+    team_run<Model, Method, S> run{arguments, options, count, chunk};
+    openmp::team members{&run.work, &run, static_cast<int>(threads), stack_of_kernel<Model, Method, S>()};
+    openmp::in_parts(openmp::for_set<openmp::instruction_set::MYRIAD_INSTRUCTION_SET>{}, members);
+    run_statistics used{run.turns.load() * lanes, lanes, members.threads};
+    used.failure = run.failure;
+    used.stack = members.stack;
+    used.least_stack = members.least_stack;
     return used;
 }
 
@@ -86,7 +120,7 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
 
 namespace myriad::openmp {
 
-template <class Model, class Method, class R>
+template <class Model, class Method, class R, class Counts>
 run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const kernel_arguments<Model, R>& arguments,
                       const run_options& options) {
     if (!computes_as_written()) return {.computed_as_written = false};
@@ -97,6 +131,9 @@ run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const ke
 
 /// Compiles the kernel of one model, method and real type.
 #define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                              \
+    template <>                                                                                   \
+    void myriad::instantiated_in_one_file_alone<                                                  \
+        myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, Model, Method, R>() {} \
     template myriad::run_statistics myriad::openmp::run_on<Model, Method, R>(                     \
         myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>,         \
         const myriad::kernel_arguments<Model, R>&, const myriad::run_options&);

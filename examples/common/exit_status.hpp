@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// The last look before a program ends: a full disk takes no output, and says so only when asked.
+#pragma once
+
+#include <cstdio>
+#include <iostream>
+
+namespace examples {
+
+/// The exit status of a program that has written to standard output: `status`, or `broken` if that could not be written.
+inline int after_output(int status, int broken = 2) {
+    if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+    std::cerr << "standard output cannot be written\n";
+    return broken;
+}
+
+}  // namespace examples

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Another model of the same name and size.
+#include <myriad/instantiate.hpp>
+#include <myriad/model.hpp>
+
+struct oscillator {
+    enum state { x, v, n_state };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return {y[v], -R(4) * y[x]};
+    }
+};
+
+MYRIAD_INSTANTIATE(oscillator, myriad::runge_kutta_4)
