@@ -9,7 +9,7 @@ namespace counted {
 template <class Method>
 constexpr bool instantiated = false;
 template <int number>
-struct method {};
+struct method : myriad::cash_karp {};
 struct model {};
 
 }  // namespace counted

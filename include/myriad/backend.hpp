@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <memory>
 #include <string>
 #include <utility>
@@ -28,6 +27,9 @@ struct run_options {
     void* context = nullptr;
     std::int64_t count = 0;  ///< instances to integrate, the first ones; 0: all
     myriad::schedule schedule = myriad::schedule::automatic;
+    /// Called while what a function of the model has thrown is handled, once at most; may be null.
+    void (*caught)(void* failure) = nullptr;
+    void* failure = nullptr;
 };
 
 /// How a run used its lanes.
@@ -37,7 +39,7 @@ struct run_statistics {
     int threads = 1;                   ///< that have worked
     const char* instruction_set = "";  ///< of the CPU's kernel
     bool computed_as_written = true;   ///< else the kernel's file was compiled so that nothing was integrated: core/ieee.hpp
-    std::exception_ptr failure = {};   ///< what a function of the model has thrown
+    bool failed = false;               ///< since a function of the model has thrown
     std::size_t stack = 0;             ///< bytes that the kernel needs of a thread's stack,
     std::size_t least_stack = 0;       ///< and that a thread has; if fewer, nothing was integrated
 };

@@ -92,7 +92,7 @@ run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_argu
     run_options silent = options;  // progress is that of the main part
     silent.progress = nullptr;
     const run_statistics first = kernel.run(now, silent);
-    if (first.failure || first.least_stack < first.stack) return first;
+    if (first.failed || first.least_stack < first.stack) return first;
     const std::vector<std::uint32_t> order = order_by_cost(cost.data(), count);
     now = arguments;
     now.first_phase = 1;
@@ -108,12 +108,16 @@ run_statistics run_kernel(const cpu_kernel<Model, R>& kernel, const kernel_argum
                           const run_options& options) {
     require(kernel.run != nullptr, "this model was not instantiated for this method and real type");
     const bool sorted = options.schedule == schedule::by_cost && arguments.phases > 1 && arguments.size <= most_sorted;
-    run_statistics used = sorted ? run_by_cost(kernel, arguments, options) : kernel.run(arguments, options);
+    std::exception_ptr failure;
+    run_options watched = options;
+    watched.failure = &failure;
+    watched.caught = [](void* kept) { *static_cast<std::exception_ptr*>(kept) = std::current_exception(); };
+    run_statistics used = sorted ? run_by_cost(kernel, arguments, watched) : kernel.run(arguments, watched);
     require(used.computed_as_written, "the model's file ", not_as_written);
     require(used.least_stack >= used.stack, "a thread has ", used.least_stack, " bytes of stack, and the kernel of this model and "
             "method takes about ", used.stack, ": set OMP_STACKSIZE to more, such as 8M, or unset it; a thread of your own that "
             "solves needs as much");
-    if (used.failure) std::rethrow_exception(used.failure);
+    if (failure) std::rethrow_exception(failure);
     used.instruction_set = name_of(kernel.set);
     return used;
 }

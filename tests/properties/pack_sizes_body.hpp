@@ -36,6 +36,6 @@ myriad::run_statistics run_with_packs(int batches, const myriad::kernel_argument
 }  // namespace properties
 
 #define RUN_WITH_PACKS(Model, Method, R)                                                  \
-    extern MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                   \
+    extern MYRIAD_BACKEND_KERNEL(Model, Method, R)                                        \
     template myriad::run_statistics properties::run_with_packs<Model, Method, R>(         \
         int, const myriad::kernel_arguments<Model, R>&, const myriad::run_options&);

@@ -108,7 +108,9 @@ private:
             add<mutated<Method, part::b, i, j>>(method, " with another b" + column, true);
         if constexpr (i == 0 && t.e[j] != 0)
             add<mutated<Method, part::e, i, j>>(method, " with another e" + column, true);
-        if constexpr (i == 0 && t.c[j] != 0)
+        // a last stage that is the next first one is taken where the step ends, whatever its node
+        constexpr bool is_end = Method::first_same_as_last && j + 1 == static_cast<std::size_t>(Method::stages);
+        if constexpr (i == 0 && t.c[j] != 0 && !is_end)
             add<mutated<Method, part::c, i, j>>(method, " with another c" + column, true);
     }
 

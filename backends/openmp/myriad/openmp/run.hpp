@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <type_traits>
 
 #include <omp.h>
@@ -78,17 +77,18 @@ struct team_run {
     const run_options& options;
     std::int64_t count, chunk;
     std::atomic<std::int64_t> begun{0}, turns{0};
-    std::atomic<bool> failed{false};
-    std::exception_ptr failure{};
+    bool failed = false;
 
-    /// What a function of the model throws ends the run: no further instance is begun.
+    /// What a function of the model throws ends the run: no further instance is begun. The host keeps it, since functions of the
+    /// standard library that this file does not inline are shared with files for other instruction sets.
     static void work(void* context, int part) noexcept {
         auto& run = *static_cast<team_run*>(context);
         chunked_instances instances(run.begun, run.count, run.chunk, run.arguments.order, run.options, part == 0);
         try {
             run.turns += integrate<Model, Method, S>(run.arguments, run.arguments.shared, instances);
         } catch (...) {
-            if (!run.failed.exchange(true)) run.failure = std::current_exception();
+            const bool first = !__atomic_exchange_n(&run.failed, true, __ATOMIC_ACQ_REL);
+            if (first && run.options.caught != nullptr) run.options.caught(run.options.failure);
             run.begun = run.count;
         }
     }
@@ -110,7 +110,7 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
     openmp::team members{&run.work, &run, static_cast<int>(threads), stack_of_kernel<Model, Method, S>()};
     openmp::in_parts(openmp::for_set<openmp::instruction_set::MYRIAD_INSTRUCTION_SET>{}, members);
     run_statistics used{run.turns.load() * lanes, lanes, members.threads};
-    used.failure = run.failure;
+    used.failed = run.failed;
     used.stack = members.stack;
     used.least_stack = members.least_stack;
     return used;
@@ -130,10 +130,14 @@ run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const ke
 }  // namespace myriad::openmp
 
 /// Compiles the kernel of one model, method and real type.
-#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                              \
-    template <>                                                                                   \
-    void myriad::instantiated_in_one_file_alone<                                                  \
-        myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, Model, Method, R>() {} \
-    template myriad::run_statistics myriad::openmp::run_on<Model, Method, R>(                     \
-        myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>,         \
+#define MYRIAD_BACKEND_KERNEL(Model, Method, R)                                           \
+    template myriad::run_statistics myriad::openmp::run_on<Model, Method, R>(             \
+        myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, \
         const myriad::kernel_arguments<Model, R>&, const myriad::run_options&);
+
+/// The same, and that no other file does.
+#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                             \
+    template <>                                                                                                  \
+    void myriad::instantiated_in_one_file_alone<                                                                 \
+        myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, Model, Method, R>() {} \
+    MYRIAD_BACKEND_KERNEL(Model, Method, R)
