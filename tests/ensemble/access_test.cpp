@@ -158,6 +158,7 @@ TEST_CASE("phases that would be more than an instance can count are refused unti
     constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
     const_cast<std::int32_t*>(e.phases_done().data())[1] = most - 5;  // as billions of phases would leave it
     e.expect_phases(most - 5);
+    e.touch();  // so that a GPU is given it
     options o;
     o.phases = 3;
     solve<cash_karp>(one_thread, e, o);

@@ -118,6 +118,7 @@ TEST_CASE("the state advances by as much as t, however coarse the resolution of 
             ensemble<uniform> e(1);
             e.state(0) = 0;
             e.time_domain(t_begin, t_begin + length);
+            recorder::take();
             solve<Method>(tests::test_device(1), e, o);
             CHECK(e.status(0) == status::success);
             CHECK(std::abs(e.state(0)[0] - length) <= tolerance);

@@ -84,8 +84,8 @@ MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>
         if constexpr (!keeps_time_low<Model, Method, real_of<S>>)
             factor = select(rejected & (abs(s.h) <= S(R(16)) * rounding), smaller(factor, C(R(0.45))), factor);
         s.rejected = count_where(rejected, s.rejected);
-        // A step that did not get anywhere says nothing about why the one before it failed.
-        const mask moved = rejected & (t1 != s.data.t);
+        // A step of length zero says nothing about why the one before it failed.
+        const mask moved = rejected & (s.h != S(real_of<S>(0)));
         s.last_not_finite = select(moved, !finite, s.last_not_finite);
         // No Jacobian can be had where the right-hand side itself is not finite.
         if constexpr (solves_linear_systems<Method>)

@@ -8,7 +8,7 @@
 #if defined(__CUDACC__)
 // What kernels call without MYRIAD_FUNCTION is host code: nvcc would only warn of it, and leave the call out of the
 // kernel.
-#pragma nv_diag_error 20011, 20013, 20014, 20015
+#pragma nv_diag_error 20011, 20014
 /// A function of the kernel body: device code under nvcc, inlined host code elsewhere. Required on a model's functions
 /// and on its own helpers, so that no copy of them is shared between files compiled for different instruction sets.
 #define MYRIAD_FUNCTION __host__ __device__ __forceinline__
