@@ -1,4 +1,4 @@
-// expect: narrowing.*double.* to .*float|cannot be narrowed from type 'double' to .*float|conversion from 'double' to 'float'|loses floating-point precision: 'double' to 'float'
+// expect: narrowing.*double.* to .*float|cannot be narrowed from type 'double' to .*float|conversion from 'double' to .*float|loses floating-point precision: 'double' to 'float'
 // SPDX-License-Identifier: MIT
 // A double literal would make a float model compute in double.
 #include "myriad/instantiate.hpp"

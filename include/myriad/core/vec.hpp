@@ -40,7 +40,7 @@ struct vec_values;
 template <class S, int... c>
 struct vec_values<S, std::integer_sequence<int, c...>> {
     template <int>
-    using value = const S&;
+    using value = S;  // not a reference, for which clang++ lets a double become a float
 
     S values[sizeof...(c)];
 
