@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
-# Turns on the CUDA language, with nvcc and the architectures of MYRIAD_CUDA_ARCHITECTURES. Included at file scope, as CMake
-# wants it, by the project itself and by the installed package.
+# Enables the CUDA language, with nvcc and the architectures of MYRIAD_CUDA_ARCHITECTURES. Included at file scope, as
+# CMake requires, by the project itself and by the installed package.
 
 set(MYRIAD_CUDA_ARCHITECTURES "" CACHE STRING "GPUs to compile for, as CMAKE_CUDA_ARCHITECTURES; empty: this machine's")
 get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
 if(NOT CUDA IN_LIST languages)
-    if(PROJECT_NAME STREQUAL "myriad" AND NOT PROJECT_IS_TOP_LEVEL) # CMake would say "CMAKE_CUDA_COMPILE_OBJECT not set"
-        message(FATAL_ERROR "MYRIAD_ENABLE_CUDA is ON, and Myriad is part of project ${CMAKE_PROJECT_NAME}, which has not the language "
+    # CMake would say "CMAKE_CUDA_COMPILE_OBJECT not set"
+    if(PROJECT_NAME STREQUAL "myriad" AND NOT PROJECT_IS_TOP_LEVEL)
+        message(FATAL_ERROR
+                "MYRIAD_ENABLE_CUDA is ON, and Myriad is part of project ${CMAKE_PROJECT_NAME}, which has not "
+                "the language "
                             "CUDA: write project(${CMAKE_PROJECT_NAME} LANGUAGES CXX CUDA), as CMake turns it on for "
                             "subdirectories alone otherwise")
     endif()
@@ -22,14 +25,15 @@ if(NOT CUDA IN_LIST languages)
         if(gpus MATCHES "^GPU ")
             set(CMAKE_CUDA_ARCHITECTURES native)
         else()
-            # Machine code for Turing, Ampere and Hopper, and PTX for what comes after.
+            # Machine code for Turing, Ampere and Hopper, and PTX for newer GPUs.
             set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 90)
         endif()
     endif()
     include(CheckLanguage)
     check_language(CUDA)
     if(NOT CMAKE_CUDA_COMPILER)
-        message(FATAL_ERROR "MYRIAD_ENABLE_CUDA is ON, and nvcc was not found: put nvcc (from the CUDA Toolkit, 12 or newer) on "
+        message(FATAL_ERROR
+                "MYRIAD_ENABLE_CUDA is ON, and nvcc was not found: put nvcc (from the CUDA Toolkit, 12 or newer) on "
                             "the PATH, or set the option to OFF")
     endif()
     enable_language(CUDA)

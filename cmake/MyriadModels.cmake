@@ -5,8 +5,9 @@ include_guard(GLOBAL)
 include(CheckCXXCompilerFlag)
 
 set(MYRIAD_ARCH "" CACHE STRING
-    "Instruction set of model files, as in -march=, or a list of which a program takes what the CPU has; empty: the compiler's own")
-# Off by default: with contraction at the compiler's choice, results were measured to depend on the pack size. The library
+    "Instruction set of model files, as in -march=, or a list of which a program takes what the CPU has; \
+empty: the compiler's own")
+# Off by default: with contraction left to the compiler, results were found to depend on the pack size. The library
 # writes its fused multiply-adds itself.
 set(MYRIAD_FP_CONTRACT off CACHE STRING
     "Contraction of a * b + c in model files: off, or fast, which gives up bit-identical results")
@@ -15,8 +16,8 @@ set(MYRIAD_MODEL_FLAGS "" CACHE STRING
 set_property(CACHE MYRIAD_ARCH PROPERTY STRINGS native x86-64-v4 x86-64-v3 x86-64-v2)
 set_property(CACHE MYRIAD_FP_CONTRACT PROPERTY STRINGS fast off)
 
-# myriad_model_flags(<result> [<arch>]) sets the variable to the flags of model files for one instruction set, by default the
-# last of MYRIAD_ARCH. -ffast-math is never among them: NaN must stay visible.
+# myriad_model_flags(<result> [<arch>]) sets the variable to the flags of model files for one instruction set, by
+# default the last of MYRIAD_ARCH. -ffast-math is never among them: NaN must stay visible.
 function(myriad_model_flags result)
     set(arch ${ARGN})
     if(NOT arch AND MYRIAD_ARCH)
@@ -32,7 +33,8 @@ function(myriad_model_flags result)
         check_cxx_compiler_flag("-march=${arch}" ${check})
         if(NOT ${check})
             message(FATAL_ERROR "MYRIAD_ARCH is ${MYRIAD_ARCH}, and ${CMAKE_CXX_COMPILER} does not know "
-                                "-march=${arch}: give native, x86-64-v3, or nothing for the compiler's own instruction set")
+                                "-march=${arch}: give native, x86-64-v3, or nothing for the compiler's own "
+                                "instruction set")
         endif()
         list(APPEND flags "-march=${arch}")
     else()
@@ -44,14 +46,14 @@ function(myriad_model_flags result)
         endif()
     endif()
     list(APPEND flags "-ffp-contract=${MYRIAD_FP_CONTRACT}" -fno-math-errno)
-    # g++ keeps large objects that are copied as a whole in memory, dual numbers of packs among them. In registers,
-    # a Runge-Kutta 4 step of Lorenz' equations with three tangents takes 7.5 ns instead of 20 (Zen 4, AVX-512).
+    # g++ keeps large objects that are copied as a whole in memory, including dual numbers of packs. In registers, a
+    # Runge-Kutta 4 step of Lorenz' equations with three tangents takes 7.5 ns instead of 20 (Zen 4, AVX-512).
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         list(APPEND flags "--param=sra-max-scalarization-size-Ospeed=2048")
     endif()
-    # In every configuration, none and a user's own among them: without optimisation kernels take 50 to 250 times as
-    # long. Debug cannot go without either: the AVX-512 part of xsimd 8.1 compiles with optimisation only, and lanes
-    # that are not inlined are useless at any speed.
+    # In every configuration, including none and custom ones: without optimisation kernels take 50 to 250 times as long.
+    # Debug needs it too: the AVX-512 part of xsimd 8.1 compiles only with optimisation, and without inlining packs are
+    # useless.
     list(APPEND flags "$<IF:$<CONFIG:Debug>,-O1,-O3>")
     separate_arguments(further UNIX_COMMAND "${MYRIAD_MODEL_FLAGS}")
     list(APPEND flags ${further})
@@ -74,20 +76,23 @@ function(myriad_add_model_source target file arch)
     set_property(SOURCE "${file}" TARGET_DIRECTORY ${target} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-# Refuses a file that is no model: its flags would part it from the other files of the program.
+# Refuses a file that is not a model: its flags would be incompatible with the other files of the program.
 function(myriad_require_model target file)
     if(NOT EXISTS "${file}") # made by the build
         return()
     endif()
     file(READ "${file}" text)
     if(text MATCHES "(^|\n)[ \t]*(auto|int)[ \t\n]+main[ \t\n]*\\(" AND NOT text MATCHES "MYRIAD_INSTANTIATE")
-        message(FATAL_ERROR "myriad_add_models(${target} ...): ${file} has the function main and no MYRIAD_INSTANTIATE. Model files "
-                            "get other flags than the rest of a program, on which the memory layout of Eigen's objects depends: "
+        message(FATAL_ERROR
+                "myriad_add_models(${target} ...): ${file} has the function main and no MYRIAD_INSTANTIATE. "
+                "Model files "
+                            "get other flags than the rest of a program, on which the memory layout of Eigen's "
+                            "objects depends: "
                             "name ${file} in add_executable, and here the files with MYRIAD_INSTANTIATE alone")
     endif()
 endfunction()
 
-# Refuses what nvcc's preprocessor, and so core/ieee.hpp, does not see.
+# Refuses an option that nvcc's preprocessor, and so kernel/core/ieee.hpp, cannot detect.
 function(myriad_require_exact_cuda target)
     set(flags "${CMAKE_CUDA_FLAGS}")
     foreach(config IN ITEMS ${CMAKE_BUILD_TYPE} ${CMAKE_CONFIGURATION_TYPES})
@@ -96,12 +101,14 @@ function(myriad_require_exact_cuda target)
     endforeach()
     get_target_property(options ${target} COMPILE_OPTIONS)
     if("${flags} ${options}" MATCHES "(^|[ ;:-])(-?use_fast_math|-?ftz=true|-?prec-div=false|-?prec-sqrt=false)")
-        message(FATAL_ERROR "myriad_add_models(${target} ...): nvcc is given ${CMAKE_MATCH_2}, with which single precision loses "
-                            "the accuracy that step-size control and the mathematical functions rely on: remove the option")
+        message(FATAL_ERROR
+                "myriad_add_models(${target} ...): nvcc is given ${CMAKE_MATCH_2}, with which single precision loses "
+                            "the accuracy that step-size control and the mathematical functions rely on: remove "
+                            "the option")
     endif()
 endfunction()
 
-# The name, without extension, of files that are made from a model file.
+# The name, without extension, of files generated from a model file.
 function(myriad_twin_name result file)
     cmake_path(ABSOLUTE_PATH file NORMALIZE)
     string(SHA256 unique "${file}")
@@ -110,12 +117,13 @@ function(myriad_twin_name result file)
     set(${result} "${stem}_${unique}" PARENT_SCOPE)
 endfunction()
 
-# myriad_add_models(<target> [CPU_ONLY] <file>...) adds model files, those with MYRIAD_INSTANTIATE, to a target of the same
-# directory: a program, an OBJECT library or a SHARED one. Such a file includes no Eigen. With a list of instruction sets in MYRIAD_ARCH it is compiled once for each, and
-# may then define nothing but the kernels; of x86-64-v2, -v3 and -v4 each at most once, since two that are told apart by
-# nothing else (SSE2, AVX2, AVX-512) would define the same kernel. Only with optimisation are the standard library's inline
-# functions inlined, of which the linker else keeps one for all instruction sets. Links myriad::openmp and, if the CUDA backend is on, compiles each file for GPUs
-# too, unless CPU_ONLY is given, and links myriad::cuda.
+# myriad_add_models(<target> [CPU_ONLY] <file>...) adds model files, those with MYRIAD_INSTANTIATE, to a target of the
+# same directory: a program, an OBJECT library or a SHARED one. Such a file includes no Eigen. With a list of
+# instruction sets in MYRIAD_ARCH it is compiled once for each, and may then define nothing but the kernels; of
+# x86-64-v2, -v3 and -v4 each at most once, since kernels are distinguished only by SSE2, AVX2 and AVX-512, and two of
+# the same would clash. Optimisation is required to inline the standard library's inline functions, of which the linker
+# would otherwise keep one copy for all instruction sets. Links myriad::openmp and, if the CUDA backend is on, compiles
+# each file for GPUs too, unless CPU_ONLY is given, and links myriad::cuda.
 function(myriad_add_models target)
     cmake_parse_arguments(PARSE_ARGV 1 arg "CPU_ONLY" "" "")
     if(NOT TARGET ${target})
@@ -124,21 +132,26 @@ function(myriad_add_models target)
     endif()
     get_target_property(type ${target} TYPE)
     if(type STREQUAL "STATIC_LIBRARY")
-        message(FATAL_ERROR "myriad_add_models(${target} ...): a linker takes no models out of a static library, as nothing "
-                            "refers to them by name; make ${target} an OBJECT library, or add the models to the program")
+        message(FATAL_ERROR
+                "myriad_add_models(${target} ...): a linker takes no models out of a static library, as nothing "
+                            "refers to them by name; make ${target} an OBJECT library, or add the models to the "
+                            "program")
     endif()
     if(type STREQUAL "INTERFACE_LIBRARY")
-        message(FATAL_ERROR "myriad_add_models(${target} ...): an INTERFACE library compiles no files; make ${target} an "
+        message(FATAL_ERROR
+                "myriad_add_models(${target} ...): an INTERFACE library compiles no files; make ${target} an "
                             "OBJECT library, or add the models to the program")
     endif()
     if(type STREQUAL "SHARED_LIBRARY")
         get_target_property(visibility ${target} CXX_VISIBILITY_PRESET)
         if(visibility STREQUAL "hidden")
-            message(FATAL_ERROR "myriad_add_models(${target} ...): with CXX_VISIBILITY_PRESET hidden no program sees the "
-                                "kernels of a SHARED library; set it to default for ${target} and the programs that link it, "
+            message(FATAL_ERROR
+                    "myriad_add_models(${target} ...): with CXX_VISIBILITY_PRESET hidden no program sees the "
+                                "kernels of a SHARED library; set it to default for ${target} and the programs "
+                                "that link it, "
                                 "or make ${target} an OBJECT library")
         endif()
-        # Programs refer to kernels weakly, for which alone a linker may leave a library out.
+        # Programs refer to kernels only weakly, so a linker might drop the library.
         target_link_options(${target} INTERFACE "LINKER:--no-as-needed")
     endif()
     list(LENGTH MYRIAD_ARCH sets)
@@ -156,11 +169,11 @@ function(myriad_add_models target)
             endforeach()
         endif()
         if(TARGET myriad::cuda AND NOT arg_CPU_ONLY)
-            # The same file once more, under a name that nvcc takes for CUDA.
+            # The same file again, under a name that nvcc recognises as CUDA.
             set(twin "${CMAKE_CURRENT_BINARY_DIR}/cuda/${name}.cu")
             file(CONFIGURE OUTPUT "${twin}" CONTENT "#include \"${file}\"\n")
             target_sources(${target} PRIVATE "${twin}")
-            # The host's part of it, where the configuration's own flags have no level of optimisation, which nvcc puts
+            # The host part of it, unless the configuration's own flags have an optimisation level, which nvcc puts
             # last.
             set_property(SOURCE "${twin}" TARGET_DIRECTORY ${target} PROPERTY COMPILE_OPTIONS
                          "$<$<NOT:$<CONFIG:Debug>>:-Xcompiler=-O3>")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Looks up packages and collects what is missing, so that one message tells which Debian packages bring all of it.
+# Looks up packages and collects what is missing, so that one message lists all Debian packages to install.
 
 # myriad_require(<package> <debian package> TARGET <target> FOR <purpose> [UNLESS <option>] [COMPONENTS <component>...])
 # looks for a CMake package. If it does not define the target, myriad_require_report() will say so; UNLESS names the

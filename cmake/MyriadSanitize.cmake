@@ -17,12 +17,13 @@ if(MYRIAD_SANITIZE)
 
     if(MYRIAD_SANITIZE MATCHES "thread")
         if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-            message(FATAL_ERROR "MYRIAD_SANITIZE=thread needs clang++ (Debian packages clang and libomp-dev): the OpenMP "
+            message(FATAL_ERROR
+                    "MYRIAD_SANITIZE=thread needs clang++ (Debian packages clang and libomp-dev): the OpenMP "
                                 "runtime of g++ does not tell the sanitizer of its barriers, so that every parallel "
                                 "region would be reported")
         endif()
-        # The OpenMP runtime is not instrumented. libarcher, which it loads by itself, tells the sanitizer of its locks
-        # and barriers; its own accesses must be ignored, or every parallel region is reported.
+        # The OpenMP runtime is not instrumented. libarcher, which it loads by itself, informs the sanitizer of its
+        # locks and barriers; its own accesses must be ignored, or every parallel region is reported.
         set(MYRIAD_TEST_ENVIRONMENT "TSAN_OPTIONS=ignore_noninstrumented_modules=1")
 
         # Some kernels place memory where the sanitizer of clang 14 to 17 cannot; without randomisation they do not.

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
-# myriad_single_lanes(): which of the project's own model files need no packs to show what they show.
+# myriad_single_lanes(): which of the project's own model files test just as much without packs.
 include_guard(GLOBAL)
 
-option(MYRIAD_ALL_PACKS "Compile all of the project's own models for packs; off: of those that show as much one instance at a time, \
+option(MYRIAD_ALL_PACKS
+       "Compile all of the project's own models for packs; off: of those that show as much one instance at a time, \
 none, which takes a quarter of the compile time" ON)
 
-# What scripts/test.sh leaves to --all when it compiles for GPUs.
+# Files that scripts/test.sh compiles for GPUs only with --all.
 file(WRITE "${PROJECT_BINARY_DIR}/single_lanes.txt" "")
 
-# myriad_single_lanes(<file>...): without MYRIAD_ALL_PACKS the kernels of these files, of the same directory, integrate one
-# instance at a time on the CPU. A kernel must not be in a program both ways. For files that show numbers (orders, references, closed
-# forms), not what lanes do to each other, and whose features others show in packs.
+# myriad_single_lanes(<file>...): without MYRIAD_ALL_PACKS the kernels of these files, of the same directory, integrate
+# one instance at a time on the CPU. A program must not contain a kernel in both variants. For files that test numbers
+# (orders, references, closed forms), not interactions between lanes, and whose features other files test in packs.
 function(myriad_single_lanes)
     if(NOT MYRIAD_ALL_PACKS)
         set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS MYRIAD_SCALAR_LANES)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Finds SUNDIALS CVODE, version 6 or 7, as the target myriad::sundials: installed, or in a folder with include/ and lib/
 # that SUNDIALS_DIR (its package folder or the folder itself) or CMAKE_PREFIX_PATH names. Not by SUNDIALS' own package,
-# whose targets name files of an installation that a carried copy does not have. Sets myriad_sundials_FOUND.
+# whose targets name files of the original installation that a relocated copy does not have. Sets myriad_sundials_FOUND.
 
 set(hints "${SUNDIALS_DIR}" "${SUNDIALS_DIR}/../../.." "${SUNDIALS_ROOT}")
 find_path(MYRIAD_SUNDIALS_INCLUDE_DIR NAMES cvode/cvode.h HINTS ${hints} PATH_SUFFIXES include

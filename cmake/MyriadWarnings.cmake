@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-# The target myriad_warnings: what the project's own programs are warned of. Never a dependency of a user's target.
+# The target myriad_warnings: the warning flags of the project's own programs. Never a dependency of a user's target.
 
 add_library(myriad_warnings INTERFACE)
-# A double constant in a float model costs a GPU dearly, so narrowing is an error in every preset.
+# A double constant in a float model is expensive on a GPU, so narrowing is an error in every preset.
 set(cxx_warnings -Wall -Wextra -Wconversion -Werror=float-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # "note: the ABI for passing parameters with 64-byte alignment has changed in GCC 4.6" concerns no one today.
+    # "note: the ABI for passing parameters with 64-byte alignment has changed in GCC 4.6" is irrelevant today.
     list(APPEND cxx_warnings -Wno-psabi)
 endif()
 set(cuda_warnings -Xcompiler=-Wall,-Wextra,-Wconversion)

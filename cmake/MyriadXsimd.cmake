@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Defines myriad::xsimd, the include directory of xsimd 8.1 or newer. Not xsimd's own target, since the one of Debian 12
-# asks the linker for xtl, which is neither a library nor needed. Sets myriad_xsimd_FOUND, else also a message.
+# links xtl, which is neither a library nor needed. Sets myriad_xsimd_FOUND, and a message if it is not found.
 
 find_path(MYRIAD_XSIMD_INCLUDE_DIR NAMES xsimd/xsimd.hpp DOC "Directory that holds xsimd/xsimd.hpp")
 mark_as_advanced(MYRIAD_XSIMD_INCLUDE_DIR)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Builds and runs the CPU benchmark beside Boost.odeint and CVODE, writes results/bench_<compiler>.csv and a picture of it,
-# and prints it as a table.
+# Builds and runs the CPU benchmark against Boost.odeint and CVODE, writes results/bench_<compiler>.csv and a plot of
+# it, and prints it as a table.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
@@ -70,12 +70,12 @@ require_packages "${packages[@]}"
 has_command "$compiler" || fail "There is no $compiler on the PATH."
 name=$(basename "$compiler")
 
-# Threads that wait must not take the cores from those that work.
+# Waiting threads must not take cores from working ones.
 export OMP_WAIT_POLICY=passive
 if [[ -d $deps/sundials ]]; then export LD_LIBRARY_PATH="$deps/sundials/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"; fi
 
-# build ARCH: sets `program`. No contraction in Myriad's own code, so that results do not depend on the width of the packs;
-# the peers may contract.
+# build ARCH: sets `program`. No contraction in Myriad's own code, so that results do not depend on the width of the
+# packs; the other libraries may contract.
 build() {
     local folder=build/bench-$name-$1
     say "Building the benchmark in $folder"
@@ -119,7 +119,7 @@ for arch in "${archs[@]}"; do
         measure --cases lorenz_rk4 --implementations odeint,myriad --repetitions 3 \
             --instances 1,4,16,64,256,1024,4096,16384,65536
     fi
-    # As many instances for every number of threads, enough for the largest.
+    # The same number of instances for every number of threads, enough for the largest.
     if [[ -n $threads ]]; then
         measure --implementations myriad --repetitions 3 --threads "$threads" --instances-scale "${threads##*,}"
     fi

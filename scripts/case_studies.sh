@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Computes the case studies of docs/case_studies and draws their pictures.
+# Runs the case studies of docs/case_studies and plots their results.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
@@ -72,7 +72,7 @@ else
     preset=release
 fi
 
-# A folder of its own, so that nobody's choice of parts is changed.
+# A separate folder, so that the user's own configuration is not changed.
 build=build/case-studies-$preset
 say "Building in $build"
 quietly "$output/configure.log" cmake --preset "$preset" -B "$build" "${options[@]}"

@@ -109,8 +109,8 @@ if wants bench; then
         tee "$output/kernels.txt" || failed+=(kernels)
 fi
 
-# profile CASE SCALE: rows "CASE,SCALE,metric,unit,value" of the first kernel of a case, with its first number of instances times
-# SCALE; shares are of the peak, at the GPU's base clocks.
+# profile CASE SCALE: rows "CASE,SCALE,metric,unit,value" of the first kernel of a case, with its first number of
+# instances times SCALE; shares are of the peak, at the GPU's base clocks.
 profile() {
     local log=$output/profile_$1.log metrics=(gpu__time_duration.sum
         sm__inst_executed_pipe_fp64.avg.pct_of_peak_sustained_active sm__inst_executed_pipe_fp64.sum # double precision

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# What the scripts share: messages, installing missing packages, running steps and counting tests. Sourced, not run.
+# Shared by the scripts: messages, installing missing packages, running steps and counting tests. Sourced, not run.
 # shellcheck shell=bash
 
 say() { printf '%s\n' "== $*"; }
@@ -16,7 +16,7 @@ usage_error() {
     exit 2
 }
 
-# A duration in seconds as people read it.
+# A duration in seconds in human-readable form.
 duration() {
     local seconds=$1
     if ((seconds < 60)); then printf '%d s' "$seconds"; else printf '%d min %02d s' $((seconds / 60)) $((seconds % 60)); fi
@@ -37,7 +37,7 @@ has_clang_openmp() {
     has_command clang++ && printf '#include <omp.h>\n' | clang++ -fopenmp=libomp -E -x c++ - >/dev/null 2>&1
 }
 
-# A Python that has matplotlib: the first on the PATH may be another than the one that Debian's packages serve.
+# A Python that has matplotlib: the first on the PATH may not be the one that Debian's packages are for.
 plotting_python() {
     local python
     for python in python3 /usr/bin/python3; do
@@ -49,7 +49,7 @@ plotting_python() {
     return 1
 }
 
-# has_package NAME: whether what the Debian package brings is there, from it or from elsewhere.
+# has_package NAME: whether the contents of the Debian package are there, from it or from elsewhere.
 has_package() {
     case $1 in
         g++ | cmake | clang | python3) has_command "${1/clang/clang++}" ;;
@@ -67,7 +67,7 @@ has_package() {
     esac
 }
 
-# How this user becomes root for apt-get: nothing, sudo, or failure.
+# How to run apt-get as root: nothing needed, sudo, or failure.
 root_prefix() {
     if [[ $(id -u) == 0 ]]; then
         return 0
@@ -78,7 +78,7 @@ root_prefix() {
     fi
 }
 
-# apt_get ARGUMENT...: quiet, but for a failure.
+# apt_get ARGUMENT...: quiet unless it fails.
 apt_get() {
     local prefix log status=0
     prefix=$(root_prefix)
@@ -139,7 +139,7 @@ then run this again."
 # Steps
 # ----------------------------------------------------------------------------------------------------------------------
 
-# dependency_options DIR: CMake's options for what DIR has of it, one per line: DIR/xsimd, DIR/CLI, DIR/sundials.
+# dependency_options DIR: CMake's options for the dependencies in DIR, one per line: DIR/xsimd, DIR/CLI, DIR/sundials.
 dependency_options() {
     if [[ -d $1/xsimd ]]; then printf -- '-DMYRIAD_XSIMD_INCLUDE_DIR=%s\n' "$PWD/$1"; fi
     if [[ -d $1/CLI ]]; then printf -- '-DMYRIAD_CLI11_INCLUDE_DIR=%s\n' "$PWD/$1"; fi
@@ -154,7 +154,7 @@ quietly() {
     "$@" </dev/null >"$log" 2>&1 || status=$?
     if ((status != 0)); then
         printf '%s\n' "failed: $*" >&2
-        # The first errors, since a compiler that goes on buries them.
+        # The first errors, since a compiler that continues buries them.
         awk '/(^|[ :])(fatal )?error:|^FAILED:|^CMake Error/ && !seen[$0]++ && ++lines <= 20' "$log" >&2
         printf '%s\n' "--- end of $log ---" >&2
         tail -n 40 "$log" >&2

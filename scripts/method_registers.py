@@ -28,7 +28,8 @@ def resources(arguments, method, real):
     """Resources of one method's kernels by number of equations."""
     arguments.flag = [f"-DMETHOD={method}", f"-DREAL={real}"]
     with tempfile.TemporaryDirectory() as folder:
-        command = compile_command(arguments, str(ROOT / "benchmarks" / "methods" / "registers.cu"), f"{folder}/kernel.o")
+        command = compile_command(arguments, str(ROOT / "benchmarks" / "methods" / "registers.cu"),
+                                  f"{folder}/kernel.o")
         result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode != 0:
         raise RuntimeError(result.stdout + result.stderr)
@@ -71,7 +72,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--nvcc", default="nvcc", help="the compiler (default: nvcc)")
     parser.add_argument("--arch", default="sm_90", help="real architecture (default: sm_90)")
-    parser.add_argument("--eigen", default="/usr/include/eigen3", metavar="DIR", help="Eigen (default: /usr/include/eigen3)")
+    parser.add_argument("--eigen", default="/usr/include/eigen3", metavar="DIR",
+                        help="Eigen (default: /usr/include/eigen3)")
     parser.add_argument("--into", metavar="FILE", help="Markdown file to write the table into")
     arguments = parser.parse_args()
     arguments.include = [str(ROOT / "include"), str(ROOT / "backends" / "cuda")]

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs what is missing, builds Myriad in every way that CI does, and runs the tests.
+# Installs what is missing, builds Myriad in all configurations that CI uses, and runs the tests.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
@@ -84,9 +84,9 @@ build() {
         quietly "build/$preset/build.log" cmake --build --preset "$preset" --parallel "$jobs" -- -k 0
 }
 
-# The programs that show what both backends in one program do without a GPU, and with --all every file that nvcc compiles; without
-# it those of the tests whose features no others have, and of some examples (tests/cuda/budgets.cu has the benchmarks' kernels,
-# and scripts/case_studies.sh builds the case studies).
+# The programs that test both backends in one program without a GPU, and with --all every file that nvcc compiles;
+# without it only the tests whose features no others have, and some examples (tests/cuda/budgets.cu has the benchmarks'
+# kernels, and scripts/case_studies.sh builds the case studies).
 build_kernels() {
     local kernels
     quietly build/cuda/configure.log cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return
@@ -108,7 +108,7 @@ slowest_files() {
         sed -nE 's|CMakeFiles/[^/]*\.dir/||; s|^|   slow to compile: |; 1,3p'
 }
 
-# Registers, stack and spills of every kernel that the tests compile, as they found them.
+# Registers, stack and spills of every kernel that the tests compile.
 kernel_table() {
     sed -nE 's/^(.*): ([0-9]+) registers, stack ([0-9]+), spill ([0-9]+).*/\2 \3 \4 \1/p' build/cuda/Testing/Temporary/LastTest.log |
         sed -E 's/myriad:://g; s/, \(shared_placement\)1>$/>/' | sort -u -k4 |

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Builds the validation, runs it, and writes its report as CSV, Markdown and pictures. Exit status 1 if a bound is missed.
+# Builds the validation, runs it, and writes its report as CSV, Markdown and plots. Exit status 1 if a bound is
+# exceeded.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
@@ -61,7 +62,7 @@ else
     options+=(-DMYRIAD_CUDA_COMPILE_CHECK=OFF "${of_dependencies[@]}")
 fi
 
-# A folder of its own, so that nobody's choice of parts is changed.
+# A separate folder, so that the user's own configuration is not changed.
 build=build/validate-$device
 say "Building in $build"
 quietly "$output/configure.log" cmake --preset "$preset" -B "$build" "${options[@]}"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <myriad/model.hpp>
-#include <myriad/model/lane.hpp>
+#include <myriad/kernel/model/lane.hpp>
 
 #include "cvode.hpp"
 #include "problem.hpp"
@@ -21,14 +21,14 @@ namespace validation {
 template <class Model>
 class trajectory {
 public:
-    static constexpr int n = myriad::n_state<Model>, m = myriad::n_event<Model>;
+    static constexpr int n = myriad::detail::n_state<Model>, m = myriad::detail::n_event<Model>;
 
     trajectory(const problem& p, const instance& i) : problem_(&p) {
         for (int c = 0; c < n; ++c) at_.y[c] = i.state[static_cast<std::size_t>(c)];
-        for (int c = 0; c < myriad::n_parameter<Model>; ++c)
+        for (int c = 0; c < myriad::detail::n_parameter<Model>; ++c)
             at_.parameter[c] = i.parameter[static_cast<std::size_t>(c)];
-        for (int c = 0; c < myriad::n_accessory<Model>; ++c) at_.accessory[c] = unknown;
-        for (int c = 0; c < myriad::n_integer_accessory<Model>; ++c) at_.integer_accessory[c] = 0;
+        for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c) at_.accessory[c] = unknown;
+        for (int c = 0; c < myriad::detail::n_integer_accessory<Model>; ++c) at_.integer_accessory[c] = 0;
         for (int j = 0; j < m; ++j) at_.event_count[j] = 0;
         at_.shared = p.shared.data();
         at_.shared_integer = nullptr;
@@ -37,7 +37,7 @@ public:
         at_.h = at_.h_next = 0;
         at_.index = 0;
         at_.phase = 0;
-        if constexpr (myriad::has_initialise<Model>) {
+        if constexpr (myriad::detail::has_initialise<Model>) {
             myriad::lane<Model, double> view(at_);
             Model::initialise(view);
         }
@@ -48,12 +48,12 @@ public:
     std::vector<double> state() const { return {&at_.y[0], &at_.y[0] + n}; }
     std::vector<double> accessories() const {
         std::vector<double> values;
-        for (int c = 0; c < myriad::n_accessory<Model>; ++c) values.push_back(at_.accessory[c]);
+        for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c) values.push_back(at_.accessory[c]);
         return values;
     }
     std::vector<int> counts() const {
         std::vector<int> values;
-        for (int c = 0; c < myriad::n_integer_accessory<Model>; ++c) values.push_back(at_.integer_accessory[c]);
+        for (int c = 0; c < myriad::detail::n_integer_accessory<Model>; ++c) values.push_back(at_.integer_accessory[c]);
         return values;
     }
 
@@ -104,7 +104,7 @@ private:
         for (int j = 0; j < m; ++j) {
             if (found[static_cast<std::size_t>(j)] == 0) continue;
             ++at_.event_count[j];
-            if constexpr (myriad::has_after_event<Model>) {
+            if constexpr (myriad::detail::has_after_event<Model>) {
                 myriad::lane<Model, double> view(at_);
                 if constexpr (std::is_void_v<decltype(Model::after_event(j, view))>) {
                     Model::after_event(j, view);
@@ -119,7 +119,7 @@ private:
     }
 
     const problem* problem_;
-    myriad::lane_data<Model, double> at_;
+    myriad::detail::lane_data<Model, double> at_;
     bool over_ = false;
 };
 

@@ -8,7 +8,7 @@
 
 #include <boost/numeric/odeint.hpp>
 #include <myriad/model.hpp>
-#include <myriad/model/lane.hpp>
+#include <myriad/kernel/model/lane.hpp>
 
 #include "problem.hpp"
 
@@ -17,18 +17,18 @@ namespace validation {
 template <class Model>
 outcome by_cash_karp_of_odeint(const problem& p, double tolerance) {
     namespace odeint = boost::numeric::odeint;
-    constexpr auto n = static_cast<std::size_t>(myriad::n_state<Model>);
+    constexpr auto n = static_cast<std::size_t>(myriad::detail::n_state<Model>);
     using state = std::array<double, n>;
     outcome out;
     const auto begin = std::chrono::steady_clock::now();
     for (const instance& i : p.instances) {
         myriad::inputs<Model, double> inputs{};
-        for (int c = 0; c < myriad::n_parameter<Model>; ++c)
+        for (int c = 0; c < myriad::detail::n_parameter<Model>; ++c)
             inputs.parameter[c] = i.parameter[static_cast<std::size_t>(c)];
         inputs.shared = p.shared.data();
         long evaluations = 0;
         const auto system = [&](const state& y, state& dy, double t) {
-            myriad::vec<double, myriad::n_state<Model>> values;
+            myriad::vec<double, myriad::detail::n_state<Model>> values;
             for (std::size_t c = 0; c < n; ++c) values[static_cast<int>(c)] = y[c];
             const auto slope = Model::template rhs<double>(t, values, inputs);
             for (std::size_t c = 0; c < n; ++c) dy[c] = slope[static_cast<int>(c)];

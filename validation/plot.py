@@ -6,32 +6,34 @@ Usage: plot.py report.csv FOLDER
 Writes tolerance.png and work.png (where work was measured). Needs numpy and matplotlib.
 """
 import os
+import pathlib
 import sys
 
-import matplotlib
+from report import read
 
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "examples/common"))
+import figure as figures  # pylint: disable=wrong-import-position
 
-from report import read  # noqa: E402
-
-# Okabe and Ito's colours, which the colour-blind can tell apart, each with a marker of its own.
-STYLES = {"CVODE": ("#000000", "x", ":"), "odeint cash_karp": ("#D55E00", "+", ":"), "runge_kutta_4": ("#999999", "s", "-"),
-          "cash_karp": ("#0072B2", "o", "-"), "tsitouras_5": ("#009E73", "^", "-"), "dormand_prince_5": ("#E69F00", "v", "-"),
-          "verner_7": ("#CC79A7", "D", "-"), "dormand_prince_8": ("#56B4E9", "P", "-"),
-          "rosenbrock_23": ("#000000", "*", "--"), "rodas_5p": ("#D55E00", "h", "--")}
+STYLES = {"CVODE": ("#000000", "x", ":"), "odeint cash_karp": (figures.RED, "+", ":"),
+          "runge_kutta_4": ("#999999", "s", "-"),
+          "cash_karp": (figures.BLUE, "o", "-"), "tsitouras_5": (figures.GREEN, "^", "-"),
+          "dormand_prince_5": (figures.ORANGE, "v", "-"), "verner_7": (figures.PINK, "D", "-"),
+          "dormand_prince_8": (figures.SKY, "P", "-"), "rosenbrock_23": ("#000000", "*", "--"),
+          "rodas_5p": (figures.RED, "h", "--")}
 NAMES = {"lorenz": "Lorenz", "duffing": "Duffing", "van_der_pol": "van der Pol", "keller_miksis": "Keller–Miksis",
          "relief_valve": "relief valve", "heat": "heat conduction", "kepler": "Kepler", "timed_circle": "timed circle",
          "robertson": "Robertson", "oregonator": "Oregonator"}
 LABELS = {"cash_karp": "Cash–Karp 5(4)", "tsitouras_5": "Tsitouras 5(4)", "runge_kutta_4": "Runge–Kutta 4, fixed steps",
-          "odeint cash_karp": "Boost.odeint, Cash–Karp", "CVODE": "CVODE, Adams", "dormand_prince_5": "Dormand–Prince 5(4)",
+          "odeint cash_karp": "Boost.odeint, Cash–Karp", "CVODE": "CVODE, Adams",
+          "dormand_prince_5": "Dormand–Prince 5(4)",
           "verner_7": "Verner 7(6)", "dormand_prince_8": "Dormand–Prince 8(5,3)", "rosenbrock_23": "Rosenbrock 2(3)",
           "rodas_5p": "Rodas 5P"}
 
 
 def style(method):
-    colour, marker, line = STYLES.get(method, ("#F0E442", "*", "-"))
-    return dict(color=colour, marker=marker, linestyle=line, markersize=4, linewidth=1, label=LABELS.get(method, method))
+    colour, marker, line = STYLES.get(method, (figures.YELLOW, "*", "-"))
+    return dict(color=colour, marker=marker, linestyle=line, markersize=4, linewidth=1,
+                label=LABELS.get(method, method))
 
 
 def curves(rows, problem, measure):
@@ -43,18 +45,13 @@ def curves(rows, problem, measure):
     return {method: sorted(points) for method, points in found.items()}
 
 
-def save(figure, path):
-    figure.savefig(path + ".part", format="png", dpi=170)
-    os.replace(path + ".part", path)
-    pyplot.close(figure)
-
-
-def draw_tolerances(rows, path):
+def draw_tolerances(pyplot, rows, path):
     problems = [p for p in NAMES if any(len(c) > 2 for c in curves(rows, p, "end state, median").values())]
     columns = 4
     rows_of_axes = -(-len(problems) // columns)
     height = 0.9 + 1.6 * rows_of_axes
-    figure, axes = pyplot.subplots(rows_of_axes, columns, figsize=(7.2, height), sharex=True, sharey=True, squeeze=False)
+    figure, axes = pyplot.subplots(rows_of_axes, columns, figsize=(7.2, height), sharex=True, sharey=True,
+                                   squeeze=False)
     drawn = {}
     for axis, problem in zip(axes.flat, problems):
         for method, points in curves(rows, problem, "end state, median").items():
@@ -71,10 +68,10 @@ def draw_tolerances(rows, path):
     figure.supylabel("median error at the end", fontsize=9)
     figure.legend(handles=list(drawn.values()), loc="upper center", ncols=4, frameon=False, fontsize=8)
     figure.subplots_adjust(left=0.10, right=0.985, bottom=0.5 / height, top=1 - 0.7 / height, hspace=0.28, wspace=0.12)
-    save(figure, path)
+    figures.save(figure, path, 170)
 
 
-def draw_work(rows, path):
+def draw_work(pyplot, rows, path):
     problems = [p for p in NAMES if curves(rows, p, "work: median error")]
     if not problems:
         return
@@ -94,20 +91,18 @@ def draw_work(rows, path):
         axes[0][column].set_title(NAMES[problem], fontsize=9)
     figure.legend(handles=list(drawn.values()), loc="upper center", ncols=3, frameon=False, fontsize=8)
     figure.subplots_adjust(left=0.10, right=0.985, bottom=0.09, top=0.85, hspace=0.33, wspace=0.2)
-    save(figure, path)
+    figures.save(figure, path, 170)
 
 
-def main(arguments):
-    if len(arguments) != 2:
-        sys.exit(__doc__)
-    pyplot.rcParams.update({"font.family": "serif", "font.serif": ["STIXGeneral", "DejaVu Serif"], "mathtext.fontset": "stix",
-                            "font.size": 8, "axes.linewidth": 0.6, "xtick.direction": "in", "ytick.direction": "in",
-                            "xtick.top": True, "ytick.right": True, "axes.grid": True, "grid.linewidth": 0.3, "grid.alpha": 0.5})
-    _, rows = read(arguments[0])
-    os.makedirs(arguments[1], exist_ok=True)
-    draw_tolerances(rows, os.path.join(arguments[1], "tolerance.png"))
-    draw_work(rows, os.path.join(arguments[1], "work.png"))
+def draw(source, folder):
+    """All pictures of a report."""
+    pyplot, _ = figures.import_libraries({**figures.PLAIN, "font.size": 8, "xtick.top": True, "ytick.right": True,
+                                          "axes.grid": True, "grid.linewidth": 0.3, "grid.alpha": 0.5})
+    _, rows = read(source)
+    os.makedirs(folder, exist_ok=True)
+    draw_tolerances(pyplot, rows, os.path.join(folder, "tolerance.png"))
+    draw_work(pyplot, rows, os.path.join(folder, "work.png"))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    figures.exit_with(__doc__, draw, ("CSV", "FOLDER"))

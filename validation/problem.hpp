@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include <myriad/core/status.hpp>
+#include <myriad/kernel/core/status.hpp>
 #include <myriad/device.hpp>
-#include <myriad/integrator/options.hpp>
+#include <myriad/options.hpp>
 
 namespace validation {
 

@@ -82,7 +82,8 @@ def write(comments, rows, images, command):
     def of_reference(problem, measure):
         values = [r["value"] for r in rows if r["problem"] == problem and r["method"] == "CVODE" and r["measure"] == measure]
         return short(values[0]) if values else ""
-    out += table(["problem", "growth, largest (median)", "CVODE against itself", "CVODE against closed form or quadruple precision",
+    out += table(["problem", "growth, largest (median)", "CVODE against itself",
+                  "CVODE against closed form or quadruple precision",
                   "its event times"],
                  [[p, f'{of_reference(p, "growth of errors, largest")} ({of_reference(p, "growth of errors, median")})',
                    of_reference(p, "reference against itself at ten times the tolerance"),
@@ -121,7 +122,8 @@ def write(comments, rows, images, command):
             else:
                 cells.append(f'{here[0]["value"]:.2f} [{here[0]["low"]:.3g}, {here[0]["high"]:.3g}]')
         lines.append([*key] + cells)
-    out += table(["problem", "method", "one step: error", "order", "error / predicted", "order of samples", "order of estimate",
+    out += table(["problem", "method", "one step: error", "order", "error / predicted", "order of samples",
+                  "order of estimate",
                   "error ~ tolerance^"], lines)
 
     chaos = [r for r in rows if "chaotic" in r["problem"] or "28" in r["problem"]]
@@ -148,11 +150,14 @@ def write(comments, rows, images, command):
         groups = {}
         for r in against:
             groups.setdefault((r["problem"], r["method"], r["precision"]), []).append(r)
-        out += table(["problem", "method", "end state: largest ratio to its bound", "steps: ratio", "instances with other event counts"],
+        out += table(["problem", "method", "end state: largest ratio to its bound", "steps: ratio",
+                      "instances with other event counts"],
                      [[k[0], k[1] + ("" if k[2] == "double" else " (float)"),
                        short(max(r["value"] / r["high"] for r in v if r["measure"].endswith("end state"))),
-                       " to ".join(f"{f(r['value'] for r in v if r['measure'].endswith('steps')):.4f}" for f in (min, max)),
-                       str(int(sum(r["value"] for r in v if r["measure"].endswith("counts"))))] for k, v in groups.items()])
+                       " to ".join(f"{f(r['value'] for r in v if r['measure'].endswith('steps')):.4f}" for f in (min,
+                                                                                                                 max)),
+                       str(int(sum(r["value"] for r in v if r["measure"].endswith("counts"))))] for k,
+                       v in groups.items()])
     if images and any(r["measure"].startswith("work: time") for r in rows):
         out += ["## Error against work", "", f"![Error against evaluations and against time]({images}/work.png)", "",
                 "One core. Times are relative to CVODE's at a tolerance of 1e-6 in the same run: an ensemble of 1024 instances for Myriad, "

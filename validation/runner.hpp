@@ -21,14 +21,14 @@ outcome integrate(const problem& p, const myriad::options& options, const myriad
     myriad::ensemble<Model, R> e(size);
     for (std::int64_t i = 0; i < size; ++i) {
         const instance& from = p.instances[static_cast<std::size_t>(i)];
-        for (int c = 0; c < myriad::n_state<Model>; ++c)
+        for (int c = 0; c < myriad::detail::n_state<Model>; ++c)
             e.state(c)[i] = static_cast<R>(from.state[static_cast<std::size_t>(c)]);
-        for (int c = 0; c < myriad::n_parameter<Model>; ++c)
+        for (int c = 0; c < myriad::detail::n_parameter<Model>; ++c)
             e.parameter(c)[i] = static_cast<R>(from.parameter[static_cast<std::size_t>(c)]);
         e.t_begin()[i] = 0;
         e.t_end()[i] = static_cast<R>(from.t_end);
     }
-    for (int c = 0; c < myriad::n_shared<Model>; ++c)
+    for (int c = 0; c < myriad::detail::n_shared<Model>; ++c)
         e.shared(c) = static_cast<R>(p.shared[static_cast<std::size_t>(c)]);
     const auto report = myriad::solve<Method>(where, e, options);
 
@@ -36,9 +36,9 @@ outcome integrate(const problem& p, const myriad::options& options, const myriad
     out.seconds = report.kernel_seconds > 0 ? report.kernel_seconds : report.seconds;
     for (std::int64_t i = 0; i < size; ++i) {
         solution s;
-        for (int c = 0; c < myriad::n_state<Model>; ++c) s.end.push_back(e.state(c)[i]);
-        for (int c = 0; c < myriad::n_accessory<Model>; ++c) s.accessory.push_back(e.accessory(c)[i]);
-        for (int c = 0; c < myriad::n_integer_accessory<Model>; ++c) s.count.push_back(e.integer_accessory(c)[i]);
+        for (int c = 0; c < myriad::detail::n_state<Model>; ++c) s.end.push_back(e.state(c)[i]);
+        for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c) s.accessory.push_back(e.accessory(c)[i]);
+        for (int c = 0; c < myriad::detail::n_integer_accessory<Model>; ++c) s.count.push_back(e.integer_accessory(c)[i]);
         if (!options.samples.empty()) {
             for (Eigen::Index k = 0; k < e.samples().stored()[i]; ++k) {
                 std::vector<double> sample;
@@ -64,8 +64,8 @@ method_entry entry(const char* name) {
     m.precision = std::is_same_v<R, double> ? "double" : "float";
     m.eps = std::is_same_v<R, double> ? eps_double : eps_float;
     m.order = Method::order;
-    m.implicit = myriad::solves_linear_systems<Method>;
-    m.embedded_order = myriad::estimate_order<Method>;
+    m.implicit = myriad::detail::solves_linear_systems<Method>;
+    m.embedded_order = myriad::detail::estimate_order<Method>;
     if constexpr (requires { Method::interpolant_order; }) m.interpolant_order = Method::interpolant_order;
     m.run = &integrate<Model, Method, R>;
     return m;

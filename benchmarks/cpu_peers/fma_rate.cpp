@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include <myriad/scalar/pack.hpp>
+#include <myriad/kernel/scalar/pack.hpp>
 
 #include "sweep.hpp"
 
@@ -28,7 +28,7 @@ double issue(double start) {
     }
     batch total = sum[0];
     for (int i = 1; i < chains; ++i) total = total + sum[i];
-    return get_lane(total, 0);
+    return myriad::detail::get_lane(total, 0);
 }
 
 }  // namespace

@@ -23,11 +23,11 @@ outcome run_myriad(const sweep& work, const myriad::options& options, Prepare&& 
     using column = Eigen::Map<Eigen::ArrayXd>;
     using const_column = Eigen::Map<const Eigen::ArrayXd>;
     myriad::ensemble<Model> instances(work.instances);
-    for (int c = 0; c < myriad::n_state<Model>; ++c)
+    for (int c = 0; c < myriad::detail::n_state<Model>; ++c)
         instances.state(c) = column(work.states + c * work.instances, work.instances);
-    for (int c = 0; c < myriad::n_parameter<Model>; ++c)
+    for (int c = 0; c < myriad::detail::n_parameter<Model>; ++c)
         instances.parameter(c) = const_column(work.parameters + c * work.instances, work.instances);
-    for (int c = 0; c < myriad::n_accessory<Model>; ++c) instances.accessory(c) = 0.0;
+    for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c) instances.accessory(c) = 0.0;
     prepare(instances);
 
     const myriad::device device = myriad::device::cpu(work.threads);
@@ -36,7 +36,7 @@ outcome run_myriad(const sweep& work, const myriad::options& options, Prepare&& 
     result.lanes = report.lanes;
     result.idle_share = report.idle_share();
 
-    for (int c = 0; c < myriad::n_state<Model>; ++c)
+    for (int c = 0; c < myriad::detail::n_state<Model>; ++c)
         column(work.states + c * work.instances, work.instances) = instances.state(c);
     for (std::int64_t i = 0; i < work.instances; ++i) {
         work.accepted[i] = instances.accepted_steps()[i];

@@ -6,8 +6,11 @@ Usage: plot.py CSV PNG
 
 Needs matplotlib (Debian, Ubuntu: python3-matplotlib). Exit status 2 if something is missing or wrong.
 """
-import csv
+import pathlib
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples/common"))
+import figure as figures  # pylint: disable=wrong-import-position
 
 COLUMNS = {"case", "implementation", "instruction_set", "threads", "instances", "milliseconds", "wall_milliseconds",
            "nanoseconds_per_step", "ratio_to_odeint", "ratio_to_cvode", "median_difference"}
@@ -17,17 +20,11 @@ TITLES = {"lorenz_rk4": "Lorenz", "duffing_cash_karp": "Duffing", "keller_miksis
 GOALS = {("lorenz_rk4", "avx512"): 9, ("lorenz_rk4", "avx2"): 5, "duffing_cash_karp": 5, "keller_miksis_cash_karp": 5,
          "relief_valve": 4}
 GOAL_AT_EQUAL_ERROR = 15
-# Okabe and Ito's colours, which the colour-blind can tell apart.
-COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7")
 
 
 def read(path):
     """Rows of the table; figures as numbers, None where there are none."""
-    with open(path, encoding="utf-8") as file:
-        lines = [line for line in file if not line.startswith("#")]
-    rows = list(csv.DictReader(lines))
-    if not rows or not COLUMNS <= set(rows[0]):
-        raise ValueError(f"{path} is no table of cpu_peers, which has the columns {', '.join(sorted(COLUMNS))}")
+    rows, _ = figures.read_rows(path, "scripts/bench.sh", COLUMNS)
     for row in rows:
         for key in COLUMNS - {"case", "implementation", "instruction_set"}:
             row[key] = float(row[key]) if row[key] else None
@@ -44,7 +41,7 @@ def draw_bars(axis, labels, heights_by_set, goals):
     width = 0.8 / len(heights_by_set)
     for s, (name, heights) in enumerate(heights_by_set.items()):
         places = [i + (s - (len(heights_by_set) - 1) / 2) * width for i in range(len(labels))]
-        axis.bar(places, heights, 0.9 * width, color=COLOURS[s], label=name)
+        axis.bar(places, heights, 0.9 * width, color=figures.COLOURS[s], label=name)
         for i, place in enumerate(places):
             axis.plot([place - width / 2, place + width / 2], [goals(i, name)] * 2, color="black", linewidth=1.2,
                       label="goal" if s == i == 0 else None)
@@ -90,7 +87,8 @@ def growth(rows, axis):
             points = sorted({row["instances"]: row["nanoseconds_per_step"] for row in rows
                              if row["case"] == "lorenz_rk4" and row["implementation"] == implementation
                              and row["instruction_set"] == name}.items())
-            axis.loglog(*zip(*points), line, marker="o", markersize=4, color=COLOURS[s], label=f"{implementation}, {name}")
+            axis.loglog(*zip(*points), line, marker="o", markersize=4, color=figures.COLOURS[s],
+                        label=f"{implementation}, {name}")
     axis.set_xlabel("instances")
     axis.set_ylabel("Lorenz: ns of a core per step and instance")
     axis.legend(frameon=False, fontsize=8)
@@ -110,7 +108,7 @@ def scaling(rows, axis):
             continue
         most = max(most, *points)
         axis.plot(sorted(points), [points[1] / points[t] for t in sorted(points)], marker="o", markersize=4,
-                  color=COLOURS[s], label=TITLES[case])
+                  color=figures.COLOURS[s], label=TITLES[case])
     axis.plot([1, most], [1, most], color="0.6", linewidth=0.8, label="linear")
     axis.set_xlabel("threads")
     axis.set_ylabel(f"times as fast as one thread ({name})")
@@ -126,37 +124,20 @@ def has_scaling(rows):
     return any(1 in threads and len(threads) > 1 for threads in seen.values())
 
 
-def main():
-    if len(sys.argv) != 3:
-        print(__doc__, file=sys.stderr)
-        return 2
-    try:
-        rows = read(sys.argv[1])
-        import matplotlib
-        matplotlib.use("Agg")  # no display needed
-        from matplotlib import pyplot
-        pyplot.rcParams.update({
-            "font.family": "serif", "font.serif": ["STIXGeneral", "DejaVu Serif"], "mathtext.fontset": "stix",
-            "font.size": 10, "axes.linewidth": 0.6, "xtick.direction": "in", "ytick.direction": "in",
-        })
-        panels = [ratios, growth]
-        if any(row["ratio_to_cvode"] for row in rows):
-            panels.insert(1, equal_error)
-        if has_scaling(rows):
-            panels.append(scaling)
-        figure, axes = pyplot.subplots(1, len(panels), figsize=(4.6 * len(panels), 4), layout="constrained")
-        for panel, axis in zip(panels, axes):
-            panel(rows, axis)
-        figure.savefig(sys.argv[2], dpi=160)
-    except ImportError as error:
-        print(f"{error.name} is missing for {sys.executable}: install it (Debian, Ubuntu: apt-get install "
-              "python3-matplotlib), or run this with a Python that has it, as /usr/bin/python3", file=sys.stderr)
-        return 2
-    except (OSError, ValueError) as error:
-        print(f"{error}; run scripts/bench.sh first", file=sys.stderr)
-        return 2
-    return 0
+def draw(source, target):
+    """The picture of a table."""
+    rows = read(source)
+    pyplot, _ = figures.import_libraries({**figures.PLAIN, "font.size": 10})
+    panels = [ratios, growth]
+    if any(row["ratio_to_cvode"] for row in rows):
+        panels.insert(1, equal_error)
+    if has_scaling(rows):
+        panels.append(scaling)
+    figure, axes = pyplot.subplots(1, len(panels), figsize=(4.6 * len(panels), 4), layout="constrained")
+    for panel, axis in zip(panels, axes):
+        panel(rows, axis)
+    figures.save(figure, target, 160)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    figures.exit_with(__doc__, draw)

@@ -252,7 +252,8 @@ private:
 int run(const settings& chosen) {
     const myriad::device where = myriad::device::parse(chosen.device);
     table out(chosen.output);
-    out.write("# Myriad on a GPU, end to end: 1000 classic Runge-Kutta steps of Lorenz' equations, milliseconds, medians of " +
+    out.write("# Myriad on a GPU, end to end: 1000 classic Runge-Kutta steps of Lorenz' equations, "
+              "milliseconds, medians of " +
               std::to_string(chosen.repetitions) + " after a warm-up");
     if (where.which() == myriad::device::kind::cuda) {
         for (const std::string& line : gpu_ensembles::describe_gpu(where.number())) out.write("# " + line);
@@ -261,13 +262,14 @@ int run(const settings& chosen) {
     }
     out.write("# flags: " END_TO_END_FLAGS);
     out.write("# commit: " + chosen.commit);
-    out.write("# set_up_maps, set_up_threads: a solver object, memory pinned before; restart and values set through maps or by "
-              "a loop of several threads, upload with the check of inputs, download; wall_ms: set + upload + download; "
-              "ratio: wall / kernel");
-    out.write("# solve: wall_ms is the call of solve on ordinary memory, solve_pinned on that of an ensemble pinned before; upload, "
-              "kernel and download those of a solver object; ratio: wall / max(kernel, upload + download)");
-    out.write("# small_solver, small_solve, small_by_hand: wall_ms from before the upload to after the download; ratio: wall / "
-              "kernel");
+    out.write("# set_up_maps, set_up_threads: a solver object, memory pinned before; restart and values "
+              "set through maps or by a loop of several threads, upload with the check of inputs, "
+              "download; wall_ms: set + upload + download; ratio: wall / kernel");
+    out.write("# solve: wall_ms is the call of solve on ordinary memory, solve_pinned on that of an "
+              "ensemble pinned before; upload, kernel and download those of a solver object; ratio: wall / "
+              "max(kernel, upload + download)");
+    out.write("# small_solver, small_solve, small_by_hand: wall_ms from before the upload to after the "
+              "download; ratio: wall / kernel");
     out.write("case,counting,instances,set_ms,upload_ms,kernel_ms,download_ms,wall_ms,ratio");
     benchmark all(chosen, where, out);
     all.run();

@@ -6,7 +6,7 @@
 
 #include <myriad/cuda/check.cuh>
 #include <myriad/cuda/resources.cuh>
-#include <myriad/ensemble/layout.hpp>
+#include <myriad/host/ensemble/component_array.hpp>
 
 #include "by_hand.hpp"
 
@@ -93,7 +93,7 @@ struct lorenz_by_hand::memory {
     std::int64_t size;
     double b;
     int block = 128;
-    myriad::component_array<double> host;  // state, then parameter
+    myriad::host::component_array<double> host;  // state, then parameter
     cuda::device_memory on_device;
     cuda::stream stream;
     cuda::event begun{cuda::event::kind::timed}, done{cuda::event::kind::timed};

@@ -28,7 +28,7 @@ std::vector<double> differences(const myriad::ensemble<Model>& found, const myri
     std::vector<double> all;
     for (std::int64_t k = 0; k < truth.size(); ++k) {
         double worst = found.status(k) == truth.status(k) ? 0 : std::nan("");
-        for (int c = 0; c < myriad::n_state<Model>; ++c) {
+        for (int c = 0; c < myriad::detail::n_state<Model>; ++c) {
             const double value = truth.state(c)[k];
             worst = larger_or_nan(worst, std::fabs(found.state(c)[k] - value) / std::max(1.0, std::fabs(value)));
         }

@@ -42,7 +42,7 @@ std::vector<measurement> measure(std::int64_t size, const measure_options& how) 
 benchmark_case schedule_case() {
     return {.name = "keller_miksis_schedules",
             .work = "8 phases of keller_miksis, in the order of the frequencies, and shuffled",
-            .error = "not measured: tests/solver shows that schedules change no bit",
+            .error = "not measured: tests/host/solve shows that schedules change no bit",
             .allowed_error = 0,
             .sizes = {46080, 614'400},
             .measure = &measure};

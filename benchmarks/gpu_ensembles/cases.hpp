@@ -25,6 +25,7 @@ struct benchmark_case {
 std::vector<benchmark_case> lorenz_cases();
 benchmark_case keller_miksis_case();
 benchmark_case relief_valve_case();
+benchmark_case duffing_events_case();
 /// Both by methods of higher order.
 std::vector<benchmark_case> method_cases();
 benchmark_case schedule_case();

@@ -75,8 +75,8 @@ void write_header(table& out, const settings& chosen) {
     out.write("# counting_kernel_ms: one run with counting on, which accepted_steps and rhs_evaluations are from");
     out.write("# failed: instances that ended with a failure status, such as event_accumulation");
     out.write(
-        "case,implementation,instances,kernel_ms,end_to_end_ms,accepted_steps,rhs_evaluations,max_error,median_error,failed,"
-        "counting_kernel_ms,registers,local_bytes,block_size");
+        "case,implementation,instances,kernel_ms,end_to_end_ms,accepted_steps,rhs_evaluations,"
+        "max_error,median_error,failed,counting_kernel_ms,registers,local_bytes,block_size,located_steps");
 }
 
 /// Returns whether the results are right.
@@ -96,7 +96,8 @@ bool run_case(table& out, const benchmark_case& what, const measure_options& opt
                       std::to_string(m.accepted_steps) + ',' + std::to_string(m.rhs_evaluations) + ',' +
                       number(m.max_error, "%.3e") + ',' + number(m.median_error, "%.3e") + ',' + std::to_string(m.failed) + ',' +
                       number(m.counting_kernel_ms, "%.4f") + ',' + std::to_string(m.registers) + ',' +
-                      std::to_string(m.local_bytes) + ',' + std::to_string(m.block_size));
+                      std::to_string(m.local_bytes) + ',' + std::to_string(m.block_size) + ',' +
+                      std::to_string(m.located_steps));
             if (!right) out.write(title + "WRONG, max_error must be within " + number(what.allowed_error, "%g"));
         }
     }
@@ -119,6 +120,7 @@ std::vector<benchmark_case> all_cases() {
     std::vector<benchmark_case> all = lorenz_cases();
     all.push_back(keller_miksis_case());
     all.push_back(relief_valve_case());
+    all.push_back(duffing_events_case());
     for (benchmark_case& what : method_cases()) all.push_back(std::move(what));
     all.push_back(schedule_case());
     return all;

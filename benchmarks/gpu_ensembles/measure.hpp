@@ -25,7 +25,7 @@ struct measurement {
     std::int64_t instances = 0;
     double kernel_ms = 0, end_to_end_ms = 0;  ///< medians, work not counted
     double counting_kernel_ms = 0;            ///< of the run that counted the work
-    std::int64_t accepted_steps = 0, rhs_evaluations = 0, failed = 0;
+    std::int64_t accepted_steps = 0, located_steps = 0, rhs_evaluations = 0, failed = 0;
     double max_error = 0, median_error = 0;
     int registers = 0, block_size = 0;
     std::int64_t local_bytes = 0;
@@ -99,6 +99,7 @@ measurement measure_myriad(const problem<Model>& what, std::int64_t size, const 
     what.fill(solver.instances());
     m.counting_kernel_ms = run_once(solver, what).first;
     m.accepted_steps = solver.report().accepted_steps;
+    m.located_steps = solver.report().located_steps;
     m.rhs_evaluations = solver.report().rhs_evaluations;
     return m;
 }

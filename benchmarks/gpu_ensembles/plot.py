@@ -7,33 +7,32 @@ Usage: plot.py CSV PNG
 
 Needs matplotlib (Debian, Ubuntu: python3-matplotlib). Exit status 2 if something is missing or wrong.
 """
-import csv
+import pathlib
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples/common"))
+import figure as figures  # pylint: disable=wrong-import-position
+
 COLUMNS = {"case", "implementation", "instances", "kernel_ms", "median_error"}
-# Okabe and Ito's colours, which the colour-blind can tell apart.
-COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
 # Kernel times of other packages, ms: MPGOS 3.1 on an H100, measured with the same method and the same numbers of steps;
 # of GRADSOLVE and DiffEqGPU on an H200 as published by GRADSOLVE's authors, errors within a factor of two.
 MPGOS = {"lorenz_rk4": {8192: 0.120, 65536: 0.287, 768000: 2.893, 4194304: 15.47},
          "keller_miksis": {8192: 914.7, 46080: 975.8, 307200: 1928},
          "relief_valve": {8192: 74.9, 30720: 77.1, 768000: 489}}
-PUBLISHED = {"GRADSOLVE": {"1e-3": 0.276, "1e-6": 0.657, "1e-8": 1.424}, "DiffEqGPU": {"1e-3": 0.748, "1e-6": 1.922, "1e-8": 4.240}}
+PUBLISHED = {"GRADSOLVE": {"1e-3": 0.276, "1e-6": 0.657, "1e-8": 1.424},
+             "DiffEqGPU": {"1e-3": 0.748, "1e-6": 1.922, "1e-8": 4.240}}
 # 45 double-precision instructions per step, 64 of them per cycle on each of 132 multiprocessors at 1980 MHz.
 LIMIT_NS_PER_INSTANCE = 1000 * 45 / (64 * 132 * 1.98)
 
 
 def read(path):
-    """Kernel times by case, implementation and number of instances, and the line that names the GPU."""
-    with open(path, encoding="utf-8") as file:
-        lines = file.readlines()
-    gpu = next((line[len("# GPU: "):].split(",")[0] for line in lines if line.startswith("# GPU: ")), "")
-    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
-    if not rows or not COLUMNS <= set(rows[0]):
-        raise ValueError(f"{path} is no table of gpu_ensembles, which has the columns {', '.join(sorted(COLUMNS))}")
+    """Kernel times by case, implementation and number of instances, and the name of the GPU."""
+    rows, comments = figures.read_rows(path, "gpu_ensembles", COLUMNS)
+    gpu = next((line[len("GPU: "):].split(",")[0] for line in comments if line.startswith("GPU: ")), "")
     times = {}
     for row in rows:
-        times.setdefault(row["case"], {}).setdefault(row["implementation"], {})[int(row["instances"])] = float(row["kernel_ms"])
+        case = times.setdefault(row["case"], {})
+        case.setdefault(row["implementation"], {})[int(row["instances"])] = float(row["kernel_ms"])
     return times, gpu
 
 
@@ -46,8 +45,8 @@ def lorenz_fixed(times, axis):
     """Classic Runge-Kutta steps beside the hand-written kernel."""
     case = times["lorenz_rk4"]
     sizes = sorted(case["myriad"])
-    draw(axis, case["myriad"], "Myriad", COLOURS[0])
-    draw(axis, case["by_hand"], "written by hand", COLOURS[1], "--")
+    draw(axis, case["myriad"], "Myriad", figures.COLOURS[0])
+    draw(axis, case["by_hand"], "written by hand", figures.COLOURS[1], "--")
     draw(axis, MPGOS["lorenz_rk4"], "MPGOS", "0.5", ":")
     axis.loglog(sizes, [1e-6 * LIMIT_NS_PER_INSTANCE * n for n in sizes], color="0.7", linewidth=0.8,
                 label="limit: double precision")
@@ -61,10 +60,11 @@ AS_EXACT = {"1e-3": "tsitouras_5 1.35e-3 first step 0.04", "1e-6": "verner_7 6e-
 def lorenz_adaptive(times, axis):
     """Tsitouras' method at three tolerances, and what reaches its errors sooner."""
     for i, (tolerance, other) in enumerate(AS_EXACT.items()):
-        draw(axis, times[f"lorenz_tsit5_{tolerance}"]["myriad"], f"Myriad, {tolerance}", COLOURS[i])
-        draw(axis, times["lorenz_methods"][other], "first step 0.04" if i == 0 else other, COLOURS[i], "--")
+        draw(axis, times[f"lorenz_tsit5_{tolerance}"]["myriad"], f"Myriad, {tolerance}", figures.COLOURS[i])
+        draw(axis, times["lorenz_methods"][other], "first step 0.04" if i == 0 else other, figures.COLOURS[i], "--")
         for marker, (package, published) in zip("sv", PUBLISHED.items()):
-            axis.loglog([524288], [published[tolerance]], marker, color=COLOURS[i], markersize=6, markerfacecolor="none",
+            axis.loglog([524288], [published[tolerance]], marker, color=figures.COLOURS[i], markersize=6,
+                        markerfacecolor="none",
                         linestyle="none", label=package if i == 0 else None)
     axis.set_title("Lorenz, Tsitouras 5(4)", fontsize=10)
 
@@ -74,42 +74,36 @@ def by_method(name, title, chosen):
 
     def panel(times, axis):
         for i, implementation in enumerate(chosen):
-            draw(axis, times[f"{name}_methods"][implementation], implementation, COLOURS[i])
+            draw(axis, times[f"{name}_methods"][implementation], implementation, figures.COLOURS[i])
         draw(axis, MPGOS[name], "MPGOS, cash_karp 1e-10", "0.5", ":")
         axis.set_title(title, fontsize=10)
 
     return panel
 
 
-def main():
-    if len(sys.argv) != 3:
-        print(__doc__.strip().split("\n\n")[1], file=sys.stderr)
-        return 2
-    try:
-        import matplotlib
-
-        matplotlib.use("Agg")
-        import matplotlib.pyplot as plt
-
-        times, gpu = read(sys.argv[1])
-        panels = (lorenz_fixed, lorenz_adaptive,
-                  by_method("keller_miksis", "Keller-Miksis, 64 phases", ("cash_karp 1e-10", "verner_7 1e-10", "dormand_prince_8 1e-9")),
-                  by_method("relief_valve", "relief valve, 64 phases", ("cash_karp 1e-10", "verner_7 1e-9", "dormand_prince_8 1e-9")))
-        figure, axes = plt.subplots(2, 2, figsize=(9, 7))
-        for panel, axis in zip(panels, axes.flat):
+def draw_all(source, target):
+    """The picture of a table."""
+    times, gpu = read(source)
+    pyplot, _ = figures.import_libraries({})
+    panels = (lorenz_fixed, lorenz_adaptive,
+              by_method("keller_miksis", "Keller-Miksis, 64 phases",
+                        ("cash_karp 1e-10", "verner_7 1e-10", "dormand_prince_8 1e-9")),
+              by_method("relief_valve", "relief valve, 64 phases",
+                        ("cash_karp 1e-10", "verner_7 1e-9", "dormand_prince_8 1e-9")))
+    figure, axes = pyplot.subplots(2, 2, figsize=(9, 7))
+    for panel, axis in zip(panels, axes.flat):
+        try:
             panel(times, axis)
-            axis.set_xlabel("instances")
-            axis.set_ylabel("kernel, ms")
-            axis.legend(frameon=False, fontsize=8)
-            axis.spines[["top", "right"]].set_visible(False)
-        figure.suptitle(gpu)
-        figure.tight_layout()
-        figure.savefig(sys.argv[2], dpi=110)
-    except (ImportError, OSError, ValueError, KeyError) as error:
-        print(f"{sys.argv[0]}: {error}", file=sys.stderr)
-        return 2
-    return 0
+        except KeyError as error:
+            raise figures.PlotError(f"{source} has no times of {error}: run gpu_ensembles without a choice of cases") from error
+        axis.set_xlabel("instances")
+        axis.set_ylabel("kernel, ms")
+        axis.legend(frameon=False, fontsize=8)
+        axis.spines[["top", "right"]].set_visible(False)
+    figure.suptitle(gpu)
+    figure.tight_layout()
+    figures.save(figure, target, 110)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    figures.exit_with(__doc__, draw_all)

@@ -27,7 +27,7 @@ myriad::ensemble<Model> spread_instances(const problem<Model>& what, std::int64_
     myriad::ensemble<Model> all(size), few(count);
     what.fill(all);
     what.fill(few);  // what all instances share
-    for (int c = 0; c < myriad::n_parameter<Model>; ++c)
+    for (int c = 0; c < myriad::detail::n_parameter<Model>; ++c)
         for (std::int64_t k = 0; k < count; ++k)
             few.parameter(c)[k] = all.parameter(c)[compared_instance(k, size, count)];
     what.start(few);
@@ -85,7 +85,7 @@ std::vector<double> differences_from_cpu(const problem<Model>& what, std::int64_
     std::vector<double> differences;
     for (std::int64_t k = 0; k < compared; ++k) {
         double worst = here.status(k) == there.status(k) ? 0 : std::nan("");
-        for (int c = 0; c < myriad::n_state<Model>; ++c) {
+        for (int c = 0; c < myriad::detail::n_state<Model>; ++c) {
             const double value = there.state(c)[k], difference = std::fabs(here.state(c)[k] - value);
             worst = larger_or_nan(worst, difference / std::max(1.0, std::fabs(value)));
         }

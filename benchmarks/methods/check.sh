@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the program `methods` and its plot on a few instances, and that docs/methods.md has the tables of what was measured.
-# Usage: check.sh PROGRAM
+# Checks the program `methods` and its plot on a few instances, and that docs/methods.md has the tables of what was
+# measured. Usage: check.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../../examples/common/check.sh"
 

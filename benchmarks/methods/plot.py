@@ -9,32 +9,34 @@ the lines `<!-- measured: NAME -->` and `<!-- end of measured -->` of FILE. Need
 Exit status 2 if something is missing or wrong.
 """
 import argparse
-import csv
 import math
 import re
 import sys
 from collections import defaultdict
 from pathlib import Path
 
-HEADER = ("case,method,device,instances,tolerance,milliseconds,accepted,rejected,rhs_evaluations,median_error,"
-          "largest_error,failed,astray")
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples/common"))
+import figure as figures  # pylint: disable=wrong-import-position
+
+COLUMNS = ("case", "method", "device", "instances", "tolerance", "milliseconds", "accepted", "rejected",
+           "rhs_evaluations",
+           "median_error", "largest_error", "failed", "astray")
 TITLES = {"keller_miksis": "Keller-Miksis bubble", "relief_valve": "Relief valve with impacts",
           "relief_valve_watched": "Relief valve with impacts, 8 looks a step", "robertson": "Robertson's reaction"}
-# Okabe and Ito's colours, which the colour-blind can tell apart; markers and dashes say it again.
-STYLES = {"cash_karp": ("#E69F00", "s"), "dormand_prince_5": ("#56B4E9", "v"), "tsitouras_5": ("#009E73", "^"),
-          "verner_7": ("#CC79A7", "D"), "dormand_prince_8": ("#0072B2", "o"), "rosenbrock_23": ("#E69F00", "s"),
-          "rodas_5p": ("#0072B2", "o")}
+# Markers and dashes say again what the colours do.
+STYLES = {"cash_karp": (figures.ORANGE, "s"), "dormand_prince_5": (figures.SKY, "v"),
+          "tsitouras_5": (figures.GREEN, "^"),
+          "verner_7": (figures.PINK, "D"), "dormand_prince_8": (figures.BLUE, "o"),
+          "rosenbrock_23": (figures.ORANGE, "s"),
+          "rodas_5p": (figures.BLUE, "o")}
 CONTROLS = {"": ("-", 1), "pi": ("--", 0), "rms": (":", 0)}  # line, and whether markers are filled
 
 
 def read_table(path):
     """Rows by (case, method), sorted by tolerance, of one device."""
-    with open(path, encoding="utf-8") as file:
-        lines = [line for line in file if not line.startswith("#")]
-    if not lines or lines[0].strip() != HEADER:
-        raise ValueError(f"{path} is no table of the program `methods`, whose header is {HEADER}")
+    rows, _ = figures.read_rows(path, "methods", COLUMNS)
     table = defaultdict(list)
-    for row in csv.DictReader(lines):
+    for row in rows:
         for key in row:
             if key not in ("case", "method", "device"):
                 row[key] = float(row[key])
@@ -85,14 +87,8 @@ def evaluations(row):
 
 def draw(tables, case):
     """The picture of one case: evaluations, then time on each device."""
-    import matplotlib
-    matplotlib.use("Agg")  # no display needed
-    from matplotlib import pyplot
-    from matplotlib.ticker import FuncFormatter, LogLocator
-    pyplot.rcParams.update({
-        "font.family": "serif", "font.serif": ["STIXGeneral", "DejaVu Serif"], "mathtext.fontset": "stix",
-        "font.size": 10, "axes.linewidth": 0.6, "xtick.direction": "in", "ytick.direction": "in",
-    })
+    pyplot, _ = figures.import_libraries({**figures.PLAIN, "font.size": 10})
+    from matplotlib.ticker import FuncFormatter, LogLocator  # pylint: disable=import-outside-toplevel
     panels = [("evaluations of $f$ per instance", tables[0], evaluations)]
     for table in tables:
         rows = [row for (name, _), measured in table.items() if name == case for row in measured]
@@ -187,13 +183,12 @@ def main():
         tables = [read_table(path) for path in arguments.tables]
         if arguments.images:
             for case in cases_of(tables[0]):
-                draw([table for table in tables if case in cases_of(table)], case).savefig(
-                    Path(arguments.images) / f"{case}.png", dpi=160)
+                figures.save(draw([table for table in tables if case in cases_of(table)], case),
+                             str(Path(arguments.images) / f"{case}.png"), 160)
         if arguments.into:
             write_tables(arguments.into, tables)
-    except ImportError as error:
-        print(f"{error.name} is missing for {sys.executable}: install it (Debian, Ubuntu: apt-get install "
-              "python3-matplotlib), or run this with a Python that has it, as /usr/bin/python3", file=sys.stderr)
+    except figures.PlotError as error:
+        print(error, file=sys.stderr)
         return 2
     except (OSError, ValueError, IndexError) as error:
         print(f"{error}; run the program `methods` first", file=sys.stderr)

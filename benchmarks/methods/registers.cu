@@ -24,8 +24,8 @@ struct lorenz_96 {
 
 constexpr auto constant = myriad::shared_placement::constant_bank;
 #define INSTANTIATE(n)                                                                                 \
-    template __global__ void myriad::integrate_ensemble<lorenz_96<n>, myriad::METHOD, REAL, constant>( \
-        const __grid_constant__ myriad::launch_arguments<lorenz_96<n>, REAL, constant>);
+    template __global__ void myriad::detail::integrate_ensemble<lorenz_96<n>, myriad::METHOD, REAL, constant>( \
+        const __grid_constant__ myriad::detail::launch_arguments<lorenz_96<n>, REAL, constant>);
 INSTANTIATE(2)
 INSTANTIATE(4)
 INSTANTIATE(8)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the program `basins` and its plot: basins that mirror each other, shares of a third, and that no pendulum that was
-# stopped early would have left. validation/case_studies compares single pendulums with CVODE.
+# Checks the program `basins` and its plot: basins that mirror each other, shares of a third, and that no pendulum that
+# was stopped early would have left. validation/case_studies compares single pendulums with CVODE.
 # Usage: check.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
@@ -26,8 +26,8 @@ rows table.csv | awk -F, '
             disc++; share[of[i]]++
             if (column + 1 < side && of[i + 1] != of[i] || row + 1 < side && of[i + side] != of[i]) boundary++
         }
-        # In a disc the basins have a third each. Cells on a boundary count as a whole for one basin: as many errors of at
-        # most one, of either sign.
+        # In a disc the basins have a third each. Cells on a boundary count as a whole for one basin: as many errors of
+        # at most one, of either sign.
         for (m = 1; m <= 3; m++) {
             print "magnet " m ": " share[m] " of " disc " cells, " boundary " of them on a boundary"
             if ((share[m] - disc / 3) ^ 2 > 16 * boundary) { print "not a third: " share[m]; bad = 1 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# What the checks of the example programs share: a folder of their own, expectations, the table and its picture. Sourced with
-# the program as first argument, not run.
+# What the checks of the example programs share: a folder of their own, expectations, the table and its picture. Sourced
+# with the program as first argument, not run.
 # shellcheck shell=bash
 set -euo pipefail
 program=$(realpath "$1")

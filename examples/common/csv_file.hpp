@@ -19,7 +19,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "myriad/core/memory.hpp"
+#include "myriad/host/memory/memory_need.hpp"
 
 namespace examples {
 

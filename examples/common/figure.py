@@ -1,24 +1,35 @@
 # SPDX-License-Identifier: MIT
-"""What the examples' plot.py have in common: reading the table, the style, writing the picture, and messages.
+"""What the scripts that draw have in common: reading the table, the style, writing the picture, and messages.
 
-A plot.py defines `draw(pyplot, numpy, table, comments)`, which returns the figure, and ends with
+An example's plot.py defines `draw(pyplot, numpy, table, comments)`, which returns the figure, and ends with
 
     figure.main(__doc__, "program", COLUMNS, draw)
 
 COLUMNS is the header of the table that the program writes; `table` maps the names of its columns, but for `status`, to
 arrays; `comments` is the text of its first lines. Exit status 2, and no picture, if something is missing or wrong.
+Others, whose tables have text too, use read_rows, import_libraries, save and exit_with.
 """
 
+import csv
 import os
 import sys
+
+# Of all pictures, and of those with ticks all around.
+PLAIN = {"font.family": "serif", "font.serif": ["STIXGeneral", "DejaVu Serif"], "mathtext.fontset": "stix",
+         "axes.linewidth": 0.6, "xtick.direction": "in", "ytick.direction": "in"}
+FRAMED = {**PLAIN, "font.size": 9, "axes.titlesize": 11, "xtick.top": True, "ytick.right": True,
+          "xtick.minor.visible": True, "ytick.minor.visible": True}
+# Okabe and Ito's colours, which the colour-blind can tell apart.
+BLUE, ORANGE, GREEN, PINK, RED, SKY, YELLOW = "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442"
+COLOURS = (BLUE, ORANGE, GREEN, PINK, RED, SKY, YELLOW)
 
 
 class PlotError(Exception):
     """What stands in the way of a picture, for people."""
 
 
-def import_libraries():
-    """Returns the modules matplotlib.pyplot, with the style of all pictures, and numpy."""
+def import_libraries(style=None):
+    """Returns the modules matplotlib.pyplot, with a style (default: FRAMED), and numpy."""
     try:
         import matplotlib
         import numpy
@@ -27,13 +38,21 @@ def import_libraries():
                         "python3-matplotlib), or run this with a Python that has it, as /usr/bin/python3") from error
     matplotlib.use("Agg")  # no display needed
     from matplotlib import pyplot
-    pyplot.rcParams.update({
-        "font.family": "serif", "font.serif": ["STIXGeneral", "DejaVu Serif"], "mathtext.fontset": "stix",
-        "font.size": 9, "axes.linewidth": 0.6, "axes.titlesize": 11,
-        "xtick.direction": "in", "ytick.direction": "in", "xtick.top": True, "ytick.right": True,
-        "xtick.minor.visible": True, "ytick.minor.visible": True,
-    })
+    pyplot.rcParams.update(FRAMED if style is None else style)
     return pyplot, numpy
+
+
+def read_rows(path, program, columns):
+    """Returns the rows of a table as dictionaries of text, and the comments at the top of the file. Other columns are allowed."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            lines = file.readlines()
+    except OSError as error:
+        raise PlotError(f"{path} cannot be read: {error.strerror or error}; run `{program}` first") from error
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    if not rows or not set(columns) <= set(rows[0]):
+        raise PlotError(f"{path} is no table of `{program}`, which has the columns {', '.join(sorted(columns))}")
+    return rows, [line[1:].strip() for line in lines if line.startswith("#")]
 
 
 def read_table(numpy, path, program, columns):
@@ -126,7 +145,8 @@ def save(figure, path, dpi, colours=None):
         if colours and kind == "png":
             from PIL import Image  # with which matplotlib writes  # pylint: disable=import-outside-toplevel
             with Image.open(temporary) as picture:
-                fewer = picture.convert("RGB").quantize(colours, Image.Quantize.MAXCOVERAGE, kmeans=4, dither=Image.Dither.NONE)
+                fewer = picture.convert("RGB").quantize(colours, Image.Quantize.MAXCOVERAGE, kmeans=4,
+                                                        dither=Image.Dither.NONE)
             fewer.save(temporary, format="png", optimize=True)
         os.replace(temporary, os.path.realpath(path))
     except (OSError, ValueError) as error:
@@ -136,18 +156,25 @@ def save(figure, path, dpi, colours=None):
             os.remove(temporary)
 
 
-def main(documentation, program, columns, draw, dpi=200, colours=None):
-    """Runs a plot.py with the arguments CSV and PNG."""
+def exit_with(documentation, run, takes=("CSV", "PNG")):
+    """Runs a script with its arguments; ends it with status 2 and a message if something is missing or wrong."""
     arguments = sys.argv[1:]
     if arguments in (["-h"], ["--help"]):
         print(documentation.strip())
         return
     try:
-        if len(arguments) != 2:
-            raise PlotError("Usage: plot.py CSV PNG")
-        pyplot, numpy = import_libraries()
-        table, comments = read_table(numpy, arguments[0], program, columns)
-        save(draw(pyplot, numpy, table, comments), arguments[1], dpi, colours)
+        if len(arguments) != len(takes):
+            raise PlotError(f"Usage: plot.py {' '.join(takes)}")
+        run(*arguments)
     except PlotError as error:
         print(error, file=sys.stderr)
         sys.exit(2)
+
+
+def main(documentation, program, columns, draw, dpi=200, colours=None):
+    """Runs an example's plot.py with the arguments CSV and PNG."""
+    def run(source, target):
+        pyplot, numpy = import_libraries()
+        table, comments = read_table(numpy, source, program, columns)
+        save(draw(pyplot, numpy, table, comments), target, dpi, colours)
+    exit_with(documentation, run)

@@ -23,7 +23,7 @@ myriad::report<Model, R> integrate(const sweep_options& chosen, const myriad::de
         std::cerr << options.phases - chosen.transient << " phases\n";
     }
     progress shown(chosen.quiet ? progress::style::none : progress::style::automatic);
-    options.progress = [&shown](std::int64_t begun, std::int64_t total) { shown(begun, total); };
+    options.progress = [&shown](std::int64_t done, std::int64_t total) { shown(done, total); };
     auto report = myriad::solve<Method>(device, sweep, std::move(options));
     shown.finish();
     if (!chosen.quiet) std::cout << report;

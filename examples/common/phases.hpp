@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "myriad/integrator/options.hpp"
+#include "myriad/options.hpp"
 
 namespace examples {
 

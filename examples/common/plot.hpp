@@ -24,8 +24,8 @@ public:
             return;
         }
         throw std::runtime_error(
-            "--plot needs a Python 3 with matplotlib: install it (Debian, Ubuntu: apt-get install python3-matplotlib), or "
-            "leave --plot out");
+            "--plot needs a Python 3 with matplotlib: install it (Debian, Ubuntu: apt-get install "
+            "python3-matplotlib), or leave --plot out");
     }
 
     /// Runs `script table picture`; throws std::runtime_error if it fails, which says on stderr why.

@@ -24,14 +24,14 @@ public:
     progress& operator=(const progress&) = delete;
     ~progress() { finish(); }
 
-    void operator()(std::int64_t begun, std::int64_t total) {
+    void operator()(std::int64_t done, std::int64_t total) {
         const auto now = clock::now();
-        if (quiet_ || begun <= 0 || now - shown_ < (bar_ ? bar_interval : line_interval)) return;
+        if (quiet_ || done <= 0 || now - shown_ < (bar_ ? bar_interval : line_interval)) return;
         shown_ = now;
-        const double share = static_cast<double>(begun) / static_cast<double>(total);
+        const double share = static_cast<double>(done) / static_cast<double>(total);
         const double elapsed = std::chrono::duration<double>(now - start_).count();
         const int percent = static_cast<int>(100 * share);
-        // Instances begun are counted, so the first moments, when all lanes have just been filled, promise too much.
+        // Instances that are done are counted, so the first moments, when all lanes are at work, promise too little.
         const std::string left = elapsed < 1 ? "" : ", " + duration(elapsed * (1 - share) / share) + " left";
         if (!bar_) {
             std::fprintf(stderr, "%3d %%%s\n", percent, left.c_str());

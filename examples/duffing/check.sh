@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the program `duffing` and its plot: exit statuses, messages, the file's form, and that no half-written file stays.
-# Usage: check.sh PROGRAM
+# Checks the program `duffing` and its plot: exit statuses, messages, the file's form, and that no half-written file
+# stays. Usage: check.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
 small=(--instances 40 --transient 3 --phases 2)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the program `duffing_trajectories` and its plot: the form of the table, and of the orbit of three periods its period
-# and its balance of energy.
+# Checks the program `duffing_trajectories` and its plot: the form of the table, and of the orbit of three periods its
+# period and its balance of energy.
 # Usage: check_trajectories.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
@@ -16,7 +16,8 @@ rows table.csv | awk -F, '
     function abs(a) { return a < 0 ? -a : a }
     $7 != "success" { print "failed: " $0; bad = 1 }
     $1 == 4789 {
-        # Near its period doubling the orbit is approached by a factor of -0.958 in three periods: 4e-26 after 4096, less a chaotic transient.
+        # Near its period doubling the orbit is approached by a factor of -0.958 in three periods: 4e-26 after 4096,
+        # less a chaotic transient.
         key = $2 % 3 "," NR % 200
         if (key in x && (abs($5 - x[key]) > 1e-5 || abs($6 - v[key]) > 1e-5)) { print "not of period three: " $0; bad = 1 }
         x[key] = $5; v[key] = $6; k = $3

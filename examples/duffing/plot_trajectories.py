@@ -41,7 +41,8 @@ def draw(pyplot, numpy, table, _comments):
     axes[0, 0].legend(frameon=False, loc="lower right", bbox_to_anchor=(1, 0.98), ncols=2, borderpad=0)
     axes[-1, 0].set_xlabel(r"time in periods of the forcing, $t/2\pi$ (–)")
     axes[-1, 1].set_xlabel(r"$x$ (–)")
-    figure.suptitle(r"Duffing oscillator  $\ddot{x} + k\,\dot{x} - x + x^3 = 0.3\,\cos t$, dots: $t = 2\pi n$", fontsize=11)
+    figure.suptitle(r"Duffing oscillator  $\ddot{x} + k\,\dot{x} - x + x^3 = 0.3\,\cos t$, dots: $t = 2\pi n$",
+                    fontsize=11)
     return figure
 
 

@@ -115,6 +115,20 @@ void lyapunov() {
     compare("signs differ by", (exponent > 0).cast<double>().matrix().dot(Eigen::Vector2d(-1, 1)), 1, 0);
 }
 
+void observe() {
+    myriad::ensemble<damped> masses(10);
+    masses.parameter(damped::zeta).setLinSpaced(0.05, 0.5);
+    masses.state(damped::x) = 1;
+    masses.state(damped::v) = 0;
+    masses.time_domain(0, 20);
+    myriad::solve<myriad::tsitouras_5>(myriad::device::best(), masses);
+    const double zeta = 0.1, root = std::sqrt(1 - zeta * zeta), half_period = std::numbers::pi / root;
+    compare("overshoot", masses.accessory(damped::overshoot)[1], -std::exp(-zeta * half_period), 1e-7);
+    compare("time of the overshoot", masses.accessory(damped::t_overshoot)[1], half_period, 1e-6);
+    const double left = (std::pow(masses.state(damped::x)[1], 2) + std::pow(masses.state(damped::v)[1], 2)) / 2;
+    compare("dissipated energy", masses.accessory(damped::dissipated)[1], 0.5 - left, 1e-6);
+}
+
 template <class Method, class R>
 void settle(const myriad::options& options, double tolerance) {
     myriad::ensemble<settling, R> decays(100);
@@ -180,6 +194,7 @@ int main() {
     bounce<myriad::tsitouras_5, float>(1e-5);
     take_turns();
     lyapunov();
+    observe();
     settle<myriad::tsitouras_5, double>({.maximum_step = 0.01}, 1e-4);
     settle<myriad::runge_kutta_4, float>({.step = 0.01}, 1e-4);
     follow();

@@ -8,6 +8,7 @@
 MYRIAD_INSTANTIATE(bouncing_ball, myriad::cash_karp, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE_FLOAT(bouncing_ball, myriad::tsitouras_5)
 // end of snippet
+MYRIAD_INSTANTIATE(damped, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(tangent_duffing, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(settling, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE_FLOAT(settling, myriad::runge_kutta_4)

@@ -30,6 +30,31 @@ struct bouncing_ball {
 };
 // end of snippet
 
+// snippet: observe
+/// A damped mass, x'' = -x - 2 zeta x': how far it overshoots, when, and what the damper has taken.
+struct damped {
+    static constexpr bool accessories_are_outputs = true;
+    enum state { x, v, n_state };
+    enum parameter { zeta, n_parameter };
+    enum accessory { overshoot, t_overshoot, dissipated, n_accessory };
+    enum observed { displacement, power, n_observed };
+    static constexpr myriad::reduction reductions[] = {
+        {displacement, myriad::over_phase::minimum, overshoot},
+        {displacement, myriad::over_phase::time_of_minimum, t_overshoot},
+        {power, myriad::over_phase::integral, dissipated},
+    };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {y[v], -y[x] - R(2) * p[zeta] * y[v]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {y[x], R(2) * p[zeta] * y[v] * y[v]};
+    }
+};
+// end of snippet
+
 // snippet: lyapunov
 /// The Duffing oscillator with its tangent (a, b); each phase adds the growth of the tangent to `growth`.
 struct tangent_duffing {

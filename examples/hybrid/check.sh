@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Compares the table of the program `hybrid` with the closed form of the stick-slip oscillation, and checks its exit statuses.
-# Usage: check.sh PROGRAM
+# Compares the table of the program `hybrid` with the closed form of the stick-slip oscillation, and checks its exit
+# statuses. Usage: check.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
 
 check_arguments
 "$program" --instances 203 --transient 1 --phases 5 --output table.csv --quiet || fail 'the program failed'
-# With kinetic friction k = 1/2, breakaway b = 1, speed w: slips at b, sticks at 2k - b, slides for 2 pi - 2 atan((b-k)/w)
-# and sticks for 2 (b-k)/w. A hundred steps at tolerances of 1e-10 may be wrong by 1e-8, and the time by that over the
-# smallest speed, 0.1, at which the block arrives at an event.
+# With kinetic friction k = 1/2, breakaway b = 1, speed w: slips at b, sticks at 2k - b, slides for 2 pi - 2
+# atan((b-k)/w) and sticks for 2 (b-k)/w. A hundred steps at tolerances of 1e-10 may be wrong by 1e-8, and the time by
+# that over the smallest speed, 0.1, at which the block arrives at an event.
 awk -F, '
     /^#|^instance/ { next }
     {

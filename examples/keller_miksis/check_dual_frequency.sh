@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the program `bubble_dual_frequency` and its plot: waves exchanged give the same in physical units, and two waves
-# of one frequency are one with the sum of their amplitudes.
+# Checks the program `bubble_dual_frequency` and its plot: waves exchanged give the same in physical units, and two
+# waves of one frequency are one with the sum of their amplitudes.
 # Usage: check_dual_frequency.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"

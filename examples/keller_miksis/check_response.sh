@@ -13,9 +13,9 @@ expect 2 'pressure' "$program" --pressure -1
 "$program" --pressure 1e-4 --instances 60 --transient 400 --phases 1 --quiet --output linear.csv
 check_table linear.csv 60 "$header"
 # In SI units from the linearised Keller-Miksis equation, see docs/case_studies/keller_miksis.md; not from the program's
-# constants. Relative errors: 1.1e-3 at 1 MHz, where the maximum is taken within 1e-6 of zero slope, 1e-12 / (2 y'') beside
-# the top; second-order terms, up to the amplitude, 7e-4, times 1, or where twice the frequency meets the resonance 4e-5
-# times half of Q, 16; transients e^(-400 pi / (3 Q)) = 2e-6 at most.
+# constants. Relative errors: 1.1e-3 at 1 MHz, where the maximum is taken within 1e-6 of zero slope, 1e-12 / (2 y'')
+# beside the top; second-order terms, up to the amplitude, 7e-4, times 1, or where twice the frequency meets the
+# resonance 4e-5 times half of Q, 16; transients e^(-400 pi / (3 Q)) = 2e-6 at most.
 rows linear.csv | awk -F, '
     BEGIN {
         pi = atan2(0, -1); P = 10; R = 10e-6; gamma = 1.4
@@ -39,8 +39,8 @@ rows linear.csv | awk -F, '
     }' || fail 'not the linear response'
 grep -q 'eigenfrequency 339.11' linear.csv || fail 'another eigenfrequency'
 
-# At 1.5 bar: collapses, several maxima per period at low frequencies, one at f0 (Parlitz et al. 1990), and every period of
-# every instance is there.
+# At 1.5 bar: collapses, several maxima per period at low frequencies, one at f0 (Parlitz et al. 1990), and every period
+# of every instance is there.
 "$program" --instances 40 --transient 32 --phases 8 --quiet --output table.csv
 check_table table.csv 320 "$header"
 rows table.csv | awk -F, '

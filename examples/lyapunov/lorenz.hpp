@@ -3,7 +3,7 @@
 #pragma once
 
 #include <myriad/model.hpp>
-#include <myriad/model/tangent.hpp>
+#include <myriad/tangent.hpp>
 
 // snippet: model
 struct lorenz {

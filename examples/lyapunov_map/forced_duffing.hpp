@@ -5,7 +5,7 @@
 #pragma once
 
 #include <myriad/model.hpp>
-#include <myriad/model/tangent.hpp>
+#include <myriad/tangent.hpp>
 
 // snippet: library
 /// x'' + k x' - x + x^3 = B cos t.

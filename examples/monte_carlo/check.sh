@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the program `monte_carlo` and its plot: the distribution of the peak against what is known of it, the parameters
-# against the host's draws, and that neither threads nor the number of instances change a draw.
+# Checks the program `monte_carlo` and its plot: the distribution of the peak against what is known of it, the
+# parameters against the host's draws, and that neither threads nor the number of instances change a draw.
 # Usage: check.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <myriad/model.hpp>
-#include <myriad/model/random.hpp>
+#include <myriad/random.hpp>
 
 /// s are susceptible, i infectious, each for `duration` days on average and infecting R0 others in a population that is all
 /// susceptible. The infectious are most where R0 s falls through 1.

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include <Eigen/Core>
-#include <myriad/model/random.hpp>
+#include <myriad/random.hpp>
 
 /// s + i - log(s) / R0 is constant, so the peak, where s = 1 / R0, follows from the start alone; it grows with R0. Without
 /// growth, R0 s <= 1, the most are infectious at the start.

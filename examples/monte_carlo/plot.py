@@ -21,7 +21,8 @@ def constants(comments):
     number = r"([-+.e\d]+)"
     found = [re.search(pattern, comments) for pattern in (
         rf"mean {number}, standard deviation {number};", rf"i\(0\) = {number},",
-        rf"mean of the peak: found {number}, expected {number},", rf"variance of the peak: found {number}, expected {number},")]
+        rf"mean of the peak: found {number}, expected {number},",
+        rf"variance of the peak: found {number}, expected {number},")]
     if not all(found):
         raise figures.PlotError("The comments at the top of the file lack constants: run the program `monte_carlo` again")
     return (*map(float, found[0].groups()), float(found[1][1]), float(found[2][2]), float(found[3][2]))
@@ -49,7 +50,8 @@ def draw(pyplot, numpy, table, comments):
 
     bins = int(numpy.clip(2 * peak.size ** (1 / 3), 10, 200))
     left.hist(peak, bins=bins, density=True, color="#b8c8e0", label=f"{peak.size} epidemics")
-    exact, height = density(numpy, numpy.linspace(max(1.05, mean - 5 * deviation), mean + 5 * deviation, 400), mean, deviation,
+    exact, height = density(numpy, numpy.linspace(max(1.05, mean - 5 * deviation), mean + 5 * deviation, 400), mean,
+                            deviation,
                             start)
     left.plot(100 * exact, height / 100, color=BLUE, linewidth=1.2, label="exact")
     top = 1.45 * height.max() / 100
@@ -62,7 +64,8 @@ def draw(pyplot, numpy, table, comments):
     left.legend(frameon=False, ncols=2, fontsize=7.5, loc="upper left")
 
     last = numpy.quantile(day, 0.995) if day.size > 1 else day[0] + 1
-    counts, *borders = numpy.histogram2d(day, peak, bins=bins // 2 + 1, range=((0, last), (0, peak.max() or 1)), density=True)
+    counts, *borders = numpy.histogram2d(day, peak, bins=bins // 2 + 1, range=((0, last), (0, peak.max() or 1)),
+                                         density=True)
     image = middle.pcolormesh(*borders, numpy.where(counts > 0, counts, numpy.nan).T, cmap="viridis", rasterized=True)
     figure.colorbar(image, ax=middle, label="probability density (1/% per day)", pad=0.02)
     middle.set_xlabel("day of the peak")
@@ -70,7 +73,8 @@ def draw(pyplot, numpy, table, comments):
 
     sizes, errors, samples = convergence(numpy, table["peak"] - exact_mean)
     expected, spread = 100 * numpy.sqrt(exact_variance / sizes), 2 / numpy.sqrt(2 * samples)
-    right.fill_between(sizes, expected * numpy.maximum(1 - spread, 0.1), expected * (1 + spread), color="#b8c8e0", linewidth=0,
+    right.fill_between(sizes, expected * numpy.maximum(1 - spread, 0.1), expected * (1 + spread), color="#b8c8e0",
+                       linewidth=0,
                        label="twice the scatter expected")
     right.loglog(sizes, expected, color=BLUE, linewidth=1.2, label=r"exact standard deviation $/ \sqrt{N}$")
     right.loglog(sizes, 100 * errors, "o", markersize=3.5, color=RED, label="disjoint samples of that size")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the program `overlap` and its plot: the bits of one call of solve, the tables of the chunks, the order of the steps.
-# Usage: check.sh PROGRAM
+# Checks the program `overlap` and its plot: the bits of one call of solve, the tables of the chunks, the order of the
+# steps. Usage: check.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
 
@@ -29,7 +29,8 @@ check_table whole_chunks/1_of_1.csv 1003 instance,k,x,v,x_global_max,zeros
 cmp <(together table 7) <(together whole 1) || fail 'the tables of the chunks are not that of the whole'
 cmp <(together two 5) <(together whole 1) || fail 'the tables of the chunks are not that of the whole'
 
-# Of a solver, a step begins when the one before has ended; a device has one integration at a time; every chunk has every step.
+# Of a solver, a step begins when the one before has ended; a device has one integration at a time; every chunk has
+# every step.
 rows table.csv | awk -F, '
     $5 < ended[$1] || $6 < $5 { print "out of order: " $0; bad = 1 }
     $4 == 2 && $5 < integrated { print "two integrations at once: " $0; bad = 1 }

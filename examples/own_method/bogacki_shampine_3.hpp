@@ -2,7 +2,7 @@
 // A method that the library does not have, from its tableau.
 #pragma once
 
-#include <myriad/stepper/tableau.hpp>
+#include <myriad/tableau.hpp>
 
 // snippet: method
 /// Bogacki and Shampine's pair of orders three and two, Appl. Math. Lett. 2 (1989) 321: four stages, the last of which is the

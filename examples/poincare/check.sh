@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the program `poincare` and its plot: where orbits double their period, and the return times near the first doubling.
-# Usage: check.sh PROGRAM
+# Checks the program `poincare` and its plot: where orbits double their period, and the return times near the first
+# doubling. Usage: check.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
 
@@ -10,8 +10,8 @@ check_arguments
 "$program" --first 5 --last 8.6 --instances 361 --transient 2000 --phases 16 --quiet --output table.csv
 check_table table.csv $((361 * 16)) "$header"
 # The multiplier is -1 at these c, by CVODE (validation/case_studies/poincare.cpp). c goes in steps of 0.01, and what is
-# nearer to a doubling than 0.002 may not have settled after 2000 returns. Points split by 0.5 (c - c0)^(1/2) or more: 0.02
-# for 0.002.
+# nearer to a doubling than 0.002 may not have settled after 2000 returns. Points split by 0.5 (c - c0)^(1/2) or more:
+# 0.02 for 0.002.
 rows table.csv | awk -F, '
     $7 != "stopped_by_event" || $4 >= 0 || !($6 > 5.8 && $6 < 6.3) { print "wrong: " $0; bad = 1 }
     $1 != instance { if (NR > 1) end(); instance = $1; n = 0 }

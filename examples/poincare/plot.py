@@ -46,7 +46,8 @@ def draw(pyplot, numpy, table, _comments):
         near = follows & (numpy.abs(c[:-1] - value) <= max(MAP_WIDTH / 2, step))
         if not near.any():
             continue
-        returns.plot(x[:-1][near], x[1:][near], linestyle="none", marker="o", markersize=1.5, markeredgewidth=0, color=colour,
+        returns.plot(x[:-1][near], x[1:][near], linestyle="none", marker="o", markersize=1.5, markeredgewidth=0,
+                     color=colour,
                      label=f"$c = {value:g}$", rasterized=True)
         diagram.axvline(value, color=colour, linewidth=0.8, linestyle=(0, (4, 3)))
     low, high = figures.limits(numpy, x)

@@ -10,10 +10,11 @@ check_arguments
 "$program" --instances 981 --transient 400 --phases 64 --quiet --output table.csv
 check_table table.csv $((981 * 64)) "$header"
 # q goes in steps of 0.01. The oscillation grazes the seat at q = 7.55721, by CVODE (validation/case_studies). The
-# equilibrium, u = y + delta, q = y sqrt(u), has the characteristic polynomial l^3 + (kappa + a) l^2 + (1 + kappa a) l + a + b
-# with a = beta y / (2 sqrt(u)), b = beta sqrt(u), and so is stable where (kappa + a) (1 + kappa a) > a + b (Routh, Hurwitz).
-# Below that limit the square of the amplitude is nearly a parabola over q, whose zero is the limit. It is followed over 0.05
-# from three points 0.05 apart; its third difference, 0.05, over its slope, 20, times 0.05, and so on, leaves 0.015 at most.
+# equilibrium, u = y + delta, q = y sqrt(u), has the characteristic polynomial l^3 + (kappa + a) l^2 + (1 + kappa a) l +
+# a + b with a = beta y / (2 sqrt(u)), b = beta sqrt(u), and so is stable where (kappa + a) (1 + kappa a) > a + b
+# (Routh, Hurwitz). Below that limit the square of the amplitude is nearly a parabola over q, whose zero is the limit.
+# It is followed over 0.05 from three points 0.05 apart; its third difference, 0.05, over its slope, 20, times 0.05, and
+# so on, leaves 0.015 at most.
 rows table.csv | awk -F, '
     function stable(y,  u, a) {
         u = y + 10; a = 10 * y / sqrt(u)
@@ -21,8 +22,8 @@ rows table.csv | awk -F, '
     }
     # Nothing is below the seat by more than the tolerance of its event.
     $4 < -1e-6 { print "through the seat: " $0; bad = 1 }
-    # Only impacts that accumulate end an instance: with a valve that starts at 0.2, has lost its speed 1.8 units of time later
-    # and is lifted after delta / (beta q), for q below 0.28.
+    # Only impacts that accumulate end an instance: with a valve that starts at 0.2, has lost its speed 1.8 units of
+    # time later and is lifted after delta / (beta q), for q below 0.28.
     $7 == "event_accumulation" && $3 < 0.28 { next }
     $7 != "stopped_by_event" && $7 != "stopped_by_user" { print "failed: " $0; bad = 1 }
     $1 != instance { instance = $1; first = $6; low = $4; high = $5; next }

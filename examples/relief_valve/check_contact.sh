@@ -9,8 +9,9 @@ header=instance,phase,q,y_min,y_max,u_contact,time_at_rest,status
 check_arguments
 "$program" --instances 240 --transient 128 --phases 64 --quiet --output table.csv
 check_table table.csv $((240 * 64)) "$header"
-# At rest u' = beta q up to delta, so that the time at rest is (delta - u_contact) / (beta q); the opening has a tolerance of
-# 1e-12 in u, and time is rounded to 1e-15. Valves rest in every cycle up to q = 0.02006, by CVODE (validation/case_studies).
+# At rest u' = beta q up to delta, so that the time at rest is (delta - u_contact) / (beta q); the opening has a
+# tolerance of 1e-12 in u, and time is rounded to 1e-15. Valves rest in every cycle up to q = 0.02006, by CVODE
+# (validation/case_studies).
 rows table.csv | awk -F, '
     $8 != "stopped_by_event" || $4 < -1e-12 { print "wrong: " $0; bad = 1 }
     $7 > 0 { wrong = $7 - (10 - $6) / (20 * $3); if (wrong > 1e-8 || wrong < -1e-8) { print "wrong time: " $0; bad = 1 } rest[$1]++ }

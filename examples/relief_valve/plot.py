@@ -25,10 +25,12 @@ def draw(pyplot, numpy, table, _comments):
     impact = y_min <= SEAT
     axis.plot(q, y_max, color="#c05020", label="largest", **style)
     axis.plot(q[~impact], y_min[~impact], color="#10305a", label="smallest, in flight", **style)
-    axis.plot(q[impact], y_min[impact], color="#2a8a5a", label="smallest, an impact", **{**style, "markersize": size + 1})
+    axis.plot(q[impact], y_min[impact], color="#2a8a5a", label="smallest, an impact",
+              **{**style, "markersize": size + 1})
     # the equilibrium is unstable below the stability limit: u = y + delta, q = y sqrt(u)
     y = numpy.linspace(0, 2.41031, 200)
-    axis.plot(y * numpy.sqrt(y + 10), y, color="0.4", linewidth=0.8, linestyle=(0, (4, 3)), label="unstable equilibrium")
+    axis.plot(y * numpy.sqrt(y + 10), y, color="0.4", linewidth=0.8, linestyle=(0, (4, 3)),
+              label="unstable equilibrium")
     grazing = q[impact].max() if impact.any() else numpy.nan
     for place, height, text in ((grazing, 3.7, "grazing"), (STABLE_FROM, 8.9, "Hopf bifurcation")):
         if q.min() < place < q.max():

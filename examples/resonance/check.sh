@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the program `resonance` and its plot: amplification and resonance frequency of the linear oscillator against their
-# closed forms, the samples against the accessories, and the memory of both.
+# Checks the program `resonance` and its plot: amplification and resonance frequency of the linear oscillator against
+# their closed forms, the samples against the accessories, and the memory of both.
 # Usage: check.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
@@ -18,8 +18,9 @@ rows table.csv | awk -F, '
     function wrong(what) { print what ": " $0; bad = 1 }
     { if ($10 != "success") wrong("failed") }
     $1 == 0 && $2 == 0 {
-        # A = 1 / sqrt((1 - r^2)^2 + (2 zeta r)^2), zeta = 0.05, and the mean square A^2 / 2. 1e-8: errors of a step, 1e-10
-        # of the amplitude and some 100 steps in a period, live for 1 / (2 pi zeta) periods, 3; their signs differ.
+        # A = 1 / sqrt((1 - r^2)^2 + (2 zeta r)^2), zeta = 0.05, and the mean square A^2 / 2. 1e-8: errors of a step,
+        # 1e-10 of the amplitude and some 100 steps in a period, live for 1 / (2 pi zeta) periods, 3; their signs
+        # differ.
         exact = 1 / sqrt((1 - $3 ^ 2) ^ 2 + (0.1 * $3) ^ 2)
         if (!(abs($4 / exact - 1) <= 1e-8 && abs($5 / exact + 1) <= 1e-8)) wrong("amplification is not " exact)
         if (!(abs(2 * $6 / exact ^ 2 - 1) <= 2e-8)) wrong("mean square is not half the square of " exact)
@@ -27,8 +28,8 @@ rows table.csv | awk -F, '
         if ($4 > top) { top = $4; at = n }
     }
     {
-        # A sample is at most half an interval, pi / 199, from the maximum of x, whose second derivative there is at most
-        # (1 + beta A^2) A + 1, in units in which t = phase / omega.
+        # A sample is at most half an interval, pi / 199, from the maximum of x, whose second derivative there is at
+        # most (1 + beta A^2) A + 1, in units in which t = phase / omega.
         d = atan2(0, -1) / 199 / $3
         missed = ((1 + $1 * $4 ^ 2) * $4 + 1) * d ^ 2 / 2 + 1e-6
         if (!($4 - $7 <= missed && $4 - $7 >= -1e-6)) wrong("sampled maximum")
@@ -37,8 +38,9 @@ rows table.csv | awk -F, '
         if (!(abs($9 / $6 - 1) <= 1e-6)) wrong("sampled mean square")
     }
     END {
-        # 1 / A^2 is quadratic in s = r^2: the vertex of the parabola through any three points is at 1 - 2 zeta^2. Errors
-        # of 2e-8 in values of 0.01 at a distance of 0.02 in s move it by some 1e-8, of which 1e-6 leaves a margin.
+        # 1 / A^2 is quadratic in s = r^2: the vertex of the parabola through any three points is at 1 - 2 zeta^2.
+        # Errors of 2e-8 in values of 0.01 at a distance of 0.02 in s move it by some 1e-8, of which 1e-6 leaves a
+        # margin.
         a = at - 1; b = at; c = at + 1
         slope = (q[b] - q[a]) / (s[b] - s[a])
         bend = ((q[c] - q[b]) / (s[c] - s[b]) - slope) / (s[c] - s[a])

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the program `stiff_chemistry` and its plot: oscillations on one side of the Hopf bifurcation, rest on the other, near
-# it the period of its eigenvalues; and results that no schedule changes.
+# Checks the program `stiff_chemistry` and its plot: oscillations on one side of the Hopf bifurcation, rest on the
+# other, near it the period of its eigenvalues; and results that no schedule changes.
 # Usage: check.sh PROGRAM
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
@@ -23,8 +23,8 @@ rows table.csv | awk -F, '
         if (least == 0 || $9 < least) least = $9
         if ($9 > most) most = $9
     }
-    # The start is 1e-3 of z from equilibrium. Within the factor exp(5) = 150 of growth it may not have reached a size of
-    # 0.05, and only there.
+    # The start is 1e-3 of z from equilibrium. Within the factor exp(5) = 150 of growth it may not have reached a size
+    # of 0.05, and only there.
     grown > 5 && !oscillates { print "rests: " $0; bad = 1 }
     grown < -5 && oscillates { print "oscillates: " $0; bad = 1 }
     grown > 5 { ++above }

@@ -34,7 +34,8 @@ def draw(pyplot, numpy, table, comments):
             (axes[1], table["steps"], f"trial steps{cycles}", "cividis", "Cost")):
         mesh = axis.pcolormesh(f_edges, epsilon_edges, values.reshape(shape), cmap=colours, rasterized=True,
                                # a few that are not done have other periods
-                               norm=LogNorm(*numpy.nanquantile(values, (0.002, 1))) if numpy.isfinite(values).any() else None)
+                               norm=LogNorm(*numpy.nanquantile(values,
+                                                               (0.002, 1))) if numpy.isfinite(values).any() else None)
         if min(shape) > 1:
             axis.contour(f, epsilon, table["growth"].reshape(shape), levels=[0], colors="#d03020", linewidths=1.1)
         figure.colorbar(mesh, ax=axis, label=name, pad=0.02)

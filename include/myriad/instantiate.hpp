@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// MYRIAD_INSTANTIATE, for the source file of a model: compiles its kernels for the backend at hand. Include it in that
+// MYRIAD_INSTANTIATE, for the source file of a model: compiles its kernels for the current backend. Include it in that
 // file only, which is compiled with the instruction-set flags and includes no Eigen.
 #pragma once
 
-#include "myriad/core/language.hpp"
-#include "myriad/core/macros.hpp"
+#include "myriad/kernel/core/language.hpp"
+#include "myriad/kernel/core/macros.hpp"
 #include MYRIAD_BACKEND_HEADER
+#include "myriad/kernel/stepper/method_check.hpp"
 #include "myriad/methods.hpp"
-#include "myriad/stepper/method_check.hpp"
 
 namespace myriad::host {
 
-/// A macro that is not defined expands to its own name.
+/// An undefined macro expands to its own name.
 constexpr bool is_number(const char* text) { return *text >= '0' && *text <= '9'; }
 
 }  // namespace myriad::host
@@ -32,13 +32,13 @@ constexpr bool is_number(const char* text) { return *text >= '0' && *text <= '9'
     MYRIAD_REFUSE_EIGEN                        \
     __VA_OPT__(MYRIAD_EXPAND(MYRIAD_INSTANTIATE_NEXT(Model, R, __VA_ARGS__)))
 #define MYRIAD_INSTANTIATE_NEXT(Model, R, Method, ...)     \
-    static_assert(myriad::check_linkage<Model, Method>()); \
-    static_assert(myriad::check_method<Method>());         \
+    static_assert(myriad::detail::check_linkage<Model, Method>()); \
+    static_assert(myriad::detail::check_method<Method>());         \
     MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)           \
     __VA_OPT__(MYRIAD_INSTANTIATE_AGAIN MYRIAD_PARENS(Model, R, __VA_ARGS__))
 #define MYRIAD_INSTANTIATE_AGAIN() MYRIAD_INSTANTIATE_NEXT
 #define MYRIAD_PARENS ()
-// Every expansion takes up one more method: 365 in all, after which an error would name MYRIAD_INSTANTIATE_AGAIN.
+// Every expansion handles one more method: 365 in all, after which an error would name MYRIAD_INSTANTIATE_AGAIN.
 #define MYRIAD_EXPAND(...) MYRIAD_EXPAND_1(MYRIAD_EXPAND_1(MYRIAD_EXPAND_1(__VA_ARGS__)))
 #define MYRIAD_EXPAND_1(...) MYRIAD_EXPAND_2(MYRIAD_EXPAND_2(MYRIAD_EXPAND_2(__VA_ARGS__)))
 #define MYRIAD_EXPAND_2(...) MYRIAD_EXPAND_3(MYRIAD_EXPAND_3(MYRIAD_EXPAND_3(__VA_ARGS__)))

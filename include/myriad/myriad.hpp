@@ -2,14 +2,14 @@
 // The library for host code: ensembles, devices, options, solve and reports.
 #pragma once
 
-#include "myriad/core/language.hpp"
-#include "myriad/device.hpp"
-#include "myriad/ensemble/ensemble.hpp"
-#include "myriad/ensemble/exponents.hpp"
-#include "myriad/ensemble/report.hpp"
-#include "myriad/integrator/options.hpp"
+#include "myriad/kernel/core/language.hpp"
+#include "myriad/host/backend/device.hpp"
+#include "myriad/host/ensemble/ensemble.hpp"
+#include "myriad/host/ensemble/exponents.hpp"
+#include "myriad/host/model/describe.hpp"
+#include "myriad/host/options/options.hpp"
+#include "myriad/host/report/report.hpp"
+#include "myriad/host/solve/solve.hpp"
+#include "myriad/host/solve/solver.hpp"
 #include "myriad/methods.hpp"
 #include "myriad/model.hpp"
-#include "myriad/model/describe.hpp"
-#include "myriad/solve.hpp"
-#include "myriad/solver.hpp"

@@ -71,20 +71,25 @@ def main():
     p = Project(arguments, further)
     for by in ("add_subdirectory", "FetchContent", "find_package"):
         p.compiles(f"no build type, {by}", ["-O3"], by=by)
-    p.compiles("two instruction sets, no build type", ["-O3", "-O3"], "-DMYRIAD_ARCH=x86-64-v2;x86-64-v3", file=r"decay_\w+\.cpp")
+    p.compiles("two instruction sets, no build type", ["-O3", "-O3"], "-DMYRIAD_ARCH=x86-64-v2;x86-64-v3",
+               file=r"decay_\w+\.cpp")
     for build_type, level in {"Release": "-O3", "RelWithDebInfo": "-O3", "MinSizeRel": "-O3", "Debug": "-O1"}.items():
         p.compiles(build_type, [level], f"-DCMAKE_BUILD_TYPE={build_type}")
     p.compiles("a build type of the user's", ["-O3"], "-DCMAKE_BUILD_TYPE=Profile", "-DCMAKE_CXX_FLAGS_PROFILE=-O0 -pg")
     p.compiles("several configurations", ["-O1", "-O3", "-O3", "-O3"],
                "-DCMAKE_CONFIGURATION_TYPES=Debug;Release;MinSizeRel;Profile", generator="Ninja Multi-Config")
     p.compiles("asked not to be optimised", ["-O0"], "-DMYRIAD_MODEL_FLAGS=-g -O0")
-    p.refuses("main.cpp named as a model", r"main\.cpp has the function main and no MYRIAD_INSTANTIATE", "-DMAIN_IS_A_MODEL=ON")
+    p.refuses("main.cpp named as a model", r"main\.cpp has the function main and no MYRIAD_INSTANTIATE",
+              "-DMAIN_IS_A_MODEL=ON")
     if arguments.nvcc:
-        without = ("-DMYRIAD_ENABLE_CUDA=ON", f"-DCMAKE_CUDA_COMPILER={arguments.nvcc}", "-DCMAKE_CUDA_ARCHITECTURES=90")
+        without = ("-DMYRIAD_ENABLE_CUDA=ON", f"-DCMAKE_CUDA_COMPILER={arguments.nvcc}",
+                   "-DCMAKE_CUDA_ARCHITECTURES=90")
         cuda = (*without, "-DFURTHER_LANGUAGES=CUDA")
-        p.refuses("CUDA in a project without that language", r"write project\(configurations LANGUAGES CXX CUDA\)", *without)
+        p.refuses("CUDA in a project without that language", r"write project\(configurations LANGUAGES CXX CUDA\)",
+                  *without)
         p.compiles("nvcc's host part, no build type", ["-O3"], *cuda, file=r"decay_\w+\.cu")
-        p.refuses("nvcc's fast arithmetic", "nvcc is given -?-?use_fast_math", *cuda, "-DCMAKE_CUDA_FLAGS=--use_fast_math")
+        p.refuses("nvcc's fast arithmetic", "nvcc is given -?-?use_fast_math", *cuda,
+                  "-DCMAKE_CUDA_FLAGS=--use_fast_math")
     return 1 if p.failures else 0
 
 

@@ -7,9 +7,9 @@
 // limit: integrate_ensemble<keller_miksis, cash_karp> registers 136 stack 0 spill 0
 // limit: integrate_ensemble<keller_miksis, verner_7> registers 168 stack 0 spill 0
 // limit: integrate_ensemble<keller_miksis, dormand_prince_8> registers 168 stack 0 spill 0
-// limit: integrate_ensemble<relief_valve_model, cash_karp> registers 168 stack 56 spill 176
-// limit: integrate_ensemble<relief_valve_model, verner_7> registers 224 stack 0 spill 0
-// limit: integrate_ensemble<relief_valve_model, dormand_prince_8> registers 224 stack 0 spill 0
+// limit: integrate_ensemble<relief_valve_model, cash_karp> registers 120 stack 56 spill 0
+// limit: integrate_ensemble<relief_valve_model, verner_7> registers 128 stack 56 spill 0
+// limit: integrate_ensemble<relief_valve_model, dormand_prince_8> registers 128 stack 56 spill 0
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
 
@@ -18,8 +18,8 @@
 constexpr auto constant = myriad::shared_placement::constant_bank;
 
 #define KERNEL(Model, Method)                                                                                      \
-    template __global__ void myriad::integrate_ensemble<gpu_ensembles::Model, myriad::Method, double, constant>( \
-        const __grid_constant__ myriad::launch_arguments<gpu_ensembles::Model, double, constant>);
+    template __global__ void myriad::detail::integrate_ensemble<gpu_ensembles::Model, myriad::Method, double, constant>( \
+        const __grid_constant__ myriad::detail::launch_arguments<gpu_ensembles::Model, double, constant>);
 KERNEL(lorenz, runge_kutta_4)
 KERNEL(lorenz, tsitouras_5)
 KERNEL(keller_miksis, cash_karp)

@@ -4,44 +4,37 @@
 //
 // limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers_within 1.10 of lorenz_by_hand
 // limit: integrate_ensemble<duffing_plain, cash_karp> stack 0 spill 0 registers_within 1.10 of duffing_by_hand
-// limit: integrate_ensemble<duffing, cash_karp> spill 0
+// limit: integrate_ensemble<duffing, cash_karp> registers 96 stack 120 spill 72
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
 #include <myriad/model.hpp>
 
 #include "examples/duffing/duffing.hpp"
+#include "problems/duffing.hpp"
+#include "problems/lorenz.hpp"
 
-struct lorenz {
-    enum state { x, y, z, n_state };
-    enum parameter { rho, n_parameter };
-
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
-        return {R(10) * (s[y] - s[x]), p[rho] * s[x] - s[y] - s[x] * s[z], s[x] * s[y] - R(8.0 / 3) * s[z]};
-    }
-};
+using problems::lorenz;
 
 /// Duffing with a polynomial forcing in place of the cosine, whose slow path would need a stack frame in any kernel.
-struct duffing_plain {
-    enum state { x, v, n_state };
+struct duffing_plain : problems::duffing {
     enum parameter { k, n_parameter };
     enum shared { B, n_shared };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
-        return {y[v], y[x] - y[x] * y[x] * y[x] - p[k] * y[v] + p.shared[B] * (t * t)};
+        return slope<R>(y, p[k], p.shared[B] * (t * t));
     }
 };
 
 template <class Model>
-using arguments = myriad::kernel_arguments<Model, double>;
+using arguments = myriad::detail::kernel_arguments<Model, double>;
 constexpr auto constant = myriad::shared_placement::constant_bank;
 template <class Model>
-using launched = myriad::launch_arguments<Model, double, constant>;
+using launched = myriad::detail::launch_arguments<Model, double, constant>;
 
 #define INSTANTIATE(Model, Method)                                                                \
-    template __global__ void myriad::integrate_ensemble<Model, myriad::Method, double, constant>( \
+    template __global__ void myriad::detail::integrate_ensemble<Model, myriad::Method, double, constant>( \
         const __grid_constant__ launched<Model>);
 INSTANTIATE(lorenz, runge_kutta_4)
 INSTANTIATE(duffing_plain, cash_karp)

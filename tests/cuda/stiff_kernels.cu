@@ -36,10 +36,10 @@ struct chain {
 
 constexpr auto constant = myriad::shared_placement::constant_bank;
 #define INSTANTIATE(n, R)                                                                                 \
-    template __global__ void myriad::integrate_ensemble<chain<n>, myriad::rosenbrock_23, R, constant>(    \
-        const __grid_constant__ myriad::launch_arguments<chain<n>, R, constant>);                         \
-    template __global__ void myriad::integrate_ensemble<chain<n>, myriad::rodas_5p, R, constant>(         \
-        const __grid_constant__ myriad::launch_arguments<chain<n>, R, constant>);
+    template __global__ void myriad::detail::integrate_ensemble<chain<n>, myriad::rosenbrock_23, R, constant>(    \
+        const __grid_constant__ myriad::detail::launch_arguments<chain<n>, R, constant>);                         \
+    template __global__ void myriad::detail::integrate_ensemble<chain<n>, myriad::rodas_5p, R, constant>(         \
+        const __grid_constant__ myriad::detail::launch_arguments<chain<n>, R, constant>);
 INSTANTIATE(2, double)
 INSTANTIATE(3, float)
 INSTANTIATE(4, double)

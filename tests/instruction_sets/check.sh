@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks that a program compiled for several instruction sets takes the best that the CPU has, or the one that it is told
-# to, with the bits of programs compiled for that one alone, and that its kernels share no function.
+# Checks that a program compiled for several instruction sets takes the best that the CPU has, or the one that it is
+# told to, with the bits of programs compiled for that one alone, and that its kernels share no function.
 # Usage: check.sh ALL AVX2 AVX512 OBJECT...   (programs; objects of ALL)
 set -euo pipefail
 all=$1
@@ -35,8 +35,8 @@ fi
 if MYRIAD_INSTRUCTION_SET=mmx "$all" 2>"$work/stderr"; then fail 'a set that there is not was taken'; fi
 grep -q 'MYRIAD_INSTRUCTION_SET is "mmx"' "$work/stderr" || fail "no reason: $(cat "$work/stderr")"
 
-# A function that two objects define, and the linker keeps one of, must carry its instruction set in its name: else code for
-# AVX-512 may run on any CPU. (That of clang++ only ends the program.)
+# A function that two objects define, and the linker keeps one of, must carry its instruction set in its name: else code
+# for AVX-512 may run on any CPU. (That of clang++ only ends the program.)
 for object in "$@"; do
     nm -C --defined-only "$object" | awk '$2 == "W"' | grep -v 'openmp_\|instruction_set)\|__clang_call_terminate' >"$work/shared" || true
     [[ ! -s $work/shared || $object == *main.cpp* ]] || fail "$object shares functions: $(cat "$work/shared")"

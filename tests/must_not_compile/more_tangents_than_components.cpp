@@ -3,7 +3,7 @@
 // A third vector in a plane is none of its own.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
-#include "myriad/model/tangent.hpp"
+#include "myriad/kernel/model/tangent.hpp"
 
 struct oscillator {
     enum state { x, v, n_state };

@@ -5,7 +5,7 @@
 
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
-#include "myriad/model/tangent.hpp"
+#include "myriad/kernel/model/tangent.hpp"
 
 struct pendulum {
     static constexpr bool scalar_only = true;

@@ -3,7 +3,7 @@
 // An action that takes the state for a plain number loses the derivative with which it moves the tangents.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
-#include "myriad/model/tangent.hpp"
+#include "myriad/kernel/model/tangent.hpp"
 
 struct ball {
     enum state { x, v, n_state };

@@ -11,7 +11,7 @@ struct chosen_bouncer : rare_bouncer {
     static constexpr int pack_batches = 4;
 };
 template <class Model>
-constexpr int batches = myriad::default_batches<Model, myriad::cash_karp>();
+constexpr int batches = myriad::detail::default_batches<Model, myriad::cash_karp>();
 constexpr bool packs = batches<properties::bouncer> > 0;  // not with sanitizers
 static_assert(!packs || batches<properties::bouncer> == 1, "events take a pack of one batch");
 static_assert(!packs || batches<rare_bouncer> > 1, "rare events take a larger pack");

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The models whose results must not depend on anything but the instance: one with events and an impact law of + - * / and
+// The models whose results must not depend on anything but the instance: one with events, reductions and an impact law of + - * / and
 // sqrt only, one with events, hooks and elementary functions, and one without any hook.
 #pragma once
 
 #include <myriad/model.hpp>
+
+#include "problems/lorenz.hpp"
 
 namespace properties {
 
@@ -12,9 +14,16 @@ struct bouncer {
     enum state { x, v, n_state };
     enum parameter { k, x0, n_parameter };
     enum shared { drag, n_shared };
-    enum accessory { v_max, path, n_accessory };
+    enum accessory { v_max, path, energy_max, energy_max_at, x_max, x_min, work, n_accessory };
     enum integer_accessory { bounces, n_integer_accessory };
     enum event { wall, turning, n_event };
+    enum observed { energy, position, n_observed };
+    using to = myriad::over_phase;
+    static constexpr myriad::reduction reductions[] = {{energy, to::maximum, energy_max},
+                                                       {energy, to::time_of_maximum, energy_max_at},
+                                                       {position, to::maximum, x_max},
+                                                       {position, to::minimum, x_min},
+                                                       {energy, to::integral, work}};
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
@@ -24,6 +33,10 @@ struct bouncer {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
         return {y[x], y[v]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {y[v] * y[v] + p[k] * y[x] * y[x] / (R(1) + t), R(y[x])};
     }
     MYRIAD_FUNCTION static void initialise(auto& lane) { lane.accessory[v_max] = lane.y[v]; }
     template <class R>
@@ -72,15 +85,6 @@ private:
     }
 };
 
-/// Lorenz' equations.
-struct lorenz {
-    enum state { x, y, z, n_state };
-    enum parameter { rho, n_parameter };
-
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
-        return {R(10) * (s[y] - s[x]), p[rho] * s[x] - s[y] - s[x] * s[z], s[x] * s[y] - R(8) / R(3) * s[z]};
-    }
-};
+using problems::lorenz;
 
 }  // namespace properties

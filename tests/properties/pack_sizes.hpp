@@ -3,7 +3,7 @@
 // pack_sizes.cpp, whose flags the kernels need.
 #pragma once
 
-#include <myriad/backend.hpp>
+#include <myriad/host/backend/backend.hpp>
 
 namespace properties {
 
@@ -13,12 +13,12 @@ template <class Model>
 inline constexpr bool compiles_large_packs = true;
 #else
 template <class Model>
-inline constexpr bool compiles_large_packs = !myriad::has_events<Model>;
+inline constexpr bool compiles_large_packs = !myriad::detail::has_events<Model>;
 #endif
 
 /// As the backend does it, but with `batches` batches per pack; 0: one instance at a time.
 template <class Model, class Method, class R>
-myriad::run_statistics run_with_packs(int batches, const myriad::kernel_arguments<Model, R>& arguments,
-                                      const myriad::run_options& options);
+myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail::kernel_arguments<Model, R>& arguments,
+                                      const myriad::detail::run_options& options);
 
 }  // namespace properties

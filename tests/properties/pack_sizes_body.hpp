@@ -12,18 +12,18 @@ namespace properties {
 
 /// The size that the backend takes by itself is its own kernel, compiled elsewhere.
 template <class Model, class Method, class R, int batches>
-myriad::run_statistics run_with(const myriad::kernel_arguments<Model, R>& arguments, const myriad::run_options& options) {
-    if constexpr (batches == myriad::default_batches<Model, Method>()) {
+myriad::detail::run_statistics run_with(const myriad::detail::kernel_arguments<Model, R>& arguments, const myriad::detail::run_options& options) {
+    if constexpr (batches == myriad::detail::default_batches<Model, Method>()) {
         using namespace myriad::openmp;
         return run_on<Model, Method, R>(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>{}, arguments, options);
     } else {
-        return myriad::run_packs<Model, Method, R, batches>(arguments, options);
+        return myriad::detail::run_packs<Model, Method, R, batches>(arguments, options);
     }
 }
 
 template <class Model, class Method, class R>
-myriad::run_statistics run_with_packs(int batches, const myriad::kernel_arguments<Model, R>& arguments,
-                                      const myriad::run_options& options) {
+myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail::kernel_arguments<Model, R>& arguments,
+                                      const myriad::detail::run_options& options) {
     if (batches == 0) return run_with<Model, Method, R, 0>(arguments, options);
     if (batches == 1) return run_with<Model, Method, R, 1>(arguments, options);
     if constexpr (compiles_large_packs<Model>) {
@@ -37,5 +37,5 @@ myriad::run_statistics run_with_packs(int batches, const myriad::kernel_argument
 
 #define RUN_WITH_PACKS(Model, Method, R)                                                  \
     extern MYRIAD_BACKEND_KERNEL(Model, Method, R)                                        \
-    template myriad::run_statistics properties::run_with_packs<Model, Method, R>(         \
-        int, const myriad::kernel_arguments<Model, R>&, const myriad::run_options&);
+    template myriad::detail::run_statistics properties::run_with_packs<Model, Method, R>(         \
+        int, const myriad::detail::kernel_arguments<Model, R>&, const myriad::detail::run_options&);

@@ -34,6 +34,7 @@ struct reference {
     /// How much an error of one step may have grown by the end: the largest norm of dy(t_end)/dy(t) times the scale
     /// max(1, |y(t)|) of the tolerance, from the variational equation (0.1 % accurate) or, for A1 to A4, in closed form.
     double growth;
+    std::vector<double> parameters = {};
 };
 
 template <class Method, class Model>
@@ -46,6 +47,7 @@ struct result {
         : error(0), end(r.start.size()) {
         ensemble<Model> e(1);
         for (std::size_t c = 0; c < r.start.size(); ++c) e.state(static_cast<int>(c)) = r.start[c];
+        for (std::size_t c = 0; c < r.parameters.size(); ++c) e.parameter(static_cast<int>(c)) = r.parameters[c];
         e.time_domain(0, r.t_end);
         solve<Method>(where, e, o);
         REQUIRE(e.status(0) == status::success);
@@ -126,10 +128,11 @@ const reference<problems::power_decay> a2{{1}, 20, {0.21821789023599238127}, 1};
 const reference<problems::modulated_growth> a3{{1}, 20, {2.4916502718504145235}, 7.4};
 // A4: dy(T)/dy(t) = f(y(T)) / f(y(t)), largest from the start: f(17.73) / f(1) = 2.12, times scales up to 17.73
 const reference<problems::logistic> a4{{1}, 20, {17.730166481314839849}, 2.12 * 17.74};
+// Lorenz at rho = 21 spirals into a fixed point after a chaotic transient.
 const reference<problems::lorenz> lorenz_1{
-    {1, 0, 0}, 1, {-6.4505791473189070092, -8.8952114786677926266, 14.649145866604444939}, 53};
+    {1, 0, 0}, 1, {-6.4505791473189070092, -8.8952114786677926266, 14.649145866604444939}, 53, {21}};
 const reference<problems::lorenz> lorenz_10{
-    {1, 0, 0}, 10, {-7.8734410765709620402, -6.7133208531654644431, 22.176159652834202702}, 70};
+    {1, 0, 0}, 10, {-7.8734410765709620402, -6.7133208531654644431, 22.176159652834202702}, 70, {21}};
 const reference<problems::forced_duffing> duffing{{0.1, 0}, 50, {1.1702802239391576732, 0.065504462499426847300}, 22};
 const reference<problems::van_der_pol> van_der_pol{{2, 0}, 20, {2.0081497621749485920, -0.042508875273202146986}, 6.3};
 

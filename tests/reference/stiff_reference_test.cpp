@@ -46,8 +46,8 @@ ensemble<Model> run(const reference& r, double tolerance, const std::vector<doub
                     const std::vector<double>& scale) {
     ensemble<Model> e(1);
     for (std::size_t c = 0; c < start.size(); ++c) e.state(static_cast<int>(c)) = start[c];
-    for (int c = 0; c < myriad::n_accessory<Model>; ++c) e.accessory(c) = 0.0;
-    if constexpr ((myriad::n_parameter<Model>) > 0) e.parameter(0) = 1e-3;
+    for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c) e.accessory(c) = 0.0;
+    if constexpr ((myriad::detail::n_parameter<Model>) > 0) e.parameter(0) = 1e-3;
     e.time_domain(0, r.t_end);
     options o;
     o.step = 1e-6;

@@ -37,6 +37,12 @@ expect "test.sh refuses an unknown option" 2 "Unknown option '--fast'" scripts/t
 expect "test.sh refuses an unknown step" 2 "no step 'gpu'" scripts/test.sh --only ci,gpu
 expect "test.sh refuses --only without steps" 2 '--only needs steps' scripts/test.sh --only
 expect "test.sh refuses a wrong number of jobs" 2 '--jobs needs' scripts/test.sh --jobs 0
+expect "format.sh --help" 0 'Usage: scripts/format.sh' scripts/format.sh --help
+expect "format.sh refuses an unknown option" 2 "Unknown option '--now'" scripts/format.sh --now
+printf 'int  wrong ( );\n' >"$work/wrong.cpp"
+expect "format.sh finds a file that is not formatted" 1 'wrong.cpp|Formatting not checked' scripts/format.sh --required "$work/wrong.cpp"
+printf '# %0200d\n' 0 >"$work/long.py"
+expect "format.sh finds a line that is too long" 1 'long.py:1: 202 columns' scripts/format.sh "$work/long.py"
 expect "validate.sh --help" 0 'Usage: scripts/validate.sh' scripts/validate.sh --help
 expect "validate.sh refuses an unknown device" 2 "no device 'abacus'" scripts/validate.sh --device abacus
 expect "case_studies.sh --help" 0 'Usage: scripts/case_studies.sh' scripts/case_studies.sh --help

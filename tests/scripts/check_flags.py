@@ -28,7 +28,8 @@ def shared_functions(build, nm, entries):
         if not target.exists() or "catch.hpp" in text or not re.search(r"^MYRIAD_INSTANTIATE", text, re.MULTILINE):
             continue
         seen += 1
-        symbols = subprocess.run([nm, "-C", "--defined-only", str(target)], capture_output=True, text=True, check=True).stdout
+        symbols = subprocess.run([nm, "-C", "--defined-only", str(target)], capture_output=True, text=True,
+                                 check=True).stdout
         for line in symbols.splitlines():
             name = re.match(r"[0-9a-f]+ W (.*)", line)
             # Those of the kernels carry their instruction set; that of clang++ only ends the program.
@@ -47,7 +48,8 @@ def main():
         if any(word.startswith("-march=") for word in words):
             compiled_for_isa[words[words.index("-o") + 1]] = entry["file"]
 
-    dependencies = subprocess.run(["ninja", "-C", str(build), "-t", "deps"], capture_output=True, text=True, check=True).stdout
+    dependencies = subprocess.run(["ninja", "-C", str(build), "-t", "deps"], capture_output=True, text=True,
+                                  check=True).stdout
     seen, wrong = 0, []
     source = None
     for line in dependencies.splitlines():

@@ -9,6 +9,8 @@
 MYRIAD_INSTANTIATE(faulty::clock_fault, myriad::cash_karp)
 MYRIAD_INSTANTIATE_FLOAT(faulty::clock_fault, myriad::cash_karp)
 MYRIAD_INSTANTIATE(faulty::domain_fault, myriad::cash_karp)
+MYRIAD_INSTANTIATE(faulty::cliff, myriad::cash_karp)
+MYRIAD_INSTANTIATE(faulty::guarded, myriad::cash_karp)
 MYRIAD_INSTANTIATE(faulty::blow_up, myriad::cash_karp)
 MYRIAD_INSTANTIATE_FLOAT(faulty::blow_up, myriad::cash_karp)
 MYRIAD_INSTANTIATE(faulty::slope_jump, myriad::cash_karp)

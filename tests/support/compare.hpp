@@ -30,9 +30,9 @@ std::string difference(const myriad::ensemble<Model, R>& a, std::int64_t i, cons
     const auto compare = [&](const char* what, int c, auto x, auto y) {
         if (!same_bits(x, y)) differs += myriad::message(' ', what, ' ', c, ": ", x, " != ", y, ';');
     };
-    for (int c = 0; c < myriad::n_state<Model>; ++c) compare("state", c, a.state(c)[i], b.state(c)[j]);
-    for (int c = 0; c < myriad::n_accessory<Model>; ++c) compare("accessory", c, a.accessory(c)[i], b.accessory(c)[j]);
-    for (int c = 0; c < myriad::n_integer_accessory<Model>; ++c)
+    for (int c = 0; c < myriad::detail::n_state<Model>; ++c) compare("state", c, a.state(c)[i], b.state(c)[j]);
+    for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c) compare("accessory", c, a.accessory(c)[i], b.accessory(c)[j]);
+    for (int c = 0; c < myriad::detail::n_integer_accessory<Model>; ++c)
         compare("integer accessory", c, a.integer_accessory(c)[i], b.integer_accessory(c)[j]);
     compare("t", 0, a.t()[i], b.t()[j]);
     compare("next step", 0, a.next_step()[i], b.next_step()[j]);

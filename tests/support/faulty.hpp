@@ -4,7 +4,10 @@
 
 #include <limits>
 
+#include <myriad/methods.hpp>
 #include <myriad/model.hpp>
+
+#include "tests/support/problems.hpp"
 
 namespace faulty {
 
@@ -37,6 +40,60 @@ struct domain_fault {
     }
 };
 
+/// y' = speed, and no number above (side > 0) or below (side < 0) the limit.
+struct cliff {
+    enum state { y0, n_state };
+    enum parameter { limit, speed, side, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>& y, const auto& p) {
+        // A state that is not a number is not within the limit either.
+        return myriad::vec<R, 1>{myriad::select((y[y0] - p[limit]) * p[side] <= R(0), p[speed], R(not_a_number<R>))};
+    }
+};
+
+/// y' = 1, and no number above 1, written so that a state which is not a number has a slope that is one.
+struct open_cliff {
+    enum state { y0, n_state };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>& y, const auto&) {
+        return myriad::vec<R, 1>{myriad::select(y[y0] > R(1), R(not_a_number<R>), R(1))};
+    }
+};
+
+/// Runge's midpoint rule, whose first stage has no part in its solution.
+struct midpoint_rule {
+    static constexpr int stages = 2;
+    static constexpr int order = 2;
+    static constexpr int embedded_order = 0;
+    static constexpr bool first_same_as_last = false;
+
+    static constexpr myriad::explicit_tableau<stages> tableau() {
+        myriad::explicit_tableau<stages> t{};
+        t.c = {0, 0.5};
+        t.a[1] = {0.5};
+        t.b = {0, 1};
+        return t;
+    }
+};
+
+/// x' = v, v' = -x with the unit circle as its limit cycle, and no number beyond |x| = limit, a little outside of it: the
+/// stages of long steps leave the domain twice in every turn. Ends where t has passed `stop`.
+struct guarded {
+    enum state { x, v, n_state };
+    enum parameter { limit, stop, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto, const myriad::vec<R, 2>& y, const auto& p) {
+        const R root = myriad::sqrt(p[limit] * p[limit] - y[x] * y[x]);
+        return {y[v] + (root - root), (R(1) - y[x] * y[x] - y[v] * y[v]) * y[v] - y[x]};
+    }
+    MYRIAD_FUNCTION static myriad::action after_step(auto& lane) {
+        return lane.t >= lane.parameter[stop] ? myriad::action::end_phase : myriad::action::proceed;
+    }
+};
+
 /// y' = y^2, y(0) = 1: 1 / (1 - t), with a pole at 1.
 struct blow_up {
     enum state { y0, n_state };
@@ -57,16 +114,11 @@ struct slope_jump {
 };
 
 /// y' = 1, with hooks that write NaN into the state: which one is the integer accessory's choice.
-struct hook_fault {
-    enum state { y0, n_state };
+struct hook_fault : problems::uniform {
     enum parameter { time, n_parameter };
     enum integer_accessory { which, finished, n_integer_accessory };
     enum hooks { none, in_initialise, in_after_step, in_finalise };
 
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>&, const auto&) {
-        return myriad::vec<R, 1>{R(1)};
-    }
     MYRIAD_FUNCTION static void spoil(auto& lane, int hook) {
         if (lane.integer_accessory[which] == hook && lane.t >= lane.parameter[time]) lane.y[y0] = not_a_number<decltype(+lane.t)>;
     }

@@ -19,4 +19,6 @@ MYRIAD_INSTANTIATE(hooked::kicked_scalar, myriad::dense<myriad::runge_kutta_4>, 
 MYRIAD_INSTANTIATE(hooked::bookkeeper, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(hooked::declared_bookkeeper, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(hooked::step_setter, myriad::cash_karp)
+MYRIAD_INSTANTIATE(hooked::step_spoiler, myriad::cash_karp, MOST_METHODS)
+MYRIAD_INSTANTIATE(hooked::step_spoiler_generic, myriad::cash_karp, MOST_METHODS)
 MYRIAD_INSTANTIATE(hooked::breaker, myriad::runge_kutta_4, myriad::cash_karp)

@@ -4,19 +4,15 @@
 
 #include <myriad/model.hpp>
 
+#include "tests/support/problems.hpp"
 #include "tests/support/recorder.hpp"
 
 namespace hooked {
 
 /// The oscillator with every hook logged. Its last two events are the same function: both fire at once.
-struct watched {
-    enum state { x, v, n_state };
+struct watched : problems::oscillator {
     enum event { turning_point, zero, zero_too, n_event };
 
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto, const myriad::vec<R, 2>& y, const auto&) {
-        return {y[v], -y[x]};
-    }
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 3> events(auto, const myriad::vec<R, 2>& y, const auto&) {
         return {y[v], y[x], y[x]};
@@ -105,15 +101,10 @@ struct declared_bookkeeper : bookkeeper {
 };
 
 /// Writes down what `lane.h`, `lane.h_next` and `lane.t` are at the start of a phase.
-struct early_reader {
-    enum state { x, v, n_state };
+struct early_reader : problems::oscillator {
     enum accessory { t_seen, h_seen, h_next_seen, n_accessory };
     enum integer_accessory { phase_seen, index_seen, n_integer_accessory };
 
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto, const myriad::vec<R, 2>& y, const auto&) {
-        return {y[v], -y[x]};
-    }
     MYRIAD_FUNCTION static void initialise(auto& lane) {
         lane.accessory[t_seen] = lane.t;
         lane.accessory[h_seen] = lane.h;
@@ -125,16 +116,11 @@ struct early_reader {
 
 /// The oscillator with the integral of x, its maximum and a count of steps; ends the phase once x falls below a parameter.
 /// The two forms of after_step, which must not differ.
-struct running_base {
-    enum state { x, v, n_state };
+struct running_base : problems::oscillator {
     enum parameter { lowest, n_parameter };
     enum accessory { integral, maximum, n_accessory };
     enum integer_accessory { steps, n_integer_accessory };
 
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto, const myriad::vec<R, 2>& y, const auto&) {
-        return {y[v], -y[x]};
-    }
 };
 struct running_scalar : running_base {
     MYRIAD_FUNCTION static myriad::action after_step(auto& lane) {
@@ -175,17 +161,12 @@ struct parameter_writer {
 };
 
 /// y' = 1, with hooks that write the time domain.
-struct domain_writer {
-    enum state { y0, n_state };
+struct domain_writer : problems::uniform {
     enum accessory { t_at_end, n_accessory };
     enum integer_accessory { mode, n_integer_accessory };
     enum mode { none, shift_in_finalise, set_in_initialise, extend, cut, stop_here, begin_later };
     static constexpr bool writes_time_domain = true;
 
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>&, const auto&) {
-        return myriad::vec<R, 1>{R(1)};
-    }
     MYRIAD_FUNCTION static void initialise(auto& lane) {
         if (lane.integer_accessory[0] == set_in_initialise) {
             lane.t_begin = 2;
@@ -261,15 +242,10 @@ struct kicked_generic : kicked_base {
 };
 
 /// y' = 1, ended by hooks at given times.
-struct stopper {
-    enum state { y0, n_state };
+struct stopper : problems::uniform {
     enum parameter { phase_stop, instance_stop, n_parameter };
     enum integer_accessory { begun, finished, n_integer_accessory };
 
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>&, const auto&) {
-        return myriad::vec<R, 1>{R(1)};
-    }
     MYRIAD_FUNCTION static void initialise(auto& lane) { lane.integer_accessory[begun] += 1; }
     MYRIAD_FUNCTION static myriad::action after_step(auto& lane) {
         if (lane.y[y0] >= lane.parameter[instance_stop]) return myriad::action::end_instance;
@@ -308,17 +284,12 @@ struct ramp {
 };
 
 /// y' = 1 with an event at y = 1, and an after_step that breaks something in the step that arrives there.
-struct breaker {
-    enum state { y0, n_state };
+struct breaker : problems::uniform {
     enum integer_accessory { mode, events_seen, n_integer_accessory };
     enum mode { none, state_not_finite, end_not_finite };
     enum event { one, n_event };
     static constexpr bool writes_time_domain = true;
 
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>&, const auto&) {
-        return myriad::vec<R, 1>{R(1)};
-    }
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 1> events(auto, const myriad::vec<R, 1>& y, const auto&) {
         return myriad::vec<R, 1>{y[y0] - R(1)};
@@ -332,14 +303,47 @@ struct breaker {
     MYRIAD_FUNCTION static void after_event(int, auto& lane) { lane.integer_accessory[events_seen] += 1; }
 };
 
-/// y' = 1, with an after_step that sets the step to try next.
-struct step_setter {
+/// y' = 1 with an event at y = 1/2, and hooks that set the step to try next to the root of `wanted` (NaN where that is negative):
+/// which one is the integer accessory's choice, after_step once y is past 3/16.
+struct step_spoiler_base {
     enum state { y0, n_state };
     enum parameter { wanted, n_parameter };
+    enum integer_accessory { which, n_integer_accessory };
+    enum hooks { none, in_initialise, in_after_step, in_after_event, in_finalise };
+    enum event { half, n_event };
+
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>&, const auto&) {
         return myriad::vec<R, 1>{R(1)};
     }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> events(auto, const myriad::vec<R, 1>& y, const auto&) {
+        return myriad::vec<R, 1>{y[y0] - R(0.5)};
+    }
+    MYRIAD_FUNCTION static void set(auto& lane, int hook) {
+        if (lane.integer_accessory[which] == hook) lane.h_next = myriad::sqrt(lane.parameter[wanted]);
+    }
+    MYRIAD_FUNCTION static void initialise(auto& lane) { set(lane, in_initialise); }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) { set(lane, in_after_event); }
+    MYRIAD_FUNCTION static void finalise(auto& lane) { set(lane, in_finalise); }
+};
+struct step_spoiler : step_spoiler_base {
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        if (lane.y[y0] > 0.1875) set(lane, in_after_step);
+    }
+};
+/// The same with an after_step for packs.
+struct step_spoiler_generic : step_spoiler_base {
+    template <class R>
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        const auto now = (lane.y[y0] > R(0.1875)) & (lane.integer_accessory[which] == static_cast<int>(in_after_step));
+        lane.h_next = myriad::select(now, myriad::sqrt(lane.parameter[wanted]), lane.h_next);
+    }
+};
+
+/// y' = 1, with an after_step that sets the step to try next.
+struct step_setter : problems::uniform {
+    enum parameter { wanted, n_parameter };
     MYRIAD_FUNCTION static void after_step(auto& lane) {
         recorder::log<1>(recorder::hook::after_step, lane);
         lane.h_next = lane.parameter[wanted];

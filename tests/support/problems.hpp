@@ -5,6 +5,9 @@
 
 #include <myriad/model.hpp>
 
+#include "problems/duffing.hpp"
+#include "problems/lorenz.hpp"
+
 namespace problems {
 
 /// DETEST A1: y' = -y. Linear, contracting.
@@ -143,21 +146,11 @@ struct two_speeds {
 
 // Models with reference values and no closed form -------------------------------------------------------------------
 
-/// Lorenz, sigma 10, beta 8/3, rho 21: spirals into a fixed point after a chaotic transient.
-struct lorenz {
-    enum state { x, y, z, n_state };
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, 3> rhs(auto, const myriad::vec<R, 3>& s, const auto&) {
-        return {R(10) * (s[y] - s[x]), R(21) * s[x] - s[y] - s[x] * s[z], s[x] * s[y] - R(8.0 / 3.0) * s[z]};
-    }
-};
-
 /// x'' + 0.3 x' - x + x^3 = 0.5 cos 1.2 t.
-struct forced_duffing {
-    enum state { x, v, n_state };
+struct forced_duffing : duffing {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto t, const myriad::vec<R, 2>& y, const auto&) {
-        return {y[v], y[x] - y[x] * y[x] * y[x] - R(0.3) * y[v] + R(0.5) * myriad::cos(R(1.2) * t)};
+        return slope<R>(y, R(0.3), R(0.5) * myriad::cos(R(1.2) * t));
     }
 };
 
@@ -167,6 +160,15 @@ struct van_der_pol {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto, const myriad::vec<R, 2>& y, const auto&) {
         return {y[v], (R(1) - y[x] * y[x]) * y[v] - y[x]};
+    }
+};
+
+/// Roessler's equations (0.2, 0.2, 5.7): chaotic and not stiff, though z decays at a rate of up to 15 much of the time.
+struct roessler {
+    enum state { x, y, z, n_state };
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 3> rhs(auto, const myriad::vec<R, 3>& s, const auto&) {
+        return {-s[y] - s[z], s[x] + R(0.2) * s[y], R(0.2) + s[z] * (s[x] - R(5.7))};
     }
 };
 

@@ -6,7 +6,10 @@
 
 #include "tests/support/faulty.hpp"
 
-MYRIAD_INSTANTIATE(stiff::van_der_pol, myriad::rosenbrock_23, myriad::rodas_5p)
+MYRIAD_INSTANTIATE(stiff::van_der_pol, myriad::rosenbrock_23, myriad::rodas_5p, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(stiff::draining, myriad::rodas_5p)
+MYRIAD_INSTANTIATE(stiff::ball, myriad::rosenbrock_23, myriad::rodas_5p)
+MYRIAD_INSTANTIATE_FLOAT(stiff::ball, myriad::rodas_5p)
 MYRIAD_INSTANTIATE(faulty::clock_fault, myriad::rosenbrock_23)
+MYRIAD_INSTANTIATE(faulty::cliff, myriad::rosenbrock_23, myriad::rodas_5p)
 MYRIAD_INSTANTIATE(stiff::relay, myriad::dense<myriad::rodas_5p>)

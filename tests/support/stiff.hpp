@@ -3,16 +3,18 @@
 #pragma once
 
 #include <myriad/model.hpp>
+#include <myriad/kernel/model/tangent.hpp>
+
+#include "problems/robertson.hpp"
+#include "tests/support/problems.hpp"
 
 namespace stiff {
 
-/// Robertson's chemical kinetics: rates 0.04, 3e7, 1e4; the sum of the concentrations stays as it is.
-struct robertson {
-    enum state { a, b, c, n_state };
+/// With rates 0.04, 3e7, 1e4.
+struct robertson : problems::robertson {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 3> rhs(auto, const myriad::vec<R, 3>& y, const auto&) {
-        const R slow = R(0.04) * y[a], fast = R(3e7) * y[b] * y[b], back = R(1e4) * y[b] * y[c];
-        return {back - slow, slow - back - fast, fast};
+        return slope<R>(y, R(0.04), R(3e7));
     }
 };
 
@@ -50,6 +52,10 @@ struct prothero_robinson {
         return myriad::vec<R, 1>{p[rate] * (myriad::sin(t) - y[y0]) + myriad::cos(t)};
     }
 };
+
+using prothero_robinson_with_tangent = myriad::with_tangents<prothero_robinson>;
+
+using problems::roessler;
 
 /// The relay: y' = -1e4 (y - cos t - raised) - sin t follows cos t + raised; whenever it has fallen to 1/2, it and its
 /// target are raised by one: at pi/3 and 2 pi/3, and not again before t = 4.
@@ -108,6 +114,25 @@ struct growth {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto, const myriad::vec<R, 2>& s, const auto& p) {
         return {p[rate] * s[x], -s[y]};
+    }
+};
+
+/// A ball that is dropped onto a floor at zero, put back onto it exactly at every impact and thrown up at a part of its speed.
+struct ball {
+    enum state { x, v, n_state };
+    enum parameter { restitution, n_parameter };
+    enum event { impact, n_event };
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto, const myriad::vec<R, 2>& y, const auto&) {
+        return {y[v], R(-10)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> events(auto, const myriad::vec<R, 2>& y, const auto&) {
+        return myriad::vec<R, 1>{y[x]};
+    }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) {
+        lane.y[x] = 0;
+        lane.y[v] = -lane.parameter[restitution] * lane.y[v];
     }
 };
 

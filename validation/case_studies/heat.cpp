@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include <myriad/model/lane.hpp>
+#include <myriad/kernel/model/lane.hpp>
 #include <myriad/myriad.hpp>
 
 #include "cvode.hpp"

@@ -12,7 +12,7 @@
 
 #include <Eigen/Dense>
 #include <myriad/myriad.hpp>
-#include <myriad/scalar/dual.hpp>
+#include <myriad/kernel/scalar/dual.hpp>
 
 #include "cvode.hpp"
 #include "sweep.hpp"

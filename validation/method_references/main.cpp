@@ -22,7 +22,7 @@ using validation::multistep;
 template <class Model>
 struct parameters_of {
     parameters_of(const myriad::ensemble<Model>& e, std::int64_t instance) {
-        for (int c = 0; c < myriad::n_parameter<Model>; ++c) values.push_back(e.parameter(c)[instance]);
+        for (int c = 0; c < myriad::detail::n_parameter<Model>; ++c) values.push_back(e.parameter(c)[instance]);
     }
     double operator[](int c) const { return values[static_cast<std::size_t>(c)]; }
     std::vector<double> values;
@@ -32,13 +32,13 @@ struct parameters_of {
 template <class Model>
 std::vector<double> by_cvode(const myriad::ensemble<Model>& e, std::int64_t instance, const std::vector<double>& start,
                              double t, multistep family, double tolerance, double absolute_tolerance) {
-    constexpr auto n = static_cast<std::size_t>(myriad::n_state<Model>);
+    constexpr auto n = static_cast<std::size_t>(myriad::detail::n_state<Model>);
     const parameters_of<Model> p(e, instance);
     const auto f = [&p](double time, const double* y, double* dy) {
-        myriad::vec<double, myriad::n_state<Model>> state;
-        for (int c = 0; c < myriad::n_state<Model>; ++c) state[c] = y[c];
+        myriad::vec<double, myriad::detail::n_state<Model>> state;
+        for (int c = 0; c < myriad::detail::n_state<Model>; ++c) state[c] = y[c];
         const auto slope = Model::template rhs<double>(time, state, p);
-        for (int c = 0; c < myriad::n_state<Model>; ++c) dy[c] = slope[c];
+        for (int c = 0; c < myriad::detail::n_state<Model>; ++c) dy[c] = slope[c];
     };
     validation::cvode solution(n, f, tolerance, absolute_tolerance, family);
     solution.start(0, start);
@@ -57,7 +57,7 @@ double distance(const std::vector<double>& scale, const std::vector<double>& a, 
 template <class Model>
 std::vector<double> state_of(const myriad::ensemble<Model>& e, std::int64_t i) {
     std::vector<double> s;
-    for (int c = 0; c < myriad::n_state<Model>; ++c) s.push_back(e.state(c)[i]);
+    for (int c = 0; c < myriad::detail::n_state<Model>; ++c) s.push_back(e.state(c)[i]);
     return s;
 }
 

@@ -4,7 +4,7 @@
 one problem with it and runs the validation on them, which must fail; with the headers as they are it must pass on all these
 problems.
 
-Usage: logic.py --source DIR --work DIR --host LIBRARY --compile "COMMAND" --link "ARGUMENTS" [--only NAME,...]
+Usage: logic.py --source DIR --kernels DIR --work DIR --host LIBRARY --compile "COMMAND" --link "ARGUMENTS" [--only NAME,...]
 Exit status 1 if a changed loop passes, or the unchanged one fails.
 """
 import argparse
@@ -19,31 +19,33 @@ import time
 
 # name: (header, text, what it becomes, the problem that shows it). The text must be there, once.
 MUTATIONS = {
-    "swapped_direction": ("event/locator.hpp", "crossed[j] = lanes & (S(args.event[j].direction) * side[j] <= S(R(0)))",
-                          "crossed[j] = lanes & (S(args.event[j].direction) * side[j] >= S(R(0)))", "bouncing_ball"),
-    "lost_action": ("integrator/actions.hpp",
+    "swapped_direction": ("kernel/event/locator.hpp",
+                          "(side > R(0) && args.event[j].falling) || (side < R(0) && args.event[j].rising)",
+                          "(side < R(0) && args.event[j].falling) || (side > R(0) && args.event[j].rising)",
+                          "bouncing_ball"),
+    "lost_action": ("kernel/integrator/hook_driver.hpp",
                     "run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_event(j, lane); });",
                     "static_cast<void>(j);", "bouncing_ball"),
-    "stale_slope": ("integrator/actions.hpp", "s.slope_valid = s.slope_valid & !changed;", "", "bouncing_ball"),
-    "rejected_step_accepted": ("controller/adaptive.hpp", "mask accepted = s.running() & within;",
+    "stale_slope": ("kernel/integrator/hook_driver.hpp",
+                    "s.slope_valid = s.slope_valid & !changed;\n                check_finite",
+                    "check_finite", "bouncing_ball"),
+    "rejected_step_accepted": ("kernel/controller/adaptive.hpp", "mask accepted = s.running() & within;",
                                "mask accepted = s.running() & valid;", "timed_circle"),
-    "error_taken_for_less": ("controller/norm.hpp", "return abs(error) / scale;", "return abs(error) / scale * S(0.01);", "kepler"),
-    "first_slope_for_the_last": ("integrator/integrate.hpp", "select(accepted, trial.slope_end()[c], s.slope[c])",
+    "error_taken_for_less": ("kernel/controller/norm.hpp", "return abs(error) / scale;", "return abs(error) / scale * S(0.01);", "kepler"),
+    "first_slope_for_the_last": ("kernel/integrator/integrate.hpp", "select(accepted, trial.slope_end()[c], s.slope[c])",
                                  "select(accepted, trial.k[0][c], s.slope[c])", "kepler"),
-    "stages_at_the_end_of_the_step": ("stepper/explicit_rk.hpp", "fma(S(node<Method, stage, R>), h, t)", "(t + h)",
+    "stages_at_the_end_of_the_step": ("kernel/stepper/explicit_rk.hpp", "fma(S(node<Method, stage, R>), h, t)", "(t + h)",
                                       "timed_circle"),
-    "bent_interpolant": ("stepper/dense_output.hpp", "const S middle = S(R(1)) - theta - theta;",
-                         "const S middle = S(R(1)) - theta;", "bouncing_ball"),
-    "short_last_step": ("controller/adaptive.hpp", "s.h = select(s.final_step, remaining,",
+    "short_last_step": ("kernel/controller/adaptive.hpp", "s.h = select(s.final_step, remaining,",
                         "s.h = select(s.final_step, remaining * S(R(0.999)),", "kepler"),
-    "event_not_redone": ("event/locator.hpp", "accepted = accepted & !crossing;\n        s.located",
-                         "accepted = accepted & crossing;\n        s.located", "bouncing_ball"),
-    "event_counted_twice": ("integrator/actions.hpp", "get_lane(s.data.event_count[j], i)) + 1;",
+    "event_not_redone": ("kernel/event/locator.hpp",
+                         "low, high, events, p);\n                set_lane(accepted, i, false);", "low, high, events, p);",
+                         "bouncing_ball"),
+    "event_counted_twice": ("kernel/integrator/hook_driver.hpp", "get_lane(s.data.event_count[j], i)) + 1;",
                             "get_lane(s.data.event_count[j], i)) + 2;", "bouncing_ball"),
-    "step_other_than_that_of_t": ("controller/adaptive.hpp", "h = (s.data.t + h) - s.data.t;", "h = h + R(0) * s.data.t;", "orbit"),
-    "weights_rounded_one_by_one": ("stepper/weights.hpp", "sizeof(R) >= sizeof(double)) return rounded;", "true) return rounded;",
+    "step_other_than_that_of_t": ("kernel/controller/adaptive.hpp", "h = (s.data.t + h) - s.data.t;", "h = h + R(0) * s.data.t;", "orbit"),
+    "weights_rounded_one_by_one": ("kernel/methods/weights.hpp", "sizeof(R) >= sizeof(double)) return rounded;", "true) return rounded;",
                                    "orbit"),
-    "side_forgotten": ("event/locator.hpp", "e.side[j] = select(accepted, seen, e.side[j]);", "", "bouncing_ball"),
 }
 DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_accepted"]
 SECONDS = 120  # an endless loop is found too
@@ -73,9 +75,11 @@ def examine(options, name, problems):
     objects = []
     for problem in problems:
         objects.append(str(build / f"{problem}.o"))
+        folders = (options.kernels, options.source / "validation/problems")  # made from the template, or written by hand
+        kernels = next(folder / f"{problem}_kernels.cpp" for folder in folders if (folder / f"{problem}_kernels.cpp").exists())
         command = shlex.split(options.compile) + [
             f"-I{include}", f"-I{options.source}/backends/openmp", f"-I{options.source}",
-            "-DMYRIAD_SCALAR_LANES", "-O0", "-c", f"{options.source}/validation/problems/{problem}_kernels.cpp", "-o", objects[-1]]
+            "-DMYRIAD_SCALAR_LANES", "-O0", "-c", str(kernels), "-o", objects[-1]]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 0:
             return False, f"{name}: does not compile\n{done.stderr[-2000:]}"
@@ -87,7 +91,8 @@ def examine(options, name, problems):
     started = time.monotonic()
     try:
         done = subprocess.run([program, "--quick", "--problems", ",".join(problems), "--output", str(build)],
-                              capture_output=True, text=True, timeout=SECONDS, env={**os.environ, "OMP_NUM_THREADS": "1"})
+                              capture_output=True, text=True, timeout=SECONDS,
+                              env={**os.environ, "OMP_NUM_THREADS": "1"})
     except subprocess.TimeoutExpired:
         return name is not None, f"{name or 'unchanged'}: did not end"
     missed = [line for line in done.stdout.splitlines() if line.startswith("MISSED")]
@@ -100,7 +105,7 @@ def examine(options, name, problems):
 
 def main():
     parser = argparse.ArgumentParser()
-    for option in ("--source", "--work", "--host"):
+    for option in ("--source", "--kernels", "--work", "--host"):
         parser.add_argument(option, type=pathlib.Path, required=True)
     parser.add_argument("--compile", required=True)
     parser.add_argument("--link", required=True)

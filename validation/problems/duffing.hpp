@@ -4,12 +4,13 @@
 
 #include <myriad/model.hpp>
 
+#include "problems/duffing.hpp"
+
 namespace validation {
 
 /// x'' + k x' - x + x^3 = B cos(omega t); keeps the last maximum of x with its time, the time and the speed of the last
 /// rise of x through zero, and how many there were.
-struct duffing {
-    enum state { x, v, n_state };
+struct duffing : problems::duffing {
     enum parameter { k, n_parameter };
     enum shared { B, omega, n_shared };
     enum accessory { t_maximum, t_rise, maximum, v_rise, maxima_sum, n_accessory };
@@ -18,7 +19,7 @@ struct duffing {
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
-        return {y[v], y[x] - y[x] * y[x] * y[x] - p[k] * y[v] + p.shared[B] * myriad::cos(p.shared[omega] * t)};
+        return slope<R>(y, p[k], p.shared[B] * myriad::cos(p.shared[omega] * t));
     }
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {

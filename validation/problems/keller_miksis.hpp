@@ -4,13 +4,12 @@
 
 #include <myriad/model.hpp>
 
+#include "problems/keller_miksis.hpp"
+
 namespace validation {
 
-/// The dimensionless radius y and its slope v over the time in periods of the first forcing; C12 is the phase of the
-/// second forcing in half turns. Keeps the last maximum and minimum of the radius and their times.
-struct keller_miksis {
-    enum state { y, v, n_state };
-    enum parameter { C0, C1, C2, C3, C4, C5, C6, C7, C8, C9, C10, C11, C12, n_parameter };
+/// Keeps the last maximum and minimum of the radius and their times.
+struct keller_miksis : problems::keller_miksis {
     enum accessory { t_maximum, t_minimum, maximum, minimum, n_accessory };
     enum integer_accessory { maxima, minima, n_integer_accessory };
     enum event { largest, smallest, n_event };

@@ -12,7 +12,7 @@ namespace validation {
 namespace {
 
 /// Position and velocity at time t of the orbit with half-axis 1 and eccentricity e: Kepler's equation by Newton's method.
-std::vector<double> orbit(double e, double t) {
+std::vector<double> place_on_orbit(double e, double t) {
     using real = long double;
     const real mean = std::remainder(static_cast<real>(t), 2 * std::numbers::pi_v<real>);
     real E = mean;
@@ -41,10 +41,10 @@ problem kepler_problem() {
     p.exactly = [](const instance& i, std::int64_t samples) {
         const double e = 1 - i.state[kepler::x];
         solution s;
-        s.end = orbit(e, i.t_end);
+        s.end = place_on_orbit(e, i.t_end);
         s.accessory = {2 * std::numbers::pi};
         s.count = {1};
-        for (const double t : evenly(i.t_end, samples)) s.samples.push_back(orbit(e, t));
+        for (const double t : evenly(i.t_end, samples)) s.samples.push_back(place_on_orbit(e, t));
         return s;
     };
     // energy and angular momentum

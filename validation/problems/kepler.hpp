@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Kepler's problem in the plane, with the passage of the perihelion as an event.
+// Kepler's problem in the plane, alone and with the passage of the perihelion as an event.
 #pragma once
 
 #include <myriad/model.hpp>
 
 namespace validation {
 
-/// x'' = -x / r^3, y'' = -y / r^3. The event is the passage of y = 0 from below, at the perihelion.
-struct kepler {
+/// x'' = -x / r^3, y'' = -y / r^3.
+struct orbit {
     enum state { x, y, u, v, n_state };
-    enum accessory { t_perihelion, n_accessory };
-    enum integer_accessory { orbits, n_integer_accessory };
-    enum event { perihelion, n_event };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto&) {
@@ -19,6 +16,14 @@ struct kepler {
         const R inverse = R(1) / (square * myriad::sqrt(square));
         return {s[u], s[v], -(s[x] * inverse), -(s[y] * inverse)};
     }
+};
+
+/// The event is the passage of y = 0 from below, at the perihelion.
+struct kepler : orbit {
+    enum accessory { t_perihelion, n_accessory };
+    enum integer_accessory { orbits, n_integer_accessory };
+    enum event { perihelion, n_event };
+
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto&) {
         return myriad::vec<R, n_event>{s[y]};

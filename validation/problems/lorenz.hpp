@@ -4,37 +4,25 @@
 
 #include <myriad/model.hpp>
 
+#include "problems/lorenz.hpp"
+
 namespace validation {
 
-/// The constant in the precision of R.
-template <class R>
-inline constexpr auto b = static_cast<myriad::real_of<R>>(8.0 / 3.0);
-
-/// x' = 10 (y - x), y' = rho x - y - x z, z' = x y - 8/3 z.
-struct lorenz {
-    enum state { x, y, z, n_state };
-    enum parameter { rho, n_parameter };
-
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
-        return {R(10) * (s[y] - s[x]), s[x] * (p[rho] - s[z]) - s[y], s[x] * s[y] - R(b<R>) * s[z]};
-    }
-};
+using lorenz = problems::factored_lorenz;
 
 /// Lorenz' equations with a tangent (u, v, w), normalised at the end of each phase.
-struct lorenz_tangent {
+struct lorenz_tangent : lorenz {
     enum state { x, y, z, u, v, w, n_state };
-    enum parameter { rho, n_parameter };
     enum accessory { growth, n_accessory };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
         return {R(10) * (s[y] - s[x]),
                 s[x] * (p[rho] - s[z]) - s[y],
-                s[x] * s[y] - R(b<R>) * s[z],
+                s[x] * s[y] - R(beta<R>) * s[z],
                 R(10) * (s[v] - s[u]),
                 s[u] * (p[rho] - s[z]) - s[v] - s[x] * s[w],
-                s[u] * s[y] + s[x] * s[v] - R(b<R>) * s[w]};
+                s[u] * s[y] + s[x] * s[v] - R(beta<R>) * s[w]};
     }
     MYRIAD_FUNCTION static void initialise(auto& lane) {
         if (lane.phase == 0) lane.accessory[growth] = 0;

@@ -3,7 +3,7 @@
 #include <myriad/instantiate.hpp>
 
 #include "../methods.hpp"
-#include "orbit.hpp"
+#include "kepler.hpp"
 
 #define VALIDATION_KERNEL(M) MYRIAD_INSTANTIATE(validation::orbit, myriad::M)
 VALIDATED_METHODS(VALIDATION_KERNEL)

@@ -4,17 +4,17 @@
 
 #include <myriad/model.hpp>
 
+#include "problems/robertson.hpp"
+
 namespace validation {
 
-/// a -> b at rate k1, 2 b -> b + c at k2, b + c -> a + c at k3 (1e4). The sum a + b + c is constant.
-struct robertson {
-    enum state { a, b, c, n_state };
+/// Its first two rates differ from instance to instance.
+struct robertson : problems::robertson {
     enum parameter { k1, k2, n_parameter };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
-        const R one = p[k1] * y[a], two = p[k2] * y[b] * y[b], three = R(1e4) * y[b] * y[c];
-        return {three - one, one - three - two, two};
+        return slope<R>(y, p[k1], p[k2]);
     }
 };
 

@@ -4,15 +4,12 @@
 
 #include <myriad/model.hpp>
 
+#include "problems/keller_miksis.hpp"
+
 namespace cpu_peers {
 
-/// The dimensionless radius y and its slope v over time in periods of the first forcing.
-struct keller_miksis_model {
-    static constexpr bool accessories_are_outputs = true;
-    enum state { y, v, n_state };
-    enum parameter { C0, C1, C2, C3, C4, C5, C6, C7, C8, C9, C10, C11, C12, n_parameter };
-    enum accessory { y_max, n_accessory };
-
+/// In fused multiply-adds.
+struct keller_miksis_model : problems::keller_miksis_with_peak {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& u, const auto& p) {
         using myriad::cospi, myriad::exp2, myriad::fma, myriad::log2, myriad::sinpi;
@@ -25,13 +22,6 @@ struct keller_miksis_model {
         const R waves = u[y] * fma(p[C7], cospi(first), p[C8] * cospi(second));
         const R denominator = fma(u[y], 1.0 - mach, p[C4] * p[C9]);
         return {u[v], (gas - at_wall - driving - waves) / denominator};
-    }
-
-    MYRIAD_FUNCTION static void initialise(auto& lane) { lane.accessory[y_max] = lane.y[y]; }
-
-    template <class R>
-    MYRIAD_FUNCTION static void after_step(auto& lane) {
-        lane.accessory[y_max] = myriad::max(lane.accessory[y_max], lane.y[y]);
     }
 };
 

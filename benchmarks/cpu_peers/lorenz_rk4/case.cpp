@@ -3,13 +3,13 @@
 #include "../cases.hpp"
 #include "../myriad_run.hpp"
 #include "equations.hpp"
-#include "model.hpp"
+#include "problems/lorenz.hpp"
 
 namespace cpu_peers {
 namespace {
 
 outcome run(const sweep& work) {
-    return run_myriad<myriad::runge_kutta_4, lorenz_model>(
+    return run_myriad<myriad::runge_kutta_4, problems::fused_lorenz>(
         work, {.step = lorenz::h}, [](auto& instances) { instances.time_domain(0, lorenz::h * lorenz::steps); });
 }
 

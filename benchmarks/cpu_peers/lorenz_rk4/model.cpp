@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Compiles the kernel of the Lorenz system, and says for which instruction set.
-#include "model.hpp"
-
 #include <myriad/instantiate.hpp>
 
 #include "equations.hpp"
+#include "problems/lorenz.hpp"
 
-MYRIAD_INSTANTIATE(cpu_peers::lorenz_model, myriad::runge_kutta_4)
+MYRIAD_INSTANTIATE(problems::fused_lorenz, myriad::runge_kutta_4)
 
 #define CPU_PEERS_TEXT_OF(name) #name
 #define CPU_PEERS_TEXT(name) CPU_PEERS_TEXT_OF(name)

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include <myriad/core/macros.hpp>
-#include <myriad/scalar/pack.hpp>
+#include <myriad/kernel/core/macros.hpp>
+#include <myriad/kernel/scalar/pack.hpp>
 
 #include "equations.hpp"
 
@@ -57,12 +57,12 @@ outcome run_pack_loop(const sweep& work) {
             point<S> u;
             S p;
             for (int lane = 0; lane < lanes; ++lane) {
-                for (int c = 0; c < n; ++c) set_lane(u.c[c], lane, work.states[c * work.instances + instance(lane)]);
-                set_lane(p, lane, work.parameters[instance(lane)]);
+                for (int c = 0; c < n; ++c) myriad::detail::set_lane(u.c[c], lane, work.states[c * work.instances + instance(lane)]);
+                myriad::detail::set_lane(p, lane, work.parameters[instance(lane)]);
             }
             for (int step = 0; step < steps; ++step) u = rk4(u, p);
             for (int lane = 0; lane < lanes; ++lane) {
-                for (int c = 0; c < n; ++c) work.states[c * work.instances + instance(lane)] = get_lane(u.c[c], lane);
+                for (int c = 0; c < n; ++c) work.states[c * work.instances + instance(lane)] = myriad::detail::get_lane(u.c[c], lane);
                 work.accepted[instance(lane)] = steps;
                 work.endings[instance(lane)] = ending::completed;
             }

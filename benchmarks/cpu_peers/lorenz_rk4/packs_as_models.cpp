@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The loop over packs with the models' flags and as many batches as Myriad takes: what its time is checked against.
 #include <myriad/openmp/run.hpp>
-#include <myriad/stepper/methods/runge_kutta_4.hpp>
+#include <myriad/kernel/methods/runge_kutta_4.hpp>
 
-#include "model.hpp"
 #include "pack_loop.hpp"
+#include "problems/lorenz.hpp"
 
 namespace cpu_peers::lorenz {
 
 outcome run_packs_as_models(const sweep& work) {
-    return run_pack_loop<myriad::default_batches<lorenz_model, myriad::runge_kutta_4>()>(work);
+    return run_pack_loop<myriad::detail::default_batches<problems::fused_lorenz, myriad::runge_kutta_4>()>(work);
 }
 
 }  // namespace cpu_peers::lorenz

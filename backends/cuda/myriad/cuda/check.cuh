@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// MYRIAD_CUDA(call): checks a CUDA call and throws an error that names it, what went wrong and what to do.
+// MYRIAD_CUDA(call): checks a CUDA call and throws an error with the call, what went wrong and what to do.
 #pragma once
 
 #include <string>
 
 #include <cuda_runtime.h>
 
-#include "myriad/core/error.hpp"
+#include "myriad/host/core/error.hpp"
 
 /// Runs a call of the CUDA runtime; throws myriad::error unless it succeeds.
 #define MYRIAD_CUDA(call) ::myriad::cuda::check((call), #call)
@@ -43,7 +43,7 @@ inline const char* advice_for(cudaError_t status) {
 
 inline void check(cudaError_t status, const char* call) {
     if (status == cudaSuccess) return;
-    cudaGetLastError();  // so that an error that does no lasting harm is not found again by the next call
+    cudaGetLastError();  // so that the next call does not report a non-sticky error again
     throw error(message(call, " failed: ", cudaGetErrorString(status), " (", cudaGetErrorName(status),
                         "): ", advice_for(status)));
 }

@@ -11,7 +11,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "myriad/backend.hpp"
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/chunk_layout.cuh"
 #include "myriad/cuda/launch.cuh"
@@ -19,6 +18,7 @@
 #include "myriad/cuda/schedule.cuh"
 #include "myriad/cuda/staging.cuh"
 #include "myriad/cuda/transfers.cuh"
+#include "myriad/host/backend/backend.hpp"
 
 namespace myriad::cuda {
 
@@ -61,8 +61,9 @@ public:
         arrays(stage);
         records(stage);
         if (to_stage > little_transfer::most && !has_staged_) {
-            // Made now, since that waits for all work of the device: for an upload, a download, and one that is asked for.
-            const lent_staging up(device_), down(device_), next(device_);
+            // Created now, since that waits for all work of the device: one for an upload, one for a download, and one
+            // on request.
+            const pooled_staging up(device_), down(device_), next(device_);
             has_staged_ = true;
         }
     }
@@ -88,9 +89,9 @@ public:
         if (little_transfer::takes(list)) {
             little_.upload(list, stream_.get());
         } else {
-            lent_staging(device_)->upload(list, stream_.get());
+            pooled_staging(device_)->upload(list, stream_.get());
         }
-        // After the copies: clearing takes multiprocessors, and would have them wait for kernels of other chunks.
+        // After the copies: clearing needs multiprocessors, and would make the copies wait for kernels of other chunks.
         std::byte *zeros = nullptr, *end_of_zeros = nullptr;
         walk(from, [&](auto*&, auto* target, std::int64_t components, array_access, array_kind kind) {
             if (!is_cleared(kind)) return;
@@ -99,7 +100,7 @@ public:
             if (zeros == nullptr) zeros = begin;
             end_of_zeros = begin + bytes_of(target, components * count_);
         });
-        // Bookkeeping lies side by side.
+        // Bookkeeping arrays are contiguous.
         if (zeros != nullptr)
             MYRIAD_CUDA(cudaMemsetAsync(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
         launcher_.set_shared(host.shared);
@@ -146,7 +147,7 @@ public:
         row_list of_arrays = std::exchange(list, {});
         walk_records(to.record, [&](auto*& target, auto* source, std::int64_t components, array_access,
                                     array_kind kind) { add(target, source, components, kind); });
-        // Records have memory of their own, which may be before that of the arrays.
+        // Records have their own memory, which may precede that of the arrays.
         const bool after = records_.data() > memory_.data();
         row_list& lower = after ? of_arrays : list;
         const row_list& upper = after ? list : of_arrays;
@@ -155,7 +156,7 @@ public:
         if (little_transfer::takes(lower)) {
             little_.begin_download(lower, stream_.get());
         } else {
-            fetching_ = std::make_unique<lent_staging>(device_);
+            fetching_ = std::make_unique<pooled_staging>(device_);
             (*fetching_)->begin_download(lower, stream_.get());
         }
     }
@@ -249,7 +250,7 @@ private:
         return {reinterpret_cast<std::byte*>(host + first_), reinterpret_cast<std::byte*>(device),
                 bytes_of(host, count_), static_cast<std::size_t>(components), bytes_of(host, size)};
     }
-    /// Takes the rows of pinned memory out of a list, unless it is of so little.
+    /// Removes the rows of pinned memory from a list, unless it is small enough for a single transfer.
     static row_list take_pinned(row_list& list) {
         if (little_transfer::takes(list)) return {};
         const auto in_pages = [](const array_rows& rows) { return !is_pinned(rows.host); };
@@ -264,7 +265,7 @@ private:
         if (const auto lent = std::move(fetching_)) (*lent)->finish_download();
     }
 
-    /// NaN for reals, as nothing was written there, and 0 for integers.
+    /// NaN for reals, meaning that nothing was written, and 0 for integers.
     template <class T>
     void clear(T* device, std::int64_t components) {
         const int byte = std::is_floating_point_v<T> ? 0xff : 0;
@@ -278,7 +279,7 @@ private:
         return false;
     }
 
-    /// Memory in use is not given back.
+    /// Memory in use is not freed.
     void grow(device_memory& memory, std::size_t bytes, std::size_t per_instance) {
         if (bytes <= memory.bytes()) return;
         wait();
@@ -308,14 +309,14 @@ private:
     }
 
     int device_;
-    std::optional<current_device> while_starting_;  // the members below are made on this device
+    std::optional<current_device> while_starting_;  // the members below are created on this device
     kernel_launcher<Model, Method, R> launcher_;
     device_memory memory_, records_, sample_times_, shared_;
     phase_scheduler<Model, Method, R> scheduler_;
     stream stream_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};
     little_transfer little_;
-    std::unique_ptr<lent_staging> fetching_;  // of the download under way, if it is more
+    std::unique_ptr<pooled_staging> fetching_;  // of the download in progress, if it is larger
     bool has_staged_ = false;
     shared_parameters<R> shared_on_device_{};
     std::int64_t first_ = 0, count_ = 0;

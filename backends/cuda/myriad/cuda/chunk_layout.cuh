@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the arrays of a chunk lie in device memory: one after the other, in the order of ensemble/arrays.hpp.
+// The layout of a chunk's arrays in device memory: one after the other, in the order of host/backend/arrays.hpp.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "myriad/cuda/transfers.cuh"
-#include "myriad/ensemble/arrays.hpp"
+#include "myriad/host/backend/arrays.hpp"
 
 namespace myriad::cuda {
 
@@ -16,20 +16,20 @@ std::size_t bytes_of(const T*, std::int64_t values) {
     return static_cast<std::size_t>(values) * sizeof(T);
 }
 
-/// Bytes of an array, rounded up so that the next one begins where memory transactions do.
+/// Bytes of an array, rounded up so that the next one is aligned to memory transactions.
 inline std::size_t padded(std::int64_t values, std::size_t element) {
     constexpr std::size_t unit = piece::padding;
     return (static_cast<std::size_t>(values) * element + unit - 1) / unit * unit;
 }
 
-/// What all arrays that `each` goes over take, for `count` instances.
+/// Bytes of all arrays that `each` visits, for `count` instances.
 template <class Each>
 std::size_t bytes_for(std::int64_t count, Each&& each) {
     std::size_t bytes = 0;
     each([&](auto* array, std::int64_t components, array_access, array_kind) {
         bytes += padded(components * count, sizeof(*array));
     });
-    return bytes == 0 ? 0 : bytes + piece::padding;  // so that no copy goes from one allocation on to another
+    return bytes == 0 ? 0 : bytes + piece::padding;  // so that no copy spans two allocations
 }
 
 /// For `for_each_array` and `for_each_record`: calls `visit(pointer, on the device, components, access, kind)` for each array,

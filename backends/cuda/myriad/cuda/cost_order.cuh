@@ -6,14 +6,14 @@
 
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/resources.cuh"
-#include "myriad/ensemble/cost_order.hpp"
+#include "myriad/kernel/core/cost_bucket.hpp"
 
-namespace myriad::inline MYRIAD_TARGET {
+namespace myriad::detail::inline MYRIAD_TARGET {
 
 inline constexpr int cost_block = 1024, costs_per_block = 8 * cost_block;
 static_assert(cost_buckets == cost_block, "one thread per bucket");
 
-/// Counts this block's costs in shared memory, which begins and ends with all threads of the block.
+/// Counts this block's costs in shared memory; synchronises the block at the beginning and the end.
 __device__ __forceinline__ void count_costs(const std::uint32_t* cost, std::uint32_t size, unsigned* counted) {
     counted[threadIdx.x] = 0;
     __syncthreads();
@@ -26,11 +26,11 @@ __device__ __forceinline__ void count_costs(const std::uint32_t* cost, std::uint
 static __global__ void __launch_bounds__(cost_block)
     count_all_costs(const std::uint32_t* cost, std::uint32_t size, unsigned* total) {
     __shared__ unsigned counted[cost_buckets];
-    count_costs(cost, size, counted);
+    detail::count_costs(cost, size, counted);
     if (counted[threadIdx.x] > 0) atomicAdd(&total[threadIdx.x], counted[threadIdx.x]);
 }
 
-/// Where each bucket begins, from how many are in it; one block.
+/// Where each bucket begins, from the bucket sizes; one block.
 static __global__ void __launch_bounds__(cost_block) sum_costs(unsigned* total) {
     __shared__ unsigned sum[cost_buckets];
     const unsigned own = total[threadIdx.x];
@@ -45,11 +45,11 @@ static __global__ void __launch_bounds__(cost_block) sum_costs(unsigned* total) 
     total[threadIdx.x] = sum[threadIdx.x] - own;
 }
 
-/// Each block takes its share of every bucket at once, so that neighbours stay close to each other.
+/// Each block reserves its share of every bucket at once, so that neighbours stay close to each other.
 static __global__ void __launch_bounds__(cost_block)
     place_by_cost(const std::uint32_t* cost, std::uint32_t size, unsigned* begin, std::uint32_t* order) {
     __shared__ unsigned place[cost_buckets];
-    count_costs(cost, size, place);
+    detail::count_costs(cost, size, place);
     if (place[threadIdx.x] > 0) place[threadIdx.x] = atomicAdd(&begin[threadIdx.x], place[threadIdx.x]);
     __syncthreads();
     const std::uint32_t first = blockIdx.x * costs_per_block;
@@ -57,7 +57,7 @@ static __global__ void __launch_bounds__(cost_block)
         order[atomicAdd(&place[cost_bucket(cost[i])], 1u)] = i;
 }
 
-}  // namespace myriad::inline MYRIAD_TARGET
+}  // namespace myriad::detail::inline MYRIAD_TARGET
 
 namespace myriad::cuda {
 
@@ -75,14 +75,14 @@ public:
         cost_.release();
         order_.release();
     }
-    /// Asks for costs of zero.
+    /// Enqueues clearing of the costs.
     void clear(std::int64_t count, cudaStream_t where) {
         MYRIAD_CUDA(cudaMemsetAsync(cost_.data(), 0, static_cast<std::size_t>(count) * sizeof(std::uint32_t), where));
     }
     std::uint32_t* cost() const { return static_cast<std::uint32_t*>(cost_.data()); }
     const std::uint32_t* order() const { return static_cast<const std::uint32_t*>(order_.data()); }
 
-    /// Asks for the sort; the instances' costs are known.
+    /// Enqueues the sort; the instances' costs must be known.
     void sort(std::int64_t count, cudaStream_t where) {
         const auto size = static_cast<std::uint32_t>(count);
         const unsigned blocks = (size + costs_per_block - 1) / costs_per_block;

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The CUDA kernel: one thread takes one instance through the loop, or one after the other. What varies is only where the
-// threads find the parameters that all instances share.
+// The CUDA kernel: one thread takes one instance through the loop, or several one after the other. Variants differ only
+// in where shared parameters are stored.
 #pragma once
 
 #include <cstdint>
 #include <type_traits>
 
-#include "myriad/integrator/integrate.hpp"
+#include "myriad/kernel/integrator/integrate.hpp"
 
-namespace myriad::inline MYRIAD_TARGET {
+namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Whether instances may differ in cost: where steps are chosen, or something ends phases. Other kernels take them in order.
+/// Whether instances may differ in cost: if steps are adaptive, or something can end phases. Other kernels take them in
+/// order.
 template <class Model, class Method>
 inline constexpr bool costs_differ = is_adaptive<Method> || has_events<Model> || has_after_step<Model>;
 
-/// A thread's supply of one instance, by the thread's number.
+/// A thread's supply of one instance, given by the thread's number.
 class own_instance {
 public:
     __device__ __forceinline__ own_instance(const std::int64_t size, const std::uint32_t*, unsigned long long*)
@@ -27,14 +28,14 @@ public:
         index_ = -1;
         return given;
     }
-    /// Whether there is no other instance than the first.
+    /// Whether the first instance is the only one.
     __device__ __forceinline__ bool gives_only_one() const { return true; }
 
 private:
     std::int64_t index_;
 };
 
-/// A supply of that one, and then, if there is a queue, of whichever is next.
+/// A supply of that one, and then, if there is a queue, of the next ones in it.
 class queued_instances {
 public:
     __device__ __forceinline__ queued_instances(std::int64_t size, const std::uint32_t* order, unsigned long long* queue)
@@ -42,7 +43,7 @@ public:
 
     __device__ __forceinline__ std::int64_t next() {
         std::int64_t block = blockIdx.x;
-        MYRIAD_FORGET(block);  // else the place waits in registers through the loop
+        MYRIAD_FORGET(block);  // otherwise the address stays in registers through the loop
         std::int64_t place = block * blockDim.x + threadIdx.x;
         if (has_begun_) {
             if (queue_ == nullptr) return -1;
@@ -65,8 +66,9 @@ template <class Model, class R>
 inline constexpr int shared_parameter_bytes =
     n_shared<Model>* static_cast<int>(sizeof(R)) + n_shared_integer<Model>* static_cast<int>(sizeof(std::int32_t));
 
-/// Most threads per block; a model may choose by `static constexpr int max_block_size = 512;`. Up to 256, a thread can have
-/// as many registers as the hardware addresses. nvcc weighs registers against blocks of this size (docs/gpu.md).
+/// Most threads per block; a model may choose with `static constexpr int max_block_size = 512;`. Up to 256, a thread
+/// can have as many registers as the hardware can address. nvcc trades registers for resident blocks of this size
+/// (docs/gpu.md).
 template <class Model>
 constexpr int max_block_size() {
     if constexpr (requires { Model::max_block_size; }) {
@@ -76,7 +78,7 @@ constexpr int max_block_size() {
     }
 }
 
-/// What a kernel is launched with. In the constant bank, the shared parameters travel with the arguments.
+/// A kernel's launch parameters. In the constant bank, the shared parameters are passed with the arguments.
 template <class Model, class R, shared_placement placement>
 struct launch_arguments {
     kernel_arguments<Model, R> ensemble;
@@ -90,7 +92,7 @@ struct launch_arguments<Model, R, shared_placement::constant_bank> {
     std::int32_t shared_integer[at_least_one(n_shared_integer<Model>)];
 };
 
-/// Copies the shared parameters to the block's shared memory, with all its threads.
+/// Copies the shared parameters to the block's shared memory, using all its threads.
 template <class Model, class R>
 __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parameters<R>& from) {
     extern __shared__ double staged[];  // double: aligned for either real type
@@ -104,16 +106,16 @@ __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parame
     return {real, integer};
 }
 
-/// Integrates the instances that its threads' supplies hand out.
+/// Integrates the instances from its threads' supplies.
 template <class Model, class Method, class R, shared_placement placement>
 __global__ void __launch_bounds__(max_block_size<Model>())
     integrate_ensemble(const __grid_constant__ launch_arguments<Model, R, placement> arguments) {
     shared_parameters<R> shared = arguments.ensemble.shared;
     if constexpr (placement == shared_placement::constant_bank) shared = {arguments.shared, arguments.shared_integer};
-    if constexpr (placement == shared_placement::shared_memory) shared = stage_shared<Model, R>(shared);
+    if constexpr (placement == shared_placement::shared_memory) shared = detail::stage_shared<Model, R>(shared);
     using supply = std::conditional_t<costs_differ<Model, Method>, queued_instances, own_instance>;
     supply instances(arguments.ensemble.size, arguments.ensemble.order, arguments.queue);
-    integrate<Model, Method, R>(arguments.ensemble, shared, instances);
+    detail::integrate<Model, Method, R>(arguments.ensemble, shared, instances);
 }
 
-}  // namespace myriad::inline MYRIAD_TARGET
+}  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Chooses how a kernel is launched: the place of the shared parameters, the block size, and what the compiler made of it.
+// Chooses how a kernel is launched: the place of the shared parameters and the block size, given its compiled
+// resources.
 #pragma once
 
 #include <algorithm>
 #include <cstring>
 #include <string>
 
-#include "myriad/backend.hpp"
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/kernel.cuh"
+#include "myriad/host/backend/backend.hpp"
 
 namespace myriad::cuda {
 
@@ -52,7 +53,7 @@ public:
     std::int64_t least_threads() const { return std::int64_t{128} * multiprocessors_; }
     void note(schedule how) { facts_.schedule = how; }
 
-    /// Keeps the shared parameters of launches from the constant bank; `shared` is on the host.
+    /// Stores the shared parameters for launches from the constant bank; `shared` is on the host.
     void set_shared(const shared_parameters<R>& shared) {
         if constexpr (is_compiled<Model, R>(place::constant_bank)) {
             std::copy_n(shared.real, n_shared<Model>, constants_.shared);
@@ -60,7 +61,8 @@ public:
         }
     }
 
-    /// Launches the kernel on device pointers. With a queue, which is zero, no more threads than run at the same time.
+    /// Launches the kernel on device pointers. With a queue, which must be zero, no more threads than run at the same
+    /// time.
     void launch(const kernel_arguments<Model, R>& arguments, unsigned long long* queue, cudaStream_t where) {
         const int block = facts_.block_size = block_for(arguments.size);
         auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
@@ -83,7 +85,7 @@ public:
 private:
     template <place p>
     void run(const launch_arguments<Model, R, p>& all, unsigned blocks, int block, cudaStream_t where) const {
-        // Not <<<>>>, whose status is that of whatever failed last in the thread.
+        // Not <<<>>>, whose status is that of the thread's last failure, whatever it was.
         void* arguments[] = {const_cast<launch_arguments<Model, R, p>*>(&all)};
         check(
             cudaLaunchKernel(reinterpret_cast<const void*>(kernel<p>), dim3(blocks), dim3(static_cast<unsigned>(block)),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Owners of what CUDA lends: device memory, streams and events. Each is bound to the device that was
-// current when it was made.
+// RAII owners of CUDA resources: device memory, streams and events. Each is bound to the device that was current when
+// it was created.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace myriad::cuda {
 
-/// Makes a device current as long as it lives.
+/// Makes a device current for its lifetime.
 class current_device {
 public:
     explicit current_device(int number) {
@@ -26,7 +26,7 @@ private:
     int before_ = 0;
 };
 
-/// Device memory that grows when asked for more; what it held is then lost.
+/// Device memory that grows on request; its contents are then lost.
 class device_memory {
 public:
     device_memory() = default;
@@ -34,8 +34,8 @@ public:
     device_memory& operator=(const device_memory&) = delete;
     ~device_memory() { cudaFree(data_); }
 
-    /// Makes room for `bytes`. For the message, if `per_instance` is not zero: the bytes that one instance takes, and those
-    /// that are held for instances already.
+    /// Makes room for `bytes`. For the message, if `per_instance` is not zero: the bytes per instance, and those
+    /// already held for instances.
     void reserve(std::size_t bytes, std::size_t per_instance = 0, std::size_t held = 0) {
         if (bytes <= bytes_) return;
         release();
@@ -84,7 +84,7 @@ private:
     cudaStream_t stream_ = nullptr;
 };
 
-/// A mark in a stream. `timed`: the time at which it is reached is kept.
+/// A CUDA event. `timed`: the time at which it is reached is recorded.
 class event {
 public:
     enum class kind { plain, timed };

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "myriad/backend.hpp"
-#include "myriad/core/pinned.hpp"
 #include "myriad/cuda/chunk_engine.cuh"
+#include "myriad/host/backend/backend.hpp"
+#include "myriad/host/memory/pinned.hpp"
 
 namespace myriad::cuda {
 
-/// How many there are; none: `why_none` says why.
+/// Number of GPUs; if there are none, `why_none` says why.
 inline int count_devices(std::string& why_none) {
     int count = 0;
     const cudaError_t status = cudaGetDeviceCount(&count);
@@ -48,7 +48,7 @@ __attribute__((weak)) void pin_memory(int device, void* memory, std::size_t byte
 }
 __attribute__((weak)) void unpin_memory(void* memory) {
     cudaHostUnregister(memory);
-    cudaGetLastError();  // of a CUDA that is gone, when a program ends
+    cudaGetLastError();  // CUDA may be gone at exit
 }
 
 template <class Model, class Method, class R, class Counts>
@@ -67,6 +67,6 @@ std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options) {
 /// Compiles the kernels of one model, method and real type.
 #define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                      \
     template <>                                                                                           \
-    void myriad::instantiated_in_one_file_alone<myriad::cuda::engine_options, Model, Method, R>() {}      \
+    void myriad::detail::instantiated_in_one_file_alone<myriad::cuda::engine_options, Model, Method, R>() {}      \
     template std::unique_ptr<myriad::cuda::engine<Model, R>> myriad::cuda::make_engine<Model, Method, R>( \
         const myriad::cuda::engine_options&);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Launches the phases of a call in the order that the schedule asks for; keeps what that takes on the device.
+// Launches the phases of a call in the order given by the schedule; holds the device memory for it.
 #pragma once
 
 #include <cstddef>
@@ -19,11 +19,11 @@ class phase_scheduler {
 public:
     explicit phase_scheduler(schedule wanted) : wanted_(costs_differ<Model, Method> ? wanted : schedule::in_order) {}
 
-    /// Device memory that an instance may take beside its own data: a cost and a place in the order.
+    /// Device memory that an instance may take besides its own data: a cost and a place in the order.
     std::size_t bytes_per_instance() const {
         return wanted_ == schedule::by_cost || wanted_ == schedule::automatic ? 2 * sizeof(std::uint32_t) : 0;
     }
-    /// Takes the memory for calls of so many phases, with no work under way.
+    /// Allocates the memory for calls of that many phases; no work may be in progress.
     void reserve(std::int64_t count, std::int64_t phases, std::int64_t worthwhile) {
         const schedule how = chosen(count, phases, worthwhile);
         if (how == schedule::by_cost) by_cost_.reserve(count);
@@ -31,7 +31,7 @@ public:
     }
     std::size_t bytes() const { return by_cost_.bytes(); }
     void release() { by_cost_.release(); }
-    /// Other instances are on the device now.
+    /// To be called when other instances have been uploaded.
     void forget_costs() { costs_known_ = false; }
 
     void launch(kernel_launcher<Model, Method, R>& kernel, arguments now, cudaStream_t where) {
@@ -57,7 +57,8 @@ public:
     }
 
 private:
-    /// Sorting pays if most of the work is yet to come; `worthwhile`: threads that keep the GPU's warp schedulers busy.
+    /// Sorting pays off if most of the work is still to come; `worthwhile`: threads that keep the GPU's warp schedulers
+    /// busy.
     schedule chosen(std::int64_t count, std::int64_t phases, std::int64_t worthwhile) const {
         const bool sortable = count <= most_sorted;
         if (wanted_ == schedule::automatic)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Copies to and from a GPU through small pinned buffers, for memory of the host that is not pinned: pinning all of it would take
-// longer than the copy.
+// Copies to and from a GPU through small pinned buffers, for host memory that is not pinned: pinning all of it would
+// take longer than the copy.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +11,15 @@
 #include <utility>
 #include <vector>
 
-#include "myriad/core/kept.hpp"
-#include "myriad/core/parallel.hpp"
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/resources.cuh"
 #include "myriad/cuda/transfers.cuh"
+#include "myriad/host/threads/object_pool.hpp"
+#include "myriad/host/threads/parallel.hpp"
 
 namespace myriad::cuda {
 
-/// Pinned memory of the host.
+/// Pinned host memory.
 class pinned_memory {
 public:
     explicit pinned_memory(std::size_t bytes) {
@@ -36,14 +36,14 @@ private:
     std::byte* data_ = nullptr;
 };
 
-/// For transfers of so little that their number counts: as few as there can be, through a buffer of its own.
+/// For transfers so small that their number matters: as few as possible, through a single buffer.
 class little_transfer {
 public:
-    /// The most bytes of a transfer, without what is between arrays.
+    /// The most bytes of a transfer, not counting padding between arrays.
     static constexpr std::size_t most = 65'536;
     static bool takes(const row_list& list) { return bytes_of(list) <= most && list.size() <= most / piece::padding; }
 
-    /// The host's memory is free on return.
+    /// The host's memory may be reused on return.
     void upload(const row_list& list, cudaStream_t stream) {
         finish_download();
         check(cudaEventSynchronize(done_.get()), "an upload");
@@ -85,15 +85,15 @@ private:
     std::vector<piece> pieces_;  // of the download under way
 };
 
-/// For all others: buffers of several threads, which fill and empty each their own, without waiting for each other. Two for each
-/// thread, so that one is copied by the GPU meanwhile.
+/// For all others: several threads, each filling and emptying its own two buffers without waiting for the others, so
+/// that the GPU copies one buffer meanwhile.
 class staging {
 public:
     explicit staging(int device) : device_(device) {
         for (std::size_t i = 0; i < buffers; ++i) buffers_[i].data = memory_.data() + i * largest;
     }
 
-    /// The host's memory is free on return.
+    /// The host's memory may be reused on return.
     void upload(const row_list& list, cudaStream_t stream) {
         each_piece(cut(list), [&](const piece& p, std::size_t, buffer& b) {
             if (const cudaError_t status = b.wait(); status != cudaSuccess) return status;
@@ -102,14 +102,14 @@ public:
             return status == cudaSuccess ? b.mark(stream) : status;
         });
     }
-    /// Asks for the first pieces, and returns.
+    /// Enqueues the first pieces, and returns.
     void begin_download(const row_list& list, cudaStream_t stream) {
         for (buffer& b : buffers_) check(b.wait(), "a copy to the GPU");
         pieces_ = cut(list);
         stream_ = stream;
         for (std::size_t i = 0; i < std::min(pieces_.size(), buffers); ++i) check(ask(pieces_[i], buffers_[i]), "a download");
     }
-    /// Whether the device may change what is downloaded, in the same stream: all pieces are asked for.
+    /// Whether later work in the same stream may overwrite the data: all pieces are enqueued.
     bool asked_for_all() const { return pieces_.size() <= buffers; }
     /// Waits for what `begin_download` began, and puts it in its place.
     void finish_download() {
@@ -134,15 +134,15 @@ private:
         cudaError_t wait() { return cudaEventSynchronize(copied.get()); }
     };
 
-    /// Large enough for the bus, and as many for each thread.
+    /// Large enough to use the bus fully, and equally many for each thread.
     static std::vector<piece> cut(const row_list& list) {
         const std::size_t bytes = bytes_of(list) + list.size() * piece::padding, turns = (bytes - 1) / (workers * largest) + 1;
         const std::size_t each = bytes / (turns * workers) / unit * unit + unit;
         return piece::cut(list, std::clamp(each, smallest, largest));
     }
 
-    /// Calls `work(piece, its number, its buffer)` for each, in several threads; for those that share a buffer in one, in order.
-    /// Throws `error` if any returns anything but success.
+    /// Calls `work(piece, its number, its buffer)` for each piece, in several threads; pieces that share a buffer are
+    /// handled by one thread, in order. Throws `error` if any call returns anything but success.
     template <class Work>
     void each_piece(const std::vector<piece>& pieces, Work&& work) {
         std::atomic<cudaError_t> failed{cudaSuccess};
@@ -175,19 +175,20 @@ private:
     cudaStream_t stream_ = nullptr;
 };
 
-/// Staging memory of a device, borrowed for one transfer: there is as much of it as there were transfers at a time.
-class lent_staging {
+/// Staging memory of a device, borrowed from a pool for one transfer; the pool holds as many as there were concurrent
+/// transfers.
+class pooled_staging {
 public:
-    explicit lent_staging(int device) : device_(device), taken_(idle::all().take(device)) {
+    explicit pooled_staging(int device) : device_(device), taken_(idle::all().take(device)) {
         if (taken_ == nullptr) taken_ = std::make_unique<staging>(device);
     }
-    lent_staging(const lent_staging&) = delete;
-    lent_staging& operator=(const lent_staging&) = delete;
-    ~lent_staging() { idle::all().give(device_, std::move(taken_)); }
+    pooled_staging(const pooled_staging&) = delete;
+    pooled_staging& operator=(const pooled_staging&) = delete;
+    ~pooled_staging() { idle::all().give(device_, std::move(taken_)); }
     staging* operator->() const { return taken_.get(); }
 
 private:
-    using idle = host::kept<int, staging>;
+    using idle = host::object_pool<int, staging>;
 
     int device_;
     std::unique_ptr<staging> taken_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Copies between an ensemble's arrays on the host and a chunk on the device: which rows there are, copied directly where the
-// host's memory is pinned, or cut into pieces for those who copy through pinned buffers (cuda/staging.cuh).
+// Copies between an ensemble's arrays on the host and a chunk on the device: the rows to copy, copied directly if the
+// host's memory is pinned, or cut into pieces to be copied through pinned buffers (cuda/staging.cuh).
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace myriad::cuda {
 
-/// A chunk's part of an array: rows of `width` bytes, `pitch` apart on the host and side by side on the device.
+/// A chunk's part of an array: rows of `width` bytes, `pitch` apart on the host and contiguous on the device.
 struct array_rows {
     std::byte* host;
     std::byte* device;
@@ -35,7 +35,7 @@ inline std::size_t bytes_of(const row_list& list) {
     return bytes;
 }
 
-/// Whether host memory is pinned; its first byte stands for all, as arrays are pinned as a whole.
+/// Whether host memory is pinned; testing its first byte is enough, as arrays are pinned as a whole.
 inline bool is_pinned(const void* host) {
     cudaPointerAttributes facts{};
     MYRIAD_CUDA(cudaPointerGetAttributes(&facts, host));
@@ -56,10 +56,10 @@ inline void copy_directly(const row_list& list, cudaMemcpyKind way, cudaStream_t
     }
 }
 
-/// A part of the device's memory that is a single transfer, whatever arrays it holds, and those rows that it has a part of.
+/// A part of the device's memory that is a single transfer, whatever arrays it covers, and the rows that overlap it.
 class piece {
 public:
-    /// Arrays on the device begin at multiples of it; what is between them is copied along.
+    /// Arrays on the device begin at multiples of it; the padding between them is copied along.
     static constexpr std::size_t padding = 256;
 
     static std::vector<piece> cut(const row_list& list, std::size_t largest) {
@@ -99,7 +99,7 @@ private:
     explicit piece(std::byte* device) : device_(device) {}
     std::byte* end() const { return device_ + bytes_; }
 
-    /// Calls `copy(host, staged, bytes)` for all that the piece has of each row.
+    /// Calls `copy(host, staged, bytes)` for the part of each row that the piece covers.
     template <class Copy>
     void each_run(std::byte* buffer, Copy&& copy) const {
         for (const array_rows& rows : rows_) {
@@ -114,7 +114,7 @@ private:
             }
         }
     }
-    /// Writes results without reading what was there before, as memcpy would.
+    /// Writes results with non-temporal stores, without reading the old contents into the cache as memcpy would.
     static void copy_past_caches(std::byte* to, const std::byte* from, std::size_t bytes) {
 #if defined(__SSE2__)
         constexpr std::size_t line = 64, part = sizeof(__m128i), worthwhile = 32 * line;

@@ -1,33 +1,48 @@
 // SPDX-License-Identifier: MIT
-// Where the lanes of the OpenMP backend get their instances: chunks of consecutive indices, handed to whichever thread
-// asks, so that no thread waits for another.
+// Hands out instances to the lanes of the OpenMP backend: chunks of consecutive indices, to whichever thread asks, so
+// that no thread waits for another.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 
-#include "myriad/backend.hpp"
-#include "myriad/core/macros.hpp"
+#include "myriad/host/backend/backend.hpp"
+#include "myriad/kernel/core/macros.hpp"
 
-namespace myriad::inline MYRIAD_TARGET {
+namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// One thread's view of the ensemble; `next()` is all the loop knows of it.
+/// The shared state of a run's threads.
+struct common_supply {
+    std::atomic<std::int64_t> begun{0};  // instances handed out
+    std::atomic<std::int64_t> done{0};   // as far as the threads have reported
+    std::atomic<bool> stopped{false};    // the progress function said no, or a function of the model threw
+
+    /// No further one of the `size` instances is to be started.
+    void stop(std::int64_t size) {
+        stopped = true;
+        begun.store(size, std::memory_order_relaxed);
+    }
+};
+
+/// One thread's view of the ensemble; the loop uses only `next()`.
 class chunked_instances {
 public:
-    /// `begun` counts the instances handed out, over all threads; `order`, if not null, says which they are. `reports`: this
+    /// `lanes` lanes ask for instances in turn; `order`, if not null, maps positions to instances. `reports`: this
     /// thread calls the progress function.
-    chunked_instances(std::atomic<std::int64_t>& begun, std::int64_t size, std::int64_t chunk, const std::uint32_t* order,
+    chunked_instances(common_supply& all, std::int64_t size, std::int64_t chunk, int lanes, const std::uint32_t* order,
                       const run_options& options, bool reports)
-        : begun_(begun), size_(size), chunk_(chunk), order_(order), options_(options),
-          reports_(reports && options.progress) {}
+        : all_(all), size_(size), chunk_(chunk), order_(order), options_(options), reports_(reports), done_(-lanes),
+          tell_at_(options.progress ? interval_ : std::numeric_limits<std::int64_t>::max()) {}
 
-    /// The next instance, or -1 when all are taken. If the progress function says no, none is handed out any more.
+    /// The next instance, or -1 when all are taken. Once the progress function returns false, no more are handed out.
     std::int64_t next() {
+        // A lane that asks again has finished its last instance; the first time it had none.
+        if (++done_ >= tell_at_) tell();
         if (next_ == end_) {
-            next_ = std::min(begun_.fetch_add(chunk_, std::memory_order_relaxed), size_);
+            next_ = std::min(all_.begun.fetch_add(chunk_, std::memory_order_relaxed), size_);
             end_ = std::min(next_ + chunk_, size_);
-            if (reports_ && !options_.progress(options_.context, next_)) begun_.store(size_, std::memory_order_relaxed);
             if (next_ == end_) return -1;
         }
         const std::int64_t place = next_++;
@@ -35,12 +50,25 @@ public:
     }
 
 private:
-    std::atomic<std::int64_t>& begun_;
-    std::int64_t size_, chunk_;
+    void tell() {
+        tell_at_ = done_ + interval_;
+        const std::int64_t since = done_ - told_;
+        told_ = done_;
+        const std::int64_t done = all_.done.fetch_add(since, std::memory_order_relaxed) + since;
+        // The last report is made when all threads are done.
+        if (reports_ && done < size_ && !options_.progress(options_.context, done)) all_.stop(size_);
+        if (all_.stopped) next_ = end_;
+    }
+
+    common_supply& all_;
+    std::int64_t size_, chunk_, interval_ = std::clamp<std::int64_t>(size_ / 1024, 1, 16);
     const std::uint32_t* order_;
     const run_options& options_;
     bool reports_;
+    std::int64_t done_;      // instances that this thread has done; negative: lanes that have not asked yet
+    std::int64_t told_ = 0;  // those already added to the shared count
+    std::int64_t tell_at_;
     std::int64_t next_ = 0, end_ = 0;
 };
 
-}  // namespace myriad::inline MYRIAD_TARGET
+}  // namespace myriad::detail::inline MYRIAD_TARGET

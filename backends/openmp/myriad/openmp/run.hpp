@@ -10,23 +10,24 @@
 
 #include <omp.h>
 
-#include "myriad/backend.hpp"
-#include "myriad/scalar/pack.hpp"
-// the loop comes after the packs, whose functions it calls
-#include "myriad/integrator/integrate.hpp"
+#include "myriad/host/backend/backend.hpp"
+#include "myriad/kernel/scalar/pack.hpp"
+// after the packs, whose functions the loop calls
+#include "myriad/kernel/integrator/integrate.hpp"
 #include "myriad/openmp/instances.hpp"
 #include "myriad/openmp/team.hpp"
 
-namespace myriad::inline MYRIAD_TARGET {
+namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// SIMD batches per pack: enough independent work to hide the latency of a batch, few enough that the stages of a large
-/// state stay in the first-level cache, and one where events make lanes part ways at every step. Measured on a Zen 4, CPU
-/// time per step and instance with 1, 2, 3, 4 batches: with AVX-512, whose 32 registers hold two batches, Lorenz with RK4
-/// -, 1.35, 1.46, 1.40 ns and Duffing with Cash-Karp -, 11.6, 12.2, -; with AVX2, whose 16 hold none, -, 2.38, 2.10, 2.07 and
-/// -, 16.6, 15.7, 15.9, but the bubble of cpu_peers, with its 13 parameters, -, 54, 56, -; with events every 5 steps 46, 48, 76, -
-/// and 63, 71, 78, -, with hundreds of steps between them (the valve of cpu_peers) -, 12.4, 13.0, - and -, 19.4, 17.3, 18.7. That
-/// is g++'s code; clang++'s with AVX-512 on an Intel Xeon takes -, 1.25, 0.98, -, Duffing -, 9.6, 9.3, -, the valve -, 11.3, 12.1,
-/// -. A model may choose by `static constexpr bool rare_events = true;` or `static constexpr int pack_batches = 2;`.
+/// state stay in the first-level cache, and one if events make lanes diverge at every step. Measured on a Zen 4, CPU
+/// time per step and instance with 1, 2, 3, 4 batches: with AVX-512, whose 32 registers hold two batches, Lorenz with
+/// RK4 -, 1.35, 1.46, 1.40 ns and Duffing with Cash-Karp -, 11.6, 12.2, -; with AVX2, whose 16 hold none, -, 2.38,
+/// 2.10, 2.07 and -, 16.6, 15.7, 15.9, but the bubble of cpu_peers, with its 13 parameters, -, 54, 56, -; with events
+/// every 5 steps 46, 48, 76, - and 63, 71, 78, -, with hundreds of steps between them (the valve of cpu_peers) -, 12.4,
+/// 13.0, - and -, 19.4, 17.3, 18.7. That is g++'s code; clang++'s with AVX-512 on an Intel Xeon takes -, 1.25, 0.98, -,
+/// Duffing -, 9.6, 9.3, -, the valve -, 11.3, 12.1, -. A model may choose by `static constexpr bool rare_events =
+/// true;` or `static constexpr int pack_batches = 2;`.
 template <class Model, class Method>
 constexpr int default_batches() {
 #if defined(MYRIAD_SCALAR_LANES)  // with sanitizers, which take minutes to compile the kernel of a pack
@@ -61,13 +62,14 @@ struct lane_kind<R, 0> {
     using type = R;
 };
 
-/// Bytes that a kernel takes of a thread's stack: what it is known to hold, twice, since the compiler keeps parts of it apart, and
-/// some states for what a step computes. g++ was seen to take half to nine tenths of that.
+/// Estimate of a kernel's stack per thread in bytes: twice the data it holds, since the compiler makes separate copies
+/// of parts of them, and some states for a step's intermediate values. g++ was observed to use half to nine tenths of
+/// that.
 template <class Model, class Method, class S>
 constexpr std::size_t stack_of_kernel() {
     constexpr std::size_t state = sizeof(vec<S, n_state<Model>>), few = 4096;
     constexpr std::size_t matrix = solves_linear_systems<Method> ? n_state<Model> * state : 0;
-    return 2 * (sizeof(integrator<Model, Method, S>) + sizeof(rk_trial<Method, S, n_state<Model>>)) + matrix + 16 * state + few;
+    return 2 * (sizeof(integrator<Model, Method, S>) + sizeof(trial_step<Method, S, n_state<Model>>)) + matrix + 16 * state + few;
 }
 
 /// One run of a kernel by a team of threads.
@@ -76,20 +78,22 @@ struct team_run {
     const kernel_arguments<Model, real_of<S>>& arguments;
     const run_options& options;
     std::int64_t count, chunk;
-    std::atomic<std::int64_t> begun{0}, turns{0};
+    common_supply supply{};
+    std::atomic<std::int64_t> iterations{0};
     bool failed = false;
 
-    /// What a function of the model throws ends the run: no further instance is begun. The host keeps it, since functions of the
-    /// standard library that this file does not inline are shared with files for other instruction sets.
+    /// An exception thrown by a function of the model ends the run: no further instance is started. The host stores it,
+    /// since functions of the standard library that this file does not inline are shared with files for other
+    /// instruction sets.
     static void work(void* context, int part) noexcept {
         auto& run = *static_cast<team_run*>(context);
-        chunked_instances instances(run.begun, run.count, run.chunk, run.arguments.order, run.options, part == 0);
+        chunked_instances instances(run.supply, run.count, run.chunk, lanes_of<S>, run.arguments.order, run.options, part == 0);
         try {
-            run.turns += integrate<Model, Method, S>(run.arguments, run.arguments.shared, instances);
+            run.iterations += detail::integrate<Model, Method, S>(run.arguments, run.arguments.shared, instances);
         } catch (...) {
             const bool first = !__atomic_exchange_n(&run.failed, true, __ATOMIC_ACQ_REL);
             if (first && run.options.caught != nullptr) run.options.caught(run.options.failure);
-            run.begun = run.count;
+            run.supply.stop(run.count);
         }
     }
 };
@@ -100,23 +104,25 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
     using S = typename lane_kind<R, batches>::type;
     constexpr int lanes = lanes_of<S>;
     const std::int64_t count = options.count > 0 ? options.count : arguments.size;
-    const std::int64_t packs = (count + lanes - 1) / lanes;  // a thread more would find nothing to do
+    const std::int64_t packs = (count + lanes - 1) / lanes;  // another thread would have nothing to do
     const std::int64_t threads = std::min<std::int64_t>(options.threads > 0 ? options.threads : omp_get_max_threads(), packs);
-    // In order, there is one chunk for every thread.
+    // In order: one chunk per thread.
     const std::int64_t chunk = options.schedule == schedule::in_order
                                    ? (count + threads - 1) / threads
                                    : std::clamp<std::int64_t>(count / (64 * threads), 1, 64);
     team_run<Model, Method, S> run{arguments, options, count, chunk};
     openmp::team members{&run.work, &run, static_cast<int>(threads), stack_of_kernel<Model, Method, S>()};
     openmp::in_parts(openmp::for_set<openmp::instruction_set::MYRIAD_INSTRUCTION_SET>{}, members);
-    run_statistics used{run.turns.load() * lanes, lanes, members.threads};
+    run_statistics used{run.iterations.load() * lanes, lanes, members.threads};
     used.failed = run.failed;
     used.stack = members.stack;
     used.least_stack = members.least_stack;
+    const bool all_done = !run.supply.stopped && members.least_stack >= members.stack;
+    if (options.progress && all_done) options.progress(options.context, count);
     return used;
 }
 
-}  // namespace myriad::inline MYRIAD_TARGET
+}  // namespace myriad::detail::inline MYRIAD_TARGET
 
 namespace myriad::openmp {
 
@@ -131,13 +137,13 @@ run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const ke
 
 /// Compiles the kernel of one model, method and real type.
 #define MYRIAD_BACKEND_KERNEL(Model, Method, R)                                           \
-    template myriad::run_statistics myriad::openmp::run_on<Model, Method, R>(             \
+    template myriad::detail::run_statistics myriad::openmp::run_on<Model, Method, R>(             \
         myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, \
-        const myriad::kernel_arguments<Model, R>&, const myriad::run_options&);
+        const myriad::detail::kernel_arguments<Model, R>&, const myriad::detail::run_options&);
 
-/// The same, and that no other file does.
+/// The same, and ensures that no other file does.
 #define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                             \
     template <>                                                                                                  \
-    void myriad::instantiated_in_one_file_alone<                                                                 \
+    void myriad::detail::instantiated_in_one_file_alone<                                                                 \
         myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, Model, Method, R>() {} \
     MYRIAD_BACKEND_KERNEL(Model, Method, R)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Teams of threads, for kernels and for the host's loops: OpenMP's, but no more than the system has, none that a fork has left
-// behind, and none whose stack is too small.
+// Teams of threads, for kernels and for the host's loops: OpenMP's, but no more threads than the system allows, none
+// lost in a fork, and none whose stack is too small.
 #pragma once
 
 #include <algorithm>
@@ -12,16 +12,17 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#include "myriad/core/floating_point.hpp"
-#include "myriad/core/macros.hpp"
-#include "myriad/core/parallel.hpp"
+#include "myriad/host/threads/default_arithmetic.hpp"
+#include "myriad/host/threads/parallel.hpp"
+#include "myriad/kernel/core/macros.hpp"
 
-namespace myriad::inline MYRIAD_TARGET {
+namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Threads beside the calling one, made for one purpose and ended with it.
+/// Threads besides the calling one, created for one task and joined at its end.
 class own_threads {
 public:
-    /// Makes `count`, or as many as the system lets it, which call `work(context, number)` with numbers from 1 on.
+    /// Creates `count` threads, or as many as the system allows, which call `work(context, number)` with numbers from 1
+    /// on.
     own_threads(int count, std::size_t stack, void (*work)(void*, int), void* context) : work_(work), context_(context) {
         pthread_attr_t attributes;
         if (pthread_attr_init(&attributes) != 0) return;
@@ -63,10 +64,10 @@ private:
     int made_ = 0;
 };
 
-/// Of `wanted` threads as many as the system lets the program have beside those there are: found out by making them, since
-/// OpenMP's runtime ends the program where it cannot.
+/// How many of `wanted` threads the system lets the program have besides the existing ones: found by creating them,
+/// since OpenMP's runtime ends the program if it cannot.
 inline int obtainable(int wanted) {
-    pthread_mutex_t all_made = PTHREAD_MUTEX_INITIALIZER;  // all are there at the same time
+    pthread_mutex_t all_made = PTHREAD_MUTEX_INITIALIZER;  // all exist at the same time
     pthread_mutex_lock(&all_made);
     const own_threads probes(wanted, 0, [](void* gate, int) {
         pthread_mutex_lock(static_cast<pthread_mutex_t*>(gate));
@@ -76,7 +77,7 @@ inline int obtainable(int wanted) {
     return probes.made();
 }
 
-/// Bytes of the calling thread's stack that are not in use; the largest number where the system does not say.
+/// Unused bytes of the calling thread's stack; the largest number if the system does not tell.
 inline std::size_t stack_left() {
     static thread_local const std::uintptr_t end = [] {
         pthread_attr_t attributes;
@@ -98,7 +99,7 @@ struct known_teams {
     std::size_t least_stack = SIZE_MAX;  // of the other threads
 };
 
-/// As many threads as `all.parts`, or as may be had, if need be after a look at what there is.
+/// As many threads as `all.parts`, or as are available, which is tested if necessary.
 inline int team_of(const openmp::team& all, known_teams& known) {
     if (omp_get_active_level() >= omp_get_max_active_levels()) return 1;
     int threads = std::min(all.parts, omp_get_thread_limit());
@@ -121,7 +122,7 @@ inline void work_with_openmp(openmp::team& all, int threads) {
     }
 }
 
-/// With threads made for this purpose alone; the first part is the calling thread's.
+/// With threads created for this task alone; the calling thread does the first part.
 inline void work_with_own_threads(openmp::team& all) {
     struct supply {
         openmp::team* all;
@@ -140,7 +141,7 @@ inline void work_with_own_threads(openmp::team& all) {
 
 inline const pid_t process_at_start = getpid();
 
-}  // namespace myriad::inline MYRIAD_TARGET
+}  // namespace myriad::detail::inline MYRIAD_TARGET
 
 namespace myriad::openmp {
 
@@ -151,7 +152,7 @@ __attribute__((weak)) int most_parts(for_set<instruction_set::MYRIAD_INSTRUCTION
 
 __attribute__((weak)) void in_parts(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, team& all) {
     static thread_local known_teams known;
-    // A child process has what OpenMP remembers of its threads, and not the threads, for which it would wait for good.
+    // A child process inherits OpenMP's record of its threads, but not the threads, and would wait for them for ever.
     const bool forked = process_at_start != 0 && getpid() != process_at_start;
     const int threads = forked || all.parts <= 1 ? 1 : team_of(all, known);
     all.least_stack = std::min(stack_left(), threads > 1 ? known.least_stack : SIZE_MAX);

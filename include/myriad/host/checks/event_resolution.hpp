@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// Refuses event tolerances that rounding cannot meet, and looks for those that a function never leaves. Host code; it
+// calls the model's `events` on some states.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/host/ensemble/inputs_of.hpp"
+#include "myriad/host/options/options.hpp"
+#include "myriad/kernel/scalar/dual.hpp"
+
+namespace myriad::host {
+
+/// What one instance says about the resolution of event functions, in their units.
+template <class Model, class R>
+struct event_resolution {
+    /// Rounding of the constant that a function subtracts, as 1e6 in x - 1e6: closer to zero it has no values. The
+    /// constant is g - p dg/dp, exact for functions linear in p = (t, y); of others the smaller of its values at p and
+    /// at zero counts, and none where that is not finite.
+    vec<R, n_event<Model>> of_constant;
+    /// A thousandth of the rounding of g at the start. Time advances in steps of its own rounding, and g, which gets from
+    /// here to zero, in steps proportional to them; a thousandth, since it may slow down on its way.
+    vec<R, n_event<Model>> of_start;
+
+    event_resolution(ensemble<Model, R>& e, std::int64_t i) {
+        const auto p = inputs_of(e, i);
+        const R t = e.t_begin_of(i);
+        vec<dual<R>, n_state<Model>> y;
+        vec<R, n_state<Model>> origin;
+        for (int c = 0; c < n_state<Model>; ++c) {
+            y[c] = dual<R>(e.state(c)[i], e.state(c)[i]);
+            origin[c] = R(0);
+        }
+        const auto g = Model::template events<dual<R>>(dual<R>(t, t), y, p);  // derivative: p dg/dp
+        const auto g0 = Model::template events<R>(R(0), origin, p);
+        constexpr R half_ulp = std::numeric_limits<R>::epsilon() / 2;
+        for (int j = 0; j < n_event<Model>; ++j) {
+            const R here = std::abs(g[j].value - g[j].derivative), there = std::abs(g0[j]);
+            of_constant[j] = std::isfinite(here) && std::isfinite(there) ? half_ulp * std::min(here, there) : R(0);
+            of_start[j] = std::isfinite(g[j].value) ? half_ulp * R(1e-3) * std::abs(g[j].value) : R(0);
+        }
+    }
+};
+
+inline double event_tolerance(const options& o, int event) {
+    return o.events.empty() ? event_options{}.tolerance : o.events[static_cast<std::size_t>(event)].tolerance;
+}
+
+/// Of the instances looked at, those in which each event function is within its tolerance, and those in which its event
+/// may have happened there.
+template <class Model>
+struct functions_within_tolerance {
+    using counts = std::array<std::int64_t, static_cast<std::size_t>(n_event<Model>)>;
+    std::int64_t looked_at = 0;
+    counts within{}, fired{};
+
+    bool everywhere(int event) const { return looked_at > 0 && within[static_cast<std::size_t>(event)] == looked_at; }
+    bool fired_anywhere(int event) const { return fired[static_cast<std::size_t>(event)] > 0; }
+};
+
+/// Looks at a thousand or so of the first `count` instances that have not ended for good, at their states and
+/// `time_of(i)`. At none for models with `initialise`, before which `events` cannot be called.
+template <class Model, class R, class Time>
+functions_within_tolerance<Model> find_functions_within(ensemble<Model, R>& e, const options& o, std::int64_t count,
+                                                        Time&& time_of) {
+    functions_within_tolerance<Model> found;
+    if constexpr (has_events<Model> && !has_initialise<Model>) {
+        for_sampled_instances(e, count, [&](std::int64_t i) {
+            vec<R, n_state<Model>> y;
+            for (int c = 0; c < n_state<Model>; ++c) y[c] = e.state(c)[i];
+            const auto g = Model::template events<R>(time_of(i), y, inputs_of(e, i));
+            ++found.looked_at;
+            for (int j = 0; j < n_event<Model>; ++j) {
+                found.within[static_cast<std::size_t>(j)] += std::abs(g[j]) <= static_cast<R>(event_tolerance(o, j));
+                found.fired[static_cast<std::size_t>(j)] += ensemble_access::has_fired_last(e, j, i);
+            }
+        });
+    }
+    return found;
+}
+
+/// Throws `error` if an event tolerance is below the resolution of its function in most instances; in single ones, whose
+/// state may be huge, crossings are located as well as rounding lets them. Looks at a thousand or so of the first `count`
+/// instances, spread over them. Not for models with `initialise`, before which `events` cannot be called.
+template <class Model, class R>
+void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_t count) {
+    if constexpr (has_events<Model> && !has_initialise<Model>) {
+        struct {
+            std::int64_t instances = 0, worst = 0;
+            double least = 0;
+        } too_fine[n_event<Model>];
+        std::int64_t looked_at = 0;
+        const auto tolerance_of = [&](int j) { return event_tolerance(o, j); };
+        for_sampled_instances(e, count, [&](std::int64_t i) {
+            ++looked_at;
+            const event_resolution<Model, R> finest(e, i);
+            for (int j = 0; j < n_event<Model>; ++j) {
+                const double least = static_cast<double>(std::max(finest.of_constant[j], finest.of_start[j]));
+                if (tolerance_of(j) >= least) continue;
+                ++too_fine[j].instances;
+                if (least > too_fine[j].least) too_fine[j] = {too_fine[j].instances, i, least};
+            }
+        });
+        for (int j = 0; j < n_event<Model>; ++j) {
+            require(2 * too_fine[j].instances <= looked_at, "the tolerance of event ", j, " is ", tolerance_of(j),
+                    ", but rounding changes its function by ", too_fine[j].least, " in instance ", too_fine[j].worst,
+                    ", and by more than the tolerance in most instances: raise the tolerance, scale or shift the "
+                    "function or t",
+                    std::numeric_limits<R>::digits < 53 ? ", or use an ensemble of doubles" : "");
+        }
+    }
+}
+
+}  // namespace myriad::host

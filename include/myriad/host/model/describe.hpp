@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Describes what the library finds in a model, which reveals a misspelt hook.
+#pragma once
+
+#include <string>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/model/hooks.hpp"
+#include "myriad/kernel/scalar/matrix_loop.hpp"
+
+namespace myriad {
+
+/// A few lines of text: the model's numbers of components, its hooks, its declarations, and how methods for stiff
+/// systems treat it.
+template <class Model>
+[[nodiscard]] std::string describe() {
+    static_assert(detail::hooks_fit<Model, double>);
+    std::string hooks = "rhs", declares;
+    const auto add = [](std::string& to, bool present, const char* name) {
+        if (present) to += (to.empty() ? "" : ", ") + std::string(name);
+    };
+    add(hooks, detail::gives_jacobian<Model>, "jacobian");
+    add(hooks, detail::has_events<Model>, "events");
+    if constexpr (detail::has_reductions<Model>)
+        hooks += message(", observe (", detail::n_reduction<Model>, detail::n_reduction<Model> == 1 ? " reduction)" : " reductions)");
+    add(hooks, detail::has_initialise<Model>, "initialise");
+    add(hooks, detail::has_after_step<Model>, detail::has_generic_after_step<Model> ? "after_step (generic)" : "after_step (scalar)");
+    add(hooks, detail::has_after_event<Model>, "after_event");
+    add(hooks, detail::has_finalise<Model>, "finalise");
+    add(declares, detail::writes_parameters<Model>, "writes_parameters");
+    add(declares, detail::writes_time_domain<Model>, "writes_time_domain");
+    add(declares, detail::accessories_are_outputs<Model>, "accessories_are_outputs");
+    add(declares, detail::scalar_only<Model>, "scalar_only");
+    add(declares, detail::rare_events<Model>, "rare_events");
+    return message("components: ", detail::n_state<Model>, " state, ", detail::n_parameter<Model>, " parameter, ", detail::n_shared<Model>,
+                   " shared, ", detail::n_shared_integer<Model>, " shared integer, ", detail::n_accessory<Model>, " accessory, ",
+                   detail::n_integer_accessory<Model>, " integer accessory, ", detail::n_event<Model>, " event\nhooks: ", hooks,
+                   "\ndeclares: ", declares.empty() ? "nothing" : declares, "\nstiff methods: ",
+                   detail::gives_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers", ", LU factors on GPUs in ",
+                   detail::matrix_loop<double, detail::n_state<Model>>::unrolled ? "registers" : "local memory", '\n');
+}
+
+}  // namespace myriad

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// The options of an integration, with their defaults.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "myriad/host/options/component_list.hpp"
+#include "myriad/kernel/state/kernel_arguments.hpp"
+
+namespace myriad {
+
+/// One value for all components, or one for each: `1e-9` or `{1e-9, 1e-6}`.
+class per_component {
+public:
+    per_component(double value) : values_{value} {}
+    per_component(std::initializer_list<double> values) : values_(values) {}
+    per_component(std::vector<double> values) : values_(std::move(values)) {}
+
+    std::size_t size() const { return values_.size(); }
+    /// The value of component i.
+    double operator[](std::size_t i) const { return values_.size() == 1 ? values_[0] : values_.at(i); }
+
+private:
+    std::vector<double> values_;
+};
+
+/// Which sign changes of an event function count, in the direction of integration.
+enum class direction { falling = -1, either = 0, rising = 1 };
+
+/// How one event is detected.
+struct event_options {
+    myriad::direction direction = myriad::direction::either;
+    double tolerance = 1e-6;      ///< an event is located where |g| is at most this; in units of the event function
+    std::int64_t stop_after = 0;  ///< number of detections in a phase that ends it (`stopped_by_event`); 0: never
+};
+
+/// Where a phase starts: at the instance's t_begin, or where the last phase ended, for phases that events or hooks end.
+/// Otherwise the first phase ends at t_end, and the others would have no length, which is refused: see
+/// `options::phase_length`.
+enum class phase_time { restart, carry_on };
+/// The first step of a phase: `options::step` again, or what the last phase ended with.
+enum class phase_step { restart, carry_on };
+/// Whether work is counted per instance (16 bytes each, 8 more with an adaptive method, 8 more with events).
+enum class counting { off, on };
+/// Whether `solve` checks after the integration for stiffness, with some evaluations of rhs on the host, and for phases
+/// too long for Lyapunov exponents.
+enum class advice { off, on };
+/// The order in which instances are integrated. Results do not depend on it, bit for bit; the time does if costs
+/// differ. `in_order`: by index, one instance per CUDA thread, one contiguous part per CPU thread. `dynamic`: by index,
+/// each lane taking the next instance when it is done with its last. `by_cost`: dynamic in the first phase, whose steps
+/// are counted; the other phases after sorting by that count, so that neighbouring instances in a warp have similar
+/// costs (a solver sorts by the last call's counts as long as the instances stay on the GPU). `automatic`: on the CPU
+/// dynamic; on a GPU by_cost if there is step-size control, events or after_step, at least four phases, and more
+/// instances than one for each thread of a warp on every warp scheduler, otherwise in_order. Kernels with fixed steps
+/// and without events and after_step always run in order on a GPU. With by_cost on the CPU, no instance is done before
+/// all have completed their first phase.
+enum class schedule : std::uint8_t { automatic, in_order, dynamic, by_cost };
+constexpr const char* name_of(schedule s) {
+    constexpr const char* names[] = {"automatic", "in_order", "dynamic", "by_cost"};
+    return names[static_cast<int>(s)];
+}
+/// What to do with instances whose state, parameters or times are not finite, and with those that ended in an earlier
+/// call and whose state or parameters were set again without `ensemble::restart`: refuse the call; or mark the former
+/// `invalid_input`, leave the latter as they are, and run the others.
+enum class invalid_instances { refuse, mark };
+
+/// States, accessories and times to keep at the end of every phase from `from_phase` on (counted from 0 in each call).
+/// Nothing is recorded, and no memory allocated, unless something is chosen.
+struct record_options {
+    std::int64_t from_phase = 0;
+    component_list states = {};
+    component_list accessories = {};
+    component_list integer_accessories = {};
+    bool time = false;
+
+    bool empty() const { return states.empty() && accessories.empty() && integer_accessories.empty() && !time; }
+};
+
+/// Dense output, for a method `dense<Method>`: states along every trajectory, by exactly one of `evenly`, `times`,
+/// `times_of_instances` and `every`. Samples are appended phase by phase and call by call until the capacity is reached.
+struct sample_options {
+    component_list states = {};    ///< components to sample; empty: no samples
+    std::int64_t capacity = 0;     ///< samples kept per instance, over all phases and calls
+    std::int64_t evenly = 0;  ///< number of evenly spaced times over [t_begin, t_end] in every phase, ends included; with
+                              ///< phase_length over each phase, those between two phases once
+    std::vector<double> times = {};  ///< or these times in every phase, in the order in which they are reached
+    std::vector<double> times_of_instances = {};  ///< or times per instance, equally many: instance 0 first
+    std::int64_t every = 0;          ///< or the start of the phase and the end of every n-th accepted step
+    double minimum_spacing = 0;      ///< least time between samples by steps
+    std::int64_t from_phase = 0;     ///< first phase of the call that is sampled
+
+    bool empty() const { return states.empty(); }
+};
+
+/// How an ensemble is integrated. Times and steps are in the model's unit of time.
+struct options {
+    std::int64_t phases = 1;  ///< integration phases in this call, each from t_begin to t_end or until stopped
+
+    per_component relative_tolerance = 1e-8;  ///< error per step over max(|y|, |y1|), per component of the state; raised to
+                                              ///< four times the precision's epsilon, with a note in the report
+    per_component absolute_tolerance = 1e-8;  ///< error per step, per component of the state, in its unit
+
+    double step =
+        std::numeric_limits<double>::quiet_NaN();  ///< fixed step (must be given), or first step (default 1e-2)
+    double minimum_step = 0;                       ///< 0: the resolution of t
+    double maximum_step = std::numeric_limits<double>::infinity();
+    double growth_limit = 5;              ///< largest factor from one step to the next; rounded to single precision
+    double shrink_limit = 0.1;            ///< smallest factor, also rounded
+    std::int64_t max_steps = 10'000'000;  ///< trial steps per phase; an instance that needs more ends as `max_steps`
+
+    myriad::phase_time phase_time = myriad::phase_time::restart;
+    /// Length of a phase; 0: up to t_end. With a length, time continues from phase to phase, whatever `phase_time`
+    /// says, and each phase ends at the next of its instance's times t_begin + k phase_length (backwards: minus), or at
+    /// t_end, which may be infinite. A phase that an event or a hook ends early leaves the rest to the next.
+    double phase_length = 0;
+    myriad::phase_step phase_step = myriad::phase_step::restart;
+
+    std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all
+    std::int64_t sub_samples = 1;  ///< points per step at which event functions are evaluated (the last is the end)
+    std::int64_t accumulation_limit = 50;  ///< actions of one event, without its function leaving its tolerance in
+                                           ///< between, that end the instance as `event_accumulation`
+
+    record_options record = {};
+    sample_options samples = {};
+    myriad::counting counting = myriad::counting::on;
+    myriad::advice advice = myriad::advice::on;
+    myriad::invalid_instances invalid_instances = myriad::invalid_instances::refuse;
+
+    myriad::schedule schedule = myriad::schedule::automatic;
+    std::int64_t block_size = 0;  ///< CUDA threads per block; 0: the size with the best occupancy
+    std::int64_t chunk_size = 0;  ///< instances on a GPU at a time; 0: chosen so that transfers and kernels overlap
+    myriad::shared_placement shared_placement = myriad::shared_placement::automatic;
+
+    /// Called by `solve` from time to time, in the calling thread, with the number of instances done, which never
+    /// falls, and the number of all instances; with all done exactly once, at the end. An exception it throws ends the
+    /// work and reaches the caller of `solve`. A solver, which is asynchronous, refuses it.
+    std::function<void(std::int64_t done, std::int64_t total)> progress = {};
+};
+
+/// The smallest meaningful relative tolerance: a state's rounding error is up to half of epsilon, and that of its
+/// change as much again.
+template <class R>
+inline constexpr R least_relative_tolerance = R(4) * std::numeric_limits<R>::epsilon();
+
+}  // namespace myriad

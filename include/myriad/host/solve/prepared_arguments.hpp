@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// Turns an ensemble and options into checked kernel arguments; solve and solver both start here.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "myriad/host/checks/event_resolution.hpp"
+#include "myriad/host/checks/input_check.hpp"
+#include "myriad/host/checks/jacobian_check.hpp"
+#include "myriad/host/ensemble/ensemble.hpp"
+#include "myriad/host/options/options.hpp"
+#include "myriad/host/report/report.hpp"
+#include "myriad/kernel/methods/controller_policies.hpp"
+#include "myriad/kernel/state/kernel_arguments.hpp"
+
+namespace myriad::host {
+
+/// The properties of a method that a kernel's arguments depend on.
+struct method_traits {
+    bool adaptive, scales_tolerances, chooses_first_step;
+};
+template <class Method>
+inline constexpr method_traits traits_of{Method::embedded_order > 0, scales_tolerances<Method>, chooses_first_step<Method>};
+
+/// The options in the form that a kernel of the method takes.
+template <class Model, class R>
+void describe_options(kernel_arguments<Model, R>& a, const options& o, const method_traits& method) {
+    a.phases = static_cast<std::int32_t>(o.phases);
+    a.phase_length = static_cast<R>(o.phase_length);
+    a.phases_per_time = o.phase_length > 0 ? R(1) / a.phase_length : R(0);
+    a.carry_time = o.phase_time == phase_time::carry_on || o.phase_length > 0;
+    a.carry_step = o.phase_step == phase_step::carry_on;
+    a.max_steps = static_cast<std::int32_t>(o.max_steps);
+    const double default_step = method.chooses_first_step ? 0 : 1e-2;
+    a.step = static_cast<R>(std::isnan(o.step) ? std::min(default_step, o.maximum_step) : o.step);
+    a.minimum_step = static_cast<R>(o.minimum_step);
+    a.maximum_step = static_cast<R>(o.maximum_step);
+    if (method.adaptive && a.step > 0) a.step = std::clamp(a.step, a.minimum_step, a.maximum_step);
+    a.growth_limit = static_cast<float>(o.growth_limit);
+    a.shrink_limit = static_cast<float>(o.shrink_limit);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(n_state<Model>); ++c) {
+        a.relative_tolerance[c] = std::max(static_cast<R>(o.relative_tolerance[c]), least_relative_tolerance<R>);
+        // not subnormal: a GPU takes its reciprocal
+        a.absolute_tolerance[c] = std::max(static_cast<R>(o.absolute_tolerance[c]), std::numeric_limits<R>::min());
+    }
+    for (std::size_t j = 0; j < static_cast<std::size_t>(n_event<Model>); ++j) {
+        const event_options e = o.events.empty() ? event_options{} : o.events[j];
+        a.event[j] = {static_cast<R>(e.tolerance), e.direction != direction::falling, e.direction != direction::rising,
+                      static_cast<std::int32_t>(e.stop_after)};
+    }
+    a.sub_samples = static_cast<std::int32_t>(o.sub_samples);
+    a.accumulation_limit = static_cast<std::int32_t>(o.accumulation_limit);
+}
+template <class Model, class Method, class R>
+void describe_options(kernel_arguments<Model, R>& a, const options& o) {
+    describe_options(a, o, traits_of<Method>);
+}
+
+/// Adds the memory that a call allocates for `size` instances, except what `there`, if not null, has from earlier
+/// calls.
+template <class Model, class R>
+void add_memory_of_call(memory_need& need, std::int64_t size, const ensemble<Model, R>* there, const options& o,
+                        const method_traits& method) {
+    if (!o.record.empty()) need.add("records", phase_records<Model, R>::bytes_for(o.record, o.phases, size));
+    need.add("sample times", static_cast<double>(sizeof(R) * o.samples.times_of_instances.size()));
+    ensemble_access::add_memory_of_call<ensemble<Model, R>>(need, size, there, o, method.adaptive ? step_sizes::kept : step_sizes::fixed,
+                                           method.scales_tolerances);
+}
+
+/// The arguments for an ensemble, and the memory they point to: the records, and the sample times in the ensemble's
+/// real type.
+template <class Model, class R>
+class prepared_arguments {
+public:
+    /// Throws `error` if an option is invalid, or if there is not enough memory.
+    prepared_arguments(ensemble<Model, R>& instances, const options& o, const method_traits& method)
+        : records_(affordable(instances, o, method).record, o.phases, instances.size()),
+          sample_times_(o.samples.times.begin(), o.samples.times.end()) {
+        describe_options(arguments_, o, method);
+        if (method.scales_tolerances) instances.tolerance_scale();  // allocates them
+        ensemble_access::describe(instances, arguments_, o.counting, method.adaptive ? step_sizes::kept : step_sizes::fixed);
+        records_.describe(arguments_.record);
+        if (o.samples.empty()) return;
+        auto& sample = arguments_.sample;
+        ensemble_access::describe_samples(instances, sample, o.samples);
+        sample.times = sample_times_.empty() ? nullptr : sample_times_.data();
+        const auto& own = o.samples.times_of_instances;
+        const auto size = static_cast<std::size_t>(instances.size());
+        const std::size_t count = !own.empty() ? own.size() / size : sample_times_.size();
+        sample.count = static_cast<std::int32_t>(count > 0 ? count : static_cast<std::size_t>(o.samples.evenly));
+        if (!own.empty()) {
+            own_times_ = component_array<R>(static_cast<int>(count), instances.size(), R(0));
+            for (std::size_t i = 0; i < size; ++i)
+                for (std::size_t k = 0; k < count; ++k) own_times_.data()[k * size + i] = static_cast<R>(own[i * count + k]);
+            sample.own_times = own_times_.data();
+        }
+        sample.every = static_cast<std::int32_t>(o.samples.every);
+        sample.from_phase = static_cast<std::int32_t>(o.samples.from_phase);
+        sample.minimum_spacing = static_cast<R>(o.samples.minimum_spacing);
+    }
+    prepared_arguments(const prepared_arguments&) = delete;
+    prepared_arguments& operator=(const prepared_arguments&) = delete;
+
+    kernel_arguments<Model, R>& get() { return arguments_; }
+    /// Pins the memory that is not the ensemble's, for copies to and from a GPU.
+    void pin(int device) {
+        records_.pin(device);
+        own_times_.pin(device);
+    }
+    phase_records<Model, R>& records() { return records_; }
+
+private:
+    /// The options, if there is enough memory for them; otherwise throws `error`.
+    static const options& affordable(const ensemble<Model, R>& instances, const options& o, const method_traits& method) {
+        memory_need need;
+        add_memory_of_call(need, instances.size(), &instances, o, method);
+        need.check(message("this call for ", instances.size(), " instances"),
+                   "ask for fewer phases, components or samples at a time, or integrate the ensemble in smaller parts");
+        return o;
+    }
+
+    kernel_arguments<Model, R> arguments_{};
+    phase_records<Model, R> records_;
+    std::vector<R> sample_times_;
+    component_array<R> own_times_;  // sample times of each instance
+};
+
+/// New values for an instance that takes no further part would be ignored: throws `error`, unless the options say to
+/// skip such instances.
+template <class Model, class R>
+void check_ended(const ensemble<Model, R>& instances, const options& o, std::int64_t count) {
+    if (o.invalid_instances == invalid_instances::mark) return;
+    const std::int64_t anew = count_given_anew(instances, count);
+    if (anew == 0) return;
+    for (const auto& e : ensemble_access::ended_before(instances))
+        require(!ensemble_access::given_anew(instances, e), "instance ", e.index, " ended in an earlier call (", name_of(instances.status(e.index)),
+                ") and takes no further part, but its state or parameters were set anew since",
+                anew == 1 ? std::string() : message(", as were those of ", anew - 1, anew == 2 ? " other" : " others"),
+                ": call restart() to start all instances again, or set invalid_instances = invalid_instances::mark to "
+                "leave those that have ended as they are");
+}
+
+/// Checks the options against the first `count` instances: sample times, event tolerances, and a model's own Jacobian
+/// in builds with assertions. Throws `error`. Returns which event functions are within their tolerances before the
+/// integration.
+template <class Method, class Model, class R>
+functions_within_tolerance<Model> check_uses(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
+    check_ended(instances, o, count);
+    require(scales_tolerances<Method> || !ensemble_access::scales_tolerances(instances),
+            "tolerance_scale is set, but the method has the same tolerances for all instances: use controlled<Method, "
+            "tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE");
+    check_sample_times(instances, o, count);
+    check_event_tolerances(instances, o, count);
+#if !defined(NDEBUG)
+    check_jacobian(instances, count);
+#endif
+    return find_functions_within(instances, o, count, [&](std::int64_t i) { return instances.t_begin_of(i); });
+}
+
+}  // namespace myriad::host

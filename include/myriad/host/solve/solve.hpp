@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// The one-shot call: checks everything once, passes the ensemble to the device's backend, and reports.
+#pragma once
+
+#include <chrono>
+#include <exception>
+#include <memory>
+
+#include "myriad/host/backend/backend.hpp"
+#include "myriad/host/backend/cpu_kernel.hpp"
+#include "myriad/host/backend/device.hpp"
+#include "myriad/host/chunks/chunk_plan.hpp"
+#include "myriad/host/chunks/chunked_solve.hpp"
+#include "myriad/host/chunks/idle_engines.hpp"
+#include "myriad/host/chunks/progress_relay.hpp"
+#include "myriad/host/ensemble/ensemble.hpp"
+#include "myriad/host/options/option_checks.hpp"
+#include "myriad/host/options/options.hpp"
+#include "myriad/host/report/notes.hpp"
+#include "myriad/host/report/report.hpp"
+#include "myriad/host/solve/prepared_arguments.hpp"
+#include "myriad/host/threads/default_arithmetic.hpp"
+
+namespace myriad {
+namespace host {
+
+/// What integrates a model with one method on one device.
+template <class Model, class R>
+struct device_kernel {
+    cpu_kernel<Model, R> cpu;
+    engine_maker<Model, R> make_engine = nullptr;
+};
+
+/// The kernel of the model and method for that device. Throws `error` if the program has none.
+template <class Model, class Method, class R>
+device_kernel<Model, R> require_kernel(const device& where) {
+    static_assert(detail::check_linkage<Model, Method>());
+    const bool on_cpu = where.which() == device::kind::cpu;
+    device_kernel<Model, R> found;
+    if (on_cpu) {
+        found.cpu = choose_cpu_kernel<Model, Method, R>();
+    } else {
+        found.make_engine = if_defined(&cuda::make_engine<Model, Method, R>);
+    }
+    require(on_cpu ? found.cpu.run != nullptr : found.make_engine != nullptr,
+            "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
+            ", or with other numbers of components, or its source file was not linked: write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for "
+            "float) in the model's source file, and name that file in myriad_add_models for the program or an OBJECT "
+            "library",
+            on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
+    require(on_cpu || may_use_gpus(),
+            "this process was forked from one that has used a GPU, which a fork cannot: fork before that, use the CPU, or "
+            "start a new program (exec)");
+    return found;
+}
+
+/// The part of `solve` that does not depend on the method: a program compiles it once for each model.
+template <class Model, class R>
+void integrate_all(const device& where, const options& o, const device_kernel<Model, R>& kernel, ensemble<Model, R>& instances,
+                   detail::kernel_arguments<Model, R>& arguments, input_check<Model, R>& check, report<Model, R>& result) {
+    progress_relay relay{o.progress, instances.size(), nullptr};
+    const auto begin = std::chrono::steady_clock::now();
+    if (where.which() == device::kind::cpu) {
+        const auto work = [&] {
+            return o.counting == counting::on ? counted_work(instances, instances.size()) : work_count{};
+        };
+        const auto work_before = work();
+        host::ensemble_access::touch(instances);
+        detail::run_options how;
+        how.threads = where.threads();
+        how.schedule = o.schedule;
+        how.progress = &progress_relay::call;
+        how.context = &relay;
+        const detail::run_statistics used = run_kernel(kernel.cpu, arguments, how);
+        result.lane_turns = used.lane_turns;
+        result.lanes = used.lanes;
+        result.threads = used.threads;
+        result.instruction_set = used.instruction_set;
+        set_work(result, work_before, work());
+        summarise(instances, result, instances.size());
+    } else {
+        chunked_solve<Model, R>(where, o, kernel.make_engine, instances, arguments, check, relay, result).run();
+    }
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    note_ended(result, instances, instances.size());
+    host::ensemble_access::remember_ended(instances);
+    if (relay.failure) std::rethrow_exception(relay.failure);
+    result.device = where.name();
+}
+
+}  // namespace host
+
+/// Takes every instance of the ensemble through `options.phases` integration phases with the given method, in place,
+/// and reports. A further call continues with the next phases; instances that failed or ended themselves stay as they
+/// are until `ensemble::restart`, and if their states or parameters are set again without one, the call is refused. The
+/// result of an instance depends only on its own data and the options. Throws `error`, and leaves all instances as they
+/// are, if an input is invalid, if the device does not exist, if the program has no kernel for the model and method, or
+/// if the ensemble is being integrated already. On the CPU it rethrows exceptions of the model's functions; the
+/// ensemble's contents are then unspecified, and must be set again after `restart`. The report may be ignored, as in a
+/// call for transients: how instances ended is kept in the ensemble.
+template <class Method, class Model, class R>
+report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
+    const detail::default_arithmetic here;
+    const auto claim = host::ensemble_access::take(instances);
+    host::check_options<Model, Method, R>(options);
+    const auto kernel = host::require_kernel<Model, Method, R>(where);
+    const auto before = host::check_uses<Method>(instances, options, instances.size());
+    const host::phases_left left = host::find_phases_left(instances, options, instances.size());
+    left.require_for(0, options.phases);
+    // On a GPU the data of large ensembles are checked chunk by chunk, while the GPU works on others.
+    host::input_check<Model, R> check(instances, options, instances.size());
+    if (where.which() == device::kind::cpu || instances.size() <= host::worth_chunks) check.run();
+    host::ensemble_access::expect_phases(instances, options.phases);
+
+    report<Model, R> result;
+    host::prepared_arguments<Model, R> prepared(instances, options, host::traits_of<Method>);
+    host::integrate_all(where, options, kernel, instances, prepared.get(), check, result);
+    result.records = std::move(prepared.records());
+    if (!left.note.empty()) result.notes.push_back(left.note);
+    host::note_tolerances<Method>(result, options);
+    host::note_event_tolerances(result, instances, options, before, instances.size());
+    host::note_stiffness<Method>(result, instances, options);
+    host::note_exponents<Method>(result, instances, options);
+    return result;
+}
+
+}  // namespace myriad

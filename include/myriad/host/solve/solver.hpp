@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: MIT
+// The solver object: one chunk of instances on one device, integrated asynchronously. Several of them overlap transfers
+// and kernels on a GPU, and can use several GPUs and the CPU.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "myriad/host/backend/backend.hpp"
+#include "myriad/host/backend/device.hpp"
+#include "myriad/host/core/left_behind.hpp"
+#include "myriad/host/ensemble/ensemble.hpp"
+#include "myriad/host/options/option_checks.hpp"
+#include "myriad/host/options/options.hpp"
+#include "myriad/host/report/report.hpp"
+#include "myriad/host/solve/prepared_arguments.hpp"
+#include "myriad/host/solve/solve.hpp"
+#include "myriad/host/threads/default_arithmetic.hpp"
+
+namespace myriad {
+
+/// What `solver::download` copies back, besides times, statuses, counters, records and samples, which it always does.
+struct components {
+    component_list states = {};
+    component_list accessories = {};
+    component_list integer_accessories = {};
+};
+
+/// Up to `capacity` instances on a device, with pinned host memory. On a GPU, copies and kernels run one after the
+/// other in the solver's own stream: `integrate` and `download` return at once, `upload` when earlier work is done. On
+/// the CPU they work in place, and `integrate` returns when it is done. Functions that give access to host data wait
+/// first: `instances`, `records`, `report`; on either device they refuse to while results have not been downloaded, so
+/// that what works on the CPU works on a GPU. An error of the device is thrown by the next call that detects it; other
+/// solvers continue.
+///
+///     solver<duffing, cash_karp> sweep(device::best(), 100'000, {.phases = 64});
+///     sweep.instances().state(duffing::x) = -0.5;   // and so on
+///     sweep.upload();
+///     sweep.integrate();
+///     sweep.download();
+///     std::cout << sweep.report() << sweep.instances().state(duffing::x).maxCoeff();
+template <class Model, class Method, class R = double>
+class solver {
+public:
+    /// Allocates all memory, on the host and on the device. Throws `error` if there is too little, if an option is
+    /// invalid, or if the device or a kernel for it does not exist.
+    solver(const device& where, std::int64_t capacity, options o = {})
+        : where_(where), options_(checked(std::move(o), capacity)), instances_(capacity),
+          prepared_(instances_, options_, host::traits_of<Method>) {
+        host::require_kernel<Model, Method, R>(where);
+        if (where.which() == device::kind::cpu) return;
+        engine_ = cuda::make_engine<Model, Method, R>(
+            {where.number(), options_.block_size, options_.shared_placement, options_.schedule});
+        instances_.pin(where);
+        prepared_.pin(where.number());
+        engine_->reserve(prepared_.get(), capacity);
+    }
+    solver(const solver&) = delete;
+    solver& operator=(const solver&) = delete;
+
+    std::int64_t capacity() const { return instances_.size(); }
+    const device& where() const { return where_; }
+
+    /// The host's data, to be set: the next `integrate` needs an `upload` before it. Waits until no copy from or to
+    /// them is in progress; throws `error` after an `integrate` without a `download`. A reference kept across an
+    /// `upload` or `download` stays valid, but a copy may be in progress: call this again.
+    ensemble<Model, R>& instances() {
+        const auto claim = take();
+        finish();
+        require_results("instances");
+        uploaded_ = false;
+        if (results_ == held::on_host && !remembered_) host::ensemble_access::remember_ended(instances_);
+        remembered_ = remembered_ || results_ == held::on_host;
+        return instances_;
+    }
+    /// The same data, to be read.
+    const ensemble<Model, R>& results() {
+        const auto claim = take();
+        finish();
+        require_results("results");
+        return instances_;
+    }
+
+    /// Copies the first `count` instances (0: all) to the device, with the shared parameters; instances integrated
+    /// before continue from their phase. Waits for earlier work. Throws `error` if their data are invalid, or are
+    /// results that were only partly downloaded.
+    void upload(std::int64_t count = 0) {
+        const detail::default_arithmetic here;
+        const auto claim = take();
+        require(count >= 0 && count <= capacity(), "upload asks for ", count,
+                " instances (must be from 1 to the capacity, ", capacity(), ", or 0 for all)");
+        finish();
+        require_results("upload");
+        const std::int64_t wanted = count > 0 ? count : capacity();
+        require_memory();
+        if (results_ == held::partly_on_host) {
+            for (std::int64_t i = 0; i < wanted; ++i)
+                require(instances_.status(i) == status::not_started,
+                        "upload would mix old and new values, as only chosen components of the last results were "
+                        "downloaded: "
+                        "restart() and set the instances again, or download() all of them first");
+        }
+        uploaded_ = downloadable_ = false;
+        before_ = host::check_uses<Method>(instances_, options_, wanted);
+        phases_left_ = host::find_phases_left(instances_, options_, wanted);
+        phases_asked_ = 0;
+        host::input_check<Model, R> data(instances_, options_, wanted);
+        host::ensemble_access::describe_domain(instances_, prepared_.get());
+        const auto copy = [&] {
+            if (engine_)
+                engine_->upload(prepared_.get(), 0, wanted,
+                                host::ensemble_access::untouched(instances_) ? cuda::past::none : cuda::past::kept);
+        };
+        if (options_.invalid_instances == invalid_instances::mark) {  // which changes what is copied
+            data.run();
+            copy();
+        } else {
+            copy();
+            data.run();  // while it is copied
+        }
+        count_ = wanted;
+        uploaded_ = downloadable_ = true;
+        integrated_ = false;
+        results_ = held::on_host;
+        report_ = {};
+        has_records_ = false;
+        if (wanted < capacity()) prepared_.records().clear();  // a GPU writes only those of uploaded ones
+        work_before_ = counted_work();
+    }
+
+    /// Integrates `phases` phases (0: as the options say). With records, the number must be that of the options;
+    /// records are those of the last call.
+    void integrate(std::int64_t phases = 0) {
+        const auto claim = take();
+        require(uploaded_,
+                "integrate has no instances to work on, or instances() may have changed them since the upload: call "
+                "upload first, and read with results()");
+        require(phases == 0 || phases == options_.phases || (options_.record.empty() && options_.samples.empty()),
+                "integrate asks for ", phases, " phases, but records and samples were laid out for ", options_.phases,
+                ": give that number in the options");
+        if (phases != 0) host::check_count("phases", phases, 1, 1'000'000'000);
+        if (phases == 0) phases = options_.phases;
+        phases_left_.require_for(phases_asked_, phases);
+        require_memory();
+        auto& arguments = prepared_.get();
+        arguments.phases = static_cast<std::int32_t>(phases);
+        host::ensemble_access::expect_phases(instances_, arguments.phases);
+        phases_asked_ += phases;
+        results_ = held::on_device;
+        remembered_ = false;
+        host::ensemble_access::touch(instances_);
+        has_records_ = true;
+        if (engine_) {
+            engine_->integrate(arguments);
+            integrated_ = true;
+            return;
+        }
+        prepared_.records().clear();
+        detail::run_options how;
+        how.threads = where_.threads();
+        how.schedule = options_.schedule;
+        how.count = count_;
+        const auto begin = std::chrono::steady_clock::now();
+        uploaded_ = false;  // if a function of the model throws
+        const detail::run_statistics used = openmp::run<Model, Method, R>(arguments, how);
+        uploaded_ = true;
+        report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        report_.lane_turns += used.lane_turns;
+        report_.lanes = used.lanes;
+        report_.threads = used.threads;
+        report_.instruction_set = used.instruction_set;
+    }
+
+    /// Copies back everything that a kernel may have written.
+    void download() {
+        const auto claim = take();
+        require_memory();
+        require(downloadable_, "download has no instances to copy: call upload first");
+        if (engine_) engine_->download(prepared_.get());
+        results_ = held::on_host;
+    }
+    /// The same, but only the named states and accessories. The values of the others on the host are unspecified: the
+    /// old ones if the device is a GPU, the new ones on the CPU.
+    void download(const components& chosen) {
+        const auto claim = take();
+        require_memory();
+        require(downloadable_, "download has no instances to copy: call upload first");
+        constexpr const host::model_components& named = host::components_of<Model>;
+        named.check("components.states", chosen.states, named.state);
+        named.check("components.accessories", chosen.accessories, named.accessory);
+        named.check("components.integer_accessories", chosen.integer_accessories, named.integer_accessory);
+        if (engine_) engine_->download(prepared_.get(), &is_chosen, const_cast<components*>(&chosen));
+        if (results_ == held::on_device) results_ = held::partly_on_host;
+    }
+
+    /// Waits for all work submitted to this solver. Throws `error` if any of it failed.
+    void wait() {
+        const auto claim = take();
+        finish();
+    }
+    /// Work submitted to this solver from now on begins when all work submitted to `other` before is done. The host
+    /// does not wait.
+    template <class OtherModel, class OtherMethod, class OtherR>
+    void wait_for(solver<OtherModel, OtherMethod, OtherR>& other) {
+        const auto claim = take();
+        if (static_cast<void*>(&other) == this) return;
+        const auto claim_on_other = other.take();
+        if (engine_ && other.engine_) {
+            engine_->wait_for(*other.engine_);
+        } else {
+            other.finish();
+        }
+    }
+    /// Whether no work is in progress.
+    bool idle() { return !engine_ || engine_->idle(); }
+
+    /// How the instances uploaded last ended, and the work since then. Times are those of the last `integrate`, of its
+    /// kernel on a GPU. Waits; throws `error` after an `integrate` without a `download`.
+    const myriad::report<Model, R>& report() {
+        const detail::default_arithmetic here;
+        const auto claim = take();
+        finish();
+        require_results("report");
+        require_memory();
+        host::set_work(report_, work_before_, counted_work());
+        host::summarise(instances_, report_, count_);
+        report_.notes.clear();
+        host::note_ended(report_, instances_, count_);
+        host::note_tolerances<Method>(report_, options_);
+        if (results_ == held::on_host) host::note_event_tolerances(report_, instances_, options_, before_, count_);
+        report_.device = where_.name();
+        if (engine_) {
+            report_.kernel = engine_->facts();
+            report_.kernel_seconds = integrated_ ? engine_->kernel_seconds() : 0;
+            report_.seconds = report_.kernel_seconds;
+        }
+        return report_;
+    }
+    /// The records of the last `integrate`, empty (NaN, 0) if there was none since the upload. Waits; throws `error` after an `integrate` without a `download`.
+    const phase_records<Model, R>& records() {
+        const auto claim = take();
+        finish();
+        require_results("records");
+        if (!has_records_) prepared_.records().clear();
+        return prepared_.records();
+    }
+
+private:
+    template <class, class, class>
+    friend class solver;
+
+    enum class held { on_host, on_device, partly_on_host };
+
+    [[nodiscard]] host::occupancy::claim take() {
+        return occupancy_.take("two threads use one solver at the same time: give each a solver of its own");
+    }
+    void finish() {
+        if (engine_) engine_->wait();
+    }
+    /// The kernel's arguments point to the memory of the original ensemble.
+    void require_memory() const {
+        require(host::ensemble_access::identity(instances_) == identity_,
+                "the solver's ensemble was replaced by another or moved away, and its memory with it: set the values of "
+                "instances() instead");
+    }
+    void require_results(const char* what) const {
+        require(results_ != held::on_device, what,
+                " needs the results of integrate on the host: call download first (download({}) copies no component)");
+    }
+
+    static options checked(options o, std::int64_t capacity) {
+        require(capacity > 0, "the solver's capacity is ", capacity,
+                " (must be positive): give the number of instances it holds");
+        require(!o.progress,
+                "progress is given, but a solver is asynchronous and cannot report it: leave it out, "
+                "and call idle()");
+        host::check_options<Model, Method, R>(o);
+        host::memory_need need = host::ensemble_access::memory_of<ensemble<Model, R>>(capacity);
+        host::add_memory_of_call<Model, R>(need, capacity, nullptr, o, host::traits_of<Method>);
+        need.check(message("a solver for ", capacity, " instances"), "give it a smaller capacity, and integrate part by part");
+        return o;
+    }
+    host::work_count counted_work() const {
+        return options_.counting == counting::on ? host::counted_work(instances_, count_) : host::work_count{};
+    }
+    static bool is_chosen(void* context, detail::array_kind kind, std::int64_t component) {
+        const auto& chosen = *static_cast<const components*>(context);
+        const auto in = [&](const component_list& list) {
+            return std::find(list.begin(), list.end(), static_cast<int>(component)) != list.end();
+        };
+        switch (kind) {
+            case detail::array_kind::state:
+                return in(chosen.states);
+            case detail::array_kind::accessory:
+                return in(chosen.accessories);
+            case detail::array_kind::integer_accessory:
+                return in(chosen.integer_accessories);
+            default:
+                return true;
+        }
+    }
+
+    device where_;
+    options options_;
+    ensemble<Model, R> instances_;
+    host::prepared_arguments<Model, R> prepared_;
+    std::uint64_t identity_ = host::ensemble_access::identity(instances_);
+    host::occupancy occupancy_;
+    std::int64_t count_ = 0;
+    host::phases_left phases_left_;  // at the upload, and those requested since
+    std::int64_t phases_asked_ = 0;
+    bool uploaded_ = false;      // and `instances()` not called since
+    bool downloadable_ = false;  // uploaded, and found valid
+    held results_ = held::on_host;
+    bool remembered_ = true;     // which instances have ended, and with what inputs
+    bool integrated_ = false;
+    bool has_records_ = true;  // they belong to the instances uploaded last
+    host::work_count work_before_{};
+    host::functions_within_tolerance<Model> before_;
+    myriad::report<Model, R> report_;
+    std::unique_ptr<cuda::engine<Model, R>> engine_;  // destroyed first: it uses the memory above
+};
+
+}  // namespace myriad

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// The size of an error estimate against the tolerances: the largest component, as in the MPGOS package, or their root mean
+// square.
+#pragma once
+
+#include "myriad/kernel/methods/controller_policies.hpp"
+#include "myriad/kernel/scalar/control_number.hpp"
+#include "myriad/kernel/state/kernel_arguments.hpp"
+#include "myriad/kernel/stepper/step.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// |error| / scale. In CUDA threads within 1e-6, over the whole range of S but for a scale that is subnormal.
+template <class S>
+MYRIAD_FUNCTION S error_ratio(const S& error, const S& scale) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (std::is_same_v<S, double>) {
+        double reciprocal;
+        asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(reciprocal) : "d"(scale));
+        return abs(error) * reciprocal;
+    } else {
+        return quotient(abs(error), scale);
+    }
+#else
+    return abs(error) / scale;
+#endif
+}
+
+/// max(|a|, |b|) of a finite a; not finite where b is not.
+template <class S>
+MYRIAD_FUNCTION S larger_magnitude(const S& a, const S& b) {
+    return larger(abs(a), abs(b));
+}
+/// max(a, b) of a number a that is not negative; NaN where b is.
+template <class S>
+MYRIAD_FUNCTION S larger_scale(const S& a, const S& b) {
+    return larger(a, b);
+}
+/// The largest of numbers that are not negative; NaN where one is.
+template <class S, int n>
+MYRIAD_FUNCTION S largest_ratio(const vec<S, n>& a) {
+    S largest = a[0], sum = a[0];
+    MYRIAD_UNROLL
+    for (int c = 1; c < n; ++c) {
+        largest = larger(a[c], largest);
+        sum = sum + a[c];
+    }
+    if constexpr (n == 1) return largest;
+    return select(sum == sum, largest, sum);
+}
+/// Whether a state that is not finite makes its ratio NaN all by itself.
+template <class S>
+inline constexpr bool tells_infinity = false;
+
+#if defined(__CUDA_ARCH__)
+// The same in CUDA threads: the larger of two numbers by the upper halves of their bits, off the floating-point pipe. The lower
+// halves are left out, which is 1e-6 of the number's size.
+
+template <>
+inline constexpr bool tells_infinity<double> = true;
+
+MYRIAD_FUNCTION double larger_magnitude(const double& a, const double& b) {
+    // with a lower half that makes NaN of infinity
+    return __hiloint2double(::max(__double2hiint(a) & 0x7fffffff, __double2hiint(b) & 0x7fffffff), 1);
+}
+/// A NaN's bits, taken for an unsigned integer, are above those of infinity.
+MYRIAD_FUNCTION double larger_scale(const double& a, const double& b) {
+    const unsigned upper = ::max(static_cast<unsigned>(__double2hiint(a)), static_cast<unsigned>(__double2hiint(b)));
+    return __hiloint2double(static_cast<int>(upper), 0);
+}
+template <int n>
+MYRIAD_FUNCTION double largest_ratio(const vec<double, n>& a) {
+    double largest = a[0];
+    MYRIAD_UNROLL
+    for (int c = 1; c < n; ++c) largest = larger_scale(a[c], largest);
+    return largest;
+}
+#endif
+
+/// What the errors of a trial are compared with.
+template <class S, int n>
+struct error_scale {
+    vec<S, n> of;       // max(atol, rtol * max(|y|, |y1|)), or what was chosen instead
+    mask_of<S> finite;  // no component of y1 is infinite; one that is NaN makes its ratio NaN
+};
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION error_scale<S, n_state<Model>> scale_of_errors(const kernel_arguments<Model, real_of<S>>& args,
+                                                               const vec<S, n_state<Model>>& y,
+                                                               const vec<S, n_state<Model>>& y1) {
+    error_scale<S, n_state<Model>> scale;
+    S largest = S(real_of<S>(0));  // which may pass over NaN
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_state<Model>; ++c) {
+        const S atol = S(args.absolute_tolerance[c]), rtol = S(args.relative_tolerance[c]);
+        const S size = larger_magnitude(y[c], y1[c]);
+        if constexpr (!tells_infinity<S>) largest = c == 0 ? size : larger(largest, size);
+        if constexpr (adds_tolerances<Method>) {
+            scale.of[c] = fma(rtol, size, atol);
+        } else {
+            scale.of[c] = larger_scale(atol, rtol * size);
+        }
+    }
+    scale.finite = tells_infinity<S> ? mask_of<S>(true) : largest <= S(largest_of<real_of<S>>);
+    return scale;
+}
+
+/// The largest of the components' |factor * sum(c)| over their scales, or what was chosen instead; NaN where one is.
+template <class Method, class S, int n, class Sum>
+MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const S& factor, Sum&& sum) {
+    using C = control_of<S>;
+    if constexpr (averages_errors<Method>) {
+        using R = real_of<C>;
+        C squares = C(R(0));
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) {
+            const C ratio = static_cast<C>(error_ratio(factor * sum(c), scale[c]));
+            squares = fma(ratio, ratio, squares);
+        }
+        return sqrt(squares * C(R(1.0 / n)));
+    } else {
+        vec<S, n> ratio;
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) ratio[c] = error_ratio(sum(c), scale[c]);
+        return static_cast<C>(largest_ratio(ratio) * abs(factor));
+    }
+}
+
+template <class S>
+struct error_norm {
+    control_of<S> worst;  // largest ratio of error to tolerance; NaN where one of them is
+    mask_of<S> finite;    // no new value is infinite
+};
+
+/// The size of a trial's error. Two estimates of orders q and q - 2 are combined into e_q^2 / sqrt(e_q^2 + 0.01 e_(q-2)^2),
+/// which falls with h as one of order q + 2 (Hairer, Norsett, Wanner, Solving ODE I, II.10, for DOP853).
+template <class Model, class Method, class S>
+MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of<S>>& args,
+                                           const vec<S, n_state<Model>>& y, const S& h,
+                                           const trial_step<Method, S, n_state<Model>>& trial) {
+    const auto scale = detail::scale_of_errors<Method, Model>(args, y, trial.y);
+    const auto worst_of = [&](auto row) MYRIAD_LAMBDA {
+        constexpr int weights = decltype(row)::value;
+        return error_over_tolerance<Method>(scale.of, detail::error_factor<Method, weights>(h), [&](int c) MYRIAD_LAMBDA {
+            return detail::error_sum<Method, weights>(trial, c);
+        });
+    };
+    error_norm<S> norm{worst_of(constant_index<row_of<Method>::error>{}), scale.finite};
+    if constexpr (has_coarse_estimate<Method>) {
+        using C = control_of<S>;
+        using R = real_of<C>;
+        const C coarse = worst_of(constant_index<row_of<Method>::coarse_error>{});
+        // e / sqrt(1 + (0.1 c / e)^2); the estimates of an exact step are both zero
+        const C steepness = quotient(C(R(0.1)) * coarse, norm.worst);
+        const C combined = norm.worst * inverse_root(fma(steepness, steepness, C(R(1))));
+        norm.worst = select(norm.worst > C(R(0)), combined, norm.worst);
+        norm.finite = norm.finite & (coarse <= C(largest_of<R>));  // an infinite one says nothing
+    }
+    return norm;
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

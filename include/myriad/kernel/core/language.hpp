@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+// Reports that the language standard is too old before the compiler fails on everything else. Included first by public
+// headers.
+#pragma once
+
+#if __cplusplus < 202002L
+#error "Myriad is written in C++20, and this file is compiled as an older C++: give the compiler -std=c++20"
+#endif

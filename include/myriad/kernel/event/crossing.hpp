@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Where in a step an event function crosses zero, as its values and slopes at both ends tell.
+#pragma once
+
+#include "myriad/kernel/core/macros.hpp"
+#include "myriad/kernel/scalar/arithmetic.hpp"
+#include "myriad/kernel/scalar/math.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// An event function at both ends of a step: its values, and its slopes over the whole step. Signs are such that it crosses
+/// from above.
+template <class R>
+struct function_ends {
+    R value, slope;
+    R end_value, end_slope;
+};
+
+/// The fraction, 0 < x < 1, at which a + x (b + x (c + x d)) is zero; it is positive at 0 and negative at 1. By Newton's method,
+/// kept inside the bracket by bisection, until the value is `close` to zero; six iterations are enough for a guess. A half where
+/// the coefficients are not finite.
+template <class R>
+MYRIAD_FUNCTION R cubic_root(R a, R b, R c, R d, R close) {
+    constexpr R last = R(1) - R(4) * epsilon_of<R>;
+    R low = R(0), high = R(1);
+    R x = a * reciprocal(a - (((a + b) + c) + d));  // the secant
+    MYRIAD_ROLLED
+    for (int i = 0; i < 6; ++i) {
+        if (!(x > low && x < high)) x = R(0.5) * (low + high);
+        const R value = fma(x, fma(x, fma(x, d, c), b), a);
+        const R slope = fma(x, fma(x, R(3) * d, R(2) * c), b);
+        if (value != value) return R(0.5);
+        if (value > R(0)) {
+            low = x;
+        } else {
+            high = x;
+        }
+        const R step = value * reciprocal(slope);
+        if (abs(step) <= R(4) * epsilon_of<R> * x) break;
+        x -= step;
+        if (abs(value) <= close) break;
+    }
+    if (!(x >= low && x <= high)) x = R(0.5) * (low + high);
+    return x < last ? x : last;
+}
+
+/// The fraction of the step at which the function crosses zero, to within `close` of it: a root of the cubic through both ends
+/// (Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7)). If the function leaves the surface at the start of the step, the
+/// fraction at which it comes back: the root there is divided out.
+template <class R>
+MYRIAD_FUNCTION R crossing_fraction(const function_ends<R>& g, bool leaves, R close) {
+    const R rise = g.end_value - g.value;
+    const R square = R(3) * rise - R(2) * g.slope - g.end_slope, cube = g.slope + g.end_slope - R(2) * rise;
+    return detail::cubic_root(leaves ? g.slope : g.value, leaves ? square : g.slope, leaves ? cube : square,
+                              leaves ? R(0) : cube, leaves ? R(0) : close);
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

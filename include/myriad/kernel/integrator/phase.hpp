@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// The life of an instance in a lane: loaded, taken through its phases, recorded, stored, and the lane refilled. What the
+// steps do not need (counters, phases done, the time at which the phase began) is kept in the ensemble's arrays and not in
+// the lane, where it would cost a GPU thread registers.
+#pragma once
+
+#include "myriad/kernel/controller/fixed.hpp"
+#include "myriad/kernel/event/locator.hpp"
+#include "myriad/kernel/output/reducer.hpp"
+#include "myriad/kernel/output/sampler.hpp"
+#include "myriad/kernel/state/integration_state.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+template <class Model, class Method, class S>
+struct phase_driver {
+    using R = real_of<S>;
+    using arguments = kernel_arguments<Model, R>;
+    static constexpr int n = n_state<Model>;
+    static constexpr int m = n_event<Model>;
+
+    const arguments& args;
+    integration_state<Model, Method, S>& s;
+    event_locator<Model, Method, S>& locator;
+    sample_state<Method, S>& o;
+
+    /// Ends the phase of lane i, if it holds an instance, and takes it to its next phase or to the next instance that
+    /// needs work. Returns false when there is none: the lane stays empty.
+    template <class Source>
+    MYRIAD_FUNCTION bool advance(int i, Source& source) {
+        MYRIAD_FORGET(s.instance[i]);
+        if (s.instance[i] >= 0) {
+            if (is_last(i, source)) {
+                set_lane(s.active, i, false);
+                return false;
+            }
+            end_phase(i);
+        }
+        for (;;) {
+            while (s.instance[i] < 0 || s.phases_left[i] == 0) {
+                if (s.instance[i] >= 0) store(i);
+                s.instance[i] = source.next();
+                if (s.instance[i] < 0) {
+                    set_lane(s.active, i, false);
+                    return false;
+                }
+                load(i);
+            }
+            if (begin_phase(i)) return true;
+            end_phase(i);
+        }
+    }
+
+    /// Ends the phase and the instance that `advance` left to be ended with those of the other threads of a warp.
+    MYRIAD_FUNCTION void finish(int i) {
+        if (s.instance[i] < 0) return;
+        end_phase(i);
+        store(i);
+    }
+
+private:
+    /// Whether lane i is to end with its instance, in its last phase. Threads of a warp do so side by side, after the loop.
+    template <class Source>
+    MYRIAD_FUNCTION bool is_last(int i, const Source& source) const {
+        if constexpr (requires { source.gives_only_one(); }) {
+            return s.phases_left[i] == 1 && source.gives_only_one();
+        } else {
+            return false;
+        }
+    }
+
+    template <class T>
+    MYRIAD_FUNCTION T& at(T* array, int component, int i) const {
+        return array[static_cast<std::int64_t>(component) * args.size + s.instance[i]];
+    }
+
+    MYRIAD_FUNCTION void load(int i) {
+        const std::int64_t index = s.instance[i];
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) set_lane(s.data.y[c], i, at(args.state, c, i));
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_parameter<Model>; ++c) set_lane(s.data.parameter[c], i, at(args.parameter, c, i));
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_accessory<Model>; ++c) set_lane(s.data.accessory[c], i, at(args.accessory, c, i));
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+            set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
+        if constexpr (writes_time_domain<Model>) load_time_domain(i);
+        if constexpr (is_adaptive<Method>) set_lane(s.data.h_next, i, args.h_next[index]);
+        if constexpr (scales_tolerances<Method>)
+            set_lane(s.tolerance_scale, i, args.tolerance_scale[index]);
+        set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(args.first_index + index));
+        s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases - args.first_phase;
+    }
+
+    MYRIAD_FUNCTION void load_time_domain(int i) {
+        const bool own = args.t_begin != nullptr;
+        set_lane(s.data.t_begin, i, own ? args.t_begin[s.instance[i]] : args.common_t_begin);
+        set_lane(s.data.t_end, i, own ? args.t_end[s.instance[i]] : args.common_t_end);
+    }
+
+    MYRIAD_FUNCTION void store(int i) const {
+        const std::int64_t index = s.instance[i];
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) at(args.state, c, i) = get_lane(s.data.y[c], i);
+        if constexpr (writes_parameters<Model>) {
+            MYRIAD_UNROLL
+            for (int c = 0; c < n_parameter<Model>; ++c) at(args.parameter, c, i) = get_lane(s.data.parameter[c], i);
+        }
+        if constexpr (writes_time_domain<Model>) {
+            args.t_begin[index] = get_lane(s.data.t_begin, i);
+            args.t_end[index] = get_lane(s.data.t_end, i);
+        }
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_accessory<Model>; ++c) at(args.accessory, c, i) = get_lane(s.data.accessory[c], i);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+            at(args.integer_accessory, c, i) = static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
+        if constexpr (is_adaptive<Method>) args.h_next[index] = get_lane(s.data.h_next, i);
+    }
+
+    /// Adds the work of the phase to the instance's counters.
+    MYRIAD_FUNCTION void count_work(int i) const {
+        const std::int64_t index = s.instance[i];
+        const auto trials = static_cast<std::int64_t>(s.iteration - s.phase_start[i]);
+        const auto rejected = static_cast<std::int64_t>(get_lane(s.rejected, i));
+        const auto located = static_cast<std::int64_t>(get_lane(s.located, i));
+        args.accepted[index] += trials - rejected - located;
+        if constexpr (is_adaptive<Method>) args.rejected[index] += rejected;
+        if constexpr (m > 0) args.located[index] += located;
+        args.evaluations[index] += trials * evaluations_per_trial<Model, Method> +
+                                   static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
+    }
+
+    /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on. Returns false if it is over
+    /// without a step: its domain is empty, or `initialise` left something that is not finite.
+    MYRIAD_FUNCTION bool begin_phase(int i) {
+        s.ending[i] = status::success;
+        // Read again for each phase, so that t_begin need not stay in a register.
+        if constexpr (!writes_time_domain<Model>) load_time_domain(i);
+        const std::int64_t index = s.instance[i];
+        const std::int32_t phase = args.phase[index];
+        const bool carry_on = args.carry_time && phase > 0;
+        set_lane(s.data.t, i, carry_on ? args.t[index] : get_lane(s.data.t_begin, i));
+        if constexpr (!writes_time_domain<Model>) {  // whose hooks say where phases end
+            if (args.phase_length != R(0)) {
+                const R t_begin = get_lane(s.data.t_begin, i), t_end = get_lane(s.data.t_end, i);
+                const auto part = detail::interval_from(args, get_lane(s.data.t, i), t_begin, t_end);
+                set_lane(s.data.t_begin, i, part.begin);
+                set_lane(s.data.t_end, i, part.end);
+            }
+        }
+        set_lane(s.data.phase, i, phase);
+        set_lane(s.time_low, i, R(0));
+        set_lane(s.data.h, i, R(0));
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) set_lane(s.data.event_count[j], i, 0);
+        if constexpr (is_adaptive<Method>) {
+            // A method with fixed steps leaves none to carry on with.
+            const bool restart_step = !args.carry_step || phase == 0 || get_lane(s.data.h_next, i) == R(0);
+            if (restart_step) set_lane(s.data.h_next, i, args.step);
+        } else {
+            set_lane(s.data.h_next, i, args.step);
+        }
+        if constexpr (has_initialise<Model>) {
+            place(i, [](auto& lane) MYRIAD_LAMBDA { Model::initialise(lane); });
+            if constexpr (writes_time_domain<Model>) {
+                if (!carry_on) set_lane(s.data.t, i, get_lane(s.data.t_begin, i));
+            }
+        }
+        const R t = get_lane(s.data.t, i);
+        args.t[index] = t;
+        if constexpr (has_reductions<Model>) reducer<Model, Method, S>{s}.begin(i);
+        if constexpr (is_adaptive<Method>) {
+            if constexpr (chooses_first_step<Method>) set_lane(s.first_step_open, i, get_lane(s.data.h_next, i) == R(0));
+            if constexpr (remembers_errors<Method>) {
+                set_lane(s.errors.last, i, 0);
+                set_lane(s.errors.before, i, 0);
+            }
+            set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), get_lane(s.data.t_end, i) - t));
+            s.bound_step(args, i);
+        } else {
+            detail::lay_fixed_steps(args, s, i, t);
+            set_lane(s.data.h_next, i, get_lane(s.step, i));
+        }
+        if constexpr (m > 0) {
+            if (phase == 0) locator.forget(i);
+        }
+        if constexpr (samples_trajectory<Method>)
+            sampler<Model, Method, S>{args, s, o}.begin(i, args.phases - s.phases_left[i]);
+        set_lane(s.active, i, true);
+        set_lane(s.slope_valid, i, false);
+        set_lane(s.last_not_finite, i, false);
+        s.instance_over[i] = false;
+        set_count(s.rejected, i, 0);
+        set_count(s.located, i, 0);
+        set_count(s.extra_evaluations, i, 0);
+        if constexpr (lanes_of<S> == 1) {
+            s.all_iterations += s.iteration;
+            s.iteration = 0;
+        }
+        s.phase_start[i] = s.iteration;
+        return s.ending[i] == status::success && t != get_lane(s.data.t_end, i);
+    }
+
+    /// Runs `initialise` or `finalise`. A state or step that is not finite is refused; a state that was moved was placed,
+    /// not integrated, where it is, so functions within their tolerance come from no side.
+    template <class Hook>
+    MYRIAD_FUNCTION void place(int i, Hook&& hook) {
+        const auto before = get_lanes<R>(s.data.y, i);
+        const R h_next = get_lane(s.data.h_next, i);
+        detail::run_on_lane(s.data, i, hook);
+        const auto after = get_lanes<R>(s.data.y, i);
+        bool finite = all_finite(after) && get_lane(s.data.h_next, i) == get_lane(s.data.h_next, i);
+        if constexpr (writes_time_domain<Model>)
+            finite = finite && get_lane(s.data.t_begin, i) == get_lane(s.data.t_begin, i) &&
+                     get_lane(s.data.t_end, i) == get_lane(s.data.t_end, i);
+        if (!finite) {
+            set_lanes(s.data.y, i, before);
+            set_lane(s.data.h_next, i, h_next);
+            s.ending[i] = status::not_finite;
+        } else if (!same_values(before, after, n - n_tangent<Model>)) {
+            if constexpr (m > 0) locator.forget(i);
+        }
+    }
+
+    /// Ends the phase that lane i is in: `finalise`, record, count; a failed phase ends the instance instead.
+    MYRIAD_FUNCTION void end_phase(int i) {
+        const std::int64_t index = s.instance[i];
+        if (args.accepted != nullptr) count_work(i);
+        if constexpr (!is_adaptive<Method>) set_lane(s.data.t, i, detail::fixed_step_time(args, s, i));
+        if constexpr (m > 0) locator.keep(i);
+        args.t[index] = get_lane(s.data.t, i);
+        if constexpr (has_finalise<Model>) {
+            if (!is_failure(s.ending[i])) place(i, [](auto& lane) MYRIAD_LAMBDA { Model::finalise(lane); });
+        }
+        const bool failed = is_failure(s.ending[i]);
+        args.status[index] = s.ending[i];
+        if (!failed) {
+            record(i, args.phases - s.phases_left[i] - args.record.from_phase);
+            args.phase[index] += 1;
+        }
+        --s.phases_left[i];
+        if (args.cost != nullptr) args.cost[index] = static_cast<std::uint32_t>(s.iteration - s.phase_start[i]);
+        if (failed || s.instance_over[i]) {
+            args.ended[index] = 1;
+            s.phases_left[i] = 0;
+            if (args.cost != nullptr) args.cost[index] = 0;
+        }
+    }
+
+    MYRIAD_FUNCTION void record(int i, std::int32_t row) const {
+        const auto& r = args.record;
+        if (row < 0 || row >= r.phases) return;
+        const auto to = [&](auto* array, int column) MYRIAD_LAMBDA -> auto& {
+            return array[(static_cast<std::int64_t>(column) * r.phases + row) * args.size + s.instance[i]];
+        };
+        if (r.time_column >= 0) to(r.values, r.time_column) = get_lane(s.data.t, i);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c)
+            if (r.state_column[c] >= 0) to(r.values, r.state_column[c]) = get_lane(s.data.y[c], i);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_accessory<Model>; ++c)
+            if (r.accessory_column[c] >= 0) to(r.values, r.accessory_column[c]) = get_lane(s.data.accessory[c], i);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+            if (r.integer_accessory_column[c] >= 0)
+                to(r.integers, r.integer_accessory_column[c]) =
+                    static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
+    }
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

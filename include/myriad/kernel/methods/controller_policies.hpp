@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Step-size controls other than the default, chosen with the method. Each is a type, so that kernels contain no code
+// for controls that were not chosen.
+#pragma once
+
+namespace myriad {
+
+/// PI control: the factor of the next step is 0.9 q^(-0.7/k) r^(0.4/k), with q and r the errors over tolerance of this and of
+/// the last accepted step and k the order of the error estimate plus one. Fewer rejections where stability limits the step.
+/// Gustafsson, ACM Trans. Math. Softw. 17 (1991) 533; Hairer, Wanner, Solving ODE II, IV.2, eq. (2.43c).
+struct pi_control {
+    static constexpr double exponent_now = 0.7, exponent_last = -0.4, exponent_before = 0;
+};
+
+/// PID control: 0.9 q^(-0.58/k) r^(0.21/k) s^(-0.1/k), s being the error of the accepted step before the last. Kennedy and
+/// Carpenter, Appl. Numer. Math. 44 (2003) 139; the constants are those of SUNDIALS' ARKODE.
+struct pid_control {
+    static constexpr double exponent_now = 0.58, exponent_last = -0.21, exponent_before = 0.1;
+};
+
+/// The root mean square of the components' errors over their tolerances, instead of the largest.
+struct rms_norm {
+    static constexpr bool averages_errors = true;
+};
+
+/// Errors are compared with atol + rtol max(|y|, |y1|), instead of the larger of the two.
+struct mixed_scale {
+    static constexpr bool adds_tolerances = true;
+};
+
+/// If options::step is not given, the first step of a phase is computed from the slope and its change over a short
+/// Euler step, with two evaluations, one of which the first step uses. Hairer, Norsett, Wanner, Solving ODE I, II.4,
+/// "Starting step size".
+struct automatic_first_step {
+    static constexpr bool chooses_first_step = true;
+};
+
+/// Both tolerances are multiplied by `ensemble::tolerance_scale`, which may differ from instance to instance.
+struct tolerance_per_instance {
+    static constexpr bool scales_tolerances = true;
+};
+
+/// `Method`, an adaptive one, with the chosen controls. Instantiate it like any method, under a name of its own,
+/// because macro arguments cannot contain commas: `using careful = controlled<dormand_prince_8, pi_control>;` and
+/// `MYRIAD_INSTANTIATE(duffing, careful)`.
+template <class Method, class... Choices>
+struct controlled : Method, Choices... {
+    static_assert(Method::embedded_order > 0, "the method takes fixed steps and has no step-size control to choose");
+    static_assert((0 + ... + int(requires { Choices::exponent_last; })) + int(requires { Method::exponent_last; }) <= 1,
+                  "a method has one controller: choose pi_control or pid_control");
+};
+
+}  // namespace myriad
+
+namespace myriad::detail {
+
+/// Whether a method's control uses the errors of earlier steps.
+template <class Method>
+inline constexpr bool remembers_errors = requires { Method::exponent_last; };
+template <class Method>
+inline constexpr bool averages_errors = requires { Method::averages_errors; };
+template <class Method>
+inline constexpr bool adds_tolerances = requires { Method::adds_tolerances; };
+template <class Method>
+inline constexpr bool chooses_first_step = requires { Method::chooses_first_step; };
+template <class Method>
+inline constexpr bool scales_tolerances = requires { Method::scales_tolerances; };
+
+}  // namespace myriad::detail

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// A method with dense output. A type of its own, so that kernels without dense output contain no code for it.
+#pragma once
+
+namespace myriad {
+
+/// `Method` with samples along the trajectory, chosen by `options::samples`. Instantiate it where needed:
+/// `MYRIAD_INSTANTIATE(duffing, myriad::dense<myriad::cash_karp>)`.
+template <class Method>
+struct dense : Method {
+    static constexpr bool samples = true;
+};
+
+}  // namespace myriad
+
+namespace myriad::detail {
+
+/// Whether a method's kernels can sample.
+template <class Method>
+inline constexpr bool samples_trajectory = requires { Method::samples; };
+
+}  // namespace myriad::detail

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+// What a model consists of: its numbers of components, its hooks and its declarations, all read at compile time.
+#pragma once
+
+#include <string_view>
+#include <type_traits>
+
+#include "myriad/kernel/core/macros.hpp"
+
+namespace myriad::detail {
+
+// Counts: the last enumerator of each of the model's enumerations; zero if there is none.
+#define MYRIAD_MODEL_COUNT(count)                         \
+    template <class Model>                                \
+    constexpr int count##_of() {                          \
+        if constexpr (requires { Model::count; }) {       \
+            return static_cast<int>(Model::count);        \
+        } else {                                          \
+            return 0;                                     \
+        }                                                 \
+    }                                                     \
+    template <class Model>                                \
+    inline constexpr int count = count##_of<Model>();
+MYRIAD_MODEL_COUNT(n_state)
+MYRIAD_MODEL_COUNT(n_parameter)
+MYRIAD_MODEL_COUNT(n_shared)
+MYRIAD_MODEL_COUNT(n_shared_integer)
+MYRIAD_MODEL_COUNT(n_accessory)
+MYRIAD_MODEL_COUNT(n_integer_accessory)
+MYRIAD_MODEL_COUNT(n_event)
+MYRIAD_MODEL_COUNT(n_observed)
+/// Number of states, the last ones, that event functions do not read (`with_tangents`).
+MYRIAD_MODEL_COUNT(n_tangent)
+#undef MYRIAD_MODEL_COUNT
+
+// Enumerations: `enum state { ..., n_state };`, or an unnamed one, recognised by its count. enumerates_<kind>: whether
+// E is the model's enumeration of such components. counts_<kind>: whether a model that has the enumeration has the
+// count too.
+#define MYRIAD_MODEL_ENUMERATION(kind)                                                                            \
+    template <class Model, class E>                                                                               \
+    constexpr bool enumerates_##kind() {                                                                          \
+        bool same = false;                                                                                        \
+        if constexpr (requires { typename Model::kind; }) same = std::is_same_v<E, typename Model::kind>;         \
+        if constexpr (requires { Model::n_##kind; })                                                              \
+            same = same || (std::is_enum_v<E> && std::is_same_v<E, std::remove_cv_t<decltype(Model::n_##kind)>>); \
+        return same;                                                                                              \
+    }                                                                                                             \
+    template <class Model>                                                                                        \
+    constexpr bool counts_##kind() {                                                                              \
+        if constexpr (requires { typename Model::kind; }) {                                                       \
+            return !std::is_enum_v<typename Model::kind> || requires { Model::n_##kind; };                        \
+        } else {                                                                                                  \
+            return true;                                                                                          \
+        }                                                                                                         \
+    }
+MYRIAD_MODEL_ENUMERATION(state)
+MYRIAD_MODEL_ENUMERATION(parameter)
+MYRIAD_MODEL_ENUMERATION(shared)
+MYRIAD_MODEL_ENUMERATION(shared_integer)
+MYRIAD_MODEL_ENUMERATION(accessory)
+MYRIAD_MODEL_ENUMERATION(integer_accessory)
+MYRIAD_MODEL_ENUMERATION(event)
+MYRIAD_MODEL_ENUMERATION(observed)
+#undef MYRIAD_MODEL_ENUMERATION
+
+/// Whether E is one of the model's enumerations of components, of any kind.
+template <class Model, class E>
+inline constexpr bool enumerates_any =
+    enumerates_state<Model, E>() || enumerates_parameter<Model, E>() || enumerates_shared<Model, E>() ||
+    enumerates_shared_integer<Model, E>() || enumerates_accessory<Model, E>() ||
+    enumerates_integer_accessory<Model, E>() || enumerates_event<Model, E>() || enumerates_observed<Model, E>();
+
+// Refuses an index of type I into components of a kind: any index if the model has none, or an enumerator of another
+// kind.
+#define MYRIAD_INDEX_CHECK(kind)                                                                                      \
+    template <class Model, class I>                                                                                   \
+    constexpr bool check_##kind##_index() {                                                                           \
+        static_assert(n_##kind<Model> > 0,                                                                            \
+                      "the model has no " #kind ": end its enumeration with the enumerator n_" #kind                  \
+                      ", which counts them");                                                                         \
+        static_assert(!enumerates_any<Model, I> || enumerates_##kind<Model, I>(),                                     \
+                      "this enumerator is not a " #kind " of the model: name each component by its own enumeration"); \
+        return true;                                                                                                  \
+    }                                                                                                                 \
+    template <class Model, class I>                                                                                   \
+    inline constexpr bool kind##_index_fits = check_##kind##_index<Model, I>();
+MYRIAD_INDEX_CHECK(parameter)
+MYRIAD_INDEX_CHECK(shared)
+MYRIAD_INDEX_CHECK(shared_integer)
+#undef MYRIAD_INDEX_CHECK
+
+// Declarations: `static constexpr bool name = true;` in the model.
+#define MYRIAD_MODEL_DECLARATION(name)                    \
+    template <class Model>                                \
+    constexpr bool declares_##name() {                    \
+        if constexpr (requires { Model::name; }) {        \
+            return static_cast<bool>(Model::name);        \
+        } else {                                          \
+            return false;                                 \
+        }                                                 \
+    }                                                     \
+    template <class Model>                                \
+    inline constexpr bool name = declares_##name<Model>();
+/// The model's hooks write parameters, which are then stored back.
+MYRIAD_MODEL_DECLARATION(writes_parameters)
+/// The model's hooks write t_begin and t_end, which are then stored back.
+MYRIAD_MODEL_DECLARATION(writes_time_domain)
+/// Accessories are outputs of hooks for the host: rhs and events do not see them, so that writing one changes no slope.
+MYRIAD_MODEL_DECLARATION(accessories_are_outputs)
+/// The model branches on its state, so it runs one instance at a time on the CPU.
+MYRIAD_MODEL_DECLARATION(scalar_only)
+/// Many steps lie between events, so that on the CPU packs as large as without events pay off.
+MYRIAD_MODEL_DECLARATION(rare_events)
+#undef MYRIAD_MODEL_DECLARATION
+
+// Does a model have a member of that name, whatever its signature? A class that inherits the name twice finds it
+// ambiguous. That finds templates and overloads too, which a plain look at the signature would miss, so that a hook
+// with a wrong signature is an error instead of being ignored.
+#define MYRIAD_HOOK_NAME(hook)                                         \
+    namespace hook_names {                                             \
+    struct hook##_name {                                               \
+        int hook;                                                      \
+    };                                                                 \
+    template <class Model>                                             \
+    struct with_##hook : Model, hook##_name {};                        \
+    }                                                                  \
+    template <class Model>                                             \
+    constexpr bool names_##hook() {                                    \
+        if constexpr (std::is_final_v<Model>) {                        \
+            return false;                                              \
+        } else {                                                       \
+            return !requires { &hook_names::with_##hook<Model>::hook; }; \
+        }                                                              \
+    }                                                                  \
+    template <class Model>                                             \
+    inline constexpr bool has_##hook = names_##hook<Model>();
+MYRIAD_HOOK_NAME(rhs)
+MYRIAD_HOOK_NAME(jacobian)
+MYRIAD_HOOK_NAME(events)
+MYRIAD_HOOK_NAME(observe)
+MYRIAD_HOOK_NAME(initialise)
+MYRIAD_HOOK_NAME(after_step)
+MYRIAD_HOOK_NAME(after_event)
+MYRIAD_HOOK_NAME(finalise)
+MYRIAD_HOOK_NAME(n_state)
+MYRIAD_HOOK_NAME(n_parameter)
+MYRIAD_HOOK_NAME(n_shared)
+MYRIAD_HOOK_NAME(n_shared_integer)
+MYRIAD_HOOK_NAME(n_accessory)
+MYRIAD_HOOK_NAME(n_integer_accessory)
+MYRIAD_HOOK_NAME(n_event)
+MYRIAD_HOOK_NAME(n_observed)
+#undef MYRIAD_HOOK_NAME
+
+/// Whether other files can name a type: one in an anonymous namespace is a different type in each file. Recognised by
+/// the compiler's spelling of the name.
+template <class T>
+constexpr bool is_known_elsewhere() {
+    constexpr std::string_view name = __PRETTY_FUNCTION__;
+    return name.find("{anonymous}") == name.npos && name.find("(anonymous") == name.npos &&
+           name.find("<unnamed>") == name.npos;
+}
+/// Refuses kernels that no other file could call.
+template <class Model, class Method>
+constexpr bool check_linkage() {
+    static_assert(
+        is_known_elsewhere<Model>(),
+        "the model is in an anonymous namespace, where the file of its kernels and the files that use them do not see "
+        "the same type: move it out, into a header that both include");
+    static_assert(
+        is_known_elsewhere<Method>(),
+        "the method is in an anonymous namespace, where the file of the kernels and the files that use them do not "
+        "see the same type: move it out, into a header that both include");
+    return true;
+}
+
+/// Whether a model has its own Jacobian. One inherited by a model with tangents is that of the states without them, and
+/// does not count.
+template <class Model>
+inline constexpr bool gives_jacobian = has_jacobian<Model> && n_tangent<Model> == 0;
+
+/// Checks what can be checked of a model without calling it; everything that uses a model starts here.
+template <class Model>
+constexpr bool check_model() {
+    static_assert(std::is_class_v<Model>, "a model is a struct with static member functions");
+    static_assert(!std::is_final_v<Model>,
+                  "the model is declared final: its hooks cannot be found by name; remove `final`");
+#define MYRIAD_COUNT_CHECK(kind)                                                                    \
+    static_assert(counts_##kind<Model>(),                                                           \
+                  "the model has an enumeration `" #kind "` without its count: make n_" #kind       \
+                  " its last enumerator, `enum " #kind " { ..., n_" #kind " };`, without `class`"); \
+    static_assert(                                                                                  \
+        !has_n_##kind<Model> || requires { Model::n_##kind; },                                      \
+        "the model's n_" #kind " is private: a model is a struct, whose enumerations and functions are public");
+    MYRIAD_COUNT_CHECK(state)
+    MYRIAD_COUNT_CHECK(parameter)
+    MYRIAD_COUNT_CHECK(shared)
+    MYRIAD_COUNT_CHECK(shared_integer)
+    MYRIAD_COUNT_CHECK(accessory)
+    MYRIAD_COUNT_CHECK(integer_accessory)
+    MYRIAD_COUNT_CHECK(event)
+    MYRIAD_COUNT_CHECK(observed)
+#undef MYRIAD_COUNT_CHECK
+    static_assert(n_state<Model> > 0,
+                  "the model has no state: give it `enum state { x, ..., n_state };` with at least one component");
+    static_assert(has_rhs<Model>,
+                  "the model has no right-hand side: give it `template <class R> MYRIAD_FUNCTION static "
+                  "myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`");
+    static_assert(has_events<Model> == (n_event<Model> > 0),
+                  "a model with events has both `enum event { ..., n_event };` and a function `events`");
+    static_assert(!has_after_event<Model> || has_events<Model>,
+                  "the model has after_event but no events: give it `enum event { ..., n_event };` and `events`");
+    return true;
+}
+
+}  // namespace myriad::detail

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// Calls the optional functions of a model: checks their signatures with a readable message, distinguishes scalar from
+// generic hooks, and runs a scalar hook on one lane of a pack.
+#pragma once
+
+#include <concepts>
+#include <type_traits>
+
+#include "myriad/kernel/core/status.hpp"
+#include "myriad/kernel/model/lane.hpp"
+#include "myriad/kernel/model/reductions.hpp"
+#include "myriad/kernel/scalar/matrix_loop.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// `after_step` with an explicit scalar type runs on whole packs; without one, on one instance at a time.
+template <class Model, class R = double>
+inline constexpr bool has_generic_after_step = has_after_step<Model> &&
+    requires(lane<Model, R>& l) { Model::template after_step<R>(l); };
+
+template <class T, class R>
+concept generic_hook_result = std::is_void_v<T> || std::same_as<T, mask_of<R>>;
+
+template <class T>
+concept hook_result = std::is_void_v<T> || std::same_as<T, action>;
+
+// Refuses a call that does not compile or has a different result type, with the message, and then makes the call so
+// that the compiler reports the cause: an argument, or that the hook is private.
+#define MYRIAD_CHECK_CALL(call, result, what)                    \
+    static_assert(                                               \
+        requires {                                               \
+            { call } -> result;                                  \
+        },                                                       \
+        what);                                                   \
+    if constexpr (!requires { call; }) {                         \
+        [[maybe_unused]] decltype(call)* what_the_compiler_says; \
+    }
+
+/// Refuses hooks with a wrong signature, and shows the right one. The arguments' values are not used.
+template <class Model, class R>
+constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inputs<Model, R>* p = nullptr,
+                           lane<Model, R>* l = nullptr) {
+    check_model<Model>();
+    check_reductions<Model>();
+    static_cast<void>(y), static_cast<void>(p), static_cast<void>(l);
+    using slopes = vec<R, n_state<Model>>;
+    using square = matrix<R, n_state<Model>>;
+    using event_values = vec<R, n_event<Model>>;
+    using observed_values = vec<R, n_observed<Model>>;
+    if constexpr (has_rhs<Model> && (n_state<Model> > 0)) {
+        MYRIAD_CHECK_CALL(
+            (Model::template rhs<R>(R{}, *y, *p)), std::same_as<slopes>,
+            "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
+            "rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
+    }
+    if constexpr (gives_jacobian<Model>) {
+        MYRIAD_CHECK_CALL(
+            (Model::template jacobian<R>(R{}, *y, *p)), std::same_as<square>,
+            "jacobian has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::matrix<R, "
+            "n_state> jacobian(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, df_i/dy_j in row i, column "
+            "j, and public")
+    }
+    if constexpr (has_events<Model> && n_event<Model> > 0) {
+        MYRIAD_CHECK_CALL(
+            (Model::template events<R>(R{}, *y, *p)), std::same_as<event_values>,
+            "events has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
+            "n_event> events(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
+    }
+    if constexpr (has_observe<Model> && n_observed<Model> > 0) {
+        MYRIAD_CHECK_CALL(
+            (Model::template observe<R>(R{}, *y, *p)), std::same_as<observed_values>,
+            "observe has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
+            "n_observed> observe(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
+    }
+    if constexpr (has_initialise<Model>) {
+        MYRIAD_CHECK_CALL((Model::initialise(*l)), std::same_as<void>,
+                          "initialise has a wrong signature: it must be `MYRIAD_FUNCTION static void initialise(auto& "
+                          "lane)`, and public")
+    }
+    if constexpr (has_generic_after_step<Model, R>) {
+        MYRIAD_CHECK_CALL((Model::template after_step<R>(*l)), generic_hook_result<R>,
+                          "after_step has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static "
+                          "myriad::mask_of<R> after_step(auto& lane)` (true ends the phase) or return void; to return "
+                          "an action, leave out the template parameter")
+    }
+    if constexpr (has_after_step<Model> && !has_generic_after_step<Model, R>) {
+        MYRIAD_CHECK_CALL(
+            (Model::after_step(*l)), hook_result,
+            "after_step has a wrong signature: it must be `MYRIAD_FUNCTION static myriad::action after_step(auto& "
+            "lane)` (one instance at a time; may return void) or, to stay vectorised, `template <class R> "
+            "MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane)` (true ends the phase; may return void), "
+            "and public")
+    }
+    if constexpr (has_after_event<Model>) {
+        MYRIAD_CHECK_CALL(
+            (Model::after_event(int{}, *l)), hook_result,
+            "after_event has a wrong signature: it must be `MYRIAD_FUNCTION static myriad::action after_event(int "
+            "event, auto& lane)`, and public; it may return void")
+    }
+    if constexpr (has_finalise<Model>) {
+        MYRIAD_CHECK_CALL(
+            (Model::finalise(*l)), std::same_as<void>,
+            "finalise has a wrong signature: it must be `MYRIAD_FUNCTION static void finalise(auto& lane)`, and public")
+    }
+    return true;
+}
+#undef MYRIAD_CHECK_CALL
+
+template <class Model, class R>
+inline constexpr bool hooks_fit = check_hooks<Model, R>();
+
+/// Calls a hook that returns an action or nothing.
+template <class Call>
+MYRIAD_FUNCTION action action_of(Call&& call) {
+    if constexpr (std::is_void_v<decltype(call())>) {
+        call();
+        return action::proceed;
+    } else {
+        return call();
+    }
+}
+
+/// Runs a scalar hook on lane i: directly on the data of one instance, on a copy of its lane for a pack.
+template <class Model, class S, class Hook>
+MYRIAD_FUNCTION action run_on_lane(lane_data<Model, S>& data, int i, Hook&& hook) {
+    if constexpr (lanes_of<S> == 1) {
+        lane<Model, S> view(data);
+        return detail::action_of([&]() MYRIAD_LAMBDA { return hook(view); });
+    } else {
+        lane_data<Model, real_of<S>> one = detail::extract_lane(data, i);
+        lane<Model, real_of<S>> view(one);
+        const action wanted = detail::action_of([&]() MYRIAD_LAMBDA { return hook(view); });
+        detail::insert_lane(data, i, one);
+        return wanted;
+    }
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+// What the functions of a model see: `inputs` for rhs and events (the argument p), `lane` for the hooks, and the data
+// behind both, with the copying of single lanes out of a pack and back.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "myriad/kernel/core/vec.hpp"
+#include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/scalar/select.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// 64-bit for one instance; integers of the lanes' width for a pack (32-bit in packs of float).
+template <class S>
+using index_of = std::conditional_t<std::is_floating_point_v<S>, std::int64_t, integer_of<S>>;
+
+/// The integer type of one lane of it.
+template <class I>
+struct lane_integer_type {
+    using type = I;
+};
+template <class I>
+    requires(!std::is_integral_v<I>)
+struct lane_integer_type<I> {
+    using type = typename I::value_type;
+};
+template <class I>
+using lane_integer = typename lane_integer_type<I>::type;
+
+template <class Model, class S>
+struct lane_data;
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// The user's own storage, or nothing.
+template <class Model, class S, bool there>
+struct accessories {
+    [[no_unique_address]] vec<S, detail::n_accessory<Model>> accessory;
+    [[no_unique_address]] vec<integer_of<S>, detail::n_integer_accessory<Model>> integer_accessory;
+};
+template <class Model, class S>
+struct accessories<Model, S, false> {};
+
+/// Shared values, reals or integers: a pointer to them that refuses components of other kinds.
+template <class Model, class T>
+struct shared_values {
+    static constexpr bool integers = std::is_integral_v<T>;
+    static constexpr int size = integers ? detail::n_shared_integer<Model> : detail::n_shared<Model>;
+    const T* values;
+
+    shared_values() = default;
+    MYRIAD_FUNCTION shared_values(const T* all) : values(all) {}
+    MYRIAD_FUNCTION operator const T*() const { return values; }
+
+    template <class I>
+    MYRIAD_FUNCTION const T& operator[](I i) const MYRIAD_WARN_OF_INDEX(static_cast<int>(i), size) {
+        if constexpr (integers) {
+            static_assert(detail::shared_integer_index_fits<Model, I>);
+        } else {
+            static_assert(detail::shared_index_fits<Model, I>);
+        }
+        return values[detail::checked_index<size>(static_cast<int>(i))];
+    }
+};
+
+/// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value all instances share. It has no
+/// accessories in a model that declares them outputs.
+template <class Model, class S>
+struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
+    using real = real_of<S>;
+    [[no_unique_address]] vec<S, detail::n_parameter<Model>> parameter;
+    shared_values<Model, real> shared;
+    shared_values<Model, std::int32_t> shared_integer;
+
+    template <class I>
+    MYRIAD_FUNCTION const S& operator[](I i) const MYRIAD_WARN_OF_INDEX(static_cast<int>(i), detail::n_parameter<Model>) {
+        static_assert(detail::parameter_index_fits<Model, I>);
+        return parameter[static_cast<int>(i)];
+    }
+};
+
+}  // namespace myriad::inline MYRIAD_TARGET
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Everything of one instance (or of one pack of them) that hooks may see.
+template <class Model, class S>
+struct lane_data : inputs<Model, S>, accessories<Model, S, accessories_are_outputs<Model>> {
+    S t, t_begin, t_end;
+    S h;       // the last step
+    S h_next;  // the next trial step
+    vec<S, n_state<Model>> y;
+    index_of<S> index;
+    integer_of<S> phase;
+    [[no_unique_address]] vec<integer_of<S>, n_event<Model>> event_count;
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// What a hook gets: references into the data, constant where the model may not write. Times and steps are in the
+/// model's unit of time; `h` is negative when integrating backwards. `index` is the number of the instance, `phase`
+/// counts from zero at the ensemble's start, `event_count[i]` the detections of event i in this phase. Parameters are
+/// writable if the model declares `writes_parameters`, the time domain if it declares `writes_time_domain`: a phase
+/// continues to a new t_end, backwards if need be; a new t_begin takes effect in the next phase.
+template <class Model, class S>
+struct lane {
+    template <class T, bool writable>
+    using ref = std::conditional_t<writable, T&, const T&>;
+
+    const S& t;
+    ref<S, detail::writes_time_domain<Model>> t_begin;
+    ref<S, detail::writes_time_domain<Model>> t_end;
+    const S& h;
+    S& h_next;
+    vec<S, detail::n_state<Model>>& y;
+    ref<vec<S, detail::n_parameter<Model>>, detail::writes_parameters<Model>> parameter;
+    shared_values<Model, real_of<S>> shared;
+    shared_values<Model, std::int32_t> shared_integer;
+    vec<S, detail::n_accessory<Model>>& accessory;
+    vec<integer_of<S>, detail::n_integer_accessory<Model>>& integer_accessory;
+    const detail::index_of<S>& index;
+    const integer_of<S>& phase;
+    const vec<integer_of<S>, detail::n_event<Model>>& event_count;
+
+    MYRIAD_FUNCTION explicit lane(detail::lane_data<Model, S>& d)
+        : t(d.t), t_begin(d.t_begin), t_end(d.t_end), h(d.h), h_next(d.h_next), y(d.y), parameter(d.parameter),
+          shared(d.shared), shared_integer(d.shared_integer), accessory(d.accessory),
+          integer_accessory(d.integer_accessory), index(d.index), phase(d.phase), event_count(d.event_count) {}
+};
+
+}  // namespace myriad::inline MYRIAD_TARGET
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Copies lane i of a vector of packs; `set_lanes` writes it back.
+template <class R, class S, int n>
+MYRIAD_FUNCTION vec<R, n> get_lanes(const vec<S, n>& v, int i) {
+    vec<R, n> out;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n; ++c) out[c] = static_cast<R>(get_lane(v[c], i));
+    return out;
+}
+template <class R, class S, int n>
+MYRIAD_FUNCTION void set_lanes(vec<S, n>& v, int i, const vec<R, n>& lane) {
+    MYRIAD_UNROLL
+    for (int c = 0; c < n; ++c) set_lane(v[c], i, lane[c]);
+}
+
+/// Whether two states are the same in their first components (a NaN differs from everything).
+template <class R, int n>
+MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int count = n) {
+    bool same = true;
+    MYRIAD_UNROLL
+    for (int c = 0; c < count; ++c) same = same && a[c] == b[c];
+    return same;
+}
+
+/// Lane i of a pack as the data of one instance.
+template <class Model, class S>
+MYRIAD_FUNCTION lane_data<Model, real_of<S>> extract_lane(const lane_data<Model, S>& d, int i) {
+    using R = real_of<S>;
+    lane_data<Model, R> one;
+    one.parameter = get_lanes<R>(d.parameter, i);
+    one.accessory = get_lanes<R>(d.accessory, i);
+    one.integer_accessory = get_lanes<std::int32_t>(d.integer_accessory, i);
+    one.shared = d.shared;
+    one.shared_integer = d.shared_integer;
+    one.t = get_lane(d.t, i);
+    one.t_begin = get_lane(d.t_begin, i);
+    one.t_end = get_lane(d.t_end, i);
+    one.h = get_lane(d.h, i);
+    one.h_next = get_lane(d.h_next, i);
+    one.y = get_lanes<R>(d.y, i);
+    one.index = static_cast<std::int64_t>(get_lane(d.index, i));
+    one.phase = static_cast<std::int32_t>(get_lane(d.phase, i));
+    one.event_count = get_lanes<std::int32_t>(d.event_count, i);
+    return one;
+}
+
+/// Writes back what a hook may have changed.
+template <class Model, class S>
+MYRIAD_FUNCTION void insert_lane(lane_data<Model, S>& d, int i, const lane_data<Model, real_of<S>>& one) {
+    if constexpr (writes_parameters<Model>) set_lanes(d.parameter, i, one.parameter);
+    if constexpr (writes_time_domain<Model>) {
+        set_lane(d.t_begin, i, one.t_begin);
+        set_lane(d.t_end, i, one.t_end);
+    }
+    set_lanes(d.accessory, i, one.accessory);
+    set_lanes(d.integer_accessory, i, one.integer_accessory);
+    set_lane(d.h_next, i, one.h_next);
+    set_lanes(d.y, i, one.y);
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

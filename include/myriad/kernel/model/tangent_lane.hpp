@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// What tangent dynamics needs besides the variational equations: hooks of a model called with dual numbers, and the QR
+// decomposition that keeps tangent vectors linearly independent.
+#pragma once
+
+#include "myriad/kernel/model/hooks.hpp"
+#include "myriad/kernel/scalar/dual.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// The first components of a vector, and `size` of them from `from` on.
+template <int size, class S, int n>
+MYRIAD_FUNCTION vec<S, size> part(const vec<S, n>& v, int from = 0) {
+    vec<S, size> out;
+    MYRIAD_UNROLL
+    for (int c = 0; c < size; ++c) out[c] = v[from + c];
+    return out;
+}
+template <int size, class S, int n>
+MYRIAD_FUNCTION void set_part(vec<S, n>& v, int from, const vec<S, size>& to) {
+    MYRIAD_UNROLL
+    for (int c = 0; c < size; ++c) v[from + c] = to[c];
+}
+
+/// y + e direction, whose functions have their derivatives in that direction.
+template <class S, int n>
+MYRIAD_FUNCTION vec<dual<S>, n> along(const vec<S, n>& y, const vec<S, n>& direction) {
+    vec<dual<S>, n> moving;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n; ++c) moving[c] = dual<S>(y[c], direction[c]);
+    return moving;
+}
+template <class S, int n>
+MYRIAD_FUNCTION vec<S, n> derivatives(const vec<dual<S>, n>& v) {
+    vec<S, n> out;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n; ++c) out[c] = v[c].derivative;
+    return out;
+}
+
+/// The inputs of Model, from those of a model W that adds to its accessories.
+template <class Model, class W, class S>
+MYRIAD_FUNCTION inputs<Model, S> inputs_in(const lane<W, S>& l) {
+    inputs<Model, S> p;
+    p.parameter = part<n_parameter<Model>>(l.parameter);
+    if constexpr (!accessories_are_outputs<Model>) {
+        p.accessory = part<n_accessory<Model>>(l.accessory);
+        p.integer_accessory = l.integer_accessory;
+    }
+    p.shared = l.shared.values;
+    p.shared_integer = l.shared_integer.values;
+    return p;
+}
+
+/// The lane as Model's own, in dual numbers: the derivative of its state is the given direction, that of its time dt;
+/// everything else is constant.
+template <class Model, class W, class S>
+MYRIAD_FUNCTION lane_data<Model, dual<S>> moving_lane(const lane<W, S>& l, const vec<S, n_state<Model>>& direction,
+                                                      const S& dt) {
+    lane_data<Model, dual<S>> d;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_parameter<Model>; ++c) d.parameter[c] = l.parameter[c];
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_accessory<Model>; ++c) d.accessory[c] = l.accessory[c];
+    d.integer_accessory = l.integer_accessory;
+    d.shared = l.shared.values;
+    d.shared_integer = l.shared_integer.values;
+    d.t = dual<S>(l.t, dt);
+    d.t_begin = l.t_begin;
+    d.t_end = l.t_end;
+    d.h = l.h;
+    d.h_next = l.h_next;
+    d.y = along(part<n_state<Model>>(l.y), direction);
+    d.index = static_cast<index_of<dual<S>>>(l.index);
+    d.phase = l.phase;
+    d.event_count = l.event_count;
+    return d;
+}
+
+/// Copies back the values that a hook has left in Model's own lane.
+template <class Model, class W, class S>
+MYRIAD_FUNCTION void take_values(lane<W, S>& l, const lane_data<Model, dual<S>>& d) {
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_state<Model>; ++c) l.y[c] = d.y[c].value;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_accessory<Model>; ++c) l.accessory[c] = d.accessory[c].value;
+    l.integer_accessory = d.integer_accessory;
+    l.h_next = d.h_next.value;
+    if constexpr (writes_parameters<Model>) {
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_parameter<Model>; ++c) l.parameter[c] = d.parameter[c].value;
+    }
+    if constexpr (writes_time_domain<Model>) {
+        l.t_begin = d.t_begin.value;
+        l.t_end = d.t_end.value;
+    }
+}
+
+/// Calls `hook` with Model's own lane once for each of `count` directions, whose derivatives of state and time are the
+/// direction and its dt, and returns the derivatives of the state that the hook leaves. The values it leaves are the
+/// same every time.
+template <class Model, int count, class W, class S, class Hook>
+MYRIAD_FUNCTION vec<S, count * n_state<Model>> move_through(lane<W, S>& l,
+                                                            const vec<S, count * n_state<Model>>& directions,
+                                                            const vec<S, count>& dt, Hook&& hook) {
+    constexpr int n = n_state<Model>;
+    vec<S, count * n> left;
+    lane_data<Model, dual<S>> own;
+    MYRIAD_UNROLL
+    for (int i = 0; i < count; ++i) {
+        own = detail::moving_lane<Model>(l, part<n>(directions, i * n), dt[i]);
+        lane<Model, dual<S>> view(own);
+        hook(view);
+        set_part(left, i * n, derivatives(own.y));
+    }
+    detail::take_values<Model>(l, own);
+    return left;
+}
+
+/// The same for a hook that is called at given times, along the tangents that follow Model's state, which are updated.
+template <class Model, int count, class W, class S, class Hook>
+MYRIAD_FUNCTION void move_tangents(lane<W, S>& l, Hook&& hook) {
+    constexpr int n = n_state<Model>;
+    vec<S, count> at_once;
+    MYRIAD_UNROLL
+    for (int i = 0; i < count; ++i) at_once[i] = S(real_of<S>(0));
+    set_part(l.y, n, detail::move_through<Model, count>(l, part<count * n>(l.y, n), at_once, hook));
+}
+
+/// Makes `count` vectors of n components, from v[from] on, orthonormal, and calls `stretch(i, length)` with the diagonal
+/// of R in their decomposition QR. Gram-Schmidt, modified, and each vector against the others twice, which leaves them
+/// orthogonal to rounding however close they had come (Giraud, Langou, Rozloznik, Comput. Math. Appl. 50 (2005) 1069).
+template <int n, int count, class R, int size, class Stretch>
+MYRIAD_FUNCTION void orthonormalise(vec<R, size>& v, int from, Stretch&& stretch) {
+    for (int i = 0; i < count; ++i) {
+        const int own = from + i * n;
+        R scale = R(0);  // so that no square underflows
+        for (int c = 0; c < n; ++c) scale = max(scale, abs(v[own + c]));
+        for (int c = 0; c < n; ++c) v[own + c] = v[own + c] / scale;
+        for (int sweep = 0; sweep < 2; ++sweep) {
+            for (int j = 0; j < i; ++j) {
+                const int other = from + j * n;
+                R overlap = R(0);
+                for (int c = 0; c < n; ++c) overlap = fma(v[other + c], v[own + c], overlap);
+                for (int c = 0; c < n; ++c) v[own + c] = fma(-overlap, v[other + c], v[own + c]);
+            }
+        }
+        R square = R(0);
+        for (int c = 0; c < n; ++c) square = fma(v[own + c], v[own + c], square);
+        const R length = sqrt(square);
+        for (int c = 0; c < n; ++c) v[own + c] = v[own + c] / length;
+        stretch(i, scale * length);
+    }
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+// Reductions of observed quantities along the solution: extrema, their times and integrals over the phase, taken on the
+// interpolant of each committed step. Their current values are in their accessories and nowhere else. Only in kernels
+// of models that declare `reductions`.
+#pragma once
+
+#include "myriad/kernel/scalar/root_finder.hpp"
+#include "myriad/kernel/scalar/dual.hpp"
+#include "myriad/kernel/state/inside_step.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// A committed step as the reductions see it: its interpolant, with the term that raises a cubic one to order four.
+template <class Method, class S, int n>
+struct observed_step {
+    // The cubic Hermite polynomial is of a lower order than the steps of a method of order five. One more evaluation
+    // raises it: the state at one point gives a slope there that is accurate to order four.
+    static constexpr bool bends = !has_own_interpolant<Method> && (Method::order > 4);
+
+    step_data<Method, S, n> data;
+    [[no_unique_address]] vec<S, bends ? n : 0> bend;
+
+    /// State at t + theta h, for a dual theta with its derivative.
+    template <class T>
+    MYRIAD_FUNCTION vec<T, n> at(const T& theta) const {
+        vec<T, n> y = detail::interpolate(data, theta);
+        if constexpr (bends) {
+            const T bump = theta * (S(real_of<S>(1)) - theta);
+            MYRIAD_UNROLL
+            for (int c = 0; c < n; ++c) y[c] = fma(bump * bump, bend[c], y[c]);
+        }
+        return y;
+    }
+};
+
+template <class Model, class Method, class S>
+struct reducer {
+    using R = real_of<S>;
+    using mask = mask_of<S>;
+    static constexpr int n = n_state<Model>;
+    static constexpr int m = n_observed<Model>;
+    static constexpr bool integrates = reduces_any<Model, over_phase::integral>;
+    using step_type = observed_step<Method, S, n>;
+    using values = vec<S, m>;
+    using slopes = vec<dual<S>, m>;
+
+    integration_state<Model, Method, S>& s;
+
+    /// Starts lane i's phase at its time and state, after `initialise`.
+    MYRIAD_FUNCTION void begin(int i) {
+        const lane_data<Model, R> one = detail::extract_lane(s.data, i);
+        const inputs<Model, R>& p = one;
+        const vec<R, m> q = Model::template observe<R>(one.t, one.y, p);
+        static_for<0, n_reduction<Model>>([&](auto r) MYRIAD_LAMBDA {
+            constexpr unmarked_reduction what = reduction_at<Model, decltype(r)::value>;
+            constexpr bool time = what.kind == over_phase::time_of_maximum || what.kind == over_phase::time_of_minimum;
+            set_lane(s.data.accessory[what.accessory], i,
+                     time ? one.t : (what.kind == over_phase::integral ? R(0) : q[what.quantity]));
+        });
+    }
+
+    /// Updates the reductions with the accepted trial steps, which end at t1; called before they are committed. Returns
+    /// the lanes in which an accessory has changed.
+    MYRIAD_FUNCTION mask reduce(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
+        const auto before = s.data.accessory;
+        step_type step{{s.now(), s.h, s.data.y, trial, s.slope_end, {}}, {}};
+        if constexpr (interpolates_with_slope_end<Method> || (seeks_extrema<Model> && interpolates_between_slopes<Method>))
+            detail::know_slope_end<Model>(s, step.data, t1, accepted);
+        const slopes first = at_end<0>(step, step.data.t, step.data.y), last = at_end<1>(step, t1, trial.y);
+        if constexpr (integrates) know_interpolant(step, accepted);
+
+        mask search = mask(false);
+        static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
+            constexpr int q = decltype(j)::value;
+            if constexpr (extreme<q, over_phase::maximum> || extreme<q, over_phase::minimum>) {
+                consider<q>(accepted, first[q].value, step.data.t);
+                consider<q>(accepted, last[q].value, t1);
+                search = search | (accepted & may_turn(first[q], last[q]));
+            }
+        });
+        if (MYRIAD_UNLIKELY(any(search))) {
+            if constexpr (lanes_of<S> > 1) {
+                // Copies, so that the caller's variables need no address and stay in registers.
+                const trial_step<Method, S, n> trial_copy = trial;
+                step_type copy{{step.data.t, step.data.h, step.data.y, trial_copy, step.data.slope_end, step.data.extra},
+                               step.bend};
+                search_out_of_line(copy, first, last, search);
+            } else {
+                search_inside(step, first, last, search);
+            }
+        }
+        if constexpr (integrates) integrate_step(step, first, last, accepted);
+
+        mask changed = mask(false);
+        if constexpr (sees_reductions<Model>) {
+            MYRIAD_UNROLL
+            for (int a = 0; a < n_accessory<Model>; ++a)
+                changed = changed | (accepted & differs_in_bits(before[a], s.data.accessory[a]));
+        }
+        return changed;
+    }
+
+private:
+    template <int q, over_phase kind>
+    static constexpr bool extreme = reduces<Model>(q, kind);
+
+    /// The quantities, and their slopes along the solution in units of the step, at the given theta.
+    template <int end>
+    MYRIAD_FUNCTION slopes at_end(const step_type& step, const S& t, const vec<S, n>& y) const {
+        vec<dual<S>, n> moving;
+        if constexpr (!seeks_extrema<Model>) {
+            MYRIAD_UNROLL
+            for (int c = 0; c < n; ++c) moving[c] = dual<S>(y[c]);
+        } else if constexpr (interpolates_between_slopes<Method>) {
+            const vec<S, n>& slope = end == 0 ? step.data.trial.k[0] : step.data.slope_end;
+            MYRIAD_UNROLL
+            for (int c = 0; c < n; ++c) moving[c] = dual<S>(y[c], step.data.h * slope[c]);
+        } else {
+            moving = detail::interpolate(step.data, dual<S>(S(R(end)), S(R(1))));
+            MYRIAD_UNROLL
+            for (int c = 0; c < n; ++c) moving[c].value = y[c];
+        }
+        return observe(dual<S>(t, step.data.h), moving);
+    }
+    template <class T>
+    MYRIAD_FUNCTION vec<T, m> observe(const T& t, const vec<T, n>& y) const {
+        const inputs<Model, S>& p = s.data;
+        return Model::template observe<T>(t, y, p);
+    }
+    template <class T>
+    MYRIAD_FUNCTION vec<T, m> observe_at(const step_type& step, const T& theta) const {
+        return observe<T>(fma(theta, step.data.h, step.data.t), step.at(theta));
+    }
+
+    /// Completes what the interpolant needs inside the step; the slope at its end must be set.
+    MYRIAD_FUNCTION void know_interpolant(step_type& step, const mask& lanes) {
+        detail::know_inside<Model>(s, step.data, lanes);
+        if constexpr (step_type::bends) {
+            // The bump theta^2 (1 - theta)^2 is steepest here, and half as far from the other end.
+            constexpr R c = static_cast<R>(0.21132486540518711775L);  // (1 - 1 / sqrt(3)) / 2
+            constexpr R steepness = static_cast<R>(2 * 0.21132486540518711775L * 0.78867513459481288225L * 0.57735026918962576451L);
+            const vec<dual<S>, n> there = detail::interpolate(step.data, dual<S>(S(c), S(R(1))));
+            vec<S, n> y;
+            MYRIAD_UNROLL
+            for (int i = 0; i < n; ++i) y[i] = there[i].value;
+            const auto slope = detail::evaluate_rhs<Model>(fma(S(c), step.data.h, step.data.t), y, s.data);
+            MYRIAD_UNROLL
+            for (int i = 0; i < n; ++i)
+                step.bend[i] = fma(step.data.h, slope[i], -there[i].derivative) * S(R(1) / steepness);
+            s.extra_evaluations = count_where(lanes, s.extra_evaluations);
+        }
+    }
+
+    /// Updates the extrema of quantity q with a value at time t. A NaN persists.
+    template <int q>
+    MYRIAD_FUNCTION void consider(const mask& lanes, const S& value, const S& t) {
+        consider_for<q, over_phase::maximum, over_phase::time_of_maximum>(lanes, value, t);
+        consider_for<q, over_phase::minimum, over_phase::time_of_minimum>(lanes, value, t);
+    }
+    template <int q, over_phase kind, over_phase its_time>
+    MYRIAD_FUNCTION void consider_for(const mask& lanes, const S& value, const S& t) {
+        if constexpr (extreme<q, kind>) {
+            S& best = s.data.accessory[reduced_into<Model, q, kind>];
+            const mask better = lanes & ((kind == over_phase::maximum ? value > best : value < best) | (value != value));
+            best = select(better, value, best);
+            if constexpr (extreme<q, its_time>) {
+                S& when = s.data.accessory[reduced_into<Model, q, its_time>];
+                when = select(better, t, when);
+            }
+        }
+    }
+
+    /// Whether the cubic polynomial through both ends with their slopes may have an extremum inside. If not, the slopes
+    /// have the sign of its rise, and are at most three times as large: Fritsch and Carlson, SIAM J. Numer. Anal. 17
+    /// (1980) 238.
+    MYRIAD_FUNCTION mask may_turn(const dual<S>& first, const dual<S>& last) const {
+        const S rise = last.value - first.value, bound = S(R(3)) * rise * rise;
+        const S a = first.derivative * rise, b = last.derivative * rise;
+        return !((a >= S(R(0))) & (a <= bound) & (b >= S(R(0))) & (b <= bound));
+    }
+
+    /// Out of line, as otherwise its operands would stay live throughout the loop.
+    [[gnu::noinline]] void search_out_of_line(step_type& step, const slopes& first, const slopes& last, const mask& search) {
+        search_inside(step, first, last, search);
+    }
+
+    /// One quantity and one sign after the other, with the same code: 1 for its maximum, -1 for its minimum.
+    MYRIAD_FUNCTION void search_inside(step_type& step, const slopes& first, const slopes& last, const mask& search) {
+        if constexpr (!integrates) know_interpolant(step, search);
+        static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
+            constexpr int q = decltype(j)::value;
+            constexpr bool maximum = extreme<q, over_phase::maximum>, minimum = extreme<q, over_phase::minimum>;
+            if constexpr (maximum || minimum) {
+                const turn middle = turn_between<q>(step, search, first[q], last[q]);
+                MYRIAD_ROLLED
+                for (int sign = maximum ? 1 : -1; sign >= (minimum ? -1 : 1); sign -= 2)
+                    find_extremum<q>(step, static_cast<R>(sign), search, first[q], last[q], middle);
+            }
+        });
+    }
+
+    /// Quantity q and its slope inside the step.
+    template <int q>
+    MYRIAD_FUNCTION dual<S> look_at(const step_type& step, const S& theta) const {
+        if constexpr (lanes_of<S> > 1) {
+            return look_out_of_line(step, theta)[q];
+        } else {
+            return observe_at(step, dual<S>(theta, S(R(1))))[q];
+        }
+    }
+    [[gnu::noinline]] slopes look_out_of_line(const step_type& step, const S& theta) const {
+        return observe_at(step, dual<S>(theta, S(R(1))));
+    }
+
+    /// A point between two extrema inside the step, and the slope there.
+    struct turn {
+        mask there;
+        S theta, slope;
+    };
+
+    /// If both ends slope the same way and the cubic polynomial through them has an interval that slopes the other way:
+    /// the steepest point of that interval.
+    template <int q>
+    MYRIAD_FUNCTION turn turn_between(const step_type& step, const mask& lanes, const dual<S>& first,
+                                      const dual<S>& last) const {
+        const S rise = last.value - first.value;
+        const S a = S(R(3)) * rise - S(R(2)) * first.derivative - last.derivative;  // slope d + 2 a theta + 3 b theta^2
+        const S b = first.derivative + last.derivative - S(R(2)) * rise;
+        const S theta = -a / (S(R(3)) * b);
+        const S slope = fma(a, theta, first.derivative);
+        turn found;
+        found.there = lanes & (theta > S(R(0))) & (theta < S(R(1))) & (slope * first.derivative <= S(R(0))) &
+                      (slope * last.derivative <= S(R(0)));
+        found.theta = select(found.there, theta, S(R(0.5)));
+        found.slope = S(R(0));
+        if (any(found.there)) found.slope = look_at<q>(step, found.theta).derivative;
+        return found;
+    }
+
+    /// Finds the largest value (sign 1) or the smallest (sign -1) of quantity q inside the step, where it has one: its slope on
+    /// the interpolant changes sign there.
+    template <int q>
+    MYRIAD_FUNCTION void find_extremum(const step_type& step, R sign, const mask& lanes, const dual<S>& first,
+                                       const dual<S>& last, const turn& middle) {
+        const S zero = S(R(0)), d0 = S(sign) * first.derivative, d1 = S(sign) * last.derivative,
+                d = S(sign) * middle.slope;
+        const mask early = middle.there & (d0 > zero) & (d < zero), late = middle.there & (d > zero) & (d1 < zero);
+        const bracket<S> b{select(late, middle.theta, zero), select(early, middle.theta, S(R(1))), select(late, d, d0),
+                           select(early, d, d1)};
+        // With a slope as small as this, as of a constant quantity, it rises above both ends by less than rounding.
+        const S least = S(epsilon_of<R>) * max(abs(first.value), abs(last.value));
+        const mask wanted = lanes & (b.f_low > least) & (b.f_high < -least);
+        if (!any(wanted)) return;
+        const S small = S(R(1024) * epsilon_of<R>) * (b.f_low - b.f_high);
+        const S theta = detail::find_root(b, wanted, [&](const S& x, mask& close) MYRIAD_LAMBDA {
+            const S slope = S(sign) * look_at<q>(step, x).derivative;
+            close = abs(slope) <= small;
+            return slope;
+        });
+        const S value = look_at<q>(step, theta).value;
+        consider<q>(wanted, value, fma(theta, step.data.h, step.data.t));
+    }
+
+    /// Lobatto's rule of five points, exact for polynomials up to degree seven: Abramowitz and Stegun, Handbook of
+    /// Mathematical Functions, 25.4.32 and table 25.6.
+    MYRIAD_FUNCTION void integrate_step(const step_type& step, const slopes& first, const slopes& last, const mask& lanes) {
+        constexpr R near = static_cast<R>(0.17267316464601142810L);  // (1 - sqrt(3 / 7)) / 2
+        values sum;
+        MYRIAD_UNROLL
+        for (int q = 0; q < m; ++q) sum[q] = S(R(1) / R(20)) * (first[q].value + last[q].value);
+        for (int k = 0; k < 3; ++k) {
+            const R theta = k == 0 ? near : (k == 1 ? R(0.5) : R(1) - near);
+            const S weight = S(k == 1 ? R(16) / R(45) : R(49) / R(180));
+            const values inside = observe_at(step, S(theta));
+            MYRIAD_UNROLL
+            for (int q = 0; q < m; ++q) sum[q] = fma(weight, inside[q], sum[q]);
+        }
+        static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
+            constexpr int q = decltype(j)::value;
+            if constexpr (extreme<q, over_phase::integral>) {
+                S& integral = s.data.accessory[reduced_into<Model, q, over_phase::integral>];
+                integral = select(lanes, fma(step.data.h, sum[q], integral), integral);
+            }
+        });
+    }
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

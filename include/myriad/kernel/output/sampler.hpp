@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// Dense output inside the loop: stores chosen states at given times, from the interpolant of each committed step, or at
+// every n-th step. Only in kernels of a method `dense<Method>`; others have none of it.
+#pragma once
+
+#include "myriad/kernel/state/inside_step.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// The sampler's state between steps. Empty for a method that does not sample.
+template <class Method, class S, bool samples = samples_trajectory<Method>>
+struct sample_state {};
+template <class Method, class S>
+struct sample_state<Method, S, true> {
+    S next;                                // time of the next sample; infinity: none
+    S last;                                // when sampling by steps: time of the last sample
+    S begin, end;                          // the domain of evenly spaced samples; a hook may move the phase's end
+    std::int32_t index[lanes_of<S>];       // number of the next given time in this phase
+    std::int32_t steps[lanes_of<S>];       // accepted steps since the last sample; -1: this phase is not sampled
+};
+
+template <class Model, class Method, class S>
+struct sampler {
+    using R = real_of<S>;
+    using mask = mask_of<S>;
+    static constexpr int n = n_state<Model>;
+
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
+    sample_state<Method, S>& o;
+
+    /// Starts lane i's phase, number `phase` of this call, at its time and state.
+    MYRIAD_FUNCTION void begin(int i, std::int32_t phase) {
+        const R t = get_lane(s.data.t, i);
+        o.index[i] = 0;
+        o.steps[i] = -1;
+        set_lane(o.next, i, never(i));
+        if (args.sample.stored == nullptr || phase < args.sample.from_phase) return;
+        if (args.sample.every > 0) {
+            o.steps[i] = 0;
+            store(i, t, get_lanes<R>(s.data.y, i));
+            set_lane(o.last, i, t);
+            return;
+        }
+        const R end = get_lane(s.data.t_end, i);
+        set_lane(o.begin, i, get_lane(s.data.t_begin, i));
+        set_lane(o.end, i, end);
+        // If time continues from phase to phase, the previous phase has stored the sample at its end.
+        const bool has_start = args.carry_time && get_lane(s.data.phase, i) > 0 && ends_with(i, t);
+        const auto passed = [&](R time) MYRIAD_LAMBDA {
+            return (has_start && time == t) || (end < t ? time > t : end > t && time < t);
+        };
+        while (o.index[i] < args.sample.count && passed(sample_time(i))) ++o.index[i];
+        set_next(i);
+        if (get_lane(o.next, i) == t) {
+            store(i, t, get_lanes<R>(s.data.y, i));
+            ++o.index[i];
+            set_next(i);
+        }
+    }
+
+    /// Stores the samples within the accepted trial steps, which end at t1; called before they are committed.
+    MYRIAD_FUNCTION void save(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
+        if (args.sample.stored == nullptr) return;
+        if (args.sample.every > 0) {
+            save_steps(trial, t1, accepted);
+        } else {
+            save_times(trial, t1, accepted);
+        }
+    }
+
+private:
+    MYRIAD_FUNCTION void save_steps(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
+        for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA {
+            if (o.steps[i] < 0 || ++o.steps[i] < args.sample.every) return;
+            const R t = get_lane(t1, i);
+            if (abs(t - get_lane(o.last, i)) < args.sample.minimum_spacing) return;
+            store(i, t, get_lanes<R>(trial.y, i));
+            set_lane(o.last, i, t);
+            o.steps[i] = 0;
+        });
+    }
+
+    MYRIAD_FUNCTION void save_times(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
+        const S t0 = s.now();
+        mask due = accepted & falls_between(t0, t1);
+        if (!any(due)) return;
+        step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slope_end, {}};
+        if constexpr (Method::first_same_as_last || interpolates_with_slope_end<Method>)
+            detail::know_slope_end<Model>(s, step, t1, due);
+        detail::know_inside<Model>(s, step, due);
+        while (any(due)) {
+            const S theta = (o.next - step.t) / step.h;
+            const auto inside = detail::interpolate(step, theta);
+            vec<S, n> y;
+            MYRIAD_UNROLL
+            for (int c = 0; c < n; ++c) y[c] = select(o.next == t1, trial.y[c], inside[c]);
+            for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
+                store(i, get_lane(o.next, i), get_lanes<R>(y, i));
+                ++o.index[i];
+                set_next(i);
+            });
+            due = accepted & falls_between(t0, t1);
+        }
+    }
+
+    /// Lanes whose next sample falls into the step from t0 to t1. Not one that a hook which turned the phase round left
+    /// behind; but one that the rounding of t put between the end of the last step and t0.
+    MYRIAD_FUNCTION mask falls_between(const S& t0, const S& t1) const {
+        const S slack = S(R(4) * epsilon_of<R>) * abs(t0);
+        const S ahead = select(s.h < S(R(0)), t0 - o.next, o.next - t0);
+        const mask backwards = s.h < S(R(0)), forwards = !backwards;
+        return ((backwards & (t1 <= o.next)) | (forwards & (t1 >= o.next))) & (ahead >= -slack);
+    }
+
+    MYRIAD_FUNCTION R never(int i) const {
+        constexpr R far = infinity_of<R>;
+        return copysign(far, get_lane(s.data.t_end, i) - get_lane(s.data.t, i));
+    }
+    MYRIAD_FUNCTION void set_next(int i) {
+        set_lane(o.next, i, o.index[i] < args.sample.count ? sample_time(i) : never(i));
+    }
+    /// Given times, or evenly spaced ones over the domain with which the phase began, both ends included.
+    MYRIAD_FUNCTION R sample_time(int i) const {
+        const std::int32_t k = o.index[i];
+        if (args.sample.times != nullptr) return args.sample.times[k];
+        if (args.sample.own_times != nullptr)
+            return args.sample.own_times[static_cast<std::int64_t>(k) * args.size + s.instance[i]];
+        const R begin = get_lane(o.begin, i), end = get_lane(o.end, i);
+        if (k == args.sample.count - 1) return end;
+        return fma(static_cast<R>(k) / static_cast<R>(args.sample.count - 1), end - begin, begin);
+    }
+
+    /// Whether the last sample is that of time t.
+    MYRIAD_FUNCTION bool ends_with(int i, R t) const {
+        const std::int32_t stored = args.sample.stored[s.instance[i]];
+        return stored > 0 && args.sample.time[static_cast<std::int64_t>(stored - 1) * args.size + s.instance[i]] == t;
+    }
+
+    MYRIAD_FUNCTION void store(int i, R t, const vec<R, n>& y) const {
+        std::int32_t& stored = args.sample.stored[s.instance[i]];
+        if (stored >= args.sample.capacity) return;
+        const std::int64_t cell = static_cast<std::int64_t>(stored) * args.size + s.instance[i];
+        args.sample.time[cell] = t;
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) {
+            if (args.sample.column[c] >= 0)
+                args.sample.values[args.sample.column[c] * (args.size * args.sample.capacity) + cell] = y[c];
+        }
+        ++stored;
+    }
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

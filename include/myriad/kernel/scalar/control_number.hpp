@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// The kind of number that step-size control computes with, and what it compares it with.
+#pragma once
+
+#include <type_traits>
+
+#include "myriad/kernel/scalar/math.hpp"
+#include "myriad/kernel/scalar/select.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+#if defined(__CUDACC__)
+// The parameter is only used because nvcc 13 crashes if it is not.
+/// The type of the ratio of a step size to the last one: single precision in CUDA threads, where double is slow and
+/// division slowest, and seven digits are more than a step size needs.
+template <class S>
+using control_of = std::conditional_t<true, float, S>;
+#else
+template <class S>
+using control_of = S;
+#endif
+
+/// The larger and the smaller of two numbers, the second if one is NaN: one instruction less than max and min on either
+/// backend.
+template <class S>
+struct one_of_two {
+    static MYRIAD_FUNCTION S larger(const S& a, const S& b) { return select(a > b, a, b); }
+    static MYRIAD_FUNCTION S smaller(const S& a, const S& b) { return select(a < b, a, b); }
+};
+template <class S>
+MYRIAD_FUNCTION S larger(const S& a, const S& b) {
+    return one_of_two<S>::larger(a, b);
+}
+template <class S>
+MYRIAD_FUNCTION S smaller(const S& a, const S& b) {
+    return one_of_two<S>::smaller(a, b);
+}
+
+/// a clamped to the limits; the lower one if it is NaN.
+template <class S>
+MYRIAD_FUNCTION S limited(const S& a, const S& low, const S& high) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (std::is_same_v<S, float>) return ::fminf(::fmaxf(a, low), high);
+#endif
+    return smaller(larger(a, low), high);
+}
+
+/// a / b and 1 / sqrt(a); in CUDA threads within a few ulps and without code for numbers near the ends of the range,
+/// where a / b is 0.
+template <class S>
+MYRIAD_FUNCTION S quotient(const S& a, const S& b) {
+#if defined(__CUDA_ARCH__)
+    static_assert(std::is_same_v<S, float>);
+    return __fdividef(a, b);
+#else
+    return a / b;
+#endif
+}
+template <class S>
+MYRIAD_FUNCTION S inverse_root(const S& a) {
+#if defined(__CUDA_ARCH__)
+    static_assert(std::is_same_v<S, float>);
+    float y;
+    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(a));
+    return y;
+#else
+    return S(real_of<S>(1)) / sqrt(a);
+#endif
+}
+
+/// Whether low <= |a| <= high; in CUDA threads compared by the upper halves of their bits, and false if these equal a
+/// limit's.
+template <class S>
+MYRIAD_FUNCTION mask_of<S> clearly_between(const S& low, const S& a, const S& high) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (std::is_same_v<S, double>) {
+        const int size = __double2hiint(a) & 0x7fffffff;
+        return (__double2hiint(low) < size) & (size < __double2hiint(high));
+    }
+#endif
+    return (low <= abs(a)) & (abs(a) <= high);
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: MIT
+// Dual numbers, a value with one derivative: a model's functions called with them give exact directional derivatives, for
+// the slopes of event functions and for Jacobians.
+#pragma once
+
+#include <type_traits>
+
+#include "myriad/kernel/core/macros.hpp"
+#include "myriad/kernel/scalar/math.hpp"
+#include "myriad/kernel/scalar/select.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// value + derivative * e with e * e = 0; S is double, float or a pack. Mixes with S and with plain numbers, which are
+/// constants. Comparisons use only the value.
+template <class S>
+struct dual {
+    using value_type = real_of<S>;
+
+    S value;
+    S derivative;
+
+    dual() = default;
+    MYRIAD_FUNCTION constexpr dual(const S& value_, const S& derivative_) : value(value_), derivative(derivative_) {}
+    MYRIAD_FUNCTION constexpr dual(const S& constant) : value(constant), derivative(S(value_type(0))) {}
+    MYRIAD_FUNCTION constexpr dual(value_type constant) requires(!std::is_same_v<S, value_type>)
+        : value(S(constant)), derivative(S(value_type(0))) {}
+
+    friend MYRIAD_FUNCTION dual operator-(const dual& a) { return dual(-a.value, -a.derivative); }
+    friend MYRIAD_FUNCTION dual operator+(const dual& a) { return a; }
+
+    template <class B>
+    MYRIAD_FUNCTION dual& operator+=(const B& b) {
+        return *this = *this + b;
+    }
+    template <class B>
+    MYRIAD_FUNCTION dual& operator-=(const B& b) {
+        return *this = *this - b;
+    }
+    template <class B>
+    MYRIAD_FUNCTION dual& operator*=(const B& b) {
+        return *this = *this * b;
+    }
+    template <class B>
+    MYRIAD_FUNCTION dual& operator/=(const B& b) {
+        return *this = *this / b;
+    }
+
+    static MYRIAD_FUNCTION dual blend(const mask_of<S>& mask, const dual& a, const dual& b) {
+        return dual(select(mask, a.value, b.value), select(mask, a.derivative, b.derivative));
+    }
+    using lane_type = dual<value_type>;
+    static MYRIAD_FUNCTION lane_type get_lane(const dual& a, int lane) {
+        return lane_type(detail::get_lane(a.value, lane), detail::get_lane(a.derivative, lane));
+    }
+    static MYRIAD_FUNCTION void set_lane(dual& a, int lane, const lane_type& x) {
+        detail::set_lane(a.value, lane, x.value);
+        detail::set_lane(a.derivative, lane, x.derivative);
+    }
+};
+
+}  // namespace myriad::inline MYRIAD_TARGET
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+template <class S>
+struct scalar_traits<dual<S>> {
+    using real = real_of<S>;
+    using mask = mask_of<S>;
+    using integer = integer_of<S>;
+    static constexpr int lanes = lanes_of<S>;
+};
+
+template <class S>
+inline constexpr int kind_rank<dual<S>> = 2;
+
+template <class A>
+inline constexpr bool is_dual = kind_rank<A> == 2;
+
+template <class A, class B>
+concept with_dual = (is_dual<A> || is_dual<B>)&&requires {
+    typename common_kind_of<A, B>::type;
+};
+
+template <class D>
+struct dual_part;
+template <class S>
+struct dual_part<dual<S>> {
+    using type = S;
+};
+/// The S of the dual<S> that is the common type of A and B.
+template <class A, class B>
+using part_of = typename dual_part<common_kind<A, B>>::type;
+
+template <class S, class A>
+MYRIAD_FUNCTION S value_of(const A& a) {
+    if constexpr (is_dual<A>) {
+        return a.value;
+    } else {
+        return to_kind<S>(a);
+    }
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+
+namespace myriad::inline MYRIAD_TARGET {
+
+// The results are `auto`: clang 14 instantiates a named result type before it checks the constraint, which is an error
+// for foreign types, such as iterators of a vector of this namespace's types. Constants are distinguished from dual
+// numbers, as multiplying by a zero derivative is not free and turns infinities into NaN.
+template <class A, class B>
+requires detail::with_dual<A, B> MYRIAD_FUNCTION auto
+operator+(const A& a, const B& b) {
+    using S = detail::part_of<A, B>;
+    const S value = detail::value_of<S>(a) + detail::value_of<S>(b);
+    if constexpr (!detail::is_dual<B>) {
+        return dual<S>(value, a.derivative);
+    } else if constexpr (!detail::is_dual<A>) {
+        return dual<S>(value, b.derivative);
+    } else {
+        return dual<S>(value, a.derivative + b.derivative);
+    }
+}
+
+template <class A, class B>
+requires detail::with_dual<A, B> MYRIAD_FUNCTION auto
+operator-(const A& a, const B& b) {
+    using S = detail::part_of<A, B>;
+    const S value = detail::value_of<S>(a) - detail::value_of<S>(b);
+    if constexpr (!detail::is_dual<B>) {
+        return dual<S>(value, a.derivative);
+    } else if constexpr (!detail::is_dual<A>) {
+        return dual<S>(value, -b.derivative);
+    } else {
+        return dual<S>(value, a.derivative - b.derivative);
+    }
+}
+
+template <class A, class B>
+requires detail::with_dual<A, B> MYRIAD_FUNCTION auto
+operator*(const A& a, const B& b) {
+    using S = detail::part_of<A, B>;
+    const S u = detail::value_of<S>(a);
+    const S v = detail::value_of<S>(b);
+    if constexpr (!detail::is_dual<B>) {
+        return dual<S>(u * v, a.derivative * v);
+    } else if constexpr (!detail::is_dual<A>) {
+        return dual<S>(u * v, u * b.derivative);
+    } else {
+        return dual<S>(u * v, a.derivative * v + u * b.derivative);
+    }
+}
+
+template <class A, class B>
+requires detail::with_dual<A, B> MYRIAD_FUNCTION auto
+operator/(const A& a, const B& b) {
+    using S = detail::part_of<A, B>;
+    const S v = detail::value_of<S>(b);
+    const S quotient = detail::value_of<S>(a) / v;
+    if constexpr (!detail::is_dual<B>) {
+        return dual<S>(quotient, a.derivative / v);
+    } else if constexpr (!detail::is_dual<A>) {
+        return dual<S>(quotient, -quotient * b.derivative / v);
+    } else {
+        return dual<S>(quotient, (a.derivative - quotient * b.derivative) / v);
+    }
+}
+
+#define MYRIAD_DUAL_COMPARISON(symbol)                                                              \
+    template <class A, class B>                                                                     \
+    requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator symbol(const A& a, const B& b) { \
+        using S = detail::part_of<A, B>;                                                            \
+        return detail::value_of<S>(a) symbol detail::value_of<S>(b);                                \
+    }
+MYRIAD_DUAL_COMPARISON(<)
+MYRIAD_DUAL_COMPARISON(<=)
+MYRIAD_DUAL_COMPARISON(>)
+MYRIAD_DUAL_COMPARISON(>=)
+MYRIAD_DUAL_COMPARISON(==)
+MYRIAD_DUAL_COMPARISON(!=)
+#undef MYRIAD_DUAL_COMPARISON
+
+}  // namespace myriad::inline MYRIAD_TARGET
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+template <class S>
+struct functions<dual<S>> {
+    using D = dual<S>;
+    using f = functions<S>;
+    using real = real_of<S>;
+
+    static MYRIAD_FUNCTION S constant(real c) { return S(c); }
+
+    static MYRIAD_FUNCTION D sqrt(const D& x) {
+        const S root = f::sqrt(x.value);
+        return D(root, constant(real(0.5)) * x.derivative / root);
+    }
+    static MYRIAD_FUNCTION D cbrt(const D& x) {
+        const S root = f::cbrt(x.value);
+        return D(root, x.derivative / (constant(real(3)) * root * root));
+    }
+    static MYRIAD_FUNCTION D abs(const D& x) {
+        return D(f::abs(x.value), select(x.value < real(0), -x.derivative, x.derivative));
+    }
+    static MYRIAD_FUNCTION D floor(const D& x) { return D(f::floor(x.value)); }
+    static MYRIAD_FUNCTION D round(const D& x) { return D(f::round(x.value)); }
+
+    static MYRIAD_FUNCTION D sin(const D& x) { return D(f::sin(x.value), x.derivative * f::cos(x.value)); }
+    static MYRIAD_FUNCTION D cos(const D& x) { return D(f::cos(x.value), -x.derivative * f::sin(x.value)); }
+    static MYRIAD_FUNCTION D tan(const D& x) {
+        const S t = f::tan(x.value);
+        return D(t, x.derivative * (constant(real(1)) + t * t));
+    }
+    static MYRIAD_FUNCTION S leg(const S& x) { return f::sqrt((constant(real(1)) - x) * (constant(real(1)) + x)); }
+    static MYRIAD_FUNCTION D asin(const D& x) { return D(f::asin(x.value), x.derivative / leg(x.value)); }
+    static MYRIAD_FUNCTION D acos(const D& x) { return D(f::acos(x.value), -x.derivative / leg(x.value)); }
+    static MYRIAD_FUNCTION D atan(const D& x) {
+        return D(f::atan(x.value), x.derivative / (constant(real(1)) + x.value * x.value));
+    }
+    static MYRIAD_FUNCTION D sinpi(const D& x) {
+        return D(f::sinpi(x.value), constant(pi) * x.derivative * f::cospi(x.value));
+    }
+    static MYRIAD_FUNCTION D cospi(const D& x) {
+        return D(f::cospi(x.value), -constant(pi) * x.derivative * f::sinpi(x.value));
+    }
+
+    static MYRIAD_FUNCTION void sincos(const D& x, D& sine, D& cosine) {
+        f::sincos(x.value, sine.value, cosine.value);
+        sine.derivative = x.derivative * cosine.value;
+        cosine.derivative = -x.derivative * sine.value;
+    }
+    static MYRIAD_FUNCTION void sincospi(const D& x, D& sine, D& cosine) {
+        f::sincospi(x.value, sine.value, cosine.value);
+        sine.derivative = constant(pi) * x.derivative * cosine.value;
+        cosine.derivative = -constant(pi) * x.derivative * sine.value;
+    }
+    static MYRIAD_FUNCTION D reciprocal(const D& x) {
+        const S r = f::reciprocal(x.value);
+        return D(r, -x.derivative * r * r);
+    }
+
+    static MYRIAD_FUNCTION D sinh(const D& x) { return D(f::sinh(x.value), x.derivative * f::cosh(x.value)); }
+    static MYRIAD_FUNCTION D cosh(const D& x) { return D(f::cosh(x.value), x.derivative * f::sinh(x.value)); }
+    static MYRIAD_FUNCTION D tanh(const D& x) {
+        const S t = f::tanh(x.value);
+        return D(t, x.derivative * (constant(real(1)) - t) * (constant(real(1)) + t));
+    }
+
+    static MYRIAD_FUNCTION D exp(const D& x) {
+        const S e = f::exp(x.value);
+        return D(e, x.derivative * e);
+    }
+    static MYRIAD_FUNCTION D exp2(const D& x) {
+        const S e = f::exp2(x.value);
+        return D(e, constant(ln_2) * x.derivative * e);
+    }
+    static MYRIAD_FUNCTION D log(const D& x) { return D(f::log(x.value), x.derivative / x.value); }
+    static MYRIAD_FUNCTION D log2(const D& x) { return D(f::log2(x.value), constant(log2_e) * x.derivative / x.value); }
+    static MYRIAD_FUNCTION D log10(const D& x) {
+        return D(f::log10(x.value), constant(log10_e) * x.derivative / x.value);
+    }
+
+    // y x^(y - 1) rather than y x^y / x, which is NaN at x = 0; and x^0 is constant there too.
+    template <class B>
+    static MYRIAD_FUNCTION D pow_of_base(const D& x, const B& exponent) {
+        const S y = to_kind<S>(exponent);
+        const S slope = y * f::pow(x.value, y - constant(real(1)));
+        return D(f::pow(x.value, y), select(y == constant(real(0)), y, slope) * x.derivative);
+    }
+    template <class B>
+    static MYRIAD_FUNCTION D powr(const D& x, const B& exponent) {
+        const S y = to_kind<S>(exponent), one = constant(real(1));
+        // x^0 is 1 here, though powr(0, 0) is not
+        const S slope = select(y == one, one, y * f::powr(x.value, y - one));
+        return D(f::powr(x.value, y), slope * x.derivative);
+    }
+    template <class A>
+    static MYRIAD_FUNCTION D pow_of_exponent(const A& base, const D& y) {
+        const S x = to_kind<S>(base);
+        const S power = f::pow(x, y.value);
+        return D(power, power * f::log(x) * y.derivative);
+    }
+    static MYRIAD_FUNCTION D pow(const D& x, const D& y) {
+        const D of_base = pow_of_base(x, y.value);
+        // The logarithm of a base that is not positive must not spoil a constant exponent.
+        const S of_exponent = of_base.value * f::log(x.value) * y.derivative;
+        return D(of_base.value, of_base.derivative + select(y.derivative == constant(real(0)), y.derivative, of_exponent));
+    }
+    static MYRIAD_FUNCTION D atan2(const D& y, const D& x) {
+        const S square = x.value * x.value + y.value * y.value;
+        return D(f::atan2(y.value, x.value), (x.value * y.derivative - y.value * x.derivative) / square);
+    }
+    static MYRIAD_FUNCTION D hypot(const D& x, const D& y) {
+        const S length = f::hypot(x.value, y.value);
+        return D(length, (x.value * x.derivative + y.value * y.derivative) / length);
+    }
+    static MYRIAD_FUNCTION D copysign(const D& x, const D& sign) {
+        const S one = constant(real(1));
+        const auto kept = f::copysign(one, x.value) == f::copysign(one, sign.value);
+        return D(f::copysign(x.value, sign.value), select(kept, x.derivative, -x.derivative));
+    }
+    // The same choice as for the values, so that the derivative belongs to the number returned.
+    static MYRIAD_FUNCTION D min(const D& a, const D& b) {
+        return D(f::min(a.value, b.value), select(b.value != b.value || a.value < b.value, a.derivative, b.derivative));
+    }
+    static MYRIAD_FUNCTION D max(const D& a, const D& b) {
+        return D(f::max(a.value, b.value), select(b.value != b.value || a.value > b.value, a.derivative, b.derivative));
+    }
+    static MYRIAD_FUNCTION D fma(const D& a, const D& b, const D& c) {
+        return D(f::fma(a.value, b.value, c.value),
+                 f::fma(a.derivative, b.value, f::fma(a.value, b.derivative, c.derivative)));
+    }
+    static MYRIAD_FUNCTION auto is_finite(const D& x) { return f::is_finite(x.value) && f::is_finite(x.derivative); }
+
+private:
+    static constexpr real pi = real(3.14159265358979323846L);
+    static constexpr real ln_2 = real(0.693147180559945309417L);
+    static constexpr real log2_e = real(1.44269504088896340736L);
+    static constexpr real log10_e = real(0.434294481903251827651L);
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// The elementary functions for models, `using myriad::cos; cos(t)`, for every kind of number: here for plain reals on
+// host and device, in pack_math.hpp for packs and in dual.hpp for dual numbers. One name each, so that qualified calls
+// work whatever was included first.
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <type_traits>
+
+#include "myriad/kernel/core/macros.hpp"
+#include "myriad/kernel/scalar/exponential.hpp"
+#include "myriad/kernel/scalar/select.hpp"
+#include "myriad/kernel/scalar/trigonometry.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// A kind of number that the elementary functions accept.
+template <class S>
+concept real_kind = (kind_rank<S> > 0) || std::floating_point<S>;
+
+template <std::floating_point T>
+struct functions<T> {
+    static constexpr T pi = T(3.14159265358979323846L);
+    static constexpr T largest = std::numeric_limits<T>::max();  // a constant, as device code may not call max()
+
+    static MYRIAD_FUNCTION T cbrt(T x) { return std::cbrt(x); }
+    static MYRIAD_FUNCTION T abs(T x) { return std::fabs(x); }
+    static MYRIAD_FUNCTION T floor(T x) { return std::floor(x); }
+    static MYRIAD_FUNCTION T round(T x) { return std::round(x); }
+    static MYRIAD_FUNCTION T sin(T x) { return std::sin(x); }
+    static MYRIAD_FUNCTION T cos(T x) { return std::cos(x); }
+    static MYRIAD_FUNCTION T tan(T x) { return std::tan(x); }
+    static MYRIAD_FUNCTION T asin(T x) { return std::asin(x); }
+    static MYRIAD_FUNCTION T acos(T x) { return std::acos(x); }
+    static MYRIAD_FUNCTION T atan(T x) { return std::atan(x); }
+    static MYRIAD_FUNCTION T sinh(T x) { return std::sinh(x); }
+    static MYRIAD_FUNCTION T cosh(T x) { return std::cosh(x); }
+    static MYRIAD_FUNCTION T tanh(T x) { return std::tanh(x); }
+    static MYRIAD_FUNCTION T exp(T x) { return std::exp(x); }
+    static MYRIAD_FUNCTION T exp2(T x) { return std::exp2(x); }
+    static MYRIAD_FUNCTION T log(T x) { return std::log(x); }
+    static MYRIAD_FUNCTION T log2(T x) { return std::log2(x); }
+    static MYRIAD_FUNCTION T log10(T x) { return std::log10(x); }
+    static MYRIAD_FUNCTION T pow(T x, T y) { return std::pow(x, y); }
+    static MYRIAD_FUNCTION T powr(T x, T y) { return exponential<T>::powr(x, y); }
+    static MYRIAD_FUNCTION void sincos(T x, T& sine, T& cosine) { trigonometry<T>::sincos(x, sine, cosine); }
+    static MYRIAD_FUNCTION void sincospi(T x, T& sine, T& cosine) { trigonometry<T>::sincospi(x, sine, cosine); }
+    static MYRIAD_FUNCTION T atan2(T y, T x) { return std::atan2(y, x); }
+    static MYRIAD_FUNCTION T hypot(T x, T y) { return std::hypot(x, y); }
+    static MYRIAD_FUNCTION T copysign(T x, T sign) { return std::copysign(x, sign); }
+    static MYRIAD_FUNCTION bool is_finite(T x) {
+#if defined(__CUDA_ARCH__)
+        // By the exponent, to spare the floating-point pipe.
+        if constexpr (sizeof(T) == sizeof(double)) return (__double2hiint(x) & 0x7ff00000) != 0x7ff00000;
+#endif
+        return std::fabs(x) <= largest;
+    }
+
+    // In the operand order of the x86 instructions, so that packs and plain reals agree for signed zeros too. On GPUs
+    // CUDA's own take one instruction in single precision, and a few more than this in double.
+    static MYRIAD_FUNCTION T min(T a, T b) {
+#if defined(__CUDA_ARCH__)
+        if constexpr (sizeof(T) == sizeof(float)) return std::fmin(a, b);
+#endif
+        return b != b || a < b ? a : b;
+    }
+    static MYRIAD_FUNCTION T max(T a, T b) {
+#if defined(__CUDA_ARCH__)
+        if constexpr (sizeof(T) == sizeof(float)) return std::fmax(a, b);
+#endif
+        return b != b || a > b ? a : b;
+    }
+
+#if defined(__CUDA_ARCH__)
+    // Correctly rounded, like CUDA's own, but without its branch: one step of third order from the hardware's 20 bits,
+    // and Markstein's correction of the root by its remainder. Small numbers are scaled, as the remainder must not
+    // underflow.
+    static MYRIAD_FUNCTION T sqrt(T x) {
+        if constexpr (sizeof(T) == sizeof(double)) {
+            const bool small = __double2hiint(x) < 0x03500000;
+            const double scaled = x * __hiloint2double(small ? 0x46b00000 : 0x3ff00000, 0);  // by 2^108 or 1
+            double r;
+            asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(r) : "d"(scaled));
+            const double error = fma(-scaled * r, r, 1.0);
+            r = fma(r * error, fma(error, 0.375, 0.5), r);
+            const double root = scaled * r;
+            const double corrected = fma(fma(-root, root, scaled), 0.5 * r, root);
+            const double result = corrected * __hiloint2double(small ? 0x3c900000 : 0x3ff00000, 0);  // by 2^-54 or 1
+            return x == 0 || __double2hiint(x) == 0x7ff00000 ? x : result;
+        } else {
+            return std::sqrt(x);
+        }
+    }
+    static MYRIAD_FUNCTION T fma(T a, T b, T c) { return std::fma(a, b, c); }
+    static MYRIAD_FUNCTION T sinpi(T x) { return ::sinpi(x); }
+    static MYRIAD_FUNCTION T cospi(T x) { return ::cospi(x); }
+    static MYRIAD_FUNCTION T reciprocal(T x) {
+        T r;
+        if constexpr (sizeof(T) == sizeof(double)) {
+            asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(r) : "d"(x));  // to about 2^-20
+            const T error = fma(-x, r, T(1));
+            return fma(fma(error, error, error), r, r);
+        } else {
+            asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(x));
+            return r;
+        }
+    }
+#else
+    static MYRIAD_FUNCTION T sqrt(T x) { return std::sqrt(x); }
+    static MYRIAD_FUNCTION T fma(T a, T b, T c) {
+#if MYRIAD_FUSED
+        return std::fma(a, b, c);
+#else
+        return a * b + c;  // std::fma would emulate, 50 times slower and unlike the packs
+#endif
+    }
+    static MYRIAD_FUNCTION T reciprocal(T x) { return T(1) / x; }
+    static MYRIAD_FUNCTION T sinpi(T x) {
+        const T turn = T(2) * std::round(T(0.5) * x);
+        const T half = x - turn;  // exact, in [-1, 1]
+        const T quarter = std::fabs(half) > T(0.5) ? std::copysign(T(1), half) - half : half;
+        return quarter == T(0) ? std::copysign(T(0), x) : std::sin(pi * quarter);
+    }
+    static MYRIAD_FUNCTION T cospi(T x) {
+        const T half = std::fabs(x - T(2) * std::round(T(0.5) * x));
+        return half > T(0.25) && half < T(0.75) ? std::sin(pi * (T(0.5) - half)) : std::cos(pi * half);
+    }
+#endif
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+
+namespace myriad::inline MYRIAD_TARGET {
+
+#define MYRIAD_UNARY(name)                    \
+    template <detail::real_kind S>                    \
+    MYRIAD_FUNCTION S name(const S& x) {      \
+        return detail::functions<S>::name(x); \
+    }
+MYRIAD_UNARY(sqrt)
+MYRIAD_UNARY(cbrt)
+/// Absolute value, and rounding to integers: down, and to the nearest with halves away from zero.
+MYRIAD_UNARY(abs)
+MYRIAD_UNARY(floor)
+MYRIAD_UNARY(round)
+/// Angles in radians.
+MYRIAD_UNARY(sin)
+MYRIAD_UNARY(cos)
+MYRIAD_UNARY(tan)
+MYRIAD_UNARY(asin)
+MYRIAD_UNARY(acos)
+MYRIAD_UNARY(atan)
+/// sin(pi x) and cos(pi x): exact at multiples of a half, cheaper than sin and cos for large arguments.
+MYRIAD_UNARY(sinpi)
+MYRIAD_UNARY(cospi)
+MYRIAD_UNARY(sinh)
+MYRIAD_UNARY(cosh)
+MYRIAD_UNARY(tanh)
+MYRIAD_UNARY(exp)
+MYRIAD_UNARY(exp2)
+MYRIAD_UNARY(log)
+MYRIAD_UNARY(log2)
+MYRIAD_UNARY(log10)
+/// 1 / x, on GPUs without the slow path of a division: within 1 ulp for normal x with a normal result; not finite for
+/// zero. For infinity it is NaN in double precision on GPUs, and zero elsewhere.
+MYRIAD_UNARY(reciprocal)
+#undef MYRIAD_UNARY
+
+template <class S>
+struct sine_and_cosine {
+    S sine, cosine;
+};
+/// Sine and cosine of the same angle for about the price of one: of x up to 2^30 (float 2^16) in radians (2^20 and 2^13
+/// where the target has no fused multiply-add), `const auto [sine, cosine] = sincos(x)`, and of pi x up to 2^50 (float
+/// 2^21). NaN beyond, so that there is no branch and the rest of a right-hand side can overlap with it; sin and cos
+/// have no such limit. Errors are at most 2.5 and 2 ulps.
+template <detail::real_kind S>
+MYRIAD_FUNCTION sine_and_cosine<S> sincos(const S& x) {
+    sine_and_cosine<S> both;
+    detail::functions<S>::sincos(x, both.sine, both.cosine);
+    return both;
+}
+template <detail::real_kind S>
+MYRIAD_FUNCTION sine_and_cosine<S> sincospi(const S& x) {
+    sine_and_cosine<S> both;
+    detail::functions<S>::sincospi(x, both.sine, both.cosine);
+    return both;
+}
+
+/// Neither infinite nor NaN, as a mask.
+template <detail::real_kind S>
+MYRIAD_FUNCTION auto is_finite(const S& x) {
+    return detail::functions<S>::is_finite(x);
+}
+
+#define MYRIAD_BINARY(name)                                                                                \
+    template <class A, class B>                                                                            \
+    requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> name(const A& a, const B& b) { \
+        using S = detail::common_kind<A, B>;                                                                       \
+        return detail::functions<S>::name(detail::to_kind<S>(a), detail::to_kind<S>(b));                   \
+    }
+/// The smaller and the larger; the number where the other argument is NaN.
+MYRIAD_BINARY(min)
+MYRIAD_BINARY(max)
+/// The magnitude of the first with the sign of the second.
+MYRIAD_BINARY(copysign)
+/// The angle of the point (second, first).
+MYRIAD_BINARY(atan2)
+/// sqrt(a^2 + b^2).
+MYRIAD_BINARY(hypot)
+#undef MYRIAD_BINARY
+
+/// For integers, such as integer accessories.
+template <std::integral T>
+MYRIAD_FUNCTION constexpr T min(T a, T b) {
+    return b < a ? b : a;
+}
+template <std::integral T>
+MYRIAD_FUNCTION constexpr T max(T a, T b) {
+    return a < b ? b : a;
+}
+template <std::signed_integral T>
+MYRIAD_FUNCTION constexpr T abs(T a) {
+    return a < 0 ? -a : a;
+}
+
+/// a * b + c, with one rounding if the target has the instruction and otherwise two, for every kind of number alike.
+template <class A, class B, class C>
+requires detail::real_kind<detail::common_kind<detail::common_kind<A, B>, C>> MYRIAD_FUNCTION auto fma(const A& a, const B& b, const C& c) {
+    using S = detail::common_kind<detail::common_kind<A, B>, C>;
+    return detail::functions<S>::fma(detail::to_kind<S>(a), detail::to_kind<S>(b), detail::to_kind<S>(c));
+}
+
+/// x to the power y for x >= 0, without a branch, in about half of the time of pow: NaN for negative x, and for powr(0, 0)
+/// and powr(inf, 0), as in IEEE 754; numbers below the smallest normal one count as zero. The error is at most 1.2 + |y| / 5
+/// ulps (1.5 + |y| / 2 where the target has no fused multiply-add). The exponent may not be a dual number.
+template <class A, class B>
+requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> powr(const A& x, const B& y) {
+    using S = detail::common_kind<A, B>;
+    static_assert(detail::kind_rank<B> != 2, "powr has no derivative by its exponent: use pow");
+    if constexpr (detail::kind_rank<A> == 2) {
+        return detail::functions<S>::powr(x, y);
+    } else {
+        return detail::functions<S>::powr(detail::to_kind<S>(x), detail::to_kind<S>(y));
+    }
+}
+
+/// x to the power y. An exponent of type int multiplies, `pow(x, 3)` is x * x * x, with half an ulp of error per
+/// product and any sign of x.
+template <class A, class B>
+requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> pow(const A& x, const B& y) {
+    using S = detail::common_kind<A, B>;
+    if constexpr (std::is_integral_v<B>) {
+        const S one(static_cast<real_of<S>>(1));
+        S result = one;
+        S factor = x;
+        for (auto n = y < 0 ? -static_cast<long long>(y) : static_cast<long long>(y); n != 0; n /= 2) {
+            if (n % 2 != 0) result = result * factor;
+            if (n > 1) factor = factor * factor;
+        }
+        return y < 0 ? one / result : result;
+    } else if constexpr (detail::kind_rank<A> == 2 && detail::kind_rank<B> != 2) {
+        return detail::functions<S>::pow_of_base(x, y);
+    } else if constexpr (detail::kind_rank<A> != 2 && detail::kind_rank<B> == 2) {
+        return detail::functions<S>::pow_of_exponent(x, y);
+    } else {
+        return detail::functions<S>::pow(detail::to_kind<S>(x), detail::to_kind<S>(y));
+    }
+}
+
+}  // namespace myriad::inline MYRIAD_TARGET

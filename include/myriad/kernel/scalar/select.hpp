@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// What the kernel body needs from a scalar kind besides arithmetic: masks, blending and access to single lanes. Here
+// for plain reals, whose mask is bool and which are a pack of one lane; pack.hpp has the same for SIMD packs.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "myriad/kernel/core/macros.hpp"
+
+// Masks are combined with `&` and `|`, here and in models, since packs have nothing else; for a mask of one lane clang
+// would suggest `&&` and `||` instead.
+#if defined(__clang__) && __clang_major__ >= 14
+#pragma clang diagnostic ignored "-Wbitwise-instead-of-logical"
+#endif
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Traits of a scalar kind: its real type, the type of its comparisons, its integers and its number of lanes.
+template <class S>
+struct scalar_traits {
+    static_assert(std::is_floating_point_v<S>, "not a scalar kind: use double, float, pack or dual");
+    using real = S;
+    using mask = bool;
+    using integer = std::int32_t;
+    static constexpr int lanes = 1;
+};
+
+template <class T>
+concept plain_number = std::is_arithmetic_v<T>;
+
+// A number of a higher rank absorbs those of a lower one: 0 plain numbers, 1 packs and masks, 2 dual numbers.
+template <class S>
+inline constexpr int kind_rank = 0;
+
+template <class A, class B>
+struct common_kind_of {
+    using type = std::conditional_t<(kind_rank<A> > kind_rank<B>), A, B>;
+    static_assert(kind_rank<A> != kind_rank<B> || std::is_same_v<A, B>, "these two kinds of numbers do not mix");
+};
+template <plain_number A, plain_number B>
+struct common_kind_of<A, B> : std::common_type<A, B> {};
+// A double together with a float is assumed to be a literal in a float model, whose arithmetic must stay in float.
+template <>
+struct common_kind_of<float, double> : std::type_identity<float> {};
+template <>
+struct common_kind_of<double, float> : std::type_identity<float> {};
+
+/// The common kind of number of A and B, such as a pack for a pack and a literal.
+template <class A, class B>
+using common_kind = typename common_kind_of<A, B>::type;
+
+template <class Mask, class A, class B>
+struct selected {
+    using type = typename common_kind_of<A, B>::type;
+};
+template <class Mask, plain_number A, plain_number B>
+requires(!plain_number<Mask>)  // `a & b` of two bools is an int
+    struct selected<Mask, A, B> {
+    using type = std::conditional_t<std::is_same_v<A, bool> && std::is_same_v<B, bool>, Mask, typename Mask::pack_type>;
+};
+
+/// x as an S, narrowed on purpose if a double literal meets a float kind.
+template <class S, class A>
+MYRIAD_FUNCTION constexpr S to_kind(const A& x) {
+    if constexpr (plain_number<A> && !plain_number<S>) {
+        return S(static_cast<typename S::value_type>(x));
+    } else {
+        return static_cast<S>(x);
+    }
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+
+namespace myriad::inline MYRIAD_TARGET {
+
+template <class S>
+using real_of = typename detail::scalar_traits<S>::real;
+template <class S>
+using mask_of = typename detail::scalar_traits<S>::mask;
+template <class S>
+using integer_of = typename detail::scalar_traits<S>::integer;
+template <class S>
+inline constexpr int lanes_of = detail::scalar_traits<S>::lanes;
+
+/// Spacing of the numbers next to one, the largest finite and the smallest normal number, infinity and NaN; device code may
+/// not call the functions behind them.
+template <class R>
+inline constexpr R epsilon_of = std::numeric_limits<R>::epsilon();
+template <class R>
+inline constexpr R largest_of = std::numeric_limits<R>::max();
+template <class R>
+inline constexpr R smallest_normal_of = std::numeric_limits<R>::min();
+template <class R>
+inline constexpr R infinity_of = std::numeric_limits<R>::infinity();
+template <class R>
+inline constexpr R nan_of = std::numeric_limits<R>::quiet_NaN();
+
+/// a where the mask holds, otherwise b. Both are evaluated. Kinds may be mixed: `select(x > 0.0, x, 0.0)`; the mask may
+/// be a plain bool with packs.
+template <class Mask, class A, class B>
+MYRIAD_FUNCTION constexpr auto select(const Mask& mask, const A& a, const B& b) {
+    using S = typename detail::selected<Mask, A, B>::type;
+    if constexpr (detail::plain_number<S>) {
+        return mask ? static_cast<S>(a) : static_cast<S>(b);
+    } else {
+        return S::blend(mask, detail::to_kind<S>(a), detail::to_kind<S>(b));
+    }
+}
+}  // namespace myriad::inline MYRIAD_TARGET
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Whether some lane of a mask holds, and whether all do.
+MYRIAD_FUNCTION constexpr bool any(bool mask) { return mask; }
+MYRIAD_FUNCTION constexpr bool all(bool mask) { return mask; }
+/// The lanes of a mask as bits, lane i as bit i.
+MYRIAD_FUNCTION constexpr std::uint64_t bits(bool mask) { return mask ? 1u : 0u; }
+
+/// Lane i of a scalar, a pack or a mask; `set_lane` writes it.
+template <plain_number T>
+MYRIAD_FUNCTION constexpr T get_lane(T value, int) {
+    return value;
+}
+template <plain_number T>
+MYRIAD_FUNCTION constexpr void set_lane(T& value, int, std::type_identity_t<T> lane) {
+    value = lane;
+}
+
+// The same for kinds that are classes, as members: a function found by argument-dependent look-up could clash with a
+// model's own of that name.
+template <class S>
+requires(!plain_number<S>) MYRIAD_FUNCTION bool any(const S& mask) { return S::any(mask); }
+template <class S>
+requires(!plain_number<S>) MYRIAD_FUNCTION bool all(const S& mask) { return S::all(mask); }
+template <class S>
+requires(!plain_number<S>) MYRIAD_FUNCTION std::uint64_t bits(const S& mask) { return S::bits(mask); }
+template <class S>
+requires(!plain_number<S>) MYRIAD_FUNCTION typename S::lane_type get_lane(const S& all, int lane) {
+    return S::get_lane(all, lane);
+}
+template <class S>
+requires(!plain_number<S>) MYRIAD_FUNCTION void set_lane(S& all, int lane, typename S::lane_type value) {
+    S::set_lane(all, lane, value);
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

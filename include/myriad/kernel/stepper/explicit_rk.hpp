@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// One trial step of an explicit Runge-Kutta method, unrolled from its tableau: stages, new state, error estimate.
+#pragma once
+
+#include <cstdint>
+
+#include "myriad/kernel/core/static_for.hpp"
+#include "myriad/kernel/core/vec.hpp"
+#include "myriad/kernel/methods/weights.hpp"
+#include "myriad/kernel/model/lane.hpp"
+#include "myriad/kernel/scalar/math.hpp"
+#include "myriad/kernel/scalar/select.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Evaluates the model's right-hand side.
+template <class Model, class S>
+MYRIAD_FUNCTION vec<S, n_state<Model>> evaluate_rhs(const S& t, const vec<S, n_state<Model>>& y,
+                                                    const inputs<Model, S>& p) {
+    return Model::template rhs<S>(t, y, p);
+}
+
+/// Refuses a method whose tableau is not filled.
+template <class Method>
+constexpr bool check_tableau() {
+    constexpr auto t = Method::tableau();
+    constexpr auto given = [](const auto& weights) {
+        for (const double w : weights)
+            if (w != 0) return true;
+        return false;
+    };
+    static_assert(given(t.b), "the method's tableau has no weights b: tableau() must set those of the solution");
+    constexpr bool every_stage = [t, given] {
+        for (std::size_t i = 1; i < t.a.size(); ++i)
+            if (!given(t.a[i])) return false;
+        return true;
+    }();
+    static_assert(
+        every_stage,
+        "the method's tableau has a stage without weights: tableau() must set a[1] to the row of the last stage");
+    static_assert(
+        Method::embedded_order <= 0 || given(t.e),
+        "the method has an embedded_order, but no error weights e, with which it would accept every step: "
+        "tableau() must set e to b less the embedded solution's weights, or embedded_order be 0, for fixed steps");
+    return true;
+}
+
+/// What a trial step leaves behind: the slopes of its stages (the first is the slope at its start) and the new state.
+template <class Method, class S, int n>
+struct trial_step {
+    static_assert(check_tableau<Method>());
+    vec<vec<S, n>, Method::stages> k;
+    vec<S, n> y;
+
+    /// Of a method whose last stage is the first of the next step.
+    MYRIAD_FUNCTION const vec<S, n>& slope_end() const { return k[Method::stages - 1]; }
+};
+
+/// The order that a method's error estimate falls with, less one: that of the embedded solution, where that is all there is.
+template <class Method>
+inline constexpr int estimate_order = [] {
+    if constexpr (requires { Method::estimate_order; }) {
+        return Method::estimate_order;
+    } else {
+        return Method::embedded_order;
+    }
+}();
+
+// A GPU's instruction can carry a number whose lower half is zero; of others it takes two more to load one, and one if the
+// number is in constant memory.
+template <class R>
+constexpr bool is_short(R x) {
+    if constexpr (sizeof(R) == sizeof(double)) return (__builtin_bit_cast(std::uint64_t, x) & 0xffffffff) == 0;
+    return true;
+}
+template <class Method, int row, int j, class R>
+inline constexpr bool is_short_weight = is_short(relative_weight<Method, row, j, R>);
+template <class Method, int row, class R>
+inline constexpr bool is_short_first = is_short(first_weight<Method, row, R>);
+template <class Method, int row, int j, class R>
+MYRIAD_CONSTANT_MEMORY R kept_weight = relative_weight<Method, row, j, R>;
+template <class Method, int row, class R>
+MYRIAD_CONSTANT_MEMORY R kept_first = first_weight<Method, row, R>;
+
+/// The same numbers as operands.
+template <class Method, int row, int j, class R>
+MYRIAD_FUNCTION R weight_operand() {
+    if constexpr (is_short_weight<Method, row, j, R>) {
+        return relative_weight<Method, row, j, R>;
+    } else {
+        return kept_weight<Method, row, j, R>;
+    }
+}
+template <class Method, int row, class R>
+MYRIAD_FUNCTION R first_operand() {
+    if constexpr (is_short_first<Method, row, R>) {
+        return first_weight<Method, row, R>;
+    } else {
+        return kept_first<Method, row, R>;
+    }
+}
+
+/// sum += weight * k with the relative weight of stage j, without the operations that a weight of zero or one does not
+/// need.
+template <class Method, int row, int j, class S>
+MYRIAD_FUNCTION void add_weighted(S& sum, const S& k) {
+    using R = real_of<S>;
+    if constexpr (relative_weight<Method, row, j, R> == R(1)) {
+        sum = sum + k;
+    } else if constexpr (relative_weight<Method, row, j, R> != R(0)) {
+        sum = fma(S(detail::weight_operand<Method, row, j, R>()), k, sum);
+    }
+}
+
+/// sum_j w_j k_j / w_first for one component. Dividing the weights by the first non-zero one (the compiler does) saves
+/// an operation per component against h * sum: the caller multiplies once by h * w_first.
+template <class Method, int row, class S, int n>
+MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int component) {
+    constexpr int first = first_stage<Method, row>;
+    constexpr int end = row < Method::stages ? row : Method::stages;
+    S sum = k[first][component];
+    static_for<first + 1, end>([&](auto j) MYRIAD_LAMBDA {
+        detail::add_weighted<Method, row, decltype(j)::value>(sum, k[j][component]);
+    });
+    return sum;
+}
+
+/// y + h * sum_j w_j k_j with the weights of `row`: a stage's argument or the new state.
+template <class Method, int row, class S, int n>
+MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<S, n>, Method::stages>& k) {
+    const S scale = h * S(detail::first_operand<Method, row, real_of<S>>());
+    vec<S, n> out;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n; ++c) out[c] = fma(scale, detail::scaled_sum<Method, row>(k, c), y[c]);
+    return out;
+}
+
+/// The error estimate h * sum_j e_j k_j of a component is the product of a factor that all components share and a sum.
+template <class Method, int row = row_of<Method>::error, class S>
+MYRIAD_FUNCTION S error_factor(const S& h) {
+    return h * S(detail::first_operand<Method, row, real_of<S>>());
+}
+template <class Method, int row = row_of<Method>::error, class S, int n>
+MYRIAD_FUNCTION S error_sum(const trial_step<Method, S, n>& trial, int component) {
+    return detail::scaled_sum<Method, row>(trial.k, component);
+}
+
+/// Whether neither the new state nor an error estimate contains the slope of a stage.
+template <class Method, int stage>
+inline constexpr bool is_unseen_stage = [] {
+    constexpr int last_row = has_coarse_estimate<Method> ? row_of<Method>::coarse_error : row_of<Method>::error;
+    for (int row = row_of<Method>::solution; row <= last_row; ++row)
+        if (weight_in<Method>(row, stage) != 0) return false;
+    return true;
+}();
+/// Makes the slope of a stage NaN where that of an unseen one before it is not finite. Its argument is NaN already, but a
+/// model may give that a finite slope, as select(x > 1, NaN, 1) does. Others keep every bit: minus zero adds nothing.
+template <class Method, int stage, class S, int n>
+MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
+    if constexpr (is_unseen_stage<Method, stage - 1>) {
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) k[stage][c] = fma(S(-real_of<S>(0)), abs(k[stage - 1][c]), k[stage][c]);
+    }
+}
+
+/// Steps from (t, y) over h to t1; `trial.k[0]`, the slope at the start, is given. A last stage that is the first of the next
+/// step is taken at t1, which may be t + h up to rounding. The new state is summed up stage by stage, so that slopes which
+/// no later stage needs can leave their registers.
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
+                                      const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
+    using R = real_of<S>;
+    constexpr int n = n_state<Model>;
+    constexpr int last = row_of<Method>::solution;
+    vec<S, n> sum;
+    const auto add_stage = [&](auto j) MYRIAD_LAMBDA {
+        constexpr int stage = decltype(j)::value, first = first_stage<Method, last>;
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) {
+            if constexpr (stage == first) {
+                sum[c] = trial.k[stage][c];
+            } else if constexpr (stage > first) {
+                detail::add_weighted<Method, last, stage>(sum[c], trial.k[stage][c]);
+            }
+        }
+    };
+    if constexpr (!Method::first_same_as_last) add_stage(constant_index<0>{});
+    static_for<1, Method::stages>([&](auto i) MYRIAD_LAMBDA {
+        constexpr int stage = decltype(i)::value;
+        const auto argument = detail::combine<Method, stage>(y, h, trial.k);
+        if constexpr (Method::first_same_as_last && stage == last - 1) {
+            trial.y = argument;
+            trial.k[stage] = detail::evaluate_rhs<Model>(t1, argument, p);
+        } else {
+            trial.k[stage] = detail::evaluate_rhs<Model>(fma(S(node<Method, stage, R>), h, t), argument, p);
+        }
+        detail::see_stage_before<Method, stage>(trial.k);
+        if constexpr (!Method::first_same_as_last) add_stage(i);
+    });
+    if constexpr (!Method::first_same_as_last) {
+        const S scale = h * S(detail::first_operand<Method, last, R>());
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) trial.y[c] = fma(scale, sum[c], y[c]);
+    }
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

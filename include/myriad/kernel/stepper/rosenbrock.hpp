@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+// One trial step of a Rosenbrock method, for stiff systems: Jacobian and time derivative, one LU factorisation, and a
+// linear solve in each stage.
+#pragma once
+
+#include "myriad/kernel/core/static_for.hpp"
+#include "myriad/kernel/core/vec.hpp"
+#include "myriad/kernel/methods/weights.hpp"
+#include "myriad/kernel/model/jacobian.hpp"
+#include "myriad/kernel/scalar/math.hpp"
+#include "myriad/kernel/scalar/select.hpp"
+#include "myriad/kernel/stepper/explicit_rk.hpp"
+#include "myriad/kernel/stepper/lu.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// A method whose coefficients are a rosenbrock_tableau.
+template <class Method>
+concept rosenbrock_method = requires {
+    Method::tableau().coupling;
+};
+
+/// The results of a trial step: the slope at its start (and at its end, if that is the last stage's), the stages u, the
+/// new state, and the lanes whose matrix was singular, in which everything else is invalid.
+template <class Method, class S, int n>
+requires rosenbrock_method<Method>
+struct trial_step<Method, S, n> {
+    static_assert(Method::embedded_order > 0, "a lane with a singular matrix needs a method that can shorten its step");
+    static constexpr bool estimates_error = [] {
+        for (const double w : Method::tableau().e)
+            if (w != 0) return true;
+        return false;
+    }();
+    static_assert(
+        estimates_error,
+        "the method's tableau has no error weights e, with which it would accept every step: tableau() must set them");
+    vec<vec<S, n>, Method::first_same_as_last ? 2 : 1> k;
+    vec<vec<S, n>, Method::stages> u;
+    vec<S, n> y;
+    mask_of<S> singular;
+
+    MYRIAD_FUNCTION const vec<S, n>& slope_end() const { return k[1]; }
+};
+
+// The tableau's entries as constants, since device code may not call the functions that compute them.
+
+enum class rosenbrock_row { argument, coupling, error, dense };
+
+template <class Method>
+constexpr double rosenbrock_coefficient(rosenbrock_row kind, int row, int j) {
+    const auto t = Method::tableau();
+    const auto i = static_cast<std::size_t>(row), stage = static_cast<std::size_t>(j);
+    switch (kind) {
+        case rosenbrock_row::argument:
+            return t.weight(row, j);
+        case rosenbrock_row::coupling:
+            return t.coupling[i][stage];
+        case rosenbrock_row::error:
+            return t.e[stage];
+        default:
+            return t.dense[i][stage];
+    }
+}
+template <class Method, class R>
+inline constexpr R reciprocal_gamma = static_cast<R>(1 / Method::tableau().gamma);
+template <class Method, int i, class R>
+inline constexpr R rosenbrock_time_weight = static_cast<R>(Method::tableau().d[static_cast<std::size_t>(i)]);
+template <class Method>
+inline constexpr int dense_terms = static_cast<int>(Method::tableau().dense.size());
+
+/// First stage whose weight in the argument of stage `row` differs from that in the previous argument: stiffly accurate
+/// methods repeat a row and add to it, and the repeated sum is reused.
+template <class Method, int row>
+inline constexpr int first_new_stage = [] {
+    int j = 0;
+    while (j < row - 1 && Method::tableau().weight(row, j) == Method::tableau().weight(row - 1, j)) ++j;
+    return j == row - 1 ? j : 0;
+}();
+
+/// The weights of one row of a kind.
+template <class Method>
+constexpr auto rosenbrock_weights(rosenbrock_row kind, std::size_t row) {
+    stage_numbers<Method::stages> w{};
+    for (std::size_t j = 0; j < w.size(); ++j)
+        w[j] = rosenbrock_coefficient<Method>(kind, static_cast<int>(row), static_cast<int>(j));
+    return w;
+}
+
+/// The row sums of gamma, the response of a stage to a constant slope, as in the tableau and rounded to R.
+template <class Method, class R>
+inline constexpr auto rosenbrock_row_sums = [] {
+    constexpr auto stages = static_cast<std::size_t>(Method::stages);
+    struct {
+        std::array<std::array<R, stages>, stages> coupling{};
+        stage_numbers<stages> exact{}, kept{};
+    } rows;
+    for (std::size_t i = 0; i < stages; ++i) {
+        const auto w = rosenbrock_weights<Method>(rosenbrock_row::coupling, i);
+        rows.coupling[i] = rounded_weights<R>(w, 1, 0, i, rows.exact, {}, rows.kept, {});
+        double exact = 1, kept = 1;
+        for (std::size_t j = 0; j < i; ++j) {
+            exact += w[j] * rows.exact[j];
+            kept += static_cast<double>(rows.coupling[i][j]) * rows.kept[j];
+        }
+        rows.exact[i] = exact * Method::tableau().gamma;
+        rows.kept[i] = kept / static_cast<double>(reciprocal_gamma<Method, R>);
+    }
+    return rows;
+}();
+
+/// One row of weights in the kernel's precision.
+template <class Method, rosenbrock_row kind, int row, class R>
+inline constexpr auto kept_rosenbrock_weights = [] {
+    constexpr auto& sums = rosenbrock_row_sums<Method, R>;
+    if constexpr (kind == rosenbrock_row::coupling) {
+        return sums.coupling[static_cast<std::size_t>(row)];
+    } else {
+        // The rows that a stiffly accurate method repeats are summed only once.
+        constexpr int first = [] {
+            if constexpr (kind == rosenbrock_row::argument) return first_new_stage<Method, row>;
+            return 0;
+        }();
+        return rounded_weights<R>(rosenbrock_weights<Method>(kind, row), 1, first, Method::stages, sums.exact, {}, sums.kept, {});
+    }
+}();
+template <class Method, rosenbrock_row kind, int row, int j, class R>
+inline constexpr R rosenbrock_weight = kept_rosenbrock_weights<Method, kind, row, R>[static_cast<std::size_t>(j)];
+
+/// First stage whose weight is not zero.
+template <class Method, rosenbrock_row kind, int row>
+inline constexpr int first_weighted_stage = [] {
+    int j = 0;
+    while (rosenbrock_coefficient<Method>(kind, row, j) == 0) ++j;
+    return j;
+}();
+
+/// sum + sum_j w_j u_j of one component, j from `begin` to `end`, without unnecessary operations for weights of zero
+/// and one.
+template <class Method, rosenbrock_row kind, int row, int begin, int end, class T, class S, int n>
+MYRIAD_FUNCTION T add_stages(T sum, const vec<vec<S, n>, Method::stages>& u, int component) {
+    using R = real_of<S>;
+    static_for<begin, end>([&](auto j) MYRIAD_LAMBDA {
+        constexpr R weight = rosenbrock_weight<Method, kind, row, decltype(j)::value, R>;
+        if constexpr (weight == R(1)) {
+            sum = sum + u[j][component];
+        } else if constexpr (weight != R(0)) {
+            sum = fma(S(weight), u[j][component], sum);
+        }
+    });
+    return sum;
+}
+
+/// sum_j w_j u_j of one component, j from 0 to `end`.
+template <class Method, rosenbrock_row kind, int row, int end, class S, int n>
+MYRIAD_FUNCTION S sum_stages(const vec<vec<S, n>, Method::stages>& u, int component) {
+    using R = real_of<S>;
+    constexpr int first = first_weighted_stage<Method, kind, row>;
+    constexpr R weight = rosenbrock_weight<Method, kind, row, first, R>;
+    const S sum = weight == R(1) ? u[first][component] : S(weight) * u[first][component];
+    return detail::add_stages<Method, kind, row, first + 1, end>(sum, u, component);
+}
+
+/// The error estimate of one component, and its factor.
+template <rosenbrock_method Method, int row = row_of<Method>::error, class S, int n>
+MYRIAD_FUNCTION S error_sum(const trial_step<Method, S, n>& trial, int component) {
+    return detail::sum_stages<Method, rosenbrock_row::error, 0, Method::stages>(trial.u, component);
+}
+template <rosenbrock_method Method, int row = row_of<Method>::error, class S>
+MYRIAD_FUNCTION S error_factor(const S&) {
+    return S(real_of<S>(1));
+}
+
+/// Factors of I / (h gamma) - J; false in lanes where it is singular.
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
+                                                  const inputs<Model, S>& p, lu_factors<S, n_state<Model>>& lu) {
+    using loop = matrix_loop<S, n_state<Model>>;
+    detail::evaluate_jacobian<Model>(t, y, p, lu.a);
+    const S shift = per_h * S(reciprocal_gamma<Method, real_of<S>>);
+    loop::all([&](auto i) MYRIAD_LAMBDA {
+        loop::all([&](auto j) MYRIAD_LAMBDA { lu.a[i][j] = -lu.a[i][j]; });
+        lu.a[i][i] = shift + lu.a[i][i];
+    });
+    return factorise(lu);
+}
+
+/// Steps from (t, y) by h to t1; `trial.k[0]`, the slope at the start, must be set. As in an explicit step, a last
+/// stage that is the first of the next step is evaluated at t1.
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
+                                     const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
+    using R = real_of<S>;
+    constexpr int n = n_state<Model>;
+    using loop = matrix_loop<S, n>;
+    // Steps to an event may be as short as 1e-320. If 1 / (h gamma) would overflow, the matrix is that of a slightly
+    // longer step, over which nothing changes either.
+    const S per_h = copysign(S(R(1)) / max(abs(h), S(R(16) / largest_of<R>)), h);
+    lu_factors<S, n> lu;
+    trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
+    const vec<S, n> slope_t = detail::time_derivative<Model>(t, y, p);
+
+    vec<S, n> increment, slope = trial.k[0];
+    // The argument of stage `row`, or the new state, into trial.y.
+    const auto advance = [&](auto row) MYRIAD_LAMBDA {
+        constexpr int i = decltype(row)::value, begin = first_new_stage<Method, i>;
+        loop::all([&](auto c) MYRIAD_LAMBDA {
+            if constexpr (begin > 0) {
+                increment[c] = detail::add_stages<Method, rosenbrock_row::argument, i, begin, i>(increment[c], trial.u, c);
+            } else {
+                increment[c] = detail::sum_stages<Method, rosenbrock_row::argument, i, i>(trial.u, c);
+            }
+            trial.y[c] = y[c] + increment[c];
+        });
+    };
+    static_for<0, Method::stages>([&](auto stage) MYRIAD_LAMBDA {
+        constexpr int i = decltype(stage)::value;
+        constexpr R time_weight = rosenbrock_time_weight<Method, i, R>;
+        if constexpr (i > 0) {
+            advance(stage);
+            constexpr bool at_end = Method::first_same_as_last && i == Method::stages - 1;
+            slope = detail::evaluate_rhs<Model>(at_end ? t1 : fma(S(node<Method, i, R>), h, t), trial.y, p);
+            if constexpr (at_end) trial.k[1] = slope;
+        }
+        loop::all([&](auto c) MYRIAD_LAMBDA {
+            S right = slope[c];
+            if constexpr (i > 0)
+                right = fma(per_h, detail::sum_stages<Method, rosenbrock_row::coupling, i, i>(trial.u, c), right);
+            if constexpr (time_weight != R(0)) right = fma(h * S(time_weight), slope_t[c], right);
+            trial.u[stage][c] = right;
+        });
+        solve_factorised(lu, trial.u[stage]);
+    });
+    advance(constant_index<Method::stages>{});
+}
+
+/// State at t + theta h, 0 <= theta <= 1; for a dual theta with its derivative.
+template <rosenbrock_method Method, class S, int n, class T>
+MYRIAD_FUNCTION vec<T, n> rosenbrock_interpolation(const vec<S, n>& y, const trial_step<Method, S, n>& trial,
+                                                   const T& theta) {
+    using R = real_of<S>;
+    const T rest = S(R(1)) - theta;
+    vec<T, n> out;
+    matrix_loop<S, n>::all([&](auto c) MYRIAD_LAMBDA {
+        constexpr int last = dense_terms<Method> - 1;
+        T bend = detail::sum_stages<Method, rosenbrock_row::dense, last, Method::stages>(trial.u, c);
+        static_for<0, last>([&](auto r) MYRIAD_LAMBDA {
+            constexpr int term = last - 1 - decltype(r)::value;
+            bend = detail::add_stages<Method, rosenbrock_row::dense, term, 0, Method::stages>(theta * bend, trial.u, c);
+        });
+        out[c] = fma(theta, fma(rest, bend, trial.y[c] - y[c]), y[c]);
+    });
+    return out;
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

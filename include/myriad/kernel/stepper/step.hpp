@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// The loop's interface to a method, explicit or implicit: a trial step, and the lanes in which it could not be taken.
+#pragma once
+
+#include "myriad/kernel/stepper/explicit_rk.hpp"
+#include "myriad/kernel/stepper/rosenbrock.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Steps from (t, y) by h to t1, which is t + h up to rounding; `trial.k[0]`, the slope at the start, must be set.
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
+                                     const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
+    if constexpr (rosenbrock_method<Method>) {
+        static_assert(n_tangent<Model> == 0, "stiff methods do not take with_tangents: their Jacobian would need second "
+                                             "derivatives of rhs; use an explicit method");
+        detail::rosenbrock_step<Method, Model>(t, h, t1, y, p, trial);
+    } else {
+        detail::explicit_rk_step<Method, Model>(t, h, t1, y, p, trial);
+    }
+}
+
+/// Whether a method solves linear systems, which may be singular; then its trial steps say in which lanes.
+template <class Method>
+inline constexpr bool solves_linear_systems = rosenbrock_method<Method>;
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

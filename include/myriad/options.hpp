@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+// The options of an integration: myriad::options.
+#pragma once
+
+#include "myriad/host/options/options.hpp"

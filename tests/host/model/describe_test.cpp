@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// describe(): the library says what it sees in a model, so that what it does not see shows.
+#include "myriad/host/model/describe.hpp"
+
+#include <string>
+
+#include "myriad/model.hpp"
+#include "tests/catch.hpp"
+#include "tests/host/ensemble/models.hpp"
+
+namespace {
+
+using ensemble_models::bare;
+using ensemble_models::complete;
+using ensemble_models::watched;
+using myriad::describe;
+
+bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+
+/// A bare model with one hook and declaration more.
+struct with_generic_after_step : bare {
+    template <class R>
+    MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane) {
+        return lane.y[x] < R(0.5);
+    }
+};
+struct with_generic_after_step_without_result : bare {
+    template <class R>
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        lane.y[x] = myriad::max(lane.y[x], R(0));
+    }
+};
+struct with_scalar_after_step : bare {
+    MYRIAD_FUNCTION static myriad::action after_step(auto&) { return myriad::action::end_phase; }
+};
+struct with_misspelt_hooks : bare {
+    MYRIAD_FUNCTION static void initialize(auto&) {}
+    MYRIAD_FUNCTION static void after_steps(auto&) {}
+    MYRIAD_FUNCTION static void finalise(auto&) {}
+};
+struct with_reductions : bare {
+    enum accessory { largest, last, n_accessory };
+    enum observed { height, n_observed };
+    static constexpr myriad::reduction reductions[] = {{height, myriad::over_phase::maximum, largest},
+                                                       {height, myriad::over_phase::time_of_maximum, last}};
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_observed>{y[x]};
+    }
+};
+struct with_declarations : bare {
+    static constexpr bool writes_parameters = true;
+    static constexpr bool writes_time_domain = true;
+    static constexpr bool accessories_are_outputs = true;
+    static constexpr bool scalar_only = true;
+    static constexpr bool rare_events = true;
+};
+struct with_declarations_denied : bare {
+    static constexpr bool writes_parameters = false;
+    static constexpr bool scalar_only = false;
+};
+struct branching : bare {
+    static constexpr bool scalar_only = true;
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        if (y[x] > R(1)) return {R(0), R(0)};
+        return {R(1), y[x]};
+    }
+};
+struct with_jacobian : bare {
+    template <class R>
+    MYRIAD_FUNCTION static myriad::matrix<R, n_state> jacobian(auto, const myriad::vec<R, n_state>&, const auto&) {
+        return {};
+    }
+};
+struct large {
+    enum { n_state = 7 };
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 7> rhs(auto, const myriad::vec<R, 7>& y, const auto&) {
+        return y;
+    }
+};
+/// Counts without names are counts as well.
+struct unnamed {
+    enum { n_state = 3, n_parameter = 2 };
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 3> rhs(auto, const myriad::vec<R, 3>& y, const auto&) {
+        return y;
+    }
+};
+
+TEST_CASE("a complete model is described with every component and hook", "[describe]") {
+    CHECK(describe<complete>() ==
+          "components: 2 state, 2 parameter, 1 shared, 1 shared integer, 2 accessory, 3 integer accessory, 1 event\n"
+          "hooks: rhs, events, initialise, after_step (scalar), after_event, finalise\n"
+          "declares: nothing\n"
+          "stiff methods: Jacobian by dual numbers, LU factors on GPUs in registers\n");
+}
+
+TEST_CASE("a bare model is described with its right-hand side alone", "[describe]") {
+    CHECK(describe<bare>() ==
+          "components: 2 state, 1 parameter, 0 shared, 0 shared integer, 0 accessory, 0 integer accessory, 0 event\n"
+          "hooks: rhs\n"
+          "declares: nothing\n"
+          "stiff methods: Jacobian by dual numbers, LU factors on GPUs in registers\n");
+    CHECK(has(describe<unnamed>(), "components: 3 state, 2 parameter, 0 shared"));
+}
+
+TEST_CASE("what stiff methods make of a model is described", "[describe]") {
+    CHECK(has(describe<with_jacobian>(), "hooks: rhs, jacobian\n"));
+    CHECK(has(describe<with_jacobian>(), "stiff methods: the model's Jacobian, LU factors on GPUs in registers\n"));
+    CHECK(has(describe<large>(), "stiff methods: Jacobian by dual numbers, LU factors on GPUs in local memory\n"));
+}
+
+TEST_CASE("a model with events alone is described with them", "[describe]") {
+    CHECK(has(describe<watched>(), "1 event\nhooks: rhs, events\n"));
+}
+
+TEST_CASE("a misspelt hook does not show", "[describe]") {
+    CHECK(has(describe<with_misspelt_hooks>(), "hooks: rhs, finalise\n"));
+}
+
+TEST_CASE("scalar and generic forms of after_step are told apart", "[describe]") {
+    CHECK(has(describe<with_scalar_after_step>(), "hooks: rhs, after_step (scalar)\n"));
+    CHECK(has(describe<with_generic_after_step>(), "hooks: rhs, after_step (generic)\n"));
+    CHECK(has(describe<with_generic_after_step_without_result>(), "hooks: rhs, after_step (generic)\n"));
+}
+
+TEST_CASE("observed quantities show with the number of their reductions", "[describe]") {
+    CHECK(has(describe<with_reductions>(), "hooks: rhs, observe (2 reductions)\n"));
+}
+
+TEST_CASE("declarations show, but not those that are denied", "[describe]") {
+    CHECK(has(describe<with_declarations>(), "declares: writes_parameters, writes_time_domain, accessories_are_outputs, scalar_only, rare_events\n"));
+    CHECK(has(describe<with_declarations_denied>(), "declares: nothing\n"));
+    CHECK(has(describe<branching>(), "declares: scalar_only\n"));
+}
+
+TEST_CASE("counts and declarations can be asked for by name", "[describe]") {
+    CHECK(myriad::detail::n_state<complete> == 2);
+    CHECK(myriad::detail::n_parameter<complete> == 2);
+    CHECK(myriad::detail::n_shared<complete> == 1);
+    CHECK(myriad::detail::n_shared_integer<complete> == 1);
+    CHECK(myriad::detail::n_accessory<complete> == 2);
+    CHECK(myriad::detail::n_integer_accessory<complete> == 3);
+    CHECK(myriad::detail::n_event<complete> == 1);
+    CHECK(myriad::detail::n_event<bare> == 0);
+    CHECK(myriad::detail::has_after_event<complete>);
+    CHECK_FALSE(myriad::detail::has_after_event<watched>);
+    CHECK(myriad::detail::writes_parameters<with_declarations>);
+    CHECK_FALSE(myriad::detail::writes_parameters<with_declarations_denied>);
+    CHECK_FALSE(myriad::detail::writes_time_domain<bare>);
+}
+
+}  // namespace

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+// The engine of the simulated GPU: one chunk in memory of its own, and a thread as its stream, which integrates with the kernel
+// for the CPU.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <myriad/myriad.hpp>
+
+#include "tests/host/solve/simulated_gpu.hpp"
+
+namespace simulated {
+
+/// Components of an array: one after the other on the device, with a distance on the host.
+struct rows {
+    std::byte* host;
+    std::size_t device, bytes, count, distance;
+
+    void to_device(std::byte* memory) const {
+        for (std::size_t r = 0; r < count; ++r) std::memcpy(memory + device + r * bytes, host + r * distance, bytes);
+    }
+    void to_host(const std::byte* memory) const {
+        the_gpu.wrote = true;
+        for (std::size_t r = 0; r < count; ++r) std::memcpy(host + r * distance, memory + device + r * bytes, bytes);
+    }
+};
+
+/// One thread in an engine at a time.
+class turn {
+public:
+    explicit turn(unordered<bool>& taken) : taken_(taken) { demand(!(taken_ = true), "two threads are in one engine"); }
+    turn(unordered<bool>& taken, call kind) : turn(taken) { the_gpu.meet(kind); }
+    turn(const turn&) = delete;
+    ~turn() { taken_ = false; }
+
+private:
+    unordered<bool>& taken_;
+};
+
+template <class Model, class Method, class R>
+class engine final : public myriad::cuda::engine<Model, R> {
+    using arguments = myriad::detail::kernel_arguments<Model, R>;
+    using access = myriad::detail::array_access;
+    using kind = myriad::detail::array_kind;
+    using clock = std::chrono::steady_clock;
+
+public:
+    ~engine() override {
+        if (asked_.valid()) asked_.wait();
+        release();
+    }
+
+    void reserve(const arguments& host, std::int64_t count) override {
+        const turn mine(taken_, call::reserve);
+        grow(host, count);
+    }
+    void upload(const arguments& host, std::int64_t first, std::int64_t count, myriad::cuda::past past) override {
+        const turn mine(taken_, call::upload);
+        demand(under_way_ == 0 && !fetching_, "an upload to an engine at work");
+        grow(host, count);
+        first_ = first;
+        count_ = count;
+        shared_.assign(host.shared.real, host.shared.real + myriad::detail::n_shared<Model>);
+        shared_integer_.assign(host.shared.integer, host.shared.integer + myriad::detail::n_shared_integer<Model>);
+        std::vector<rows> pinned;
+        walk(host, count, [&](auto* array, std::size_t at, std::int64_t components, access how, kind what) {
+            if (how == access::write) return;
+            const bool none = past == myriad::cuda::past::none && (what == kind::bookkeeping || what == kind::samples);
+            if (none) return clear(array, &memory_[at], components * count, what);
+            const rows all = rows_of(array, at, components, host.size);
+            is_pinned(array) ? pinned.push_back(all) : all.to_device(memory_.get());
+        });
+        ask([=, this] {
+            for (const rows& r : pinned) r.to_device(memory_.get());
+        });
+    }
+    void integrate(const arguments& host) override {
+        const turn mine(taken_, call::integrate);
+        demand(count_ > 0, "nothing was uploaded to be integrated");
+        ask([=, this, now = host, first = first_, count = count_]() mutable {
+            begun_ = started_;
+            the_gpu.meet(call::kernel);
+            walk(now, count, [&](auto*& array, std::size_t at, std::int64_t components, access how, kind what) {
+                if (how == access::write) clear(array, &memory_[at], components * count, what);
+                array = reinterpret_cast<std::remove_reference_t<decltype(array)>>(&memory_[at]);
+            });
+            now.size = count;
+            now.first_index += first;
+            now.shared = {shared_.data(), shared_integer_.data()};
+            myriad::openmp::run<Model, Method, R>(now, {.threads = 1});
+            done_ = clock::now();
+        });
+    }
+    void download(const arguments& host, bool (*wanted)(void*, kind, std::int64_t), void* context) override {
+        const turn mine(taken_, call::download);
+        demand(count_ > 0, "nothing was uploaded to be downloaded");
+        finish_download();
+        fetching_.emplace();
+        std::vector<rows> pinned;
+        walk(host, count_, [&](auto* array, std::size_t at, std::int64_t components, access how, kind what) {
+            auto& list = is_pinned(array) ? pinned : *fetching_;
+            for (std::int64_t c = 0; c < components && how != access::read; ++c)
+                if (wanted == nullptr || wanted(context, what, c))
+                    list.push_back(rows_of(array + c * host.size, at + bytes_of(array, c * count_), 1, host.size));
+        });
+        ask([=, this] {
+            fetched_.assign(&memory_[0], &memory_[bytes_]);
+            for (const rows& r : pinned) r.to_host(memory_.get());
+        });
+    }
+    void wait() override {
+        const turn mine(taken_, call::wait);
+        finish_download();
+        synchronise();
+    }
+    bool idle() override { return under_way_ == 0 || the_gpu.seems_idle; }
+    void* mark() override {
+        const turn mine(taken_);
+        ask([] {});
+        return &asked_;
+    }
+    void wait_for(myriad::cuda::work& other) override {
+        const turn mine(taken_);
+        ask([reached = *static_cast<std::shared_future<void>*>(other.mark())] { reached.wait(); });
+    }
+    double kernel_seconds() override {
+        const auto [begin, end] = kernel_interval(&begun_);
+        return end - begin;
+    }
+    typename myriad::cuda::engine<Model, R>::interval kernel_interval(void* since) override {
+        const turn mine(taken_);
+        synchronise();
+        const auto zero = *static_cast<clock::time_point*>(since);
+        return {std::chrono::duration<double>(begun_ - zero).count(), std::chrono::duration<double>(done_ - zero).count()};
+    }
+    void* start_clock() override {
+        clock_ = clock::now();
+        return &clock_;
+    }
+    myriad::cuda::kernel_facts facts() const override { return {}; }
+    std::int64_t full_load() const override { return 1; }
+    std::int64_t affordable(std::int64_t bytes) const override { return (the_gpu.memory - the_gpu.used) * 9 / 10 / bytes; }
+    void rest() override {
+        const turn mine(taken_);
+        demand(under_way_ == 0 && !fetching_, "an engine is to rest while it works");
+        synchronise();
+        release();
+    }
+
+private:
+    /// Calls `visit(pointer, place on the device, components, access, kind)` for each array; returns the bytes of all.
+    template <class Visit>
+    static std::size_t walk(arguments& host, std::int64_t count, Visit&& visit) {
+        std::size_t at = 0;
+        const auto place = [&](auto*& array, std::int64_t components, access how, kind what) {
+            const std::size_t bytes = bytes_of(array, components * count);
+            visit(array, at, components, how, what);
+            at += (bytes + 63) / 64 * 64;
+        };
+        for_each_array(host, place);
+        for_each_record(host.record, place);
+        return at;
+    }
+    template <class Visit>
+    static std::size_t walk(const arguments& host, std::int64_t count, Visit&& visit) {
+        arguments copy = host;
+        return walk(copy, count, visit);
+    }
+    template <class T>
+    static std::size_t bytes_of(T*, std::int64_t values) { return static_cast<std::size_t>(values) * sizeof(T); }
+    template <class T>
+    rows rows_of(T* host, std::size_t at, std::int64_t components, std::int64_t size) const {
+        return {reinterpret_cast<std::byte*>(host + first_), at, bytes_of(host, count_), static_cast<std::size_t>(components),
+                bytes_of(host, size)};
+    }
+    /// Bookkeeping is zero before the first call; records and samples are NaN, integers zero, where nothing was written.
+    template <class T>
+    static void clear(T* array, std::byte* begin, std::int64_t values, kind what) {
+        const bool to_nan = std::is_floating_point_v<T> && what != kind::bookkeeping;
+        std::memset(begin, to_nan ? 0xff : 0, bytes_of(array, values));
+    }
+
+    void grow(const arguments& host, std::int64_t count) {
+        const std::size_t bytes = walk(host, count, [](auto&&...) {});
+        if (bytes <= bytes_) return;
+        const auto more = static_cast<std::int64_t>(bytes - bytes_);
+        myriad::require(the_gpu.used + more <= the_gpu.memory, "out of device memory: simulated");
+        the_gpu.used += more;
+        memory_ = std::make_unique_for_overwrite<std::byte[]>(bytes);
+        bytes_ = bytes;
+    }
+    void release() {
+        the_gpu.used += -static_cast<std::int64_t>(std::exchange(bytes_, 0));
+        memory_.reset();
+        count_ = 0;
+    }
+
+    /// Has the stream do it after all that it was asked for before; after a failure it does nothing more.
+    void ask(std::function<void()> task) {
+        under_way_ += 1;
+        the_gpu.under_way += 1;
+        asked_ = stream_.ask([this, pause = pause(), task = std::move(task)] {
+            started_ = clock::now();
+            std::this_thread::sleep_for(pause);
+            try {
+                if (!failure_) task();
+            } catch (...) {
+                failure_ = std::current_exception();
+            }
+            the_gpu.under_way += -1;
+            under_way_ += -1;
+            if (failure_) std::rethrow_exception(failure_);
+        });
+    }
+    std::chrono::microseconds pause() {
+        random_ = (random_ + the_gpu.seed) * 6364136223846793005u + 1442695040888963407u;
+        return std::chrono::microseconds(the_gpu.longest_delay == 0 ? 0 : (random_ >> 33) % the_gpu.longest_delay);
+    }
+    void synchronise() {
+        if (asked_.valid()) asked_.get();
+    }
+    void finish_download() {
+        const auto all = std::exchange(fetching_, std::nullopt);
+        if (!all) return;
+        synchronise();
+        for (const rows& r : *all) r.to_host(fetched_.data());
+    }
+
+    unordered<bool> taken_;     // by a thread
+    unordered<int> under_way_;  // in the stream
+    std::uint64_t random_ = 0;
+    std::int64_t first_ = 0, count_ = 0;
+    std::size_t bytes_ = 0;
+    std::optional<std::vector<rows>> fetching_;  // of the download under way
+    std::shared_future<void> asked_;             // what was asked of the stream last
+    std::unique_ptr<std::byte[]> memory_;
+    std::vector<std::byte> fetched_;
+    std::vector<R> shared_;
+    std::vector<std::int32_t> shared_integer_;
+    std::exception_ptr failure_;
+    clock::time_point clock_, started_, begun_, done_;
+    myriad::host::worker_thread stream_;
+};
+
+}  // namespace simulated

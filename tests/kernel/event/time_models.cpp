@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// Compiles the kernels of the models of time_models.hpp, and those of watch.hpp and levels.hpp that need no packs.
+#include "time_models.hpp"
+
+#include <myriad/instantiate.hpp>
+
+#include "levels.hpp"
+#include "methods.hpp"
+#include "watch.hpp"
+
+MYRIAD_INSTANTIATE(wave, ALL_METHODS)
+MYRIAD_INSTANTIATE(gate, ALL_METHODS)
+MYRIAD_INSTANTIATE(pendulum, ALL_METHODS)
+MYRIAD_INSTANTIATE(walled, ALL_METHODS)
+MYRIAD_INSTANTIATE(settling, ALL_METHODS)
+MYRIAD_INSTANTIATE_FLOAT(settling, myriad::cash_karp)
+MYRIAD_INSTANTIATE(levels, myriad::tsitouras_5)
+#if defined(MYRIAD_NIGHTLY)
+MYRIAD_INSTANTIATE(levels, myriad::dormand_prince_8)
+#endif
+MYRIAD_INSTANTIATE(watch, myriad::cash_karp, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE_FLOAT(watch, myriad::cash_karp)

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: MIT
+// Stiff methods in the loop: statuses, counts, events, hooks and dense output, large systems, and results that depend on the
+// instance alone.
+#include "tests/support/stiff.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "myriad/myriad.hpp"
+#include "tests/catch.hpp"
+#include "tests/properties/pack_sizes.hpp"
+#include "tests/support/compare.hpp"
+#include "tests/support/device.hpp"
+#include "tests/support/faulty.hpp"
+
+namespace {
+
+using myriad::ensemble;
+using myriad::options;
+using myriad::rodas_5p;
+using myriad::rosenbrock_23;
+using myriad::solve;
+using myriad::status;
+using stiff::growth;
+using stiff::relay;
+using stiff::van_der_pol;
+
+constexpr double pi = 3.14159265358979323846;
+
+/// The rate at which I / (h gamma) - J of `growth` has a pivot of zero: what the method itself computes, 1 / h times the
+/// rounded 1 / gamma.
+template <class Method, class R>
+R singular_rate(R h) {
+    return R(1) / h * static_cast<R>(1 / Method::tableau().gamma);
+}
+
+template <class Method, class R = double>
+void check_singular() {
+    const R h = R(0.125);
+    options o;
+    o.step = static_cast<double>(h);
+    o.relative_tolerance = o.absolute_tolerance = 1e-2;
+    for (const bool may_shorten : {false, true}) {
+        ensemble<growth, R> e(40);
+        e.state(growth::x) = R(1e-3);
+        e.state(growth::y) = R(1);
+        for (std::int64_t i = 0; i < e.size(); ++i)
+            e.parameter(growth::rate)[i] = i % 3 == 1 ? singular_rate<Method, R>(h) : R(-1);
+        e.time_domain(R(0), R(1));
+        o.minimum_step = may_shorten ? 0 : static_cast<double>(h);
+        solve<Method>(tests::test_device(1), e, o);
+        for (std::int64_t i = 0; i < e.size(); ++i) {
+            CAPTURE(i, may_shorten);
+            if (i % 3 != 1 || may_shorten) {
+                CHECK(e.status(i) == status::success);
+                // a step shorter by any factor has a regular matrix
+                if (i % 3 == 1) CHECK(e.rejected_steps()[i] >= 1);
+            } else {
+                CHECK(e.status(i) == status::singular_jacobian);
+                CHECK(e.t()[i] == 0);
+                CHECK(e.state(growth::x)[i] == R(1e-3));
+                CHECK(e.rejected_steps()[i] == 1);
+            }
+        }
+    }
+}
+
+/// The relay with samples: its event times, its states between them, and that every hook was called.
+template <class Method>
+void check_relay(double tolerance, double slack) {
+    ensemble<relay> e(5);
+    e.state(relay::y0) = 0.0;  // which `initialise` replaces
+    for (int c = 0; c < relay::n_accessory; ++c) e.accessory(c) = 0.0;
+    e.time_domain(0, 4);
+    options o;
+    o.relative_tolerance = o.absolute_tolerance = tolerance;
+    o.step = 1e-3;
+    o.maximum_step = 0.2;  // nobody controls the error of the interpolant, 4e-4 h^4 here for rodas_5p (measured)
+    o.events = {{myriad::direction::falling, 1e-9, 0}};
+    o.samples = {.states = {relay::y0}, .capacity = 81, .evenly = 81};
+    solve<myriad::dense<Method>>(tests::test_device(1), e, o);
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+        REQUIRE(e.status(i) == status::success);
+        CHECK(e.accessory(relay::raised)[i] == 2);
+        // the slope at both events is -sin(pi/3)
+        CHECK(std::abs(e.accessory(relay::last_event)[i] - 2 * pi / 3) <=
+              (slack * tolerance + 1e-9) / std::sin(pi / 3));
+        CHECK(std::abs(e.state(relay::y0)[i] - (std::cos(4.0) + 2)) <= slack * tolerance);
+        // the largest state is the one at an event or at the start, before the action: hooks see steps, and these end below
+        CHECK(e.accessory(relay::largest)[i] >= 1);
+        CHECK(e.accessory(relay::largest)[i] <= 1.5 + slack * tolerance);
+        CHECK(e.integer_accessory(relay::begun)[i] == 1);
+        CHECK(e.integer_accessory(relay::finished)[i] == 1);
+        const auto t = e.samples().time();
+        const auto y = e.samples().state(relay::y0);
+        for (Eigen::Index k = 0; k < 81; ++k) {
+            const double time = t(i, k), raised = (time > pi / 3) + (time > 2 * pi / 3);
+            CAPTURE(time);
+            CHECK(std::abs(y(i, k) - std::cos(time) - raised) <= slack * tolerance);
+        }
+    }
+}
+
+/// The slowest mode of the rod, exp(-lambda t) sin(j pi / (n + 1)) with lambda = 4 rate sin^2(pi / (2 (n + 1))), and with it
+/// the fastest one, which decays at once.
+template <class Method, int n, class R = double>
+void check_rod(double tolerance) {
+    ensemble<stiff::rod<n>, R> e(19);
+    const double rate = 100, end = 0.5;
+    const double lambda = 4 * rate * std::pow(std::sin(pi / (2 * (n + 1))), 2);
+    e.parameter(0) = static_cast<R>(rate);
+    for (int j = 0; j < n; ++j) {
+        const double slow = std::sin((j + 1) * pi / (n + 1)), fast = std::sin((j + 1) * n * pi / (n + 1));
+        e.state(j) = static_cast<R>(slow + 0.1 * fast);
+    }
+    e.time_domain(R(0), static_cast<R>(end));
+    options o;
+    o.relative_tolerance = o.absolute_tolerance = tolerance;
+    o.step = 1e-3;
+    const auto report = solve<Method>(tests::test_device(1), e, o);
+    REQUIRE(report.count(status::success) == e.size());
+    const double steps = static_cast<double>(e.accepted_steps()[7]);
+    for (int j = 0; j < n; ++j) {
+        const double exact = std::exp(-lambda * end) * std::sin((j + 1) * pi / (n + 1));
+        CAPTURE(n, j, steps);
+        // The matrix exponential of the rod shrinks errors in every norm but the largest component may collect those of all
+        // others: rows of it sum up to one at most. A step's error is below the tolerance, states are at most 1.1.
+        CHECK(std::abs(static_cast<double>(e.state(j)[7]) - exact) <= 1.1 * steps * tolerance);
+    }
+}
+
+ensemble<van_der_pol> oscillators(const std::vector<std::int64_t>& numbers) {
+    ensemble<van_der_pol> e(static_cast<std::int64_t>(numbers.size()));
+    for (std::size_t at = 0; at < numbers.size(); ++at) {
+        const auto i = static_cast<std::int64_t>(at);
+        e.parameter(van_der_pol::eps)[i] = std::pow(10.0, -3.0 * static_cast<double>(numbers[at] % 17) / 16);
+        e.state(van_der_pol::x)[i] = 2;
+        e.state(van_der_pol::v)[i] = 0.01 * static_cast<double>(numbers[at] % 5);
+        e.accessory(van_der_pol::fastest)[i] = 0;
+    }
+    e.time_domain(0, 2);
+    return e;
+}
+
+/// Balls of 99 restitutions, whose impacts accumulate. At the end, the flights that are left take 2 v / (g (1 - e)).
+template <class Method, class R = double>
+void check_accumulation(R event_tolerance, double resolution) {
+    ensemble<stiff::ball, R> e(99);
+    e.state(stiff::ball::x) = R(1);
+    e.state(stiff::ball::v) = R(0);
+    for (std::int64_t i = 0; i < e.size(); ++i) e.parameter(0)[i] = static_cast<R>(0.01 * static_cast<double>(i + 1));
+    e.time_domain(R(0), R(100));
+    options o = compare::with_tolerance(std::is_same_v<R, float> ? 1e-6 : 1e-10, 1e-2);
+    o.events = {{.direction = myriad::direction::falling, .tolerance = static_cast<double>(event_tolerance)}};
+    const auto report = solve<Method>(tests::test_device(1), e, o);
+    CHECK(report.count(status::event_accumulation) == e.size());
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+        const double kept = static_cast<double>(e.parameter(0)[i]);
+        const double rest = std::sqrt(0.2) * (1 + kept) / (1 - kept);
+        const double left = 2 * static_cast<double>(e.state(stiff::ball::v)[i]) / (10 * (1 - kept));
+        CAPTURE(kept);
+        CHECK(std::abs(static_cast<double>(e.t()[i]) + left - rest) <= resolution);
+    }
+}
+
+/// Packs of every size against one lane at a time.
+template <class Method>
+void check_pack_sizes() {
+    std::vector<std::int64_t> all(103);  // no multiple of any number of lanes
+    std::iota(all.begin(), all.end(), 0);
+    const auto run = [&](int batches) {
+        auto e = oscillators(all);
+        const options o = compare::with_tolerance(1e-4, 1e-3);
+        myriad::detail::kernel_arguments<van_der_pol, double> arguments{};
+        myriad::host::describe_options<van_der_pol, Method, double>(arguments, o);
+        myriad::host::ensemble_access::describe(e, arguments, o.counting);
+        properties::run_with_packs<van_der_pol, Method, double>(batches, arguments, {});
+        return e;
+    };
+    const auto one_lane = run(0);
+    for (int batches = 1; batches <= 4; ++batches) {
+        INFO("pack of " << batches << " batches");
+        CHECK(compare::difference(run(batches), one_lane).empty());
+    }
+}
+
+template <class Method>
+void check_order_of_instances() {
+    std::vector<std::int64_t> order(103);
+    std::iota(order.begin(), order.end(), 0);
+    auto straight = oscillators(order);
+    const options o = compare::with_tolerance(1e-5, 1e-3);
+    solve<Method>(tests::test_device(2), straight, o);
+    std::shuffle(order.begin(), order.end(), std::mt19937(1));
+    auto shuffled = oscillators(order);
+    solve<Method>(tests::test_device(2), shuffled, o);
+    for (std::size_t at = 0; at < order.size(); ++at)
+        CHECK(compare::difference(shuffled, static_cast<std::int64_t>(at), straight, order[at]).empty());
+}
+
+}  // namespace
+
+TEST_CASE("a step with a singular matrix is shortened, and ends as singular_jacobian where it may not be") {
+    check_singular<rosenbrock_23>();
+    check_singular<rodas_5p>();
+    check_singular<rodas_5p, float>();
+}
+
+TEST_CASE("impacts that accumulate end a stiff method as event_accumulation, though its steps are shorter than 1 / 1e308") {
+    for (const double tolerance : {1e-6, 1e-12}) {
+        check_accumulation<rosenbrock_23>(tolerance, 1e-8);
+        check_accumulation<rodas_5p>(tolerance, 1e-8);
+    }
+    check_accumulation<rodas_5p, float>(1e-5f, 0.1);
+}
+
+TEST_CASE("a stiff method does not creep up to where rhs has no value beyond the state") {
+    const auto check = []<class Method>(Method) {
+        for (const double t_begin : {0.0, -1.0, 10.0}) {
+            for (const double start : {0.0, 0.999}) {
+                CAPTURE(t_begin, start);
+                ensemble<faulty::cliff> e(1);
+                e.state(0) = start;
+                e.parameter(0) = e.parameter(1) = e.parameter(2) = 1.0;
+                e.time_domain(t_begin, t_begin + 4);
+                options o = compare::with_tolerance(1e-9, 1e-2);
+                o.max_steps = 1'000'000;
+                solve<Method>(tests::test_device(1), e, o);
+                CHECK(e.status(0) == status::not_finite);
+                CHECK(e.state(0)[0] <= 1);
+                CHECK(e.state(0)[0] >= 1 - 1e-12);
+            }
+        }
+    };
+    check(rosenbrock_23{});
+    check(rodas_5p{});
+}
+
+TEST_CASE("a Jacobian that is infinite while rhs is finite ends as singular_jacobian") {
+    ensemble<stiff::draining> e(9);
+    for (std::int64_t i = 0; i < e.size(); ++i) e.state(0)[i] = i % 2 == 0 ? 0.0 : 1.0;
+    e.time_domain(0, 1);
+    solve<rodas_5p>(tests::test_device(1), e, compare::with_tolerance(1e-6, 1e-2));
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+        if (i % 2 == 0) {
+            CHECK(e.status(i) == status::singular_jacobian);
+            CHECK(e.state(0)[i] == 0);
+        } else {
+            CHECK(e.status(i) == status::success);
+            // y = (1 - t/2)^2, and errors are not magnified: y' falls with y
+            CHECK(std::abs(e.state(0)[i] - 0.25) <= 1e-6 * static_cast<double>(e.accepted_steps()[i]));
+        }
+    }
+}
+
+TEST_CASE("a right-hand side that is not finite ends a stiff method as not_finite, at its last finite state") {
+    using faulty::clock_fault;
+    ensemble<clock_fault> e(9);
+    e.state(clock_fault::y0) = 1.0;
+    e.state(clock_fault::y1) = 0.0;
+    e.parameter(clock_fault::rate) = 1.0;
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+        e.parameter(clock_fault::last_good)[i] = i % 2 == 0 ? 0.5 : 5.0;
+        e.parameter(clock_fault::kind)[i] = static_cast<double>(i % 4 / 2);
+    }
+    e.time_domain(0, 1);
+    solve<rosenbrock_23>(tests::test_device(1), e, compare::with_tolerance(1e-6, 1e-2));
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+        CHECK(e.status(i) == (i % 2 == 0 ? status::not_finite : status::success));
+        CHECK(e.t()[i] <= (i % 2 == 0 ? 0.5 : 1.0));
+        // the problem is contracting: every step adds an error below the tolerance
+        CHECK(std::abs(e.state(clock_fault::y0)[i] - std::exp(-e.t()[i])) <=
+              1e-6 * static_cast<double>(e.accepted_steps()[i]));
+    }
+}
+
+TEST_CASE("evaluations of rhs are counted, two a step of rosenbrock_23 and eight of rodas_5p") {
+    const auto kinetics = [] {
+        ensemble<stiff::robertson> r(3);
+        r.state(0) = 1.0;
+        r.state(1) = r.state(2) = 0.0;
+        for (std::int64_t i = 0; i < r.size(); ++i) {
+            r.t_begin()[i] = 0;
+            r.t_end()[i] = std::pow(100.0, static_cast<double>(i));
+        }
+        return r;
+    };
+    auto e = kinetics();
+    options o = compare::with_tolerance(1e-5, 1e-3);
+    o.absolute_tolerance = 1e-10;
+    solve<rosenbrock_23>(tests::test_device(1), e, o);
+    for (std::int64_t i = 0; i < e.size(); ++i)  // and the first slope, which a step that is rejected keeps
+        CHECK(e.rhs_evaluations()[i] == 2 * (e.accepted_steps()[i] + e.rejected_steps()[i]) + 1);
+    e = kinetics();
+    solve<rodas_5p>(tests::test_device(1), e, o);
+    for (std::int64_t i = 0; i < e.size(); ++i)
+        CHECK(e.rhs_evaluations()[i] == 8 * e.accepted_steps()[i] + 7 * e.rejected_steps()[i]);
+}
+
+// Errors of a stiff problem die out, so that the error anywhere is that of a step or two and of the interpolant.
+TEST_CASE("rosenbrock_23 locates events, samples and calls hooks on a stiff problem") {
+    check_relay<rosenbrock_23>(1e-6, 10);
+}
+TEST_CASE("rodas_5p locates events, samples and calls hooks on a stiff problem") { check_relay<rodas_5p>(1e-6, 10); }
+
+TEST_CASE("stiff methods take systems of seven and of thirty-two equations") {
+    check_rod<rodas_5p, 7>(1e-8);
+    check_rod<rodas_5p, 32>(1e-8);
+    check_rod<rosenbrock_23, 32, float>(1e-4);
+}
+
+TEST_CASE("the order of the ensemble changes no bit of a stiff method's results") {
+    check_order_of_instances<rosenbrock_23>();
+    check_order_of_instances<rodas_5p>();
+}
+
+// + - * / only, so that one lane has no other functions than packs
+TEST_CASE("a stiff method gives the same bits in a scalar lane and in packs of every size") {
+    check_pack_sizes<rodas_5p>();
+}
+
+TEST_CASE("the model's own Jacobian gives what the one by dual numbers gives") {
+    const auto run = []<class Model>(ensemble<Model>&& e) {
+        e.state(0) = 1.0;
+        e.state(1) = e.state(2) = 0.0;
+        e.time_domain(0, 40);
+        options o = compare::with_tolerance(1e-8, 1e-6);
+        o.absolute_tolerance = 1e-12;
+        solve<rodas_5p>(tests::test_device(1), e, o);
+        REQUIRE(e.status(0) == status::success);
+        return std::vector<double>{e.state(0)[0], e.state(1)[0], e.state(2)[0],
+                                   static_cast<double>(e.accepted_steps()[0])};
+    };
+    const auto dual = run(ensemble<stiff::robertson>(1)), own = run(ensemble<stiff::robertson_with_jacobian>(1));
+    // The two differ by rounding: the steps are the same, the results within the roundings of a few hundred of them.
+    CHECK(dual[3] == own[3]);
+    for (std::size_t c = 0; c < 3; ++c)
+        CHECK(std::abs(dual[c] - own[c]) <= dual[3] * 10 * std::numeric_limits<double>::epsilon());
+}
+
+namespace {
+
+/// The largest errors of samples and of ends of steps of sin t over [0, 10], the solution of Prothero and Robinson's problem.
+template <class Method>
+std::pair<double, double> errors_of_samples(double rate, double maximum_step) {
+    const auto error = [&](std::int64_t evenly, std::int64_t every, std::int64_t capacity) {
+        myriad::ensemble<stiff::prothero_robinson> e(1);
+        e.state(stiff::prothero_robinson::y0) = 0;
+        e.parameter(stiff::prothero_robinson::rate) = rate;
+        e.time_domain(0, 10);
+        myriad::options o{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-6, .maximum_step = maximum_step};
+        o.samples = {.states = {stiff::prothero_robinson::y0}, .capacity = capacity, .evenly = evenly, .every = every};
+        myriad::solve<myriad::dense<Method>>(tests::test_device(), e, o);
+        const auto stored = e.samples().stored()[0];
+        const Eigen::ArrayXd y = e.samples().state(0).row(0).head(stored), t = e.samples().time().row(0).head(stored);
+        return (y - t.sin()).abs().maxCoeff<Eigen::PropagateNaN>();
+    };
+    return {error(2001, 0, 2001), error(0, 1, 10'000)};
+}
+
+}  // namespace
+
+TEST_CASE("samples of a very stiff solution err by the fourth power of the step, far above the tolerance of 1e-6") {
+    const double free = std::numeric_limits<double>::infinity();
+    // docs/numerics.md has these. Ends of steps are good, so that steps grow with the rate, and with them the error inside.
+    const std::pair<double, double> expected[] = {{1e4, 6e-5}, {1e6, 2e-2}, {1e8, 2e-1}};
+    for (const auto& [rate, inside] : expected) {
+        INFO("rate " << rate);
+        const auto [samples, ends] = errors_of_samples<myriad::rodas_5p>(rate, free);
+        CHECK(samples > 0.5 * inside);
+        CHECK(samples < 1.5 * inside);
+        CHECK(ends < 1e-6);
+        // Limited, steps of h leave 4e-4 h^4, whatever the rate.
+        for (const double h : {0.1, 0.3}) {
+            const double limited = errors_of_samples<myriad::rodas_5p>(rate, h).first;
+            CHECK(limited < 4e-4 * std::pow(h, 4));
+            CHECK(limited > 3e-4 * std::pow(h, 4));
+        }
+        CHECK(errors_of_samples<myriad::rosenbrock_23>(rate, free).first < 1e-6);
+    }
+}

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+// Dual numbers: their values are those of plain code, their derivatives those of a central difference in long double, and
+// those of packs the same lane by lane.
+
+#include "myriad/kernel/scalar/dual.hpp"
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "myriad/kernel/scalar/pack.hpp"
+#include "tests/catch.hpp"
+
+using myriad::detail::any;
+using myriad::detail::bits;
+using myriad::detail::get_lane;
+using myriad::detail::set_lane;
+
+namespace {
+
+using myriad::dual;
+using myriad::pack;
+using wide = long double;
+
+/// f'(x) by the difference of sixth order, whose error here is below 1e-13 of the function's scale.
+template <class F>
+wide difference(F f, wide x) {
+    const wide h = 1e-3L;
+    return (45 * (f(x + h) - f(x - h)) - 9 * (f(x + 2 * h) - f(x - 2 * h)) + (f(x + 3 * h) - f(x - 3 * h))) / (60 * h);
+}
+
+template <class T>
+void check_close(T got, wide wanted) {
+    // A few roundings of the formula, and for double the error of the difference.
+    const wide tolerance = 16 * static_cast<wide>(std::numeric_limits<T>::epsilon()) + 1e-11L;
+    CAPTURE(sizeof(T), static_cast<double>(got), static_cast<double>(wanted));
+    CHECK(std::fabs(static_cast<wide>(got) - wanted) <= tolerance * (1 + std::fabs(wanted)));
+}
+
+/// The derivative of f at x for dual<double>, dual<float> and duals of packs; f is called with a dual number, g is the same
+/// function in long double.
+template <class F, class G>
+void check_derivative(const char* name, F f, G g, double x) {
+    CAPTURE(name, x);
+    const auto of_type = [&]<class T>(T) {
+        const T at = static_cast<T>(x);
+        const wide slope = difference(g, static_cast<wide>(at));
+        // The direction is not 1, so that a forgotten factor shows.
+        const auto plain = f(dual<T>(at, T(3)));
+        check_close(plain.value, g(static_cast<wide>(at)));
+        check_close(plain.derivative, 3 * slope);
+
+        using P = pack<T, 2>;
+        P lanes(T(0.25));
+        P direction(T(1));
+        set_lane(lanes, P::lanes - 1, at);
+        set_lane(direction, P::lanes - 1, T(3));
+        const auto packed = f(dual<P>(lanes, direction));
+        const dual<T> lane = get_lane(packed, P::lanes - 1);
+        check_close(lane.value, plain.value);
+        check_close(lane.derivative, plain.derivative);
+        const wide other = difference(g, 0.25L);
+        check_close(get_lane(packed, 0).derivative, other);
+    };
+    of_type(double{});
+    of_type(float{});
+}
+
+#define CHECK_DERIVATIVE(expression, ...)             \
+    for (const double point : {__VA_ARGS__}) {        \
+        check_derivative(                             \
+            #expression,                              \
+            [](auto x) {                              \
+                using namespace myriad;               \
+                return expression;                    \
+            },                                        \
+            [](wide x) {                              \
+                using namespace std;                  \
+                return static_cast<wide>(expression); \
+            },                                        \
+            point);                                   \
+    }
+
+wide sinpi(wide x) { return std::sin(3.14159265358979323846264338327950288L * x); }
+struct both {
+    wide sine, cosine;
+};
+both sincos(wide x) { return {std::sin(x), std::cos(x)}; }
+both sincospi(wide x) { return {sinpi(x), std::cos(3.14159265358979323846264338327950288L * x)}; }
+wide powr(wide x, wide y) { return std::pow(x, y); }
+wide reciprocal(wide x) { return 1 / x; }
+wide cospi(wide x) { return std::cos(3.14159265358979323846264338327950288L * x); }
+
+}  // namespace
+
+TEST_CASE("derivatives of sums, products and quotients follow the rules, constants on either side"){
+    CHECK_DERIVATIVE(x + x * x, 0.3, -2.0) CHECK_DERIVATIVE(x * x - 2 * x + 1, 0.3, -2.0) CHECK_DERIVATIVE(1 - x, 0.7)
+        CHECK_DERIVATIVE(x - 1, 0.7) CHECK_DERIVATIVE(-x * x, 0.7) CHECK_DERIVATIVE(1 / x, 0.7, -3.0)
+            CHECK_DERIVATIVE(x / 2, 0.7, -3.0) CHECK_DERIVATIVE((x + 1) / (x * x + 3), 0.7, -3.0)
+                CHECK_DERIVATIVE(+x * 3 * x, 0.7, -3.0)}
+
+TEST_CASE("derivatives of elementary functions agree with differences"){
+    CHECK_DERIVATIVE(sqrt(x), 0.3, 2.0, 900.0) CHECK_DERIVATIVE(cbrt(x), 0.3, 2.0) CHECK_DERIVATIVE(abs(x), 0.3, -2.0)
+        CHECK_DERIVATIVE(floor(x) + x, 0.3, -2.4) CHECK_DERIVATIVE(round(x) + x, 0.3, -2.4)
+            CHECK_DERIVATIVE(sin(x), 0.3, -2.0, 40.0) CHECK_DERIVATIVE(cos(x), 0.3, -2.0, 40.0)
+                CHECK_DERIVATIVE(tan(x), 0.3, -1.2) CHECK_DERIVATIVE(asin(x), 0.3, -0.8)
+                    CHECK_DERIVATIVE(acos(x), 0.3, -0.8) CHECK_DERIVATIVE(atan(x), 0.3, -5.0)
+                        CHECK_DERIVATIVE(sinpi(x), 0.3, -1.2) CHECK_DERIVATIVE(cospi(x), 0.3, -1.2)
+                        CHECK_DERIVATIVE(sincos(x).sine, 0.3, -2.0) CHECK_DERIVATIVE(sincos(x).cosine, 0.3, -2.0)
+                        CHECK_DERIVATIVE(sincospi(x).sine, 0.3, -1.2) CHECK_DERIVATIVE(sincospi(x).cosine, 0.3, -1.2)
+                        CHECK_DERIVATIVE(reciprocal(x), 0.3, -2.0) CHECK_DERIVATIVE(powr(x, 1.4), 0.3, 4.0)
+                            CHECK_DERIVATIVE(sinh(x), 0.3, -2.0) CHECK_DERIVATIVE(cosh(x), 0.3, -2.0)
+                                CHECK_DERIVATIVE(tanh(x), 0.3, -2.0) CHECK_DERIVATIVE(exp(x), 0.3, -2.0)
+                                    CHECK_DERIVATIVE(exp2(x), 0.3, -2.0) CHECK_DERIVATIVE(log(x), 0.3, 20.0)
+                                        CHECK_DERIVATIVE(log2(x), 0.3, 20.0) CHECK_DERIVATIVE(log10(x), 0.3, 20.0)}
+
+TEST_CASE("derivatives of functions of two arguments agree with differences in each of them"){
+    CHECK_DERIVATIVE(pow(x, 2.5), 0.3, 4.0) CHECK_DERIVATIVE(pow(2.5, x), 0.3, -2.0)
+        CHECK_DERIVATIVE(pow(x, x), 0.3, 2.0) CHECK_DERIVATIVE(pow(x, 3), 0.3, -2.0)
+            CHECK_DERIVATIVE(pow(x, -2), 0.3, -2.0) CHECK_DERIVATIVE(atan2(x, 1.5), 0.3, -2.0)
+                CHECK_DERIVATIVE(atan2(1.5, x), 0.3, -2.0) CHECK_DERIVATIVE(atan2(x, x* x), 0.3, 2.0)
+                    CHECK_DERIVATIVE(hypot(x, 1.5), 0.3, -2.0) CHECK_DERIVATIVE(hypot(x, x* x), 0.3, -2.0)
+                        CHECK_DERIVATIVE(fma(x, x, 2 * x), 0.3, -2.0) CHECK_DERIVATIVE(fma(x, 1.5, x), 0.3, -2.0)}
+
+TEST_CASE("a model's expression has the derivative of its difference quotient"){
+    CHECK_DERIVATIVE(x - x * x * x - x / 4 + cos(x * 2) * exp(-x * x) + pow(1 / (x + 3), 2.5) * log(x + 4), 0.3, -1.2,
+                     2.0)}
+
+TEST_CASE("min, max and copysign take the derivative of what they return") {
+    const dual<double> a(1, 10);
+    const dual<double> b(2, 20);
+    const dual<double> nothing(std::numeric_limits<double>::quiet_NaN(), 30);
+    REQUIRE(myriad::min(a, b).derivative == 10);
+    REQUIRE(myriad::max(a, b).derivative == 20);
+    REQUIRE(myriad::max(a, nothing).derivative == 10);
+    REQUIRE(myriad::max(nothing, a).derivative == 10);
+    REQUIRE(myriad::max(a, 0.0).derivative == 10);
+    REQUIRE(myriad::max(a, 5.0).derivative == 0);
+    REQUIRE(myriad::copysign(a, -1.0).value == -1);
+    REQUIRE(myriad::copysign(a, -1.0).derivative == -10);
+    REQUIRE(myriad::copysign(a, 2.0).derivative == 10);
+}
+
+TEST_CASE("pow of a base zero or negative keeps a finite derivative") {
+    const dual<double> zero(0, 1);
+    REQUIRE(myriad::pow(zero, 2.0).derivative == 0);
+    REQUIRE(myriad::pow(zero, 1.0).derivative == 1);
+    REQUIRE(myriad::pow(dual<double>(-2, 1), 3.0).derivative == 12);
+    REQUIRE(myriad::pow(dual<double>(-2, 1), 2).derivative == -4);
+    // an exponent that is a dual number, but a constant, as R(2) is in a model
+    REQUIRE(myriad::pow(zero, dual<double>(2)).derivative == 0);
+    REQUIRE(myriad::pow(zero, dual<double>(1)).derivative == 1);
+    REQUIRE(myriad::pow(dual<double>(-2, 1), dual<double>(3)).derivative == 12);
+    REQUIRE(myriad::pow(zero, dual<double>(0)).derivative == 0);
+    REQUIRE(myriad::pow(zero, 0.0).derivative == 0);
+}
+
+TEST_CASE("comparisons look at values alone, and select takes values with their derivatives") {
+    const dual<double> a(1, 10);
+    const dual<double> b(2, -20);
+    REQUIRE(a < b);
+    REQUIRE(a <= 1.0);
+    REQUIRE(2.0 >= b);
+    REQUIRE(b > a);
+    REQUIRE(a == dual<double>(1, 7));
+    REQUIRE(a != b);
+    REQUIRE(myriad::select(a < b, a, b).derivative == 10);
+    REQUIRE(myriad::select(a > 5.0, a, 0.0).derivative == 0);
+
+    using P = pack<double, 2>;
+    P value(1.0);
+    set_lane(value, 1, 3.0);
+    const dual<P> c(value, P(5.0));
+    const auto chosen = myriad::select(c > 2.0, c, -c);
+    REQUIRE(get_lane(chosen, 0).derivative == -5);
+    REQUIRE(get_lane(chosen, 1).derivative == 5);
+    REQUIRE(get_lane(chosen, 1).value == 3);
+    REQUIRE(bits(c > 2.0) == 2);
+    STATIC_REQUIRE(std::is_same_v<decltype(c > 2.0), myriad::mask_of<P>>);
+}
+
+TEST_CASE("a dual number is finite if value and derivative are") {
+    const double infinity = std::numeric_limits<double>::infinity();
+    REQUIRE(myriad::is_finite(dual<double>(1, 2)));
+    REQUIRE(!myriad::is_finite(dual<double>(infinity, 2)));
+    REQUIRE(!myriad::is_finite(dual<double>(1, infinity)));
+    REQUIRE(!any(myriad::is_finite(dual<pack<double, 1>>(1.0, pack<double, 1>(infinity)))));
+}
+
+TEST_CASE("compound assignments and lanes of dual numbers change value and derivative") {
+    dual<double> a(2, 1);
+    a += 1;
+    a *= a;
+    a -= dual<double>(0, 1);
+    a /= 3.0;
+    REQUIRE(a.value == 3);
+    REQUIRE(a.derivative == 5.0 / 3);
+    dual<pack<float, 1>> p(1.0f);
+    set_lane(p, 1, dual<float>(4, 5));
+    REQUIRE(get_lane(p, 1).value == 4);
+    REQUIRE(get_lane(p, 1).derivative == 5);
+    REQUIRE(get_lane(p, 0).derivative == 0);
+}
+
+TEST_CASE("the traits of a dual number are those of what it is made of") {
+    using P = pack<float, 2>;
+    STATIC_REQUIRE(std::is_same_v<myriad::real_of<dual<P>>, float>);
+    STATIC_REQUIRE(std::is_same_v<myriad::mask_of<dual<P>>, myriad::mask_of<P>>);
+    STATIC_REQUIRE(std::is_same_v<myriad::integer_of<dual<P>>, myriad::integer_of<P>>);
+    STATIC_REQUIRE(myriad::lanes_of<dual<P>> == P::lanes);
+    STATIC_REQUIRE(std::is_same_v<decltype(dual<P>() + P()), dual<P>>);
+    STATIC_REQUIRE(std::is_same_v<decltype(2 * dual<P>()), dual<P>>);
+    STATIC_REQUIRE(std::is_same_v<decltype(2.0 * dual<float>()), dual<float>>);
+    STATIC_REQUIRE(std::is_trivially_copyable_v<dual<double>>);
+}

@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: MIT
-// Compiles the kernels that write down random numbers.
-#include "tests/model/random_draws.hpp"
-
-#include <myriad/instantiate.hpp>
-
-MYRIAD_INSTANTIATE(random_draws::draws, myriad::runge_kutta_4)
-MYRIAD_INSTANTIATE_FLOAT(random_draws::draws, myriad::runge_kutta_4)

@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: MIT
-// Compiles the kernel that writes down function values.
-#include "tests/scalar/function_values.hpp"
-
-#include <myriad/instantiate.hpp>
-
-MYRIAD_INSTANTIATE(function_values::values, myriad::runge_kutta_4)
-MYRIAD_INSTANTIATE_FLOAT(function_values::values, myriad::runge_kutta_4)

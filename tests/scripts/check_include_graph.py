@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Checks that the layers of the library only point down: folders of headers include each other without a cycle, and the
+kernel body, which both compilers see, includes nothing of the host side, no Eigen and no library that only a host has."""
+import argparse
+import re
+import sys
+from pathlib import Path
+
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+(["<])([^">]+)[">]', re.MULTILINE)
+
+# What device code can do without, but for its constants and types, stays out of the kernel body. xsimd is the packs' own.
+KERNEL_LIBRARY = {
+    "array", "bit", "cmath", "concepts", "cstddef", "cstdint", "cstring", "iterator", "limits", "string_view",
+    "type_traits", "utility", "xsimd/xsimd.hpp",
+}
+
+
+def read_headers(roots):
+    """The headers of all include roots by the path that includes name them with, each with what it includes."""
+    headers = {}
+    for root in roots:
+        for path in sorted(root.rglob("*")):
+            if path.suffix in (".hpp", ".cuh"):
+                headers[path.relative_to(root).as_posix()] = INCLUDE.findall(path.read_text(encoding="utf-8"))
+    return headers
+
+
+def layer(header):
+    """kernel, host, openmp, cuda, or public: what users include."""
+    folder = header.split("/")[1:-1]
+    return folder[0] if folder and folder[0] in ("kernel", "host", "openmp", "cuda") else "public"
+
+
+# Which layers a header of each may include.
+BELOW = {
+    "kernel": {"kernel"},
+    "host": {"host", "kernel"},
+    "openmp": {"openmp", "host", "kernel"},
+    "cuda": {"cuda", "host", "kernel"},
+    "public": {"public", "host", "kernel"},
+}
+
+
+def misplaced_includes(headers):
+    """What a header includes that its layer must not."""
+    for header, includes in headers.items():
+        own = layer(header)
+        for _, name in includes:
+            if name.startswith("myriad/"):
+                if name not in headers:
+                    yield f"{header} includes {name}, which does not exist"
+                elif layer(name) not in BELOW[own]:
+                    yield (f"{header} includes {name}: code of the layer '{own}' may include "
+                           f"{' and '.join(sorted(BELOW[own]))} alone; move what it needs down")
+            elif own == "kernel" and name not in KERNEL_LIBRARY:
+                yield (f"{header} includes <{name}>, which the kernel body, seen by both compilers, does without: "
+                       "move the code that needs it to the host side")
+
+
+def folder_graph(headers):
+    """For each folder the folders that it includes, each with one include that shows it."""
+    graph = {}
+    for header, includes in headers.items():
+        folder = header.rpartition("/")[0]
+        graph.setdefault(folder, {})
+        for _, name in includes:
+            target = name.rpartition("/")[0]
+            if name in headers and target != folder:
+                graph[folder].setdefault(target, f"{header} includes {name}")
+    return graph
+
+
+def find_cycle(graph):
+    """The folders of one cycle, or None."""
+    finished, trail = set(), []
+
+    def visit(folder):
+        if folder in trail:
+            return trail[trail.index(folder):]
+        if folder in finished:
+            return None
+        trail.append(folder)
+        for target in graph.get(folder, {}):
+            found = visit(target)
+            if found:
+                return found
+        finished.add(trail.pop())
+        return None
+
+    for folder in graph:
+        found = visit(folder)
+        if found:
+            return found
+    return None
+
+
+def complaints(roots):
+    headers = read_headers(roots)
+    if not headers:
+        return [f"no headers in {', '.join(map(str, roots))}"]
+    found = list(misplaced_includes(headers))
+    graph = folder_graph(headers)
+    cycle = find_cycle(graph)
+    if cycle:
+        links = [graph[folder][cycle[(i + 1) % len(cycle)]] for i, folder in enumerate(cycle)]
+        found.append("folders include each other in a circle: " + "; ".join(links))
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("roots", nargs="+", type=Path, help="folders that are on the include path")
+    found = complaints(parser.parse_args().roots)
+    for complaint in found:
+        print(complaint, file=sys.stderr)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

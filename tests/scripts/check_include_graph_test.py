@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Shows on small trees of headers that check_include_graph.py finds what it is to find, and nothing else."""
+import tempfile
+import unittest
+from pathlib import Path
+
+from check_include_graph import complaints
+
+SOUND = {
+    "myriad/myriad.hpp": ["myriad/host/solve/solve.hpp", "myriad/model.hpp"],
+    "myriad/model.hpp": ["myriad/kernel/core/vec.hpp"],
+    "myriad/host/solve/solve.hpp": ["vector", "myriad/host/core/error.hpp", "myriad/kernel/core/vec.hpp"],
+    "myriad/host/core/error.hpp": ["string"],
+    "myriad/kernel/core/vec.hpp": ["cstdint", "myriad/kernel/core/macros.hpp"],
+    "myriad/kernel/core/macros.hpp": [],
+    "myriad/kernel/model/lane.hpp": ["myriad/kernel/core/vec.hpp"],
+    "myriad/openmp/run.hpp": ["omp.h", "myriad/host/core/error.hpp", "myriad/kernel/model/lane.hpp"],
+}
+
+
+class CheckIncludeGraph(unittest.TestCase):
+    def complaints_of(self, changed):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, includes in {**SOUND, **changed}.items():
+                path = Path(folder, name)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                form = '#include "{}"\n' if "/" in name else "#include <{}>\n"
+                path.write_text("#pragma once\n" + "".join(form.format(i) for i in includes), encoding="utf-8")
+            return complaints([Path(folder)])
+
+    def assert_found(self, changed, *words):
+        found = "\n".join(self.complaints_of(changed))
+        for word in words:
+            self.assertIn(word, found)
+
+    def test_layers_that_point_down_pass(self):
+        self.assertEqual(self.complaints_of({}), [])
+
+    def test_no_headers_are_an_error(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertIn("no headers", complaints([Path(folder)])[0])
+
+    def test_a_circle_of_two_folders(self):
+        self.assert_found({"myriad/kernel/core/macros.hpp": ["myriad/kernel/model/lane.hpp"]}, "in a circle",
+                          "myriad/kernel/core/macros.hpp includes myriad/kernel/model/lane.hpp")
+
+    def test_a_circle_of_three_folders(self):
+        self.assert_found({
+            "myriad/host/core/error.hpp": ["myriad/host/solve/names.hpp"],
+            "myriad/host/solve/names.hpp": ["myriad/host/report/report.hpp"],
+            "myriad/host/report/report.hpp": ["myriad/host/core/text.hpp"],
+            "myriad/host/core/text.hpp": [],
+        }, "in a circle", "myriad/host/report/report.hpp includes myriad/host/core/text.hpp")
+
+    def test_a_circle_inside_a_folder_is_none_of_folders(self):
+        self.assertEqual(self.complaints_of({"myriad/kernel/core/macros.hpp": ["myriad/kernel/core/vec.hpp"]}), [])
+
+    def test_kernel_code_that_includes_the_host_side(self):
+        self.assert_found({"myriad/kernel/model/lane.hpp": ["myriad/host/core/error.hpp"]}, "layer 'kernel'")
+
+    def test_kernel_code_that_includes_what_users_include(self):
+        self.assert_found({"myriad/kernel/model/lane.hpp": ["myriad/model.hpp"]}, "layer 'kernel'")
+
+    def test_kernel_code_that_includes_a_backend(self):
+        self.assert_found({"myriad/kernel/core/vec.hpp": ["myriad/openmp/run.hpp"]}, "layer 'kernel'")
+
+    def test_host_code_that_includes_a_backend(self):
+        self.assert_found({"myriad/host/core/error.hpp": ["myriad/openmp/run.hpp"]}, "layer 'host'")
+
+    def test_kernel_code_that_includes_eigen(self):
+        self.assert_found({"myriad/kernel/core/vec.hpp": ["Eigen/Core"]}, "includes <Eigen/Core>")
+
+    def test_kernel_code_that_includes_a_host_library(self):
+        self.assert_found({"myriad/kernel/core/vec.hpp": ["vector"]}, "includes <vector>")
+
+    def test_an_include_of_nothing(self):
+        self.assert_found({"myriad/model.hpp": ["myriad/kernel/core/gone.hpp"]}, "does not exist")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: MIT
-// Compiles the kernels of this problem.
-#include <myriad/instantiate.hpp>
-
-#include "../methods.hpp"
-#include "keller_miksis.hpp"
-
-#define VALIDATION_KERNEL(M) MYRIAD_INSTANTIATE(validation::keller_miksis, myriad::dense<myriad::M>)
-VALIDATED_METHODS(VALIDATION_KERNEL)
