@@ -60,7 +60,7 @@ void fill_one(ensemble<lorenz, R>& e, std::int64_t at, std::int64_t i) {
 template <class Model, class R>
 ensemble<Model, R> make(const std::vector<std::int64_t>& instances) {
     ensemble<Model, R> e(static_cast<std::int64_t>(instances.size()));
-    if constexpr (myriad::detail::n_shared<Model> > 0) e.shared(0) = R(0.05);
+    if constexpr (myriad::detail::n_shared<Model> != 0) e.shared(0) = R(0.05);
     for (std::size_t at = 0; at < instances.size(); ++at) fill_one(e, static_cast<std::int64_t>(at), instances[at]);
     return e;
 }

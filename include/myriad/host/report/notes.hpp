@@ -97,7 +97,7 @@ double tangent_error(const options& o) {
 /// if at all: the product uses mean growth, and local growth may exceed it.
 template <class Method, class Model, class R>
 void note_exponents(report<Model, R>& r, ensemble<Model, R>& e, const options& o) {
-    if constexpr (n_tangent<Model> > 0) {
+    if constexpr (n_tangent<Model> != 0) {
         constexpr double limit = 1e-4;
         if (Model::n_vectors < 2 || o.advice == advice::off) return;
         const double error = tangent_error<Method, Model, R>(o);

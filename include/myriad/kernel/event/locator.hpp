@@ -130,7 +130,7 @@ struct event_locator {
     /// of the trial or, in lanes taken out of `accepted` as well, at its start.
     MYRIAD_FUNCTION void look(const trial_type& trial, const S& t1, const values& g1, mask& accepted, fired& events) {
         e.locating = e.locating & accepted;  // a trial that failed its error test takes the next one's length
-        if constexpr (lanes_of<S> > 1) {
+        if constexpr (is_pack<S>) {
             events.which.clear();  // a pack's values lie in memory
             events.changed = mask(false);
         } else {
@@ -150,7 +150,7 @@ struct event_locator {
         busy = accepted & (busy | (s.final_step & within));
         const mask follow = accepted & !busy;
         if (MYRIAD_UNLIKELY(any(busy))) {
-            if constexpr (lanes_of<S> > 1) {
+            if constexpr (is_pack<S>) {
                 // Copies, so that only they and not the caller's registers need an address.
                 const trial_ends ends = ends_of(trial, t1, g1);
                 mask still_accepted = accepted;
@@ -361,7 +361,7 @@ private:
         step.slope = get_lanes<R>(ends.slope_start, i);
         step.g = detail::evaluate_events<Model>(step.t, step.y, p);
         // Not those of the pack, which may round otherwise than what they are compared with.
-        step.g1 = lanes_of<S> > 1 ? detail::evaluate_events<Model>(step.t1, step.y1, p) : get_lanes<R>(ends.g, i);
+        step.g1 = is_pack<S> ? detail::evaluate_events<Model>(step.t1, step.y1, p) : get_lanes<R>(ends.g, i);
         settle_open_sides(i, step, p);
 
         const bool locating = get_lane(e.locating, i), final_step = get_lane(s.final_step, i), scans = args.sub_samples > 1;

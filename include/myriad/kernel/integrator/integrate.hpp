@@ -86,7 +86,7 @@ struct integrator {
                 plan_next_look();
                 return true;
             }
-        } else if constexpr (lanes_of<S> > 1) {
+        } else if constexpr (is_pack<S>) {
             look_at_long_phases();  // of the other lanes
         }
         mask begun = mask(false);
@@ -112,7 +112,7 @@ struct integrator {
     MYRIAD_FUNCTION void run_freely() {
         constexpr iteration_number worthwhile = 4, longest_block = 128;
         iteration_number run = iterations_to_look(s.iteration);  // less the last one, which is looked at
-        if constexpr (lanes_of<S> > 1) run = s.next_look - s.iteration;
+        if constexpr (is_pack<S>) run = s.next_look - s.iteration;
         run -= 1;
         R lane_step = R(0);
         for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA {
@@ -258,7 +258,7 @@ struct integrator {
     }
     /// A pack looks when the first of its phases is to be looked at; one instance alone needs to keep no such iteration.
     MYRIAD_FUNCTION void plan_next_look() {
-        if constexpr (lanes_of<S> > 1) {
+        if constexpr (is_pack<S>) {
             s.next_look = s.iteration + args.max_steps;
             for_each_lane(s.active, [&](int i) MYRIAD_LAMBDA {
                 const iteration_number next = s.iteration + iterations_to_look(s.iteration - s.phase_start[i]);
@@ -268,7 +268,7 @@ struct integrator {
     }
     /// Whether a phase has taken as many iterations as it may, or is to be looked at for whether it creeps.
     MYRIAD_FUNCTION bool time_to_look() const {
-        if constexpr (lanes_of<S> > 1) {
+        if constexpr (is_pack<S>) {
             return s.iteration >= s.next_look;
         } else if constexpr (adaptive) {
             return s.iteration >= args.max_steps || s.iteration % creep_interval == 0;

@@ -47,7 +47,7 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
     using square = matrix<R, n_state<Model>>;
     using event_values = vec<R, n_event<Model>>;
     using observed_values = vec<R, n_observed<Model>>;
-    if constexpr (has_rhs<Model> && (n_state<Model> > 0)) {
+    if constexpr (has_rhs<Model> && (n_state<Model> != 0)) {
         MYRIAD_CHECK_CALL(
             (Model::template rhs<R>(R{}, *y, *p)), std::same_as<slopes>,
             "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
@@ -60,13 +60,13 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
             "n_state> jacobian(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, df_i/dy_j in row i, column "
             "j, and public")
     }
-    if constexpr (has_events<Model> && n_event<Model> > 0) {
+    if constexpr (has_events<Model> && n_event<Model> != 0) {
         MYRIAD_CHECK_CALL(
             (Model::template events<R>(R{}, *y, *p)), std::same_as<event_values>,
             "events has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
             "n_event> events(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
     }
-    if constexpr (has_observe<Model> && n_observed<Model> > 0) {
+    if constexpr (has_observe<Model> && n_observed<Model> != 0) {
         MYRIAD_CHECK_CALL(
             (Model::template observe<R>(R{}, *y, *p)), std::same_as<observed_values>,
             "observe has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "

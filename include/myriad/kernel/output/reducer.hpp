@@ -79,7 +79,7 @@ struct reducer {
             }
         });
         if (MYRIAD_UNLIKELY(any(search))) {
-            if constexpr (lanes_of<S> > 1) {
+            if constexpr (is_pack<S>) {
                 // Copies, so that the caller's variables need no address and stay in registers.
                 const trial_step<Method, S, n> trial_copy = trial;
                 step_type copy{{step.data.t, step.data.h, step.data.y, trial_copy, step.data.slope_end, step.data.extra},
@@ -202,7 +202,7 @@ private:
     /// Quantity q and its slope inside the step.
     template <int q>
     MYRIAD_FUNCTION dual<S> look_at(const step_type& step, const S& theta) const {
-        if constexpr (lanes_of<S> > 1) {
+        if constexpr (is_pack<S>) {
             return look_out_of_line(step, theta)[q];
         } else {
             return observe_at(step, dual<S>(theta, S(R(1))))[q];

@@ -31,7 +31,7 @@ MYRIAD_FUNCTION void know_slope_end(integration_state<Model, Method, S>& s, step
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION void know_inside(integration_state<Model, Method, S>& s, step_data<Method, S, n_state<Model>>& step,
                                  const mask_of<S>& lanes) {
-    if constexpr (extra_stages<Method> > 0) {
+    if constexpr (extra_stages<Method> != 0) {
         detail::complete_interpolant<Model>(step, s.data);
         s.extra_evaluations = count_where(lanes, s.extra_evaluations, extra_stages<Method>);
     }
