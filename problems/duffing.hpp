@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Duffing oscillator of two wells, for models that differ in what forces it, what is a parameter and what is watched.
+// The Duffing oscillator of two wells, for models that differ in what forces it, what is a parameter and what is
+// watched.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -11,7 +12,8 @@ struct duffing {
     enum state { x, v, n_state };
 
     template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, n_state> slope(const myriad::vec<R, n_state>& y, const R& k, const R& forcing) {
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> slope(const myriad::vec<R, n_state>& y, const R& k,
+                                                         const R& forcing) {
         return {y[v], y[x] - y[x] * y[x] * y[x] - k * y[v] + forcing};
     }
 };

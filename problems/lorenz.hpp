@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lorenz' equations with sigma = 10 and beta = 8/3 (J. Atmos. Sci. 20 (1963) 130-141), in three forms that round differently.
+// Lorenz' equations with sigma = 10 and beta = 8/3 (J. Atmos. Sci. 20 (1963) 130-141), in three forms that round
+// differently.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -29,7 +30,8 @@ struct factored_lorenz : lorenz {
     }
 };
 
-/// The same in six floating-point instructions, one of each line's two fused, with another beta if asked: for benchmarks.
+/// The same in six floating-point instructions, one of each line's two fused, with another beta if asked: for
+/// benchmarks.
 template <class Constant>
 struct lorenz_with : lorenz {
     template <class R>

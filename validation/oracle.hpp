@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <vector>
 
-#include <myriad/model.hpp>
 #include <myriad/kernel/model/lane.hpp>
+#include <myriad/model.hpp>
 
 #include "cvode.hpp"
 #include "problem.hpp"
@@ -57,7 +57,8 @@ public:
         return values;
     }
 
-    /// Follows the solution over the given times, and calls `visit(k)` at each while it lasts. Returns evaluations of rhs.
+    /// Follows the solution over the given times, and calls `visit(k)` at each while it lasts. Returns evaluations of
+    /// rhs.
     template <class Visit>
     long follow(const std::vector<double>& times, double tolerance, Visit&& visit) {
         const auto load = [](const double* y) {

@@ -7,8 +7,8 @@
 #include <cstddef>
 
 #include <boost/numeric/odeint.hpp>
-#include <myriad/model.hpp>
 #include <myriad/kernel/model/lane.hpp>
+#include <myriad/model.hpp>
 
 #include "problem.hpp"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <myriad/kernel/core/status.hpp>
 #include <myriad/device.hpp>
+#include <myriad/kernel/core/status.hpp>
 #include <myriad/options.hpp>
 
 namespace validation {
@@ -35,8 +35,8 @@ struct solution {
     double seconds = 0;
 };
 
-/// By how much an error of one step may have grown: the largest |d output / d y_j(t)| max(1, |y_j(t)|), summed over j and
-/// over all t looked at.
+/// By how much an error of one step may have grown: the largest |d output / d y_j(t)| max(1, |y_j(t)|), summed over j
+/// and over all t looked at.
 struct conditioning {
     double end = 0, path = 0, invariant = 0;
     std::vector<double> accessory;
@@ -63,14 +63,16 @@ struct method_entry {
     double eps = eps_double;
     int order = 0, embedded_order = 0;  // 0: fixed steps
     bool implicit = false;
-    int interpolant_order = 0;          // of the method's own interpolant; 0: the cubic Hermite polynomial
+    int interpolant_order = 0;  // of the method's own interpolant; 0: the cubic Hermite polynomial
     std::function<outcome(const problem&, const myriad::options&, const myriad::device&)> run;
 
     bool adaptive() const { return embedded_order > 0; }
-    /// Methods of high order reach rounding within few halvings of a step, and take steps in which a function may cross twice.
+    /// Methods of high order reach rounding within few halvings of a step, and take steps in which a function may cross
+    /// twice.
     bool takes_long_steps() const { return order >= 7; }
-    /// Samples of the Hermite polynomial know nothing of the tolerance. Those of order seven of dormand_prince_8 are worse than
-    /// its steps where stability limits them: as of other implementations of DOP853, up to a hundred times the tolerance.
+    /// Samples of the Hermite polynomial know nothing of the tolerance. Those of order seven of dormand_prince_8 are
+    /// worse than its steps where stability limits them: as of other implementations of DOP853, up to a hundred times
+    /// the tolerance.
     bool samples_keep_tolerance() const { return interpolant_order > 0 && interpolant_order < 7; }
 };
 

@@ -38,7 +38,8 @@ outcome integrate(const problem& p, const myriad::options& options, const myriad
         solution s;
         for (int c = 0; c < myriad::detail::n_state<Model>; ++c) s.end.push_back(e.state(c)[i]);
         for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c) s.accessory.push_back(e.accessory(c)[i]);
-        for (int c = 0; c < myriad::detail::n_integer_accessory<Model>; ++c) s.count.push_back(e.integer_accessory(c)[i]);
+        for (int c = 0; c < myriad::detail::n_integer_accessory<Model>; ++c)
+            s.count.push_back(e.integer_accessory(c)[i]);
         if (!options.samples.empty()) {
             for (Eigen::Index k = 0; k < e.samples().stored()[i]; ++k) {
                 std::vector<double> sample;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SUNDIALS CVODE as its user writes it for many small systems that are not stiff: Adams' methods with fixed-point
-// iteration, one object for each thread, made ready for the next instance by CVodeReInit. Not the validation's class, whose
-// function objects and dense matrix would be timed too. For SUNDIALS 6 and 7.
+// iteration, one object for each thread, made ready for the next instance by CVodeReInit. Not the validation's class,
+// whose function objects and dense matrix would be timed too. For SUNDIALS 6 and 7.
 #pragma once
 
 #include <cstdint>

@@ -27,8 +27,8 @@ struct contest_result {
 /// Times all contenders in turns, tolerance by tolerance; those that were not built are left out.
 std::vector<contest_result> hold_contest(const benchmark_case& what, const measure_options& options);
 
-/// The time for a median error no larger than that: of the coarsest tolerance if its error is small enough, else between
-/// two measured points, straight in the logarithms; 0 if it was not reached.
+/// The time for a median error no larger than that: of the coarsest tolerance if its error is small enough, else
+/// between two measured points, straight in the logarithms; 0 if it was not reached.
 double milliseconds_at(const contest_result& of, double error);
 
 }  // namespace cpu_peers

@@ -28,8 +28,8 @@ struct measurement {
     /// Median of odeint's time over this one's in the same repetition; 0 if odeint did not run.
     double ratio_to_odeint = 0;
     double idle_share = 0;
-    /// Median of the rate of floating-point instructions over that of fused multiply-adds in the same repetition; 0 where
-    /// the instructions are not counted.
+    /// Median of the rate of floating-point instructions over that of fused multiply-adds in the same repetition; 0
+    /// where the instructions are not counted.
     double fma_peak_share = 0;
     double fma_per_nanosecond = 0;                 ///< that rate, of one core and batch; 0 where it was not measured
     double difference = 0, median_difference = 0;  ///< see benchmark_case::difference

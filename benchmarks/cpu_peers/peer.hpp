@@ -10,9 +10,9 @@
 
 namespace cpu_peers {
 
-/// Integrates every instance by `integrate(y, parameter_of, accepted)`, of which every thread makes one by `make()`: y is
-/// the state, changed in place; `parameter_of(c)` is the instance's parameter c; `accepted` counts its steps. It returns
-/// the instance's ending.
+/// Integrates every instance by `integrate(y, parameter_of, accepted)`, of which every thread makes one by `make()`: y
+/// is the state, changed in place; `parameter_of(c)` is the instance's parameter c; `accepted` counts its steps. It
+/// returns the instance's ending.
 template <int n, class Make>
 outcome run_by_threads(const sweep& work, Make&& make) {
     return timed([&] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What every implementation of a case is given and what it returns: plain pointers, because host and implementations are
-// compiled for different instruction sets and must share no inline code.
+// What every implementation of a case is given and what it returns: plain pointers, because host and implementations
+// are compiled for different instruction sets and must share no inline code.
 #pragma once
 
 #include <cstdint>

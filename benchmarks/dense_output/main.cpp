@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Time and memory of dense output against the same integration without it, as comma-separated ratios: medians of the
-// processor time of interleaved runs on one thread. Usage: dense_output [--check]; --check only fails (exit status 1) if dense output that is
-// off, or not compiled, takes memory.
+// processor time of interleaved runs on one thread. Usage: dense_output [--check]; --check only fails (exit status 1)
+// if dense output that is off, or not compiled, takes memory.
 #include <algorithm>
 #include <array>
 #include <cstdint>

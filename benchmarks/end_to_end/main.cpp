@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What 1000 Runge-Kutta steps of Lorenz' equations cost on a GPU beside the kernel: set-up of a solver object, `solve` with
-// its transfers, and small ensembles. One CSV row per measurement, below a header that says what, how and where. Exit status
-// 0; 1 if `solve` and the solver object disagree in a bit; 2 for an error.
+// What 1000 Runge-Kutta steps of Lorenz' equations cost on a GPU beside the kernel: set-up of a solver object, `solve`
+// with its transfers, and small ensembles. One CSV row per measurement, below a header that says what, how and where.
+// Exit status 0; 1 if `solve` and the solver object disagree in a bit; 2 for an error.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -69,7 +69,8 @@ public:
         if (!std::cout || !file_) throw std::runtime_error("the output cannot be written");
     }
     void write(const row& r) {
-        std::string line = r.name + (r.counting == myriad::counting::on ? ",on," : ",off,") + std::to_string(r.instances);
+        std::string line =
+            r.name + (r.counting == myriad::counting::on ? ",on," : ",off,") + std::to_string(r.instances);
         for (const double value : {r.set, r.upload, r.kernel, r.download, r.wall, r.ratio}) {
             char text[32] = ",";
             if (!std::isnan(value)) std::snprintf(text, sizeof text, ",%.4f", value);
@@ -94,7 +95,8 @@ void set_by_threads(myriad::ensemble<lorenz>& e) {
     auto rho = e.parameter(lorenz::rho), x = e.state(lorenz::x), y = e.state(lorenz::y), z = e.state(lorenz::z);
     const std::int64_t size = e.size();
     const double spacing = size > 1 ? largest_rho / static_cast<double>(size - 1) : 0;
-#pragma omp parallel for num_threads(static_cast<int>(std::min<std::int64_t>(16, 1 + size / 65536)))
+    const int threads = static_cast<int>(std::min<std::int64_t>(16, 1 + size / 65536));
+#pragma omp parallel for num_threads(threads)
     for (std::int64_t i = 0; i < size; ++i) {
         rho[i] = spacing * static_cast<double>(i);
         x[i] = y[i] = z[i] = start;
@@ -114,7 +116,8 @@ public:
             counting_ = counting;
             set_up("set_up_maps", &set_by_maps);
             set_up("set_up_threads", &set_by_threads);
-            for (const std::int64_t size : {100'000, 200'000, 500'000, 1'000'000, 2'000'000, 4'000'000, 8'000'000, 16'000'000})
+            for (const std::int64_t size :
+                 {100'000, 200'000, 500'000, 1'000'000, 2'000'000, 4'000'000, 8'000'000, 16'000'000})
                 solve(scaled(size));
             for (const std::int64_t size : {1, 10, 100, 1024, 8192}) small(size);
         }
@@ -190,7 +193,8 @@ private:
             });
             if (std::memcmp(expected.data(), e.state(lorenz::x).data(), expected.size() * sizeof(double)) != 0) {
                 right_ = false;
-                out_.write("# WRONG: " + whole.name + " and the solver object differ at " + std::to_string(size) + " instances");
+                out_.write("# WRONG: " + whole.name + " and the solver object differ at " + std::to_string(size) +
+                           " instances");
             }
             whole.upload = parts.upload;
             whole.kernel = parts.kernel;
@@ -252,9 +256,10 @@ private:
 int run(const settings& chosen) {
     const myriad::device where = myriad::device::parse(chosen.device);
     table out(chosen.output);
-    out.write("# Myriad on a GPU, end to end: 1000 classic Runge-Kutta steps of Lorenz' equations, "
-              "milliseconds, medians of " +
-              std::to_string(chosen.repetitions) + " after a warm-up");
+    out.write(
+        "# Myriad on a GPU, end to end: 1000 classic Runge-Kutta steps of Lorenz' equations, "
+        "milliseconds, medians of " +
+        std::to_string(chosen.repetitions) + " after a warm-up");
     if (where.which() == myriad::device::kind::cuda) {
         for (const std::string& line : gpu_ensembles::describe_gpu(where.number())) out.write("# " + line);
     } else {
@@ -262,14 +267,17 @@ int run(const settings& chosen) {
     }
     out.write("# flags: " END_TO_END_FLAGS);
     out.write("# commit: " + chosen.commit);
-    out.write("# set_up_maps, set_up_threads: a solver object, memory pinned before; restart and values "
-              "set through maps or by a loop of several threads, upload with the check of inputs, "
-              "download; wall_ms: set + upload + download; ratio: wall / kernel");
-    out.write("# solve: wall_ms is the call of solve on ordinary memory, solve_pinned on that of an "
-              "ensemble pinned before; upload, kernel and download those of a solver object; ratio: wall / "
-              "max(kernel, upload + download)");
-    out.write("# small_solver, small_solve, small_by_hand: wall_ms from before the upload to after the "
-              "download; ratio: wall / kernel");
+    out.write(
+        "# set_up_maps, set_up_threads: a solver object, memory pinned before; restart and values "
+        "set through maps or by a loop of several threads, upload with the check of inputs, "
+        "download; wall_ms: set + upload + download; ratio: wall / kernel");
+    out.write(
+        "# solve: wall_ms is the call of solve on ordinary memory, solve_pinned on that of an "
+        "ensemble pinned before; upload, kernel and download those of a solver object; ratio: wall / "
+        "max(kernel, upload + download)");
+    out.write(
+        "# small_solver, small_solve, small_by_hand: wall_ms from before the upload to after the "
+        "download; ratio: wall / kernel");
     out.write("case,counting,instances,set_ms,upload_ms,kernel_ms,download_ms,wall_ms,ratio");
     benchmark all(chosen, where, out);
     all.run();

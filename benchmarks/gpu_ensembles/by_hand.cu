@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The hand-written kernel: 45 double-precision instructions per step, everything in registers, coalesced transfers, and no
-// duties but the method's. It is what the library's kernel is measured against.
+// The hand-written kernel: 45 double-precision instructions per step, everything in registers, coalesced transfers, and
+// no duties but the method's. It is what the library's kernel is measured against.
 #include <chrono>
 #include <fstream>
 
@@ -70,8 +70,7 @@ struct lorenz_by_hand::memory {
     double* device_state() const { return static_cast<double*>(on_device.data()); }
 
     void upload() {
-        MYRIAD_CUDA(cudaMemcpyAsync(on_device.data(), host.data(), bytes(), cudaMemcpyHostToDevice,
-                                    stream.get()));
+        MYRIAD_CUDA(cudaMemcpyAsync(on_device.data(), host.data(), bytes(), cudaMemcpyHostToDevice, stream.get()));
     }
     void launch(int steps, double h) {
         const auto threads = static_cast<unsigned>(block);

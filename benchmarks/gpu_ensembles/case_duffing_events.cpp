@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The case duffing_events: the sweep of examples/duffing, with two events in every period, hooks and accessories, for many
-// instances, for fewer, and for so few that a GPU waits for each step.
+// The case duffing_events: the sweep of examples/duffing, with two events in every period, hooks and accessories, for
+// many instances, for fewer, and for so few that a GPU waits for each step.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -37,8 +37,8 @@ problem<duffing> phases(std::int64_t count) {
             &start};
 }
 
-/// What hooks saw at the events of the fourth period (the first has none): the differences from the CPU with tolerances of
-/// 1e-13 and, of events, 1e-12.
+/// What hooks saw at the events of the fourth period (the first has none): the differences from the CPU with tolerances
+/// of 1e-13 and, of events, 1e-12.
 std::vector<double> errors_at_events(const problem<duffing>& what, std::int64_t size, const myriad::device& device) {
     const auto four_periods = [&](const myriad::device& where, double tolerance, double event_tolerance) {
         auto few = spread_instances(what, size);
@@ -53,7 +53,8 @@ std::vector<double> errors_at_events(const problem<duffing>& what, std::int64_t 
     const auto there = four_periods(myriad::device::cpu(), 1e-13, 1e-12);
     std::vector<double> errors;
     for (std::int64_t k = 0; k < compared; ++k) {
-        double worst = here.integer_accessory(duffing::zeros)[k] == there.integer_accessory(duffing::zeros)[k] ? 0 : std::nan("");
+        double worst =
+            here.integer_accessory(duffing::zeros)[k] == there.integer_accessory(duffing::zeros)[k] ? 0 : std::nan("");
         for (const auto c : {duffing::x_local_max, duffing::v_second_zero})
             worst = larger_or_nan(worst, std::fabs(here.accessory(c)[k] - there.accessory(c)[k]));
         errors.push_back(worst);
@@ -71,17 +72,18 @@ std::vector<measurement> measure(std::int64_t size, const measure_options& how) 
 }  // namespace
 
 benchmark_case duffing_events_case() {
-    return {.name = "duffing_events",
-            .work =
-                "the Duffing oscillator of examples/duffing, two events located in every period, hooks and accessories, "
-                "Cash-Karp, tolerances 1e-9, of events 1e-6, k = linspace(0.2, 0.3, N); 64 periods of 737280 instances, "
-                "1024 of the others",
-            .error =
-                "of the largest maximum and of the velocity at the second zero, which events located in the fourth "
-                "period, of 64 instances against the CPU with tolerances of 1e-13",
-            .allowed_error = 1e-6,
-            .sizes = {256, 46080, 737'280},
-            .measure = &measure};
+    return {
+        .name = "duffing_events",
+        .work =
+            "the Duffing oscillator of examples/duffing, two events located in every period, hooks and accessories, "
+            "Cash-Karp, tolerances 1e-9, of events 1e-6, k = linspace(0.2, 0.3, N); 64 periods of 737280 instances, "
+            "1024 of the others",
+        .error =
+            "of the largest maximum and of the velocity at the second zero, which events located in the fourth "
+            "period, of 64 instances against the CPU with tolerances of 1e-13",
+        .allowed_error = 1e-6,
+        .sizes = {256, 46080, 737'280},
+        .measure = &measure};
 }
 
 }  // namespace gpu_ensembles

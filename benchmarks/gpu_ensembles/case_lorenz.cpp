@@ -54,7 +54,8 @@ double relative_length(const exact_state& found, const exact_state& exact) {
     return static_cast<double>(length(difference) / length(exact));
 }
 
-/// The error of every compared instance whose results `state(component, instance)` gives, against `count` reference steps.
+/// The error of every compared instance whose results `state(component, instance)` gives, against `count` reference
+/// steps.
 template <class State, class Error>
 std::vector<double> errors_of(std::int64_t size, State&& state, const exact_state& start, std::int64_t count,
                               Error&& error) {
@@ -113,9 +114,10 @@ std::vector<measurement> measure_fixed(std::int64_t size, const measure_options&
 /// One method at one tolerance.
 template <class Method>
 measurement measure_method(double tolerance, std::int64_t size, const measure_options& how, double first_step = 0.01) {
-    const problem<lorenz> what{{.relative_tolerance = tolerance, .absolute_tolerance = tolerance / 1000, .step = first_step},
-                               &fill<lorenz>,
-                               &start_at_one};
+    const problem<lorenz> what{
+        {.relative_tolerance = tolerance, .absolute_tolerance = tolerance / 1000, .step = first_step},
+        &fill<lorenz>,
+        &start_at_one};
     return measure_myriad<Method>(what, size, how, [size](const myriad::ensemble<lorenz>& instances, measurement& m) {
         set_errors(
             m, errors_of(
@@ -152,8 +154,9 @@ std::vector<benchmark_case> lorenz_cases() {
          .measure = &measure_fixed}};
     const std::string start = "start (1, 0, 0), t in [0, 1], ";
     const std::string first = ", atol rtol/1000, first step 0.01, rho = linspace(0, 21, N), b = 8/3";
-    const std::string distance = "of 64 instances against 20000 classic Runge-Kutta steps in long double, length of the "
-                                 "difference over that of the value";
+    const std::string distance =
+        "of 64 instances against 20000 classic Runge-Kutta steps in long double, length of the "
+        "difference over that of the value";
     for (const double tolerance : {1e-3, 1e-6, 1e-8}) {
         char text[16];
         std::snprintf(text, sizeof text, "%.0e", tolerance);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The cases keller_miksis_methods and relief_valve_methods: the same work by methods of higher order, and how far each is
-// from the truth, so that times can be compared at equal error.
+// The cases keller_miksis_methods and relief_valve_methods: the same work by methods of higher order, and how far each
+// is from the truth, so that times can be compared at equal error.
 #include <utility>
 
 #include "cases.hpp"
@@ -14,7 +14,8 @@ constexpr std::int64_t compared_phases = 4;
 
 /// The compared instances of an ensemble of `size` after their first phases.
 template <class Method, class Model>
-myriad::ensemble<Model> after_first_phases(const problem<Model>& what, std::int64_t size, const myriad::device& device) {
+myriad::ensemble<Model> after_first_phases(const problem<Model>& what, std::int64_t size,
+                                           const myriad::device& device) {
     auto few = spread_instances(what, size);
     myriad::options options = what.options;
     options.phases = compared_phases;
@@ -80,7 +81,8 @@ std::vector<measurement> measure_valves(std::int64_t size, const measure_options
 
 std::vector<benchmark_case> method_cases() {
     const std::string error = "of 64 instances after 4 phases, over max(1, |value|), against ";
-    const double not_judged = std::numeric_limits<double>::infinity();  // chaotic instances, and valves that graze the seat
+    const double not_judged =
+        std::numeric_limits<double>::infinity();  // chaotic instances, and valves that graze the seat
     return {{.name = "keller_miksis_methods",
              .work = "as keller_miksis, by method and tolerance",
              .error = error + "dormand_prince_8 at 1e-13",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Command line and output of the benchmark: one CSV row per case, size and implementation, below a header that says what
-// was measured, how and where. Exit status 0; 1 if results or check values are wrong; 2 for an error.
+// Command line and output of the benchmark: one CSV row per case, size and implementation, below a header that says
+// what was measured, how and where. Exit status 0; 1 if results or check values are wrong; 2 for an error.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -94,10 +94,10 @@ bool run_case(table& out, const benchmark_case& what, const measure_options& opt
             out.write(what.name + ',' + m.implementation + ',' + std::to_string(m.instances) + ',' +
                       number(m.kernel_ms, "%.4f") + ',' + number(m.end_to_end_ms, "%.4f") + ',' +
                       std::to_string(m.accepted_steps) + ',' + std::to_string(m.rhs_evaluations) + ',' +
-                      number(m.max_error, "%.3e") + ',' + number(m.median_error, "%.3e") + ',' + std::to_string(m.failed) + ',' +
-                      number(m.counting_kernel_ms, "%.4f") + ',' + std::to_string(m.registers) + ',' +
-                      std::to_string(m.local_bytes) + ',' + std::to_string(m.block_size) + ',' +
-                      std::to_string(m.located_steps));
+                      number(m.max_error, "%.3e") + ',' + number(m.median_error, "%.3e") + ',' +
+                      std::to_string(m.failed) + ',' + number(m.counting_kernel_ms, "%.4f") + ',' +
+                      std::to_string(m.registers) + ',' + std::to_string(m.local_bytes) + ',' +
+                      std::to_string(m.block_size) + ',' + std::to_string(m.located_steps));
             if (!right) out.write(title + "WRONG, max_error must be within " + number(what.allowed_error, "%g"));
         }
     }

@@ -68,7 +68,8 @@ void warm_up(Once&& once) {
     while (std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(200));
 }
 
-/// Times the problem, then counts its work in a run of its own. `inspect(instances)` sees the results of the timed runs.
+/// Times the problem, then counts its work in a run of its own. `inspect(instances)` sees the results of the timed
+/// runs.
 template <class Method, class Model, class Inspect>
 measurement measure_myriad(const problem<Model>& what, std::int64_t size, const measure_options& how,
                            Inspect&& inspect) {

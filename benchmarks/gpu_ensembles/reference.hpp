@@ -70,8 +70,8 @@ inline void set_errors(measurement& m, std::vector<double> errors) {
     m.median_error = median(std::move(errors));
 }
 
-/// One phase of the 64 compared instances of an ensemble of `size` on the device and on the CPU: for each, the difference
-/// in its worst component, over max(1, |value|); NaN if they ended differently.
+/// One phase of the 64 compared instances of an ensemble of `size` on the device and on the CPU: for each, the
+/// difference in its worst component, over max(1, |value|); NaN if they ended differently.
 template <class Method, class Model>
 std::vector<double> differences_from_cpu(const problem<Model>& what, std::int64_t size, const myriad::device& device) {
     const auto integrated_on = [&](const myriad::device& where) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compares the methods with each other: work, time and error on three problems over a range of tolerances. Exit status 0 if all
-// is well, 1 if results are wrong, 2 for an error, with its reason on stderr.
+// Compares the methods with each other: work, time and error on three problems over a range of tolerances. Exit status
+// 0 if all is well, 1 if results are wrong, 2 for an error, with its reason on stderr.
 #include <algorithm>
 #include <csignal>
 #include <iostream>

@@ -20,8 +20,8 @@ struct robertson {
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
-        // The large, nearly equal fluxes between a and b as one number, so that the sum does not depend on which products
-        // the compiler fuses.
+        // The large, nearly equal fluxes between a and b as one number, so that the sum does not depend on which
+        // products the compiler fuses.
         const R back = p[k3] * y[b] * y[c] - p[k1] * y[a], fast = p[k2] * y[b] * y[b];
         return {back, -back - fast, fast};
     }

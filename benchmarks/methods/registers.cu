@@ -23,7 +23,7 @@ struct lorenz_96 {
 };
 
 constexpr auto constant = myriad::shared_placement::constant_bank;
-#define INSTANTIATE(n)                                                                                 \
+#define INSTANTIATE(n)                                                                                         \
     template __global__ void myriad::detail::integrate_ensemble<lorenz_96<n>, myriad::METHOD, REAL, constant>( \
         const __grid_constant__ myriad::detail::launch_arguments<lorenz_96<n>, REAL, constant>);
 INSTANTIATE(2)

@@ -26,7 +26,8 @@ std::string unexpected_failures(const myriad::ensemble<Model>& e, myriad::status
     return failed == 0 ? "" : std::to_string(failed) + " instances failed";
 }
 
-// Few periods and phases, since some bubbles and valves are chaotic: an error would grow until it says nothing of the method.
+// Few periods and phases, since some bubbles and valves are chaotic: an error would grow until it says nothing of the
+// method.
 constexpr int periods = 2, sections = 4;
 
 // The tolerance of events follows that of steps, down to what the rounding of velocities around ten leaves.
@@ -43,8 +44,8 @@ problem<relief_valve> valves(double tolerance) {
 const std::vector<double> concentrations{1e-8, 1e-14, 1};
 constexpr double t_end = 1e5;
 
-/// Rate constants between a third of the usual ones and three times, as even as can be in the logarithms: multiples of the
-/// powers of 1/g, g^4 = g + 1 (Roberts' sequence), modulo one.
+/// Rate constants between a third of the usual ones and three times, as even as can be in the logarithms: multiples of
+/// the powers of 1/g, g^4 = g + 1 (Roberts' sequence), modulo one.
 void fill_reactions(myriad::ensemble<robertson>& instances) {
     constexpr std::array<double, 3> usual{0.04, 3e7, 1e4};
     constexpr double g = 1.2207440846057596;
@@ -72,9 +73,9 @@ problem<robertson> reactions(double tolerance) {
             &start_reactions};
 }
 
-/// The columns of the Jacobian sum up to zero, and then so do the stages, but for rounding: that of each addition to the
-/// state, half an ulp of at most one in three components, and those of the stages, which the coefficients magnify a hundred
-/// times, proportional to the changes of the state, three in all.
+/// The columns of the Jacobian sum up to zero, and then so do the stages, but for rounding: that of each addition to
+/// the state, half an ulp of at most one in three components, and those of the stages, which the coefficients magnify a
+/// hundred times, proportional to the changes of the state, three in all.
 std::string wrong_reactions(const myriad::ensemble<robertson>& e, double tolerance) {
     std::ostringstream what;
     what << unexpected_failures(e, myriad::status::success);

@@ -56,8 +56,8 @@ struct errors {
     std::int64_t astray;  ///< instances with an error above a thousand tolerances: those that missed an event
 };
 
-/// Errors of results against those of the spread instances of a reference, each in its worst component. Instances that failed
-/// in the reference are left out; one that only failed here, or ended in another way, has an infinite error.
+/// Errors of results against those of the spread instances of a reference, each in its worst component. Instances that
+/// failed in the reference are left out; one that only failed here, or ended in another way, has an infinite error.
 template <class Model>
 errors compare(const study<Model>& of, const myriad::ensemble<Model>& results, const myriad::ensemble<Model>& reference,
                double tolerance) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A sweep over the damping of the Duffing oscillator, with events and accessories, on one solver object and in equal parts on
-// one per GPU: time from before the first upload to after the last download, medians of interleaved runs, memory taken before.
-// Usage: several_gpus [INSTANCES [PHASES]] [--check]; --check times nothing, and takes two solvers on the CPU if there is no
-// GPU. Exit status 1 if the parts do not have the bits of the whole.
+// A sweep over the damping of the Duffing oscillator, with events and accessories, on one solver object and in equal
+// parts on one per GPU: time from before the first upload to after the last download, medians of interleaved runs,
+// memory taken before. Usage: several_gpus [INSTANCES [PHASES]] [--check]; --check times nothing, and takes two solvers
+// on the CPU if there is no GPU. Exit status 1 if the parts do not have the bits of the whole.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The magnetic pendulum, after Motter, Gruiz, Karolyi and Tel, Phys. Rev. Lett. 111 (2013) 194101: a bob that hangs over
-// three magnets at the corners of a triangle. Lengths are in sides of the triangle, times such that a magnet has strength one.
+// The magnetic pendulum, after Motter, Gruiz, Karolyi and Tel, Phys. Rev. Lett. 111 (2013) 194101: a bob that hangs
+// over three magnets at the corners of a triangle. Lengths are in sides of the triangle, times such that a magnet has
+// strength one.
 #pragma once
 
 #include <myriad/model.hpp>
 
 // snippet: model
-/// x'' = -omega^2 x - damping x' + sum over the magnets of (x_i - x) / D_i^3, D_i^2 = |x_i - x|^2 + height^2, in the plane.
+/// x'' = -omega^2 x - damping x' + sum over the magnets of (x_i - x) / D_i^3, D_i^2 = |x_i - x|^2 + height^2, in the
+/// plane.
 struct magnetic_pendulum {
     enum state { x, y, u, v, n_state };
     enum shared { omega, damping, height, barrier, n_shared };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Basins of attraction of the magnetic pendulum: over which of three magnets does it come to rest? An instance ends as soon
-// as its energy is below the barrier between them, by the model's `after_step`.
+// Basins of attraction of the magnetic pendulum: over which of three magnets does it come to rest? An instance ends as
+// soon as its energy is below the barrier between them, by the model's `after_step`.
 #include <algorithm>
 #include <cstdint>
 #include <iostream>

@@ -19,8 +19,9 @@ inline constexpr double omega = 0.5, damping = 0.2, height = 0.3, extent = 1.5;
 inline constexpr double tolerance = 1e-8, natural_period = 2 * std::numbers::pi / omega;
 
 // snippet: barrier
-/// The lowest potential on the three rays from the centre away from the magnets, which part the wells from each other: that
-/// of the saddle between two magnets. On the ray the potential falls from a maximum at the centre and rises after the saddle.
+/// The lowest potential on the three rays from the centre away from the magnets, which part the wells from each other:
+/// that of the saddle between two magnets. On the ray the potential falls from a maximum at the centre and rises after
+/// the saddle.
 inline double barrier() {
     const auto potential = [](double r) { return pendulum::potential(-r, 0.0, omega, height); };
     double inside = 0, outside = 0.5;

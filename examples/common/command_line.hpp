@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The options that every sweep has, and the exit statuses of every example: 0 all is well, 1 some instances failed,
-// 2 an error, with its reason on stderr, and no file was written, 3 an error after a file was written: its picture, another file
-// or standard output was not.
+// 2 an error, with its reason on stderr, and no file was written, 3 an error after a file was written: its picture,
+// another file or standard output was not.
 #pragma once
 
 #include <csignal>
@@ -17,11 +17,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "myriad/device.hpp"
-
 #include "csv_file.hpp"
 #include "device_option.hpp"
 #include "exit_status.hpp"
+#include "myriad/device.hpp"
 #include "plot.hpp"
 
 namespace examples {
@@ -73,7 +72,8 @@ private:
 /// That of an error, which depends on what was done before it.
 inline int error_status() { return csv_file::any_is_there() ? 3 : 2; }
 
-/// Parses the command line and calls `sweep(options, device)`, which returns the exit status. Draws the picture after it.
+/// Parses the command line and calls `sweep(options, device)`, which returns the exit status. Draws the picture after
+/// it.
 template <class Sweep>
 int run_sweep(int argc, const char* const* argv, const study& offered, Sweep&& sweep) {
     CLI::App app(offered.description);

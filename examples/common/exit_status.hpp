@@ -7,7 +7,8 @@
 
 namespace examples {
 
-/// The exit status of a program that has written to standard output: `status`, or `broken` if that could not be written.
+/// The exit status of a program that has written to standard output: `status`, or `broken` if that could not be
+/// written.
 inline int after_output(int status, int broken = 2) {
     if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
     std::cerr << "standard output cannot be written\n";

@@ -20,8 +20,8 @@ inline Eigen::ArrayXd logspace(double first, double last, std::int64_t n) {
     return Eigen::exp(linspace(std::log(first), std::log(last), n));
 }
 
-/// Sets two components of a plane of across.size() x up.size() instances, row by row: one varies along each row, the other from
-/// row to row.
+/// Sets two components of a plane of across.size() x up.size() instances, row by row: one varies along each row, the
+/// other from row to row.
 inline void fill_plane(Eigen::Ref<Eigen::ArrayXd> along_rows, const Eigen::ArrayXd& across,
                        Eigen::Ref<Eigen::ArrayXd> from_row_to_row, const Eigen::ArrayXd& up) {
     along_rows = across.replicate(up.size(), 1);

@@ -6,9 +6,8 @@
 #include <iostream>
 #include <utility>
 
-#include "myriad/solve.hpp"
-
 #include "command_line.hpp"
+#include "myriad/solve.hpp"
 #include "progress.hpp"
 
 namespace examples {
@@ -30,14 +29,13 @@ myriad::report<Model, R> integrate(const sweep_options& chosen, const myriad::de
     return report;
 }
 
-/// Says where the results are and which instances failed. The exit status: 0, or 1 if some did; what ends as `expected`, a
-/// finding of the study, is no failure.
+/// Says where the results are and which instances failed. The exit status: 0, or 1 if some did; what ends as
+/// `expected`, a finding of the study, is no failure.
 template <class Model, class R>
 int conclude(const sweep_options& chosen, const myriad::report<Model, R>& report,
              myriad::status expected = myriad::status::success) {
     if (!chosen.quiet) std::cout << "Written to " << chosen.output << '\n';
-    const std::int64_t failed =
-        report.failed() - (expected == myriad::status::success ? 0 : report.count(expected));
+    const std::int64_t failed = report.failed() - (expected == myriad::status::success ? 0 : report.count(expected));
     if (failed == 0) return 0;
     std::cerr << failed << " of " << report.instances << " instances failed, the first of them instance "
               << report.first_failed << ": " << myriad::name_of(report.first_status) << " at t = " << report.first_t

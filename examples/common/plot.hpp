@@ -13,7 +13,8 @@
 
 namespace examples {
 
-/// A Python that has matplotlib. The first one on the PATH may be another than the one that the system's packages serve.
+/// A Python that has matplotlib. The first one on the PATH may be another than the one that the system's packages
+/// serve.
 class plotter {
 public:
     /// Throws std::runtime_error if there is none: before the work whose results are to be drawn.

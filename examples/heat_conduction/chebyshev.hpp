@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Polynomials through Chebyshev points: the points, and the matrices that differentiate and interpolate. Sources: Berrut and
-// Trefethen, "Barycentric Lagrange interpolation", SIAM Review 46 (2004) 501, sections 4, 5 and 9.3.
+// Polynomials through Chebyshev points: the points, and the matrices that differentiate and interpolate. Sources:
+// Berrut and Trefethen, "Barycentric Lagrange interpolation", SIAM Review 46 (2004) 501, sections 4, 5 and 9.3.
 #pragma once
 
 #include <cmath>

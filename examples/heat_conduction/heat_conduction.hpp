@@ -7,9 +7,9 @@
 #include <myriad/model.hpp>
 
 // snippet: model
-/// dT/dt + u dT/dr = diffusivity / r^2 d/dr(r^2 dT/dr) between the bubble's wall at r = 1, where T is `wall`, and a sphere where
-/// T is zero. Liquid enters and leaves at the wall, where it evaporates or vapour condenses: u = (through + pulse cos 2 pi t) / r^2,
-/// since it is incompressible. Unit of length: the bubble's radius; of time: the period.
+/// dT/dt + u dT/dr = diffusivity / r^2 d/dr(r^2 dT/dr) between the bubble's wall at r = 1, where T is `wall`, and a
+/// sphere where T is zero. Liquid enters and leaves at the wall, where it evaporates or vapour condenses: u = (through
+/// + pulse cos 2 pi t) / r^2, since it is incompressible. Unit of length: the bubble's radius; of time: the period.
 template <int points>
 struct heat_conduction {
     static constexpr bool writes_time_domain = true;

@@ -14,8 +14,8 @@ namespace shell {
 
 constexpr int depths = 33;  // at which temperatures are written
 
-/// One row per instance for the end of its last phase, and one per recorded phase of the instances with the first, middle and last
-/// diffusivity.
+/// One row per instance for the end of its last phase, and one per recorded phase of the instances with the first,
+/// middle and last diffusivity.
 template <class Model>
 void write_table(examples::csv_file& file, const myriad::ensemble<Model>& sweep,
                  const myriad::phase_records<Model, double>& recorded, std::int64_t transient) {

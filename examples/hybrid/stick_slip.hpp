@@ -6,8 +6,8 @@
 #include <myriad/model.hpp>
 
 // snippet: model
-/// x'' = -x + friction. While it slides, friction is `kinetic`, towards the belt of speed `belt`; while it sticks, friction is
-/// what keeps the block at the belt's speed, as long as that is not more than `breakaway`.
+/// x'' = -x + friction. While it slides, friction is `kinetic`, towards the belt of speed `belt`; while it sticks,
+/// friction is what keeps the block at the belt's speed, as long as that is not more than `breakaway`.
 struct stick_slip {
     enum state { x, v, n_state };
     enum parameter { belt, n_parameter };

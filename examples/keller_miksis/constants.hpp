@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The constants of the dimensionless Keller-Miksis equation, from a bubble in water and the sound that drives it. Host
-// code, SI units. Keller and Miksis, J. Acoust. Soc. Am. 68 (1980) 628-633; the dimensionless form and the properties of
-// water at 25 C are those of the MPGOS paper, F. Hegedus, Commun. Nonlinear Sci. Numer. Simul. 97 (2021) 105732.
+// code, SI units. Keller and Miksis, J. Acoust. Soc. Am. 68 (1980) 628-633; the dimensionless form and the properties
+// of water at 25 C are those of the MPGOS paper, F. Hegedus, Commun. Nonlinear Sci. Numer. Simul. 97 (2021) 105732.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ struct sound {
     double pressure, frequency;
 };
 
-/// C0 to C12. Unit of length: the radius at rest; unit of time: a period of the first wave. C12, the phase of the second
-/// wave, is in half turns, for functions such as `sincospi`.
+/// C0 to C12. Unit of length: the radius at rest; unit of time: a period of the first wave. C12, the phase of the
+/// second wave, is in half turns, for functions such as `sincospi`.
 inline std::array<double, 13> constants(const sound& first, const sound& second) {
     constexpr double excess = ambient_pressure - vapour_pressure + 2 * surface_tension / radius, phase = 0;
     const double omega_1 = 2 * std::numbers::pi * first.frequency, omega_2 = 2 * std::numbers::pi * second.frequency;
@@ -49,8 +49,8 @@ inline std::array<double, 13> constants(const sound& first, const sound& second)
             phase / std::numbers::pi};
 }
 
-/// Frequency of small free oscillations without damping, in Hz; without surface tension, vapour and the viscous term, of
-/// 3e-4, it is Minnaert's.
+/// Frequency of small free oscillations without damping, in Hz; without surface tension, vapour and the viscous term,
+/// of 3e-4, it is Minnaert's.
 inline double eigenfrequency() {
     const double gas = ambient_pressure - vapour_pressure + 2 * surface_tension / radius;
     const double stiffness = 3 * polytropic_exponent * gas - 2 * surface_tension / radius;

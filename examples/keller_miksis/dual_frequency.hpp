@@ -15,7 +15,8 @@ namespace dual_frequency {
 
 using model = bubble_dual_frequency;
 
-/// Of all: for the radius at maxima an error of 1e-12 / (2 y''), for that at minima, where y'' is large, of 1e-6 / (2 y'').
+/// Of all: for the radius at maxima an error of 1e-12 / (2 y''), for that at minima, where y'' is large, of 1e-6 / (2
+/// y'').
 inline constexpr double tolerance = 1e-10, maximum_tolerance = 1e-6, minimum_tolerance = 1e-3;
 
 /// The sound of one instance.

@@ -35,8 +35,9 @@ void write(examples::csv_file& file, const myriad::ensemble<lorenz_spectrum>& sw
     // snippet: exponents
     const Eigen::ArrayXXd lambda = myriad::exponents(sweep);  // one row per instance, the largest exponent first
     // end of snippet
-    file.comment("Lyapunov exponents of x' = sigma (y - x), y' = x (rho - z) - y, z' = x y - beta z, per unit of time, "
-                 "natural logarithm");
+    file.comment(
+        "Lyapunov exponents of x' = sigma (y - x), y' = x (rho - z) - y, z' = x y - beta z, per unit of time, "
+        "natural logarithm");
     file.comment(message("rho = linspace(", rho_first, ", ", rho_last, ", ", sweep.size(), "), sigma = ", sigma_of_all,
                          ", beta = ", beta_of_all, ", x(0) = y(0) = z(0) = 1"));
     file.comment(message("phases of length ", phase_length, ": ", transient, " transient, ", summed, " summed"));

@@ -8,8 +8,8 @@
 #include <Eigen/Core>
 #include <myriad/random.hpp>
 
-/// s + i - log(s) / R0 is constant, so the peak, where s = 1 / R0, follows from the start alone; it grows with R0. Without
-/// growth, R0 s <= 1, the most are infectious at the start.
+/// s + i - log(s) / R0 is constant, so the peak, where s = 1 / R0, follows from the start alone; it grows with R0.
+/// Without growth, R0 s <= 1, the most are infectious at the start.
 inline double exact_peak(double R0, double s, double i) { return R0 * s > 1 ? s + i - (1 + std::log(R0 * s)) / R0 : i; }
 
 /// The distribution of the peak for a normal R0.

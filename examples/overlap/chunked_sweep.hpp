@@ -22,7 +22,8 @@
 #include "timeline.hpp"
 #include "turns.hpp"
 
-/// The sweep in `chunks` parts. Each of the solver objects, `solvers` for each device, takes the next when it is done with its last.
+/// The sweep in `chunks` parts. Each of the solver objects, `solvers` for each device, takes the next when it is done
+/// with its last.
 class chunked_sweep {
     using solver = myriad::solver<duffing, myriad::cash_karp>;
 

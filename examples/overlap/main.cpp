@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Solver objects that take turns: while one integrates, others are downloaded, written to a file and filled anew, on one device
-// or on several; and the timeline of what overlapped.
+// Solver objects that take turns: while one integrates, others are downloaded, written to a file and filled anew, on
+// one device or on several; and the timeline of what overlapped.
 #include <cstdint>
 #include <iostream>
 #include <string>

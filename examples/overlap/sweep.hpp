@@ -18,14 +18,16 @@ inline myriad::options integration(std::int64_t phases) {
     return {.phases = phases,
             .relative_tolerance = tolerance,
             .absolute_tolerance = tolerance,
-            .events = {{.direction = myriad::direction::falling, .tolerance = event_tolerance}, {.tolerance = event_tolerance}},
+            .events = {{.direction = myriad::direction::falling, .tolerance = event_tolerance},
+                       {.tolerance = event_tolerance}},
             .counting = myriad::counting::off,
             .advice = myriad::advice::off};
 }
 
 /// Damping of instance i of `instances`: the same number whatever the chunks.
 inline double damping(std::int64_t i, std::int64_t instances) {
-    return k_first + (k_last - k_first) * static_cast<double>(i) / static_cast<double>(std::max<std::int64_t>(instances - 1, 1));
+    return k_first +
+           (k_last - k_first) * static_cast<double>(i) / static_cast<double>(std::max<std::int64_t>(instances - 1, 1));
 }
 
 /// Sets `count` instances of `part` to the instances first, first + 1, ... of the sweep.

@@ -5,8 +5,9 @@
 #include <myriad/tableau.hpp>
 
 // snippet: method
-/// Bogacki and Shampine's pair of orders three and two, Appl. Math. Lett. 2 (1989) 321: four stages, the last of which is the
-/// first of the next step. Without an interpolant of its own it gets the cubic Hermite polynomial, which is of its order.
+/// Bogacki and Shampine's pair of orders three and two, Appl. Math. Lett. 2 (1989) 321: four stages, the last of which
+/// is the first of the next step. Without an interpolant of its own it gets the cubic Hermite polynomial, which is of
+/// its order.
 struct bogacki_shampine_3 {
     static constexpr int stages = 4;
     static constexpr int order = 3;

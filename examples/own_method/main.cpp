@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Integrates pendulums with a method of one's own, and says how its work and error compare with those of the library's: the
-// periods of pendulums dropped from rest are known in closed form.
+// Integrates pendulums with a method of one's own, and says how its work and error compare with those of the library's:
+// the periods of pendulums dropped from rest are known in closed form.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -14,7 +14,8 @@
 
 namespace {
 
-/// Quarter period of a pendulum dropped from `angle`: pi / 2 over the arithmetic-geometric mean of 1 and cos(angle / 2).
+/// Quarter period of a pendulum dropped from `angle`: pi / 2 over the arithmetic-geometric mean of 1 and cos(angle /
+/// 2).
 double quarter_period(double angle) {
     double a = 1, g = std::cos(angle / 2);
     for (int i = 0; i < 6; ++i) {
@@ -34,9 +35,10 @@ bool integrate(const char* name, double tolerance) {
     swings.accessory(pendulum::last_passage) = 0;
     swings.integer_accessory(pendulum::passages) = 0;
     swings.time_domain(0, 100);
-    const auto report = myriad::solve<Method>(
-        myriad::device::best(), swings,
-        {.relative_tolerance = tolerance, .absolute_tolerance = tolerance, .events = {{.tolerance = 1e-12, .stop_after = 3}}});
+    const auto report = myriad::solve<Method>(myriad::device::best(), swings,
+                                              {.relative_tolerance = tolerance,
+                                               .absolute_tolerance = tolerance,
+                                               .events = {{.tolerance = 1e-12, .stop_after = 3}}});
     double worst = 0;
     for (std::int64_t i = 0; i < swings.size(); ++i) {
         const double exact = 5 * quarter_period(0.1 + 2.4 * static_cast<double>(i) / 255);
@@ -44,7 +46,8 @@ bool integrate(const char* name, double tolerance) {
     }
     std::printf("%-20s tolerance %.0e: error %.1e, %6.1f evaluations per instance\n", name, tolerance, worst,
                 static_cast<double>(report.rhs_evaluations) / static_cast<double>(swings.size()));
-    // a few hundred steps, each wrong by less than the tolerance, and errors of the period that grow no faster than time
+    // a few hundred steps, each wrong by less than the tolerance, and errors of the period that grow no faster than
+    // time
     return report.count(myriad::status::stopped_by_event) == swings.size() && worst <= 1000 * tolerance;
 }
 

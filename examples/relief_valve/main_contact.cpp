@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Impact dynamics with resting contact: maxima of a pressure relief valve over its flow, where impacts accumulate and the
-// valve rests on its seat until the pressure lifts it.
+// Impact dynamics with resting contact: maxima of a pressure relief valve over its flow, where impacts accumulate and
+// the valve rests on its seat until the pressure lifts it.
 #include <cstdint>
 
 #include <myriad/myriad.hpp>

@@ -5,8 +5,9 @@
 
 #include <myriad/model.hpp>
 
-/// Displacement y, velocity v, pressure u; the flow q differs from instance to instance. A phase ends at a local maximum of y
-/// (event `section`, with `stop_after = 1`) or where the valve is at rest. At the seat y = 0 the velocity is reversed.
+/// Displacement y, velocity v, pressure u; the flow q differs from instance to instance. A phase ends at a local
+/// maximum of y (event `section`, with `stop_after = 1`) or where the valve is at rest. At the seat y = 0 the velocity
+/// is reversed.
 struct relief_valve {
     static constexpr bool accessories_are_outputs = true;
     enum state { y, v, u, n_state };

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The pressure relief valve with resting contact: where impacts accumulate, the valve comes to rest on its seat, and leaves
-// it when the pressure lifts it. The model of relief_valve.hpp with a mode, an integer accessory.
+// The pressure relief valve with resting contact: where impacts accumulate, the valve comes to rest on its seat, and
+// leaves it when the pressure lifts it. The model of relief_valve.hpp with a mode, an integer accessory.
 #pragma once
 
 #include "relief_valve.hpp"
 
 // snippet: model
-/// In flight as `relief_valve`. At rest y = v = 0, so that u' = beta q; the valve opens when the net force on it, u - delta,
-/// turns positive. An impact that the valve leaves more slowly than `slowest` is its last, if the net force holds it closed for
-/// longer than the bounces to come can take.
+/// In flight as `relief_valve`. At rest y = v = 0, so that u' = beta q; the valve opens when the net force on it, u -
+/// delta, turns positive. An impact that the valve leaves more slowly than `slowest` is its last, if the net force
+/// holds it closed for longer than the bounces to come can take.
 struct relief_valve_contact : relief_valve {
     static constexpr bool accessories_are_outputs = false;  // rhs and events read the mode
     // those of `relief_valve`, and more behind them

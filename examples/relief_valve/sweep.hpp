@@ -17,7 +17,8 @@ namespace relief_valve_sweep {
 inline constexpr double kappa = 1.25, delta = 10, beta = 20, restitution = 0.8, rest_band = 1e-6;
 inline constexpr double q_first = 0.2, q_last = 10;
 inline constexpr double tolerance = 1e-10, event_tolerance = 1e-6;
-// With resting contact: speed after the last impact, and the tolerance of where the seat is and of the force that opens it.
+// With resting contact: speed after the last impact, and the tolerance of where the seat is and of the force that opens
+// it.
 inline constexpr double slowest = 1e-4, contact_tolerance = 1e-12;
 
 /// The constants, for the head of a table.

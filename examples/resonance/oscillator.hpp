@@ -4,8 +4,9 @@
 
 #include <myriad/model.hpp>
 
-/// x'' + 2 zeta x' + x + beta x^3 = cos(omega t): Duffing's equation, see Nayfeh and Mook, Nonlinear Oscillations (1979), 4.1.
-/// Time is in units of 1/omega_0, x in units of the static deflection of the linear spring, so that x is the amplification.
+/// x'' + 2 zeta x' + x + beta x^3 = cos(omega t): Duffing's equation, see Nayfeh and Mook, Nonlinear Oscillations
+/// (1979), 4.1. Time is in units of 1/omega_0, x in units of the static deflection of the linear spring, so that x is
+/// the amplification.
 struct oscillator {
     enum state { x, v, n_state };
     enum parameter { omega, beta, n_parameter };
@@ -18,8 +19,8 @@ struct oscillator {
 };
 
 // snippet: response
-/// The same with the largest and smallest x and the integral of x^2 over all steps since the host has set them. The event,
-/// v = 0, needs no action: it makes every extremum the end of a step, and so the maximum as good as the steps.
+/// The same with the largest and smallest x and the integral of x^2 over all steps since the host has set them. The
+/// event, v = 0, needs no action: it makes every extremum the end of a step, and so the maximum as good as the steps.
 struct response : oscillator {
     static constexpr bool accessories_are_outputs = true;
     enum accessory { maximum, minimum, integral, x_before, v_before, n_accessory };
@@ -35,7 +36,8 @@ struct response : oscillator {
                 h = lane.h;
         lane.accessory[maximum] = myriad::max(R(lane.accessory[maximum]), x1);
         lane.accessory[minimum] = myriad::min(R(lane.accessory[minimum]), x1);
-        // The trapezoidal rule with the slopes of x^2 at both ends: the integral of its Hermite polynomial, of order four.
+        // The trapezoidal rule with the slopes of x^2 at both ends: the integral of its Hermite polynomial, of order
+        // four.
         lane.accessory[integral] += R(0.5) * h * (x0 * x0 + x1 * x1) + h * h / R(6) * (x0 * v0 - x1 * v1);
         lane.accessory[x_before] = x1;
         lane.accessory[v_before] = v1;

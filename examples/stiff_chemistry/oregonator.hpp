@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The Oregonator of Field and Noyes, J. Chem. Phys. 60 (1974) 1877-1884, as a Myriad model, in the scaled form of Tyson, in:
-// Oscillations and Traveling Waves in Chemical Systems, Wiley (1985) 93-144.
+// The Oregonator of Field and Noyes, J. Chem. Phys. 60 (1974) 1877-1884, as a Myriad model, in the scaled form of
+// Tyson, in: Oscillations and Traveling Waves in Chemical Systems, Wiley (1985) 93-144.
 #pragma once
 
 #include <myriad/model.hpp>
 
 // snippet: model
-/// Bromous acid x, bromide y and the oxidised catalyst z of the Belousov-Zhabotinsky reaction, all scaled; time in units of
-/// the decay of z. A phase ends where z is largest (event `maximum`, with `stop_after = 1`).
+/// Bromous acid x, bromide y and the oxidised catalyst z of the Belousov-Zhabotinsky reaction, all scaled; time in
+/// units of the decay of z. A phase ends where z is largest (event `maximum`, with `stop_after = 1`).
 struct oregonator {
     enum state { x, y, z, n_state };
     enum parameter { f, epsilon, n_parameter };  // stoichiometric factor; slowness of x

@@ -36,8 +36,8 @@ inline growth growth_at(double f, double epsilon) {
     const Eigen::Vector3d rest = equilibrium(f);
     const double x = rest[0], y = rest[1], slow = ratio * epsilon;
     const double a = (1 - 2 * x - y) / epsilon, b = (q - x) / epsilon, c = -y / slow, d = -(q + x) / slow, e = f / slow;
-    // Characteristic polynomial r^3 + p2 r^2 + p1 r + p0. Newton's method falls on its least real root from the left, which
-    // is that of the fast bromide, until rounding stops it.
+    // Characteristic polynomial r^3 + p2 r^2 + p1 r + p0. Newton's method falls on its least real root from the left,
+    // which is that of the fast bromide, until rounding stops it.
     const double p2 = 1 - a - d, p1 = a * d - a - d - b * c, p0 = a * d - b * c - b * e;
     double fast = -1 - std::max({std::abs(p2), std::abs(p1), std::abs(p0)});
     for (double last = 2 * fast; fast > last;) {

@@ -17,11 +17,12 @@ constexpr bool is_number(const char* text) { return *text >= '0' && *text <= '9'
 }  // namespace myriad::host
 #define MYRIAD_TEXT_OF(macro) MYRIAD_TEXT(macro)
 #define MYRIAD_TEXT(text) #text
-#define MYRIAD_REFUSE_EIGEN                                                                                                   \
-    static_assert(!myriad::host::is_number(MYRIAD_TEXT_OF(EIGEN_WORLD_VERSION)),                                              \
-                  "this model file includes Eigen, perhaps through <myriad/myriad.hpp>. The memory layout of Eigen's objects " \
-                  "depends on the flags of model files, so that the program would end in a double free: keep what needs "     \
-                  "Eigen in other files");
+#define MYRIAD_REFUSE_EIGEN                                                                                          \
+    static_assert(                                                                                                   \
+        !myriad::host::is_number(MYRIAD_TEXT_OF(EIGEN_WORLD_VERSION)),                                               \
+        "this model file includes Eigen, perhaps through <myriad/myriad.hpp>. The memory layout of Eigen's objects " \
+        "depends on the flags of model files, so that the program would end in a double free: keep what needs "      \
+        "Eigen in other files");
 
 /// Compiles the kernels of a model for the given methods in double precision (`_FLOAT`: in single precision):
 /// `MYRIAD_INSTANTIATE(duffing, myriad::cash_karp, myriad::tsitouras_5)`.
@@ -31,10 +32,10 @@ constexpr bool is_number(const char* text) { return *text >= '0' && *text <= '9'
 #define MYRIAD_INSTANTIATE_EACH(Model, R, ...) \
     MYRIAD_REFUSE_EIGEN                        \
     __VA_OPT__(MYRIAD_EXPAND(MYRIAD_INSTANTIATE_NEXT(Model, R, __VA_ARGS__)))
-#define MYRIAD_INSTANTIATE_NEXT(Model, R, Method, ...)     \
+#define MYRIAD_INSTANTIATE_NEXT(Model, R, Method, ...)             \
     static_assert(myriad::detail::check_linkage<Model, Method>()); \
     static_assert(myriad::detail::check_method<Method>());         \
-    MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)           \
+    MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                   \
     __VA_OPT__(MYRIAD_INSTANTIATE_AGAIN MYRIAD_PARENS(Model, R, __VA_ARGS__))
 #define MYRIAD_INSTANTIATE_AGAIN() MYRIAD_INSTANTIATE_NEXT
 #define MYRIAD_PARENS ()

@@ -2,7 +2,6 @@
 // The library for host code: ensembles, devices, options, solve and reports.
 #pragma once
 
-#include "myriad/kernel/core/language.hpp"
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/ensemble/exponents.hpp"
@@ -11,5 +10,6 @@
 #include "myriad/host/report/report.hpp"
 #include "myriad/host/solve/solve.hpp"
 #include "myriad/host/solve/solver.hpp"
+#include "myriad/kernel/core/language.hpp"
 #include "myriad/methods.hpp"
 #include "myriad/model.hpp"

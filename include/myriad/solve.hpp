@@ -2,5 +2,5 @@
 // One call that integrates an ensemble: myriad::solve.
 #pragma once
 
-#include "myriad/kernel/core/language.hpp"
 #include "myriad/host/solve/solve.hpp"
+#include "myriad/kernel/core/language.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The kernels of the benchmarks, with budgets of what the compiler reports: one that grows past its own lets fewer threads
-// run at the same time (65536 registers per multiprocessor, in steps of eight per thread) or begins to spill.
+// The kernels of the benchmarks, with budgets of what the compiler reports: one that grows past its own lets fewer
+// threads run at the same time (65536 registers per multiprocessor, in steps of eight per thread) or begins to spill.
 //
 // limit: integrate_ensemble<lorenz_with<eight_thirds>, runge_kutta_4> registers 56 stack 0 spill 0
 // limit: integrate_ensemble<lorenz_with<eight_thirds>, tsitouras_5> registers 64 stack 0 spill 0
@@ -17,8 +17,9 @@
 
 constexpr auto constant = myriad::shared_placement::constant_bank;
 
-#define KERNEL(Model, Method)                                                                                      \
-    template __global__ void myriad::detail::integrate_ensemble<gpu_ensembles::Model, myriad::Method, double, constant>( \
+#define KERNEL(Model, Method)                                                                   \
+    template __global__ void                                                                    \
+    myriad::detail::integrate_ensemble<gpu_ensembles::Model, myriad::Method, double, constant>( \
         const __grid_constant__ myriad::detail::launch_arguments<gpu_ensembles::Model, double, constant>);
 KERNEL(lorenz, runge_kutta_4)
 KERNEL(lorenz, tsitouras_5)

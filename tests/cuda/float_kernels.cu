@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Single precision stays single: no double arithmetic in the kernels of float models, adaptive, with events, hooks and dense
-// output too. (Trigonometric functions are left out: CUDA's own reduction of large arguments is in double.)
+// Single precision stays single: no double arithmetic in the kernels of float models, adaptive, with events, hooks and
+// dense output too. (Trigonometric functions are left out: CUDA's own reduction of large arguments is in double.)
 //
 // forbid: f64 in integrate_ensemble
 // limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers 48
 // limit: integrate_ensemble<bouncer, cash_karp> stack 40 spill 0
-// With 90 registers this one would spill nothing; the compiler prefers 80, with which three blocks of 256 run at a time.
+// With 90 registers this one would spill nothing; the compiler prefers 80, with which three blocks of 256 run at a
+// time.
 // limit: integrate_ensemble<bouncer, dense<tsitouras_5>> stack 64 spill 192
 
 #include <myriad/cuda/kernel.cuh>
@@ -36,11 +37,13 @@ struct bouncer {
     MYRIAD_FUNCTION static void after_step(auto& lane) {
         lane.accessory[highest] = myriad::max(lane.accessory[highest], lane.y[height]);
     }
-    MYRIAD_FUNCTION static void after_event(int, auto& lane) { lane.y[speed] = -lane.parameter[bounce] * lane.y[speed]; }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) {
+        lane.y[speed] = -lane.parameter[bounce] * lane.y[speed];
+    }
 };
 
 constexpr auto constant = myriad::shared_placement::constant_bank;
-#define INSTANTIATE(Model, Method)                                                               \
+#define INSTANTIATE(Model, Method)                                                                       \
     template __global__ void myriad::detail::integrate_ensemble<Model, myriad::Method, float, constant>( \
         const __grid_constant__ myriad::detail::launch_arguments<Model, float, constant>);
 INSTANTIATE(lorenz, runge_kutta_4)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The kernel body as CUDA kernels, beside kernels written by hand that do the same duties: a time domain per instance, a
-// status, counters, a step limit, and no state that is not finite.
+// The kernel body as CUDA kernels, beside kernels written by hand that do the same duties: a time domain per instance,
+// a status, counters, a step limit, and no state that is not finite.
 //
 // limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers_within 1.10 of lorenz_by_hand
 // limit: integrate_ensemble<duffing_plain, cash_karp> stack 0 spill 0 registers_within 1.10 of duffing_by_hand
@@ -33,7 +33,7 @@ constexpr auto constant = myriad::shared_placement::constant_bank;
 template <class Model>
 using launched = myriad::detail::launch_arguments<Model, double, constant>;
 
-#define INSTANTIATE(Model, Method)                                                                \
+#define INSTANTIATE(Model, Method)                                                                        \
     template __global__ void myriad::detail::integrate_ensemble<Model, myriad::Method, double, constant>( \
         const __grid_constant__ launched<Model>);
 INSTANTIATE(lorenz, runge_kutta_4)
@@ -124,23 +124,30 @@ __global__ void duffing_by_hand(const __grid_constant__ arguments<duffing_plain>
             if (fresh) g(t, x, v, k, B, dx1, dv1);
             double dx2, dv2, dx3, dv3, dx4, dv4, dx5, dv5, dx6, dv6;
             g(t + 0.2 * trial, x + trial * (0.2 * dx1), v + trial * (0.2 * dv1), k, B, dx2, dv2);
-            g(t + 0.3 * trial, x + trial * (0.075 * dx1 + 0.225 * dx2), v + trial * (0.075 * dv1 + 0.225 * dv2), k, B, dx3, dv3);
-            g(t + 0.6 * trial, x + trial * (0.3 * dx1 - 0.9 * dx2 + 1.2 * dx3), v + trial * (0.3 * dv1 - 0.9 * dv2 + 1.2 * dv3),
-              k, B, dx4, dv4);
+            g(t + 0.3 * trial, x + trial * (0.075 * dx1 + 0.225 * dx2), v + trial * (0.075 * dv1 + 0.225 * dv2), k, B,
+              dx3, dv3);
+            g(t + 0.6 * trial, x + trial * (0.3 * dx1 - 0.9 * dx2 + 1.2 * dx3),
+              v + trial * (0.3 * dv1 - 0.9 * dv2 + 1.2 * dv3), k, B, dx4, dv4);
             g(t + trial, x + trial * (-11.0 / 54 * dx1 + 2.5 * dx2 - 70.0 / 27 * dx3 + 35.0 / 27 * dx4),
               v + trial * (-11.0 / 54 * dv1 + 2.5 * dv2 - 70.0 / 27 * dv3 + 35.0 / 27 * dv4), k, B, dx5, dv5);
             g(t + 0.875 * trial,
-              x + trial * (1631.0 / 55296 * dx1 + 175.0 / 512 * dx2 + 575.0 / 13824 * dx3 + 44275.0 / 110592 * dx4 + 253.0 / 4096 * dx5),
-              v + trial * (1631.0 / 55296 * dv1 + 175.0 / 512 * dv2 + 575.0 / 13824 * dv3 + 44275.0 / 110592 * dv4 + 253.0 / 4096 * dv5),
+              x + trial * (1631.0 / 55296 * dx1 + 175.0 / 512 * dx2 + 575.0 / 13824 * dx3 + 44275.0 / 110592 * dx4 +
+                           253.0 / 4096 * dx5),
+              v + trial * (1631.0 / 55296 * dv1 + 175.0 / 512 * dv2 + 575.0 / 13824 * dv3 + 44275.0 / 110592 * dv4 +
+                           253.0 / 4096 * dv5),
               k, B, dx6, dv6);
-            const double x1 = x + trial * (37.0 / 378 * dx1 + 250.0 / 621 * dx3 + 125.0 / 594 * dx4 + 512.0 / 1771 * dx6);
-            const double v1 = v + trial * (37.0 / 378 * dv1 + 250.0 / 621 * dv3 + 125.0 / 594 * dv4 + 512.0 / 1771 * dv6);
+            const double x1 =
+                x + trial * (37.0 / 378 * dx1 + 250.0 / 621 * dx3 + 125.0 / 594 * dx4 + 512.0 / 1771 * dx6);
+            const double v1 =
+                v + trial * (37.0 / 378 * dv1 + 250.0 / 621 * dv3 + 125.0 / 594 * dv4 + 512.0 / 1771 * dv6);
             const double ex = trial * (-277.0 / 64512 * dx1 + 6925.0 / 370944 * dx3 - 6925.0 / 202752 * dx4 -
                                        277.0 / 14336 * dx5 + 277.0 / 7084 * dx6);
             const double ev = trial * (-277.0 / 64512 * dv1 + 6925.0 / 370944 * dv3 - 6925.0 / 202752 * dv4 -
                                        277.0 / 14336 * dv5 + 277.0 / 7084 * dv6);
-            const float qx = static_cast<float>(fabs(ex) / fmax(a.absolute_tolerance[0], a.relative_tolerance[0] * fmax(fabs(x), fabs(x1))));
-            const float qv = static_cast<float>(fabs(ev) / fmax(a.absolute_tolerance[1], a.relative_tolerance[1] * fmax(fabs(v), fabs(v1))));
+            const float qx = static_cast<float>(
+                fabs(ex) / fmax(a.absolute_tolerance[0], a.relative_tolerance[0] * fmax(fabs(x), fabs(x1))));
+            const float qv = static_cast<float>(
+                fabs(ev) / fmax(a.absolute_tolerance[1], a.relative_tolerance[1] * fmax(fabs(v), fabs(v1))));
             const float q = fmaxf(qx, qv);
             const bool ok = qx <= 1 && qv <= 1 && is_number(x1) && is_number(v1);
             float factor = 0.9f * exp2f((ok ? -0.2f : -0.25f) * __log2f(q));

@@ -13,7 +13,7 @@
 
 constexpr auto constant = myriad::shared_placement::constant_bank;
 
-#define INSTANTIATE(Method)                                                                         \
+#define INSTANTIATE(Method)                                                                                \
     template __global__ void myriad::detail::integrate_ensemble<damped, myriad::Method, double, constant>( \
         const __grid_constant__ myriad::detail::launch_arguments<damped, double, constant>);
 INSTANTIATE(runge_kutta_4)

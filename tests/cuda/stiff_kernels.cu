@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stiff methods as CUDA kernels: in registers up to six equations, through local memory above, where the stack holds one
-// matrix (8 n^2 bytes), the stages and little else; single precision stays single.
+// Stiff methods as CUDA kernels: in registers up to six equations, through local memory above, where the stack holds
+// one matrix (8 n^2 bytes), the stages and little else; single precision stays single.
 //
 // limit: integrate_ensemble<chain<2>, rosenbrock_23> stack 0 spill 0 registers 72
 // limit: integrate_ensemble<chain<2>, rodas_5p> stack 0 spill 0 registers 80
@@ -35,10 +35,10 @@ struct chain {
 };
 
 constexpr auto constant = myriad::shared_placement::constant_bank;
-#define INSTANTIATE(n, R)                                                                                 \
-    template __global__ void myriad::detail::integrate_ensemble<chain<n>, myriad::rosenbrock_23, R, constant>(    \
-        const __grid_constant__ myriad::detail::launch_arguments<chain<n>, R, constant>);                         \
-    template __global__ void myriad::detail::integrate_ensemble<chain<n>, myriad::rodas_5p, R, constant>(         \
+#define INSTANTIATE(n, R)                                                                                      \
+    template __global__ void myriad::detail::integrate_ensemble<chain<n>, myriad::rosenbrock_23, R, constant>( \
+        const __grid_constant__ myriad::detail::launch_arguments<chain<n>, R, constant>);                      \
+    template __global__ void myriad::detail::integrate_ensemble<chain<n>, myriad::rodas_5p, R, constant>(      \
         const __grid_constant__ myriad::detail::launch_arguments<chain<n>, R, constant>);
 INSTANTIATE(2, double)
 INSTANTIATE(3, float)

@@ -48,15 +48,15 @@ struct decay {
 struct wrong {
     static constexpr int stages = 1, order = 1;
 };
-#elif defined CASE_method_with_another_number_of_stages  // the last stage would never be computed
+#elif defined CASE_method_with_another_number_of_stages        // the last stage would never be computed
 struct wrong : myriad::cash_karp {
     static constexpr int stages = 5;
 };
-#elif defined CASE_method_without_error_weights  // a method that is to choose its steps needs an estimate
+#elif defined CASE_method_without_error_weights                // a method that is to choose its steps needs an estimate
 struct wrong : myriad::runge_kutta_4 {
     static constexpr int embedded_order = 3;
 };
-#elif defined CASE_stiff_method_without_error_weights  // it would accept every step
+#elif defined CASE_stiff_method_without_error_weights          // it would accept every step
 struct wrong : myriad::rosenbrock_23 {
     static constexpr auto tableau() {
         auto t = myriad::rosenbrock_23::tableau();
@@ -64,7 +64,7 @@ struct wrong : myriad::rosenbrock_23 {
         return t;
     }
 };
-#elif defined CASE_method_of_lower_order_than_it_claims  // a digit of a coefficient is wrong: 41 for 40
+#elif defined CASE_method_of_lower_order_than_it_claims        // a digit of a coefficient is wrong: 41 for 40
 struct wrong : myriad::cash_karp {
     static constexpr auto tableau() {
         auto t = myriad::cash_karp::tableau();
@@ -72,7 +72,7 @@ struct wrong : myriad::cash_karp {
         return t;
     }
 };
-#elif defined CASE_method_of_order_five_that_claims_six  // orders above five are looked at, too
+#elif defined CASE_method_of_order_five_that_claims_six        // orders above five are looked at, too
 struct wrong : myriad::tsitouras_5 {
     static constexpr int order = 6;
 };
@@ -95,7 +95,8 @@ struct wrong : myriad::dormand_prince_8 {
         return myriad::dormand_prince_8::extra_node(i) + (i == 1 ? 0.01 : 0.0);
     }
 };
-#elif defined CASE_interpolant_that_misses_the_new_state  // samples and events would see a jump at the end of every step
+#elif defined \
+    CASE_interpolant_that_misses_the_new_state       // samples and events would see a jump at the end of every step
 struct wrong : myriad::dormand_prince_5 {
     static constexpr double interpolant_weight(int stage, int power) {
         return myriad::dormand_prince_5::interpolant_weight(stage, power) + (stage == 3 && power == 2 ? 0.001 : 0.0);
@@ -112,7 +113,7 @@ struct wrong {
     static constexpr myriad::explicit_tableau<stages> tableau() {
         myriad::explicit_tableau<stages> t{};
         t.c = {0, 1};
-#if defined CASE_method_with_an_implicit_stage  // a weight of a later stage would be left out
+#if defined CASE_method_with_an_implicit_stage           // a weight of a later stage would be left out
         t.a[1] = {0.5, 0.5};
 #elif !defined CASE_method_with_a_stage_without_weights  // a stage would repeat the first one
         t.a[1] = {1};

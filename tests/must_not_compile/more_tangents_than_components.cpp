@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 // A third vector in a plane is none of its own.
 #include "myriad/instantiate.hpp"
-#include "myriad/model.hpp"
 #include "myriad/kernel/model/tangent.hpp"
+#include "myriad/model.hpp"
 
 struct oscillator {
     enum state { x, v, n_state };

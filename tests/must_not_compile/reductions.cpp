@@ -36,9 +36,10 @@ struct decay {
     static constexpr myriad::reduction reductions[] = {{largest, over::maximum, height}};
 #elif defined CASE_time_of_a_maximum_without_the_maximum  // the largest value so far is kept in its accessory
     static constexpr myriad::reduction reductions[] = {{height, over::time_of_maximum, at}};
-#elif defined CASE_two_reductions_into_one_accessory  // one would overwrite the other
-    static constexpr myriad::reduction reductions[] = {{height, over::maximum, largest}, {height, over::minimum, largest}};
-#elif !defined CASE_observe_without_reductions  // what is observed would go nowhere
+#elif defined CASE_two_reductions_into_one_accessory      // one would overwrite the other
+    static constexpr myriad::reduction reductions[] = {{height, over::maximum, largest},
+                                                       {height, over::minimum, largest}};
+#elif !defined CASE_observe_without_reductions            // what is observed would go nowhere
     static constexpr myriad::reduction reductions[] = {{height, over::maximum, largest}};
 #endif
 

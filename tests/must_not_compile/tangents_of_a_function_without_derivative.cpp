@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "myriad/instantiate.hpp"
-#include "myriad/model.hpp"
 #include "myriad/kernel/model/tangent.hpp"
+#include "myriad/model.hpp"
 
 struct pendulum {
     static constexpr bool scalar_only = true;

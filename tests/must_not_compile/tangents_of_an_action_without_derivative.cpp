@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 // An action that takes the state for a plain number loses the derivative with which it moves the tangents.
 #include "myriad/instantiate.hpp"
-#include "myriad/model.hpp"
 #include "myriad/kernel/model/tangent.hpp"
+#include "myriad/model.hpp"
 
 struct ball {
     enum state { x, v, n_state };

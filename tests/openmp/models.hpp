@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Models for the tests of teams of threads: one of many states, one whose hooks throw, one that divides and takes roots.
+// Models for the tests of teams of threads: one of many states, one whose hooks throw, one that divides and takes
+// roots.
 #pragma once
 
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Teams of threads: no more than there is work for and than the system has, in a child process too, on stacks that suffice and
-// in a floating-point environment of their own; and what a model's function throws.
+// Teams of threads: no more than there is work for and than the system has, in a child process too, on stacks that
+// suffice and in a floating-point environment of their own; and what a model's function throws.
 #include <atomic>
 #include <cfenv>
 #include <cstdint>
@@ -63,7 +63,8 @@ template <class Model>
 bool same_states(const myriad::ensemble<Model>& a, const myriad::ensemble<Model>& b) {
     bool same = true;
     for (int c = 0; c < myriad::detail::n_state<Model>; ++c)
-        same = same && std::memcmp(a.state(c).data(), b.state(c).data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+        same = same && std::memcmp(a.state(c).data(), b.state(c).data(),
+                                   static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
     return same;
 }
 
@@ -119,7 +120,8 @@ TEST_CASE("threads that the system does not have are done without") {
     CHECK(same_states(e, expected));
 }
 
-TEST_CASE("a child process of one that has solved gets the same bits, instead of waiting for threads that it does not have") {
+TEST_CASE(
+    "a child process of one that has solved gets the same bits, instead of waiting for threads that it does not have") {
     auto before = rings(1000);
     CHECK(myriad::solve<runge_kutta_4>(device::cpu(4), before, by_tenths).threads == 4);
     const pid_t child = fork();
@@ -130,7 +132,9 @@ TEST_CASE("a child process of one that has solved gets the same bits, instead of
         std::atomic<int> told_here = 0, told_elsewhere = 0;
         myriad::options o = by_tenths;
         const std::thread::id me = std::this_thread::get_id();
-        o.progress = [&](std::int64_t, std::int64_t) { ++(std::this_thread::get_id() == me ? told_here : told_elsewhere); };
+        o.progress = [&](std::int64_t, std::int64_t) {
+            ++(std::this_thread::get_id() == me ? told_here : told_elsewhere);
+        };
         const auto report = myriad::solve<runge_kutta_4>(device::cpu(4), e, o);
         auto large = roots(100'000);  // which is checked and counted by several threads
         large.time_domain(0, 1e-6);
@@ -167,13 +171,17 @@ TEST_CASE("a thread of one's own with too small a stack is refused") {
     pthread_attr_setstacksize(&small, 128 << 10);
     std::string said;
     pthread_t thread;
-    REQUIRE(pthread_create(&thread, &small, [](void* text) -> void* {
-        myriad::host::in_parallel(1, 1, [](std::int64_t, std::int64_t) {});
-        myriad::openmp::team work{[](void*, int) {}, nullptr, 1, std::size_t{1} << 20};
-        myriad::host::lend_threads().in_parts(work);
-        if (work.least_stack < work.stack && work.least_stack > 64 << 10) *static_cast<std::string*>(text) = "refused";
-        return nullptr;
-    }, &said) == 0);
+    REQUIRE(pthread_create(
+                &thread, &small,
+                [](void* text) -> void* {
+                    myriad::host::in_parallel(1, 1, [](std::int64_t, std::int64_t) {});
+                    myriad::openmp::team work{[](void*, int) {}, nullptr, 1, std::size_t{1} << 20};
+                    myriad::host::lend_threads().in_parts(work);
+                    if (work.least_stack < work.stack && work.least_stack > 64 << 10)
+                        *static_cast<std::string*>(text) = "refused";
+                    return nullptr;
+                },
+                &said) == 0);
     pthread_join(thread, nullptr);
     pthread_attr_destroy(&small);
     CHECK(said == "refused");

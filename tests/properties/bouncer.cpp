@@ -12,7 +12,7 @@ struct chosen_bouncer : rare_bouncer {
 };
 template <class Model>
 constexpr int batches = myriad::detail::default_batches<Model, myriad::cash_karp>();
-constexpr bool packs = batches<properties::bouncer> > 0;  // not with sanitizers
+constexpr bool packs = batches < properties::bouncer >> 0;  // not with sanitizers
 static_assert(!packs || batches<properties::bouncer> == 1, "events take a pack of one batch");
 static_assert(!packs || batches<rare_bouncer> > 1, "rare events take a larger pack");
 static_assert(!packs || batches<chosen_bouncer> == 4, "a model may choose");

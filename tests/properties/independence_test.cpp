@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The result of an instance depends on nothing but the instance: not on the pack size, the lane, the neighbours, the order
-// and size of the ensemble, the threads, or how its phases are split into calls. All comparisons are of bits.
+// The result of an instance depends on nothing but the instance: not on the pack size, the lane, the neighbours, the
+// order and size of the ensemble, the threads, or how its phases are split into calls. All comparisons are of bits.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -197,7 +197,8 @@ TEST_CASE("splitting phases into calls changes no bit of any result") {
             o.events = {{myriad::direction::falling, 1e-8, 2}, {}};
             auto whole = make<bouncer, double>(numbers(0, 100));
             myriad::solve<myriad::cash_karp>(tests::test_device(2), whole, o);
-            for (const std::vector<std::int64_t>& split : {std::vector<std::int64_t>{1, 1, 1, 1, 1, 1}, {2, 4}, {5, 1}}) {
+            for (const std::vector<std::int64_t>& split :
+                 {std::vector<std::int64_t>{1, 1, 1, 1, 1, 1}, {2, 4}, {5, 1}}) {
                 auto e = make<bouncer, double>(numbers(0, 100));
                 for (const std::int64_t phases : split) {
                     o.phases = phases;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Compiles the kernels of the models whose results must depend on nothing but the instance.
-#include <myriad/instantiate.hpp>
-
 #include "tests/properties/models.hpp"
+
+#include <myriad/instantiate.hpp>
 
 MYRIAD_INSTANTIATE(properties::lorenz, myriad::runge_kutta_4)
 MYRIAD_INSTANTIATE_FLOAT(properties::lorenz, myriad::cash_karp)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The models whose results must not depend on anything but the instance: one with events, reductions and an impact law of + - * / and
-// sqrt only, one with events, hooks and elementary functions, and one without any hook.
+// The models whose results must not depend on anything but the instance: one with events, reductions and an impact law
+// of + - * / and sqrt only, one with events, hooks and elementary functions, and one without any hook.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -74,7 +74,8 @@ struct mixed {
     template <class R>
     MYRIAD_FUNCTION static void after_step(auto& lane) {
         using myriad::exp, myriad::pow;  // not in rhs, which is compiled once for each stage
-        const R value = lane.y[q] + R(0.01) * pow(R(2) + lane.y[q] * lane.y[q], R(-1.7)) - R(0.01) * exp(-lane.y[w] * lane.y[w]);
+        const R value =
+            lane.y[q] + R(0.01) * pow(R(2) + lane.y[q] * lane.y[q], R(-1.7)) - R(0.01) * exp(-lane.y[w] * lane.y[w]);
         lane.accessory[q_max] = myriad::max(lane.accessory[q_max], value);
     }
 

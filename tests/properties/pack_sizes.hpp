@@ -19,6 +19,6 @@ inline constexpr bool compiles_large_packs = !myriad::detail::has_events<Model>;
 /// As the backend does it, but with `batches` batches per pack; 0: one instance at a time.
 template <class Model, class Method, class R>
 myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail::kernel_arguments<Model, R>& arguments,
-                                      const myriad::detail::run_options& options);
+                                              const myriad::detail::run_options& options);
 
 }  // namespace properties

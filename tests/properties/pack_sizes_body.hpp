@@ -2,17 +2,17 @@
 // The body of run_with_packs, for the files that instantiate it, one per model so that they compile side by side.
 #pragma once
 
-#include "tests/properties/pack_sizes.hpp"
-
 #include <myriad/instantiate.hpp>
 
 #include "tests/properties/models.hpp"
+#include "tests/properties/pack_sizes.hpp"
 
 namespace properties {
 
 /// The size that the backend takes by itself is its own kernel, compiled elsewhere.
 template <class Model, class Method, class R, int batches>
-myriad::detail::run_statistics run_with(const myriad::detail::kernel_arguments<Model, R>& arguments, const myriad::detail::run_options& options) {
+myriad::detail::run_statistics run_with(const myriad::detail::kernel_arguments<Model, R>& arguments,
+                                        const myriad::detail::run_options& options) {
     if constexpr (batches == myriad::detail::default_batches<Model, Method>()) {
         using namespace myriad::openmp;
         return run_on<Model, Method, R>(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>{}, arguments, options);
@@ -23,7 +23,7 @@ myriad::detail::run_statistics run_with(const myriad::detail::kernel_arguments<M
 
 template <class Model, class Method, class R>
 myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail::kernel_arguments<Model, R>& arguments,
-                                      const myriad::detail::run_options& options) {
+                                              const myriad::detail::run_options& options) {
     if (batches == 0) return run_with<Model, Method, R, 0>(arguments, options);
     if (batches == 1) return run_with<Model, Method, R, 1>(arguments, options);
     if constexpr (compiles_large_packs<Model>) {
@@ -35,7 +35,7 @@ myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail:
 
 }  // namespace properties
 
-#define RUN_WITH_PACKS(Model, Method, R)                                                  \
-    extern MYRIAD_BACKEND_KERNEL(Model, Method, R)                                        \
-    template myriad::detail::run_statistics properties::run_with_packs<Model, Method, R>(         \
-        int, const myriad::detail::kernel_arguments<Model, R>&, const myriad::detail::run_options&);
+#define RUN_WITH_PACKS(Model, Method, R)                                                                 \
+    extern MYRIAD_BACKEND_KERNEL(Model, Method, R) template myriad::detail::run_statistics               \
+    properties::run_with_packs<Model, Method, R>(int, const myriad::detail::kernel_arguments<Model, R>&, \
+                                                 const myriad::detail::run_options&);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// End values computed in quadruple precision or known in closed form, for every method: errors within what the tolerance
-// implies, and falling with it.
+// End values computed in quadruple precision or known in closed form, for every method: errors within what the
+// tolerance implies, and falling with it.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,8 +10,8 @@
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/compare.hpp"
-#include "tests/support/problems.hpp"
 #include "tests/support/device.hpp"
+#include "tests/support/problems.hpp"
 
 namespace {
 
@@ -32,7 +32,8 @@ struct reference {
     double t_end;
     std::vector<double> end;
     /// How much an error of one step may have grown by the end: the largest norm of dy(t_end)/dy(t) times the scale
-    /// max(1, |y(t)|) of the tolerance, from the variational equation (0.1 % accurate) or, for A1 to A4, in closed form.
+    /// max(1, |y(t)|) of the tolerance, from the variational equation (0.1 % accurate) or, for A1 to A4, in closed
+    /// form.
     double growth;
     std::vector<double> parameters = {};
 };
@@ -59,8 +60,8 @@ struct result {
     }
 };
 
-/// Adaptive methods. Every step adds an error below the tolerance, since the solution that goes on is better than the one
-/// that is estimated; rounding adds half an ulp a step. In the end the error is proportional to the tolerance.
+/// Adaptive methods. Every step adds an error below the tolerance, since the solution that goes on is better than the
+/// one that is estimated; rounding adds half an ulp a step. In the end the error is proportional to the tolerance.
 template <class Model>
 void check_tolerances(const reference<Model>& r) {
     each_adaptive_method([&]<class Method> {
@@ -86,7 +87,8 @@ void check_fixed_steps(const reference<Model>& r, double h) {
     o.step = h / 2;
     const result<runge_kutta_4, Model> fine(r, o);
     double difference = 0;
-    for (std::size_t c = 0; c < r.end.size(); ++c) difference = std::max(difference, std::abs(coarse.end[c] - fine.end[c]));
+    for (std::size_t c = 0; c < r.end.size(); ++c)
+        difference = std::max(difference, std::abs(coarse.end[c] - fine.end[c]));
     CAPTURE(h, coarse.error, fine.error, difference);
     REQUIRE(fine.error > 100 * eps);  // clear of rounding, or it tells nothing
     CHECK(std::abs(fine.error / (difference / 15) - 1) < 0.1);
@@ -94,10 +96,10 @@ void check_fixed_steps(const reference<Model>& r, double h) {
     CHECK(std::abs(fine.steps - std::ceil(r.t_end / o.step - 1e-6)) < 0.5);
 }
 
-/// The device under test against the CPU. With fixed steps both do the same work, and differ by rounding: that of fused or
-/// separate products in the some ten operations behind a component's step, each within half an ulp. Step sizes that differ
-/// in the fifth digit are as good as each other: results differ by no more than twice their error, and a step is gained or
-/// lost here and there.
+/// The device under test against the CPU. With fixed steps both do the same work, and differ by rounding: that of fused
+/// or separate products in the some ten operations behind a component's step, each within half an ulp. Step sizes that
+/// differ in the fifth digit are as good as each other: results differ by no more than twice their error, and a step is
+/// gained or lost here and there.
 template <class Model>
 void check_backends(const reference<Model>& r, double h) {
     const auto difference = [](const std::vector<double>& a, const std::vector<double>& b) {
@@ -123,8 +125,8 @@ void check_backends(const reference<Model>& r, double h) {
 
 const reference<problems::decay> a1{{1}, 20, {2.061153622438557828e-9}, 1};
 const reference<problems::power_decay> a2{{1}, 20, {0.21821789023599238127}, 1};
-// A3: dy(T)/dy(t) = exp(sin T - sin t), scale at most exp(sin t): their product is exp(sin 20) or less than e^2 where the
-// scale is one
+// A3: dy(T)/dy(t) = exp(sin T - sin t), scale at most exp(sin t): their product is exp(sin 20) or less than e^2 where
+// the scale is one
 const reference<problems::modulated_growth> a3{{1}, 20, {2.4916502718504145235}, 7.4};
 // A4: dy(T)/dy(t) = f(y(T)) / f(y(t)), largest from the start: f(17.73) / f(1) = 2.12, times scales up to 17.73
 const reference<problems::logistic> a4{{1}, 20, {17.730166481314839849}, 2.12 * 17.74};
@@ -161,10 +163,11 @@ void check_turning_time(direction wanted, std::int64_t count, double expected) {
     double before = 0;
     for (const double tolerance : {1e-8, 1e-10, 1e-12}) {
         double steps;
-        const double error = std::abs(turning_time<Method>(wanted, count, compare::with_tolerance(tolerance, 1e-3), steps) - expected);
+        const double error =
+            std::abs(turning_time<Method>(wanted, count, compare::with_tolerance(tolerance, 1e-3), steps) - expected);
         CAPTURE(tolerance, steps, error);
-        // An error of the state grows by 3.3 at most (as above), and is an error in time where divided by the acceleration
-        // 9.8 sin 0.05 = 0.49 at the turning point, as is the tolerance of the event.
+        // An error of the state grows by 3.3 at most (as above), and is an error in time where divided by the
+        // acceleration 9.8 sin 0.05 = 0.49 at the turning point, as is the tolerance of the event.
         CHECK(error <= (3.3 * steps * (tolerance + eps) + 1e-13) / 0.489);
         if (before > 0) CHECK(error < 0.1 * before + (3.3 * steps * eps + 1e-13) / 0.489);
         before = error;
@@ -177,10 +180,18 @@ TEST_CASE("DETEST A1 ends at its reference value within what the tolerance impli
 TEST_CASE("DETEST A2 ends at its reference value within what the tolerance implies") { check_tolerances(a2); }
 TEST_CASE("DETEST A3 ends at its reference value within what the tolerance implies") { check_tolerances(a3); }
 TEST_CASE("DETEST A4 ends at its reference value within what the tolerance implies") { check_tolerances(a4); }
-TEST_CASE("Lorenz at t = 1 ends at its reference value within what the tolerance implies") { check_tolerances(lorenz_1); }
-TEST_CASE("Lorenz at t = 10 ends at its reference value within what the tolerance implies") { check_tolerances(lorenz_10); }
-TEST_CASE("Duffing at t = 50 ends at its reference value within what the tolerance implies") { check_tolerances(duffing); }
-TEST_CASE("van der Pol at t = 20 ends at its reference value within what the tolerance implies") { check_tolerances(van_der_pol); }
+TEST_CASE("Lorenz at t = 1 ends at its reference value within what the tolerance implies") {
+    check_tolerances(lorenz_1);
+}
+TEST_CASE("Lorenz at t = 10 ends at its reference value within what the tolerance implies") {
+    check_tolerances(lorenz_10);
+}
+TEST_CASE("Duffing at t = 50 ends at its reference value within what the tolerance implies") {
+    check_tolerances(duffing);
+}
+TEST_CASE("van der Pol at t = 20 ends at its reference value within what the tolerance implies") {
+    check_tolerances(van_der_pol);
+}
 
 TEST_CASE("DETEST A1 with a relative tolerance alone ends at its reference value, however small") {
     each_adaptive_method([]<class Method> {
@@ -195,7 +206,9 @@ TEST_CASE("DETEST A1 with a relative tolerance alone ends at its reference value
     });
 }
 
-TEST_CASE("runge_kutta_4 approaches DETEST A1 with order four") { check_fixed_steps<problems::decay>({{1}, 1, {std::exp(-1.0)}, 1}, 0.02); }
+TEST_CASE("runge_kutta_4 approaches DETEST A1 with order four") {
+    check_fixed_steps<problems::decay>({{1}, 1, {std::exp(-1.0)}, 1}, 0.02);
+}
 TEST_CASE("runge_kutta_4 approaches DETEST A2 with order four") { check_fixed_steps(a2, 0.025); }
 TEST_CASE("runge_kutta_4 approaches DETEST A3 with order four") { check_fixed_steps(a3, 0.05); }
 TEST_CASE("runge_kutta_4 approaches DETEST A4 with order four") { check_fixed_steps(a4, 0.1); }
@@ -234,7 +247,8 @@ TEST_CASE("runge_kutta_4 finds the pendulum's period with order four") {
     const double coarse = turning_time<runge_kutta_4>(direction::falling, 1, o, steps);
     o.step = 0.02;
     const double fine = turning_time<runge_kutta_4>(direction::falling, 1, o, steps);
-    // The last step is cut to the event, which disturbs the order by the part of the error that it is: one step in fifty.
+    // The last step is cut to the event, which disturbs the order by the part of the error that it is: one step in
+    // fifty.
     CHECK(std::abs(std::log2(std::abs(coarse - period) / std::abs(fine - period)) - 4) < 0.3);
     o.step = 0.001;
     // error 20^4 times smaller than that of the fine one

@@ -88,9 +88,9 @@ void check_robertson(const reference& r, const std::vector<double>& tolerances) 
     check<Method, stiff::robertson>(r, tolerances, {1, 0, 0}, robertson_scale);
 }
 
-/// The columns of J sum up to zero, and then so do the stages, but for rounding: that of each addition to the state, half an
-/// ulp of at most one in three components, and those of the stages, which the coefficients magnify a hundred times,
-/// proportional to the changes of the state, three in all.
+/// The columns of J sum up to zero, and then so do the stages, but for rounding: that of each addition to the state,
+/// half an ulp of at most one in three components, and those of the stages, which the coefficients magnify a hundred
+/// times, proportional to the changes of the state, three in all.
 template <class Method>
 void check_sum(const reference& r, double tolerance) {
     const auto e = run<Method, stiff::robertson>(r, tolerance, {1, 0, 0}, robertson_scale);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the OpenMP backend may use, free of races: atomic counter, critical section, reduction, omp atomic, and data that
-// one parallel region writes and the next reads. The thread sanitizer must stay silent.
+// What the OpenMP backend may use, free of races: atomic counter, critical section, reduction, omp atomic, and data
+// that one parallel region writes and the next reads. The thread sanitizer must stay silent.
 #include <atomic>
 #include <cstdio>
 #include <vector>
@@ -19,7 +19,8 @@ int main() {
 #pragma omp parallel num_threads(4) default(none) shared(values, next, by_critical)
     {
         long taken = 0;
-        for (long i = next.fetch_add(1, std::memory_order_relaxed); i < n; i = next.fetch_add(1, std::memory_order_relaxed)) {
+        for (long i = next.fetch_add(1, std::memory_order_relaxed); i < n;
+             i = next.fetch_add(1, std::memory_order_relaxed)) {
             values[static_cast<std::size_t>(i)] = 1;
             ++taken;
         }

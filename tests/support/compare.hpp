@@ -25,13 +25,15 @@ bool same_bits(T a, T b) {
 
 /// Everything of instance i in one ensemble against instance j in another: says what differs, or nothing.
 template <class Model, class R>
-std::string difference(const myriad::ensemble<Model, R>& a, std::int64_t i, const myriad::ensemble<Model, R>& b, std::int64_t j) {
+std::string difference(const myriad::ensemble<Model, R>& a, std::int64_t i, const myriad::ensemble<Model, R>& b,
+                       std::int64_t j) {
     std::string differs;
     const auto compare = [&](const char* what, int c, auto x, auto y) {
         if (!same_bits(x, y)) differs += myriad::message(' ', what, ' ', c, ": ", x, " != ", y, ';');
     };
     for (int c = 0; c < myriad::detail::n_state<Model>; ++c) compare("state", c, a.state(c)[i], b.state(c)[j]);
-    for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c) compare("accessory", c, a.accessory(c)[i], b.accessory(c)[j]);
+    for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c)
+        compare("accessory", c, a.accessory(c)[i], b.accessory(c)[j]);
     for (int c = 0; c < myriad::detail::n_integer_accessory<Model>; ++c)
         compare("integer accessory", c, a.integer_accessory(c)[i], b.integer_accessory(c)[j]);
     compare("t", 0, a.t()[i], b.t()[j]);

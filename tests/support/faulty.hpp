@@ -78,8 +78,8 @@ struct midpoint_rule {
     }
 };
 
-/// x' = v, v' = -x with the unit circle as its limit cycle, and no number beyond |x| = limit, a little outside of it: the
-/// stages of long steps leave the domain twice in every turn. Ends where t has passed `stop`.
+/// x' = v, v' = -x with the unit circle as its limit cycle, and no number beyond |x| = limit, a little outside of it:
+/// the stages of long steps leave the domain twice in every turn. Ends where t has passed `stop`.
 struct guarded {
     enum state { x, v, n_state };
     enum parameter { limit, stop, n_parameter };
@@ -120,7 +120,8 @@ struct hook_fault : problems::uniform {
     enum hooks { none, in_initialise, in_after_step, in_finalise };
 
     MYRIAD_FUNCTION static void spoil(auto& lane, int hook) {
-        if (lane.integer_accessory[which] == hook && lane.t >= lane.parameter[time]) lane.y[y0] = not_a_number<decltype(+lane.t)>;
+        if (lane.integer_accessory[which] == hook && lane.t >= lane.parameter[time])
+            lane.y[y0] = not_a_number<decltype(+lane.t)>;
     }
     MYRIAD_FUNCTION static void initialise(auto& lane) { spoil(lane, in_initialise); }
     MYRIAD_FUNCTION static void after_step(auto& lane) { spoil(lane, in_after_step); }

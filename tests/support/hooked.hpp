@@ -114,13 +114,12 @@ struct early_reader : problems::oscillator {
     }
 };
 
-/// The oscillator with the integral of x, its maximum and a count of steps; ends the phase once x falls below a parameter.
-/// The two forms of after_step, which must not differ.
+/// The oscillator with the integral of x, its maximum and a count of steps; ends the phase once x falls below a
+/// parameter. The two forms of after_step, which must not differ.
 struct running_base : problems::oscillator {
     enum parameter { lowest, n_parameter };
     enum accessory { integral, maximum, n_accessory };
     enum integer_accessory { steps, n_integer_accessory };
-
 };
 struct running_scalar : running_base {
     MYRIAD_FUNCTION static myriad::action after_step(auto& lane) {
@@ -203,13 +202,14 @@ struct reader {
     MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>&, const auto& p) {
         using real = myriad::real_of<R>;
         const R integers = static_cast<real>(p.shared_integer[m0] * 10 + p.shared_integer[m1]);
-        const R chosen = myriad::select(p.integer_accessory[k1] > p.integer_accessory[k0], p.accessory[c1], p.accessory[c0]);
+        const R chosen =
+            myriad::select(p.integer_accessory[k1] > p.integer_accessory[k0], p.accessory[c1], p.accessory[c0]);
         return myriad::vec<R, 1>{p[a] + p.shared[b0] + p.shared[b1] + integers + chosen};
     }
 };
 
-/// x'' = -x + push, kicked at one time: what after_step changes must reach the next slope. With `in_push` zero the speed
-/// changes at once, otherwise the push does, which only the right-hand side sees.
+/// x'' = -x + push, kicked at one time: what after_step changes must reach the next slope. With `in_push` zero the
+/// speed changes at once, otherwise the push does, which only the right-hand side sees.
 struct kicked_base {
     enum state { x, v, n_state };
     enum parameter { time, size, in_push, n_parameter };
@@ -255,7 +255,8 @@ struct stopper : problems::uniform {
     MYRIAD_FUNCTION static void finalise(auto& lane) { lane.integer_accessory[finished] += 1; }
 };
 
-/// y' = y, scaled back to one at the end of every phase, with the sum of the logarithms: the growth rate times the time.
+/// y' = y, scaled back to one at the end of every phase, with the sum of the logarithms: the growth rate times the
+/// time.
 struct renormalised {
     enum state { y0, n_state };
     enum accessory { sum, started_at, n_accessory };
@@ -303,8 +304,8 @@ struct breaker : problems::uniform {
     MYRIAD_FUNCTION static void after_event(int, auto& lane) { lane.integer_accessory[events_seen] += 1; }
 };
 
-/// y' = 1 with an event at y = 1/2, and hooks that set the step to try next to the root of `wanted` (NaN where that is negative):
-/// which one is the integer accessory's choice, after_step once y is past 3/16.
+/// y' = 1 with an event at y = 1/2, and hooks that set the step to try next to the root of `wanted` (NaN where that is
+/// negative): which one is the integer accessory's choice, after_step once y is past 3/16.
 struct step_spoiler_base {
     enum state { y0, n_state };
     enum parameter { wanted, n_parameter };

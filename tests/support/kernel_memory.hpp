@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Memory that hooks and right-hand sides write to for a test: the host's own on the CPU, and on a GPU one managed variable
-// per file of kernels, which the host finds through a list.
+// Memory that hooks and right-hand sides write to for a test: the host's own on the CPU, and on a GPU one managed
+// variable per file of kernels, which the host finds through a list.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace tests {
 
-/// The variables of type T that kernels write to. Nothing is read of them unless the tests run on a GPU: without a driver
-/// they have no memory.
+/// The variables of type T that kernels write to. Nothing is read of them unless the tests run on a GPU: without a
+/// driver they have no memory.
 template <class T>
 std::vector<T& (*)()>& kernel_variables() {
     static std::vector<T& (*)()> list;

@@ -4,7 +4,7 @@
 
 #include <myriad/instantiate.hpp>
 
-#define ALL_METHODS                                                                                 \
+#define ALL_METHODS                                                                                            \
     myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5, myriad::dormand_prince_5, myriad::verner_7, \
         myriad::dormand_prince_8
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Test problems that carry their exact solution, for the tests of steppers, of the controller and of the loop, and models
-// with reference values. Each is a model; `exact(t)` is its solution through `exact(t_begin)`.
+// Test problems that carry their exact solution, for the tests of steppers, of the controller and of the loop, and
+// models with reference values. Each is a model; `exact(t)` is its solution through `exact(t_begin)`.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -62,8 +62,8 @@ struct logistic {
     }
 };
 
-/// The circle in logarithmic coordinates: autonomous, nonlinear, coupled, and no elementary differential of low order is
-/// zero, so that every order condition counts.
+/// The circle in logarithmic coordinates: autonomous, nonlinear, coupled, and no elementary differential of low order
+/// is zero, so that every order condition counts.
 struct log_circle {
     enum state { u, w, n_state };
     template <class R>

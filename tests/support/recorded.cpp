@@ -7,5 +7,7 @@
 
 MYRIAD_INSTANTIATE(recorder::recorded<problems::log_circle>, myriad::cash_karp, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(recorder::recorded<problems::uniform>, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5)
-MYRIAD_INSTANTIATE_FLOAT(recorder::recorded<problems::uniform>, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5)
-MYRIAD_INSTANTIATE(recorder::recorded<problems::oscillator>, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE_FLOAT(recorder::recorded<problems::uniform>, myriad::runge_kutta_4, myriad::cash_karp,
+                         myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(recorder::recorded<problems::oscillator>, myriad::runge_kutta_4, myriad::cash_karp,
+                   myriad::tsitouras_5)

@@ -2,8 +2,8 @@
 // Stiff test problems, and what goes wrong in implicit methods: a singular matrix, a Jacobian that does not exist.
 #pragma once
 
-#include <myriad/model.hpp>
 #include <myriad/kernel/model/tangent.hpp>
+#include <myriad/model.hpp>
 
 #include "problems/robertson.hpp"
 #include "tests/support/problems.hpp"
@@ -27,8 +27,8 @@ struct robertson_with_jacobian : robertson {
     }
 };
 
-/// van der Pol's oscillator in the form of Hairer and Wanner, eps y'' = (1 - y^2) y' - y; an accessory keeps the largest
-/// slope. + - * / only.
+/// van der Pol's oscillator in the form of Hairer and Wanner, eps y'' = (1 - y^2) y' - y; an accessory keeps the
+/// largest slope. + - * / only.
 struct van_der_pol {
     enum state { x, v, n_state };
     enum parameter { eps, n_parameter };
@@ -91,7 +91,8 @@ struct relay {
     MYRIAD_FUNCTION static void finalise(auto& lane) { lane.integer_accessory[finished] += 1; }
 };
 
-/// Heat conduction in a rod of n points with cold ends: y_i' = rate (y_(i-1) - 2 y_i + y_(i+1)). `mode` is an eigenvector.
+/// Heat conduction in a rod of n points with cold ends: y_i' = rate (y_(i-1) - 2 y_i + y_(i+1)). `mode` is an
+/// eigenvector.
 template <int n>
 struct rod {
     enum state { first, n_state = n };
@@ -117,7 +118,8 @@ struct growth {
     }
 };
 
-/// A ball that is dropped onto a floor at zero, put back onto it exactly at every impact and thrown up at a part of its speed.
+/// A ball that is dropped onto a floor at zero, put back onto it exactly at every impact and thrown up at a part of its
+/// speed.
 struct ball {
     enum state { x, v, n_state };
     enum parameter { restitution, n_parameter };

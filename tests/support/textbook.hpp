@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Butcher's formulas, written out once more from a tableau and summed in long double: one step of a test problem without
-// parameters, for comparison with the library's.
+// Butcher's formulas, written out once more from a tableau and summed in long double: one step of a test problem
+// without parameters, for comparison with the library's.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,9 @@ struct step {
 
     step(double t, double h, const myriad::vec<double, n>& start) {
         constexpr auto tableau = Method::tableau();
-        const auto entry = [](const auto& row, int j) { return static_cast<long double>(row[static_cast<std::size_t>(j)]); };
+        const auto entry = [](const auto& row, int j) {
+            return static_cast<long double>(row[static_cast<std::size_t>(j)]);
+        };
         const auto a = [&](int i, int j) { return entry(tableau.a[static_cast<std::size_t>(i)], j); };
         long double k[stages][n];
         for (int i = 0; i < stages; ++i) {
@@ -30,7 +32,8 @@ struct step {
                 for (int j = 0; j < i; ++j) sum += a(i, j) * k[j][c];
                 argument[c] = static_cast<double>(start[c] + h * sum);
             }
-            const auto slope = Model::template rhs<double>(static_cast<double>(t + entry(tableau.c, i) * h), argument, 0);
+            const auto slope =
+                Model::template rhs<double>(static_cast<double>(t + entry(tableau.c, i) * h), argument, 0);
             for (int c = 0; c < n; ++c) k[i][c] = slope[c];
         }
         for (int c = 0; c < n; ++c) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The magnets of pendulums stopped early, and the barrier that stops them, against CVODE run to the end. Exit status 0 if all
-// is well, else 1.
+// The magnets of pendulums stopped early, and the barrier that stops them, against CVODE run to the end. Exit status 0
+// if all is well, else 1.
 #include <cmath>
 #include <cstdint>
 #include <iostream>
@@ -22,7 +22,8 @@ struct constants {
     } shared;
 };
 
-/// Where a pendulum released at rest is after a time in which its oscillation has died out by exp(-damping t / 2) = 0.0025.
+/// Where a pendulum released at rest is after a time in which its oscillation has died out by exp(-damping t / 2) =
+/// 0.0025.
 int by_cvode(double x, double y) {
     validation::cvode bob(
         4,
@@ -43,8 +44,8 @@ int main() {
     const Eigen::ArrayXd axis = places(side);
     auto sweep = grid(side, barrier(), 4 * natural_period);
     myriad::solve<myriad::dormand_prince_8>(myriad::device::parse("cpu"), sweep, integration());
-    // Errors grow by less than a factor of 1e3 before a pendulum is captured, except on the basins' boundary: there a start
-    // that is 1e-5 away, 1000 times the tolerance, has another end too.
+    // Errors grow by less than a factor of 1e3 before a pendulum is captured, except on the basins' boundary: there a
+    // start that is 1e-5 away, 1000 times the tolerance, has another end too.
     constexpr double shift = 1e-5;
     std::int64_t compared = 0, wrong = 0;
     for (std::int64_t i = 0; i < sweep.size(); i += every) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Keller-Miksis bubbles under one and two waves, from rest over some collapses, against CVODE with root finding and the
-// equation in SI units: largest radius, strongest collapse and its duration, and maxima per period. Exit status 0 if all
-// agree, 1 if not.
+// equation in SI units: largest radius, strongest collapse and its duration, and maxima per period. Exit status 0 if
+// all agree, 1 if not.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,8 +23,8 @@ namespace {
 using dual_frequency::model, dual_frequency::waves;
 
 constexpr std::int64_t transient = 2, recorded = 6;
-/// A change of the start that moves the solution as far as the errors of Cash-Karp may: a thousand steps or two, each with an
-/// error of up to 1e-10.
+/// A change of the start that moves the solution as far as the errors of Cash-Karp may: a thousand steps or two, each
+/// with an error of up to 1e-10.
 constexpr double displacement = 2e-7;
 
 struct history {

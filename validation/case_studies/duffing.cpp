@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Periodic orbits of the Duffing sweep and its period doublings against CVODE: orbits by Newton's method on the Poincare map,
-// doublings where a Floquet multiplier, an eigenvalue of that map's derivative, is -1. Exit status 0 if all agree, 1 if not.
+// Periodic orbits of the Duffing sweep and its period doublings against CVODE: orbits by Newton's method on the
+// Poincare map, doublings where a Floquet multiplier, an eigenvalue of that map's derivative, is -1. Exit status 0 if
+// all agree, 1 if not.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -100,8 +101,8 @@ myriad::ensemble<duffing> integrate(const Eigen::ArrayXd& k, const orbit& start,
     return sweep;
 }
 
-/// Where the sweep's orbits of n periods split in two: the square of the distance between the halves grows like the distance
-/// from the bifurcation, so k over that square is extrapolated to zero, through three points.
+/// Where the sweep's orbits of n periods split in two: the square of the distance between the halves grows like the
+/// distance from the bifurcation, so k over that square is extrapolated to zero, through three points.
 double splitting(double near, int n, orbit start) {
     constexpr std::int64_t phases =
         6000;  // multiples of all 2 n here, so that all instances are seen at the same place

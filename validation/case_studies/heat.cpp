@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Heat conduction around a bubble: without flow of liquid against the slowest mode in closed form; with it, heat flows and
-// temperatures against CVODE on twice the points. Exit status 1 if something is farther away than it may be.
+// Heat conduction around a bubble: without flow of liquid against the slowest mode in closed form; with it, heat flows
+// and temperatures against CVODE on twice the points. Exit status 1 if something is farther away than it may be.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -85,9 +85,9 @@ solution by_cvode(double diffusivity, double pulse, int periods) {
     return s;
 }
 
-/// What 24 points may miss. Next to the wall a layer falls off like exp(-(r - 1) z) with z = pulse / diffusivity for a pulse of one;
-/// its Chebyshev coefficient k is of size exp(-k^2 / (2 z)) / sqrt(2 pi z) on a shell of thickness two, and its slope at the
-/// wall k^2 times that. Four of them, and what the steps may add.
+/// What 24 points may miss. Next to the wall a layer falls off like exp(-(r - 1) z) with z = pulse / diffusivity for a
+/// pulse of one; its Chebyshev coefficient k is of size exp(-k^2 / (2 z)) / sqrt(2 pi z) on a shell of thickness two,
+/// and its slope at the wall k^2 times that. Four of them, and what the steps may add.
 double missed(double diffusivity) {
     const double z = 1 / diffusivity, k = 24;
     return 4 * k * k * std::exp(-k * k / (2 * z)) / std::sqrt(2 * std::numbers::pi * z) + 100 * tolerance;
@@ -98,8 +98,8 @@ double missed(double diffusivity) {
 int main() {
     const Eigen::ArrayXd r = chebyshev::points(1, outer, 24);
     for (const double diffusivity : {0.05, 0.3, 2.0}) {
-        // Without flow of liquid, and with walls at zero. Stability makes steps so short that 24 points and rounding are what is
-        // left: a sine is a polynomial of degree 23 to 1e-15.
+        // Without flow of liquid, and with walls at zero. Stability makes steps so short that 24 points and rounding
+        // are what is left: a sine is a polynomial of degree 23 to 1e-15.
         const Eigen::ArrayXd mode = shell::slowest_mode(r);
         const double k = std::numbers::pi / (outer - 1), t = 1;
         const Eigen::ArrayXd exact = mode * std::exp(-diffusivity * k * k * t);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Lyapunov exponents of the forced Duffing oscillator against CVODE: one by one where the motion is regular, in the mean
-// where it is chaotic; and the sum of both against the damping. Exit status 0 if all is well, else 1.
+// The Lyapunov exponents of the forced Duffing oscillator against CVODE: one by one where the motion is regular, in the
+// mean where it is chaotic; and the sum of both against the damping. Exit status 0 if all is well, else 1.
 #include <cmath>
 #include <cstdint>
 #include <iostream>
@@ -66,8 +66,8 @@ bool told(bool right, const char* what) {
     return right;
 }
 
-/// A decaying tangent forgets what was before. Per unit of time some ten steps err by 1e-9 each, CVODE's by less, in the
-/// tangent and, through 6 x a, in its rate: 1e-7 with a margin of five.
+/// A decaying tangent forgets what was before. Per unit of time some ten steps err by 1e-9 each, CVODE's by less, in
+/// the tangent and, through 6 x a, in its rate: 1e-7 with a margin of five.
 bool regular() {
     const std::vector<point> points{{0.2, 0}, {0.4, 0}, {0.25, 0.1}, {0.45, 0.2}, {0.2, 0.6}, {0.3, 0.7}, {0.35, 0.75}};
     const auto lambda = myriad::exponents(by_myriad(points));

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <Eigen/Dense>
-#include <myriad/myriad.hpp>
 #include <myriad/kernel/scalar/dual.hpp>
+#include <myriad/myriad.hpp>
 
 #include "cvode.hpp"
 #include "sweep.hpp"
@@ -107,8 +107,9 @@ double period_doubling(double near, int period) {
     return now;
 }
 
-/// Section points and return times of the orbit of period one against those of a sweep. A return is followed in some 150 steps
-/// to 1e-9 each, of states of up to 20, and is stable; its time has the section's tolerance of 1e-9 over the speed |x| = 6.
+/// Section points and return times of the orbit of period one against those of a sweep. A return is followed in some
+/// 150 steps to 1e-9 each, of states of up to 20, and is stable; its time has the section's tolerance of 1e-9 over the
+/// speed |x| = 6.
 bool check_orbit() {
     const auto [sweep, report] = integrate(16, 4, 5, 400, 1);
     double worst_point = 0, worst_time = 0;
@@ -124,8 +125,8 @@ bool check_orbit() {
     return worst_point < 1e-6 && worst_time < 1e-6;
 }
 
-/// Beyond a period doubling at c0 the square of what it splits grows linearly with c, at first: followed back to zero by a
-/// parabola, it must be c0, to the cube of what the width is to the distances between doublings.
+/// Beyond a period doubling at c0 the square of what it splits grows linearly with c, at first: followed back to zero
+/// by a parabola, it must be c0, to the cube of what the width is to the distances between doublings.
 bool check_doubling(double c0, int period, double width) {
     const auto [sweep, report] = integrate(9, c0 + 0.3 * width, c0 + width, 12000, 2 * period);
     const auto x = report.records.state(roessler::x);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The relief valve by CVODE: the flow at which its oscillation grazes the seat, and the cycle of a valve that bounces, rests
-// and opens, by the criterion of the example and by one that lets it bounce on for longer. Exit status 0 if the library
-// agrees, 1 if not.
+// The relief valve by CVODE: the flow at which its oscillation grazes the seat, and the cycle of a valve that bounces,
+// rests and opens, by the criterion of the example and by one that lets it bounce on for longer. Exit status 0 if the
+// library agrees, 1 if not.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -50,8 +50,8 @@ struct cycle {
     int impacts = 0;
 };
 
-/// None if the pressure lifts the valve before it has come to rest. `slowest`: as in the model; `share`: of the time until
-/// the valve opens that the bounces which are left out may take, 1/20 in the model.
+/// None if the pressure lifts the valve before it has come to rest. `slowest`: as in the model; `share`: of the time
+/// until the valve opens that the bounces which are left out may take, 1/20 in the model.
 std::optional<cycle> follow(double q, double slowest, double share) {
     validation::cvode valve(3, slope_of({q}), 1e-13, 1e-15);
     valve.watch({-1, -1}, [](double, const double* s, double* g) {
@@ -106,9 +106,9 @@ bool check_grazing() {
     return wrong == 0;
 }
 
-/// Cycles of valves that rest, and how much the bounces that are left out change them. u, of ten, has steps with errors of 1e-10,
-/// and is waited for at the rate beta q from 0.04 on: 1e-8 in time. The bounce that is the last one comes later by 100 times as
-/// much, as its closing force is small.
+/// Cycles of valves that rest, and how much the bounces that are left out change them. u, of ten, has steps with errors
+/// of 1e-10, and is waited for at the rate beta q from 0.04 on: 1e-8 in time. The bounce that is the last one comes
+/// later by 100 times as much, as its closing force is small.
 bool check_cycles() {
     using model = relief_valve_contact;
     auto sweep = valves::prepare_contact(6, 0.002, 0.017);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Periods and extreme values of the Oregonator's limit cycles against CVODE's BDF, and its states of rest. Exit status 0 if
-// all is well, else 1.
+// Periods and extreme values of the Oregonator's limit cycles against CVODE's BDF, and its states of rest. Exit status
+// 0 if all is well, else 1.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -55,7 +55,8 @@ cycle by_cvode(double f, double epsilon, int before) {
 
 int main() {
     constexpr std::int64_t side = 9, cycles = 24;
-    // A step's error estimate is below 1e-6 of each concentration. It is that of order 4 while the solution is of order 5, and a
+    // A step's error estimate is below 1e-6 of each concentration. It is that of order 4 while the solution is of order
+    // 5, and a
     // limit cycle forgets what is not along it: the errors of a whole cycle stay below the tolerance of one step.
     constexpr double bound = plane::tolerance;
     auto sweep = plane::prepare(side);

@@ -83,9 +83,9 @@ myriad::options fixed_steps(double h) {
     return o;
 }
 
-/// The error at steps of h/2 and h/4. That of the interpolant has the order given, that of the steps order four or five;
-/// samples fall at other fractions of the steps for every h. `growth`: how much an error of one step may have grown by the
-/// end.
+/// The error at steps of h/2 and h/4. That of the interpolant has the order given, that of the steps order four or
+/// five; samples fall at other fractions of the steps for every h. `growth`: how much an error of one step may have
+/// grown by the end.
 template <class Model, class Method>
 void compare(const char* model, const char* method, const std::vector<double>& start, double order, double h,
              double growth) {
@@ -96,8 +96,8 @@ void compare(const char* model, const char* method, const std::vector<double>& s
     say(model, method, "error", fine, fine > 10 * of_reference);  // else it tells of CVODE
     say(model, method, "order", seen, seen > order - 0.3 && seen < std::max(order, 1.0 * Method::order) + 0.3);
     if constexpr (requires { Method::interpolant_order; }) {
-        // Some hundred steps with errors below the tolerance, and its own interpolant is as good as they are. (The Hermite
-        // polynomial is not: it knows nothing of the tolerance.)
+        // Some hundred steps with errors below the tolerance, and its own interpolant is as good as they are. (The
+        // Hermite polynomial is not: it knows nothing of the tolerance.)
         const double error = rms_error<Model, Method>(start, {.relative_tolerance = 1e-9, .absolute_tolerance = 1e-9});
         say(model, method, "error at tolerances of 1e-9", error, error <= growth * 500 * 1e-9);
     }

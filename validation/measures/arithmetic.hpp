@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Differences and medians of the measures. A NaN in a result must come out as NaN, which is within no bounds; the standard
-// library's maximum and selection lose it.
+// Differences and medians of the measures. A NaN in a result must come out as NaN, which is within no bounds; the
+// standard library's maximum and selection lose it.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,9 @@ namespace validation {
 inline double larger(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 /// The largest of values that are not negative, NaN if one of them is, 0 of none.
-inline double largest(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0, larger); }
+inline double largest(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0, larger);
+}
 
 /// Largest difference of two states; what is NaN in the second, which is known to be right, is not compared.
 inline double distance(const std::vector<double>& a, const std::vector<double>& b) {
@@ -29,14 +31,15 @@ inline double distance(const std::vector<double>& a, const std::vector<double>& 
 /// The upper one of an even number of values; NaN of none, and where one value is NaN.
 inline double median(std::vector<double> values) {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    if (values.empty() || std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return unknown;
+    if (values.empty() || std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); }))
+        return unknown;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
 }
 
-/// The median over the instances of a[i] / b[i], without those whose b is zero: where a leading error coefficient happens to
-/// vanish, an instance says nothing.
+/// The median over the instances of a[i] / b[i], without those whose b is zero: where a leading error coefficient
+/// happens to vanish, an instance says nothing.
 inline double median_ratio(const std::vector<double>& a, const std::vector<double>& b) {
     std::vector<double> ratios;
     for (std::size_t i = 0; i < a.size(); ++i)

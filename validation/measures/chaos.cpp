@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Chaotic solutions, of which only statistics can be compared: the largest Lyapunov exponent of Lorenz' equations with its
-// published value, and the maxima of the Duffing oscillator with those that CVODE finds. What is allowed is four standard
-// errors of the mean over the instances.
+// Chaotic solutions, of which only statistics can be compared: the largest Lyapunov exponent of Lorenz' equations with
+// its published value, and the maxima of the Duffing oscillator with those that CVODE finds. What is allowed is four
+// standard errors of the mean over the instances.
 #include <cmath>
 #include <numbers>
 

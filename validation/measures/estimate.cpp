@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Order of the error estimate, read off the step size that the controller proposes after one step of given length. It is
-// what catches a wrong weight of the embedded solution, which no solution shows.
+// Order of the error estimate, read off the step size that the controller proposes after one step of given length. It
+// is what catches a wrong weight of the embedded solution, which no solution shows.
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +30,8 @@ void measure_estimate(session& s, const problem& p, const method_entry& m) {
     for (int k = 0; k < 8; ++k) {
         const double fine = estimate(h / 2);
         s.rows.add(s.about(p, m, h / 2), "error estimate, root mean square", fine);
-        if (!(fine > (m.takes_long_steps() ? 1e3 : 1e4) * eps_double * h)) break;  // roundings of h f, which cancel in the estimate
+        if (!(fine > (m.takes_long_steps() ? 1e3 : 1e4) * eps_double * h))
+            break;  // roundings of h f, which cancel in the estimate
         order = std::log2(coarse / fine);
         coarse = fine;
         h /= 2;

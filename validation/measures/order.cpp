@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Order and error constant with fixed steps, on all instances, for methods with step-size control too. These are the
 // tight checks: a coefficient that is wrong in its fourth digit breaks a low order condition, so that the error falls
-// with the first or second power of the step, or not at all, from where it is a ten-thousandth of what it should be. Some
-// coefficients have no part in low orders (a[1][0] of Cash-Karp's method); one step shows those.
+// with the first or second power of the step, or not at all, from where it is a ten-thousandth of what it should be.
+// Some coefficients have no part in low orders (a[1][0] of Cash-Karp's method); one step shows those.
 #include <algorithm>
 #include <cmath>
 
@@ -78,12 +78,14 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
     const level &fine = levels.back(), &coarse = levels[levels.size() - 2];
     const subject about = s.about(p, m, fine.h);
     const double order = std::log2(median_ratio(coarse.error.end, fine.error.end));
-    // Seen with high orders: 6.1 for seven on Duffing's oscillator (8.4 at twice the step) and 7.4 for eight on van der Pol's;
-    // where every instance has a closed form, half an order at most.
+    // Seen with high orders: 6.1 for seven on Duffing's oscillator (8.4 at twice the step) and 7.4 for eight on van der
+    // Pol's; where every instance has a closed form, half an order at most.
     const double below = error_of_reference == 0 ? 0.5 : 1.2;
-    s.rows.add(about, "order", order,
-               m.takes_long_steps() ? bounds::within(m.order - below, m.order + 2.5) : bounds::within(m.order - 0.2, m.order + 1.2),
-               "error = C h^order (1 + O(h)); above it where C is small against the next terms, h larger for high orders");
+    s.rows.add(
+        about, "order", order,
+        m.takes_long_steps() ? bounds::within(m.order - below, m.order + 2.5)
+                             : bounds::within(m.order - 0.2, m.order + 1.2),
+        "error = C h^order (1 + O(h)); above it where C is small against the next terms, h larger for high orders");
     // The difference of two step sizes tells the error of the finer one, up to a term in h.
     const differences halving(coarse.instances, fine.instances);
     s.rows.add(about, "error over its prediction by halved steps",

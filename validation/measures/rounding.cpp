@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What rounding adds up to over long times: far from t = 0, where the resolution of t is coarse, and in single precision,
-// where rounded coefficients must not make an error of their own in every step.
+// What rounding adds up to over long times: far from t = 0, where the resolution of t is coarse, and in single
+// precision, where rounded coefficients must not make an error of their own in every step.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,12 +45,14 @@ void measure_late_start(session& s, const char* name) {
     for (const double t_begin : {1e6, 1e9}) {
         const auto late = follow<Method, double>(s, 1, 0, 0, t_begin, length, o);
         double difference = 0;
-        for (int c = 0; c < orbit::n_state; ++c) difference = larger(difference, std::abs(late.state(c)[0] - early.state(c)[0]));
+        for (int c = 0; c < orbit::n_state; ++c)
+            difference = larger(difference, std::abs(late.state(c)[0] - early.state(c)[0]));
         const double steps = static_cast<double>(late.accepted_steps()[0]);
-        s.rows.add({"orbit far from t = 0", name, "double", s.device_name(), t_begin}, "difference to the same from t = 0",
-                   difference, bounds::at_most(3 * length * steps * eps_double),
-                   "3 t (growth of errors of a circular orbit) x steps x rounding: t is rounded, and takes nothing from "
-                   "the state");
+        s.rows.add(
+            {"orbit far from t = 0", name, "double", s.device_name(), t_begin}, "difference to the same from t = 0",
+            difference, bounds::at_most(3 * length * steps * eps_double),
+            "3 t (growth of errors of a circular orbit) x steps x rounding: t is rounded, and takes nothing from "
+            "the state");
     }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Errors over a range of tolerances. What bounds them: every accepted step adds an error below the tolerance, since the
-// solution that goes on is better than the one that is estimated (or a few tolerances, where stability and not accuracy bounds the
-// steps), and a rounding; each event adds what it was located to; and each of these may have grown until it is looked at by the
-// problem's conditioning.
+// solution that goes on is better than the one that is estimated (or a few tolerances, where stability and not accuracy
+// bounds the steps), and a rounding; each event adds what it was located to; and each of these may have grown until it
+// is looked at by the problem's conditioning.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -57,8 +57,8 @@ std::map<std::size_t, recorded_result> as_recorded(const outcome& o) {
     return results;
 }
 
-/// One run; returns the median error of the end states. `finer`: for fixed steps, the same with steps half as long, whose
-/// difference tells the error: 15/16 of it for order four, and half of it at least.
+/// One run; returns the median error of the end states. `finer`: for fixed steps, the same with steps half as long,
+/// whose difference tells the error: 15/16 of it for order four, and half of it at least.
 double measure_run(session& s, const problem& p, const method_entry& m, const references& r, const char* kind,
                    double setting, double tolerance, myriad::options o, const outcome* finer = nullptr) {
     const subject about = s.about(p, m, setting);

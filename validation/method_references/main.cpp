@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compares the references of the benchmark `methods` with CVODE: Adams for bubbles and valves, BDF for Robertson's reaction.
-// Usage: validate_method_references [INSTANCES]. Exit status 0 if they agree, 1 if not, 2 for an error.
+// Compares the references of the benchmark `methods` with CVODE: Adams for bubbles and valves, BDF for Robertson's
+// reaction. Usage: validate_method_references [INSTANCES]. Exit status 0 if they agree, 1 if not, 2 for an error.
 #include <cmath>
 #include <cstdint>
 #include <iostream>
@@ -68,8 +68,8 @@ bool judge(const std::string& name, std::int64_t instances, double difference, d
     return right;
 }
 
-/// CVODE runs twice, at ten times its tolerance too. As long as that at least doubles its error, the finer solution is nearer
-/// to the truth than to the coarser one, and so must the reference be.
+/// CVODE runs twice, at ten times its tolerance too. As long as that at least doubles its error, the finer solution is
+/// nearer to the truth than to the coarser one, and so must the reference be.
 template <class Reference, class Model>
 bool check(const study<Model>& of, std::int64_t count, const std::vector<double>& start, double t, multistep family,
            double tolerance, double absolute_tolerance) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Shows that the measures of order see a wrong coefficient: every one of every method, changed in its fourth digit, must be
-// reported by the very functions that validate the methods, and the methods as they are must not. Kernels on single lanes,
-// compiled here. Exit status 1 if a mutant passes, or a method fails.
+// Shows that the measures of order see a wrong coefficient: every one of every method, changed in its fourth digit,
+// must be reported by the very functions that validate the methods, and the methods as they are must not. Kernels on
+// single lanes, compiled here. Exit status 1 if a mutant passes, or a method fails.
 #include <cstdlib>
 #include <iostream>
 #include <sstream>
@@ -21,7 +21,8 @@ namespace validation {
 
 constexpr double change = 1e-4;
 
-/// Which coefficient: of the stages (their nodes c are left as they are), of the solution, of the error estimate, a node.
+/// Which coefficient: of the stages (their nodes c are left as they are), of the solution, of the error estimate, a
+/// node.
 enum class part { a, b, e, c };
 
 template <class Method, part which, std::size_t i, std::size_t j>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Heat conduction in shells of different diffusivity, with one differentiation matrix for all; in closed form but for the
-// error of the collocation.
+// Heat conduction in shells of different diffusivity, with one differentiation matrix for all; in closed form but for
+// the error of the collocation.
 #include "heat.hpp"
 
 #include <cmath>
@@ -19,8 +19,8 @@ std::vector<double> radii() {
     return r;
 }
 
-/// The differentiation matrix of the polynomial through all points, row by row, and the points: from barycentric weights
-/// (Berrut and Trefethen, SIAM Review 46 (2004) 501, section 9.3).
+/// The differentiation matrix of the polynomial through all points, row by row, and the points: from barycentric
+/// weights (Berrut and Trefethen, SIAM Review 46 (2004) 501, section 9.3).
 std::vector<double> matrix_and_radii() {
     const auto r = radii();
     const auto n = r.size();
@@ -61,9 +61,9 @@ problem heat_problem() {
     p.sampled = {0, 4, 9};
     p.fixed_step = 5e-4;
     p.error_follows_tolerance = false;  // bound by stability
-    // Steps that stability bounds are long for the fastest modes, and the estimate of such a step may happen to vanish: with one
-    // tolerance for each step, dormand_prince_8 at 1e-11 was above the bound in 11 of 400 runs whose tolerances were within 4e-4 of
-    // each other, at most 1.5 times.
+    // Steps that stability bounds are long for the fastest modes, and the estimate of such a step may happen to vanish:
+    // with one tolerance for each step, dormand_prince_8 at 1e-11 was above the bound in 11 of 400 runs whose
+    // tolerances were within 4e-4 of each other, at most 1.5 times.
     p.error_of_a_step = 4;
     p.closed_form_error = 1e-8;
     p.exactly = [](const instance& i, std::int64_t) {

@@ -6,8 +6,8 @@
 
 namespace validation {
 
-/// T_t = kappa / r^2 (r^2 T_r)_r on 1 < r < 2 with T = 0 at both ends, at the inner Chebyshev points; the matrix D takes
-/// values at all points, of which the first and the last are zero, to slopes at all points.
+/// T_t = kappa / r^2 (r^2 T_r)_r on 1 < r < 2 with T = 0 at both ends, at the inner Chebyshev points; the matrix D
+/// takes values at all points, of which the first and the last are zero, to slopes at all points.
 struct heat {
     static constexpr int inner = 10, points = inner + 2;
     enum state { first, n_state = inner };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One step of each method on the timed circle, from published coefficients in 60 decimal digits. Written by one_step.py.
+// One step of each method on the timed circle, from published coefficients in 60 decimal digits. Written by
+// one_step.py.
 #pragma once
 
 #include <map>

@@ -6,7 +6,8 @@
 
 namespace validation {
 
-/// Field and Noyes, J. Chem. Phys. 60 (1974) 1877-1884, in the form of Hairer and Wanner, Solving ODE II, IV.10, (10.15).
+/// Field and Noyes, J. Chem. Phys. 60 (1974) 1877-1884, in the form of Hairer and Wanner, Solving ODE II, IV.10,
+/// (10.15).
 struct oregonator {
     enum state { a, b, c, n_state };
     enum parameter { s, n_parameter };  // 77.27 in the source

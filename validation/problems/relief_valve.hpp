@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The pressure relief valve with impacts on its seat, over a given time. Model of Hos and Champneys, Physica D 241 (2012)
-// 2068-2076, dimensionless.
+// The pressure relief valve with impacts on its seat, over a given time. Model of Hos and Champneys, Physica D 241
+// (2012) 2068-2076, dimensionless.
 #pragma once
 
 #include <myriad/model.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Integrates relief valves over many phases and checks that none goes through its seat by more than ten event tolerances,
-// and that those whose impacts do not accumulate have as many of them as CVODE finds. Exit status 0 if all is well, 1 if
-// a check fails, 2 for bad arguments.
+// Integrates relief valves over many phases and checks that none goes through its seat by more than ten event
+// tolerances, and that those whose impacts do not accumulate have as many of them as CVODE finds. Exit status 0 if all
+// is well, 1 if a check fails, 2 for bad arguments.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -42,8 +42,8 @@ bool check_seat(const arguments& chosen, const myriad::device& device) {
 }
 
 /// Impacts by CVODE, phase by phase, of instances spread over q. Impacts that come often are followed by others that
-/// depend on every bit; so CVODE runs twice, the second time with the seat raised by the tolerance of the event, which is
-/// what the tolerance allows, and phases count as long as it makes little difference.
+/// depend on every bit; so CVODE runs twice, the second time with the seat raised by the tolerance of the event, which
+/// is what the tolerance allows, and phases count as long as it makes little difference.
 bool check_impacts(const arguments& chosen, const myriad::device& device) {
     auto sweep = valves::prepare(chosen.compared);
     auto options = valves::integration(chosen.phases);

@@ -11,6 +11,6 @@ struct valve_history {
     bool accumulated = false;  // impacts became too slow to follow; the phases before are there
 };
 
-/// Follows the valve over so many phases, or until its maxima stop or its impacts accumulate. `seat`: displacement at which
-/// it is reflected, to see what a shift of it would do.
+/// Follows the valve over so many phases, or until its maxima stop or its impacts accumulate. `seat`: displacement at
+/// which it is reflected, to see what a shift of it would do.
 valve_history follow_valve(double q, int phases, double seat);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Keller-Miksis bubble by CVODE, which goes through the periods of the first forcing without a new start: the second
-// one, whose phase would jump between them, has no amplitude.
+// The Keller-Miksis bubble by CVODE, which goes through the periods of the first forcing without a new start: the
+// second one, whose phase would jump between them, has no amplitude.
 #include "../adams.hpp"
 #include "../peer.hpp"
 #include "equations.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The Lorenz system by the plain loop over packs, `for every step: y = rk4(y)`, without a check, a hook or a counter: the
-// floor under Myriad's time. The packs are the library's, arrays of xsimd batches, so that the loop is the only difference.
+// The Lorenz system by the plain loop over packs, `for every step: y = rk4(y)`, without a check, a hook or a counter:
+// the floor under Myriad's time. The packs are the library's, arrays of xsimd batches, so that the loop is the only
+// difference.
 #pragma once
 
 #include <algorithm>
@@ -57,12 +58,14 @@ outcome run_pack_loop(const sweep& work) {
             point<S> u;
             S p;
             for (int lane = 0; lane < lanes; ++lane) {
-                for (int c = 0; c < n; ++c) myriad::detail::set_lane(u.c[c], lane, work.states[c * work.instances + instance(lane)]);
+                for (int c = 0; c < n; ++c)
+                    myriad::detail::set_lane(u.c[c], lane, work.states[c * work.instances + instance(lane)]);
                 myriad::detail::set_lane(p, lane, work.parameters[instance(lane)]);
             }
             for (int step = 0; step < steps; ++step) u = rk4(u, p);
             for (int lane = 0; lane < lanes; ++lane) {
-                for (int c = 0; c < n; ++c) work.states[c * work.instances + instance(lane)] = myriad::detail::get_lane(u.c[c], lane);
+                for (int c = 0; c < n; ++c)
+                    work.states[c * work.instances + instance(lane)] = myriad::detail::get_lane(u.c[c], lane);
                 work.accepted[instance(lane)] = steps;
                 work.endings[instance(lane)] = ending::completed;
             }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The loop over packs with the models' flags and as many batches as Myriad takes: what its time is checked against.
-#include <myriad/openmp/run.hpp>
 #include <myriad/kernel/methods/runge_kutta_4.hpp>
+#include <myriad/openmp/run.hpp>
 
 #include "pack_loop.hpp"
 #include "problems/lorenz.hpp"

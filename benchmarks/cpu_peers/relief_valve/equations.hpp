@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The pressure relief valve as the peers integrate it: equations, and what happens at its events, one instance at a time.
+// The pressure relief valve as the peers integrate it: equations, and what happens at its events, one instance at a
+// time.
 #pragma once
 
 #include <algorithm>
@@ -40,9 +41,9 @@ CPU_PEERS_INLINE T slope(int which, const T* y) {
     return which == section ? T(-kappa) * y[1] - (y[0] + T(delta)) + y[2] : y[1];
 }
 
-/// The length of the step from y at which an event function, beyond its tolerance at the step's end, falls to within it:
-/// regula falsi (Illinois) on steps made anew by `step(length, end)`, with bisection where the start is on the event
-/// itself. `guess` is the first length to try, 0 for none. Leaves the state there in `end`.
+/// The length of the step from y at which an event function, beyond its tolerance at the step's end, falls to within
+/// it: regula falsi (Illinois) on steps made anew by `step(length, end)`, with bisection where the start is on the
+/// event itself. `guess` is the first length to try, 0 for none. Leaves the state there in `end`.
 template <class T, class Step>
 T locate(int which, const T* start, T h, T g_high, T allowed, T guess, T* end, Step&& step) {
     T low = 0, high = h, g_low = value(which, start);
@@ -95,8 +96,8 @@ struct valve {
     /// Whether a step to y crosses an event.
     bool crosses(int e, const T* y) const { return side[e] > 0 && value(e, y) < -allowed; }
 
-    /// After an accepted step from `before` to y; `fired[e]` says which events are at its end. Returns true if the phase
-    /// is over, with `how` changed if the instance is.
+    /// After an accepted step from `before` to y; `fired[e]` says which events are at its end. Returns true if the
+    /// phase is over, with `how` changed if the instance is.
     bool after_step(const T* before, T* y, const bool (&fired)[events], ending& how) {
         lowest = std::min(lowest, y[0]);
         highest = std::max(highest, y[0]);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A function that a hook calls is host code without MYRIAD_FUNCTION.
-#include <myriad/model.hpp>
-
 #include <myriad/instantiate.hpp>
+#include <myriad/model.hpp>
 
 inline double reflected(double v) { return -0.9 * v; }
 

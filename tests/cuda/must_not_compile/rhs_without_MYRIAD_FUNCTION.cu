@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The right-hand side is host code without MYRIAD_FUNCTION.
-#include <myriad/model.hpp>
-
 #include <myriad/instantiate.hpp>
+#include <myriad/model.hpp>
 
 struct ball {
     enum state { x, v, n_state };

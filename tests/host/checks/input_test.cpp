@@ -136,13 +136,14 @@ TEST_CASE("states, parameters and times that are not finite are counted, and the
         auto e = good_decays();
         e.state(bare::w)[2] = nan;
         e.state(bare::w)[4] = infinity;
-        input_refused(e,
-                      {"state 1 (w) is not finite in 2 of 5 instances", "first in instance 2 (nan)", "invalid_instances"});
+        input_refused(
+            e, {"state 1 (w) is not finite in 2 of 5 instances", "first in instance 2 (nan)", "invalid_instances"});
     }
     SECTION("an infinite parameter") {
         auto e = good_decays();
         e.parameter(bare::rate)[3] = -infinity;
-        input_refused(e, {"parameter 0 (rate) is not finite in 1 of 5 instances", "instance 3 (-inf)", "correct the inputs"});
+        input_refused(
+            e, {"parameter 0 (rate) is not finite in 1 of 5 instances", "instance 3 (-inf)", "correct the inputs"});
     }
     SECTION("infinite states in all instances were set") {
         auto e = good_decays();
@@ -293,7 +294,8 @@ TEST_CASE("an absolute tolerance of zero is taken, and states that are zero divi
     check_relative_tolerance_alone<float>(1e-5);
 }
 
-TEST_CASE("tolerances that fixed steps do not use are neither refused in single precision nor said to be raised", "[input]") {
+TEST_CASE("tolerances that fixed steps do not use are neither refused in single precision nor said to be raised",
+          "[input]") {
     auto e = good_decays<float>();
     options o;
     o.step = 0.125;
@@ -395,7 +397,9 @@ TEST_CASE("a choice that does not exist is refused, for every option that is one
             options_refused(o, {name, "which is none", "choose"});
         }
     };
-    const auto to = [](auto& choice, int number) { choice = static_cast<std::remove_reference_t<decltype(choice)>>(number); };
+    const auto to = [](auto& choice, int number) {
+        choice = static_cast<std::remove_reference_t<decltype(choice)>>(number);
+    };
     check("phase_time is ", [&](options& o, int bad) { to(o.phase_time, bad); });
     check("phase_step is ", [&](options& o, int bad) { to(o.phase_step, bad); });
     check("counting is ", [&](options& o, int bad) { to(o.counting, bad); });
@@ -410,8 +414,10 @@ TEST_CASE("an event tolerance below the resolution of its function is refused", 
     o.events.resize(1);
     auto e = good_travellers();  // x - 1: rounding of the one is 2^-53, of the 0 at which x begins nothing
     o.events[0].tolerance = 1e-17;
-    input_refused(e, {"tolerance of event 0 is 1e-17", "rounding changes its function by 1.11022302e-16",
-                      "instance 0", "raise the tolerance"}, o);
+    input_refused(e,
+                  {"tolerance of event 0 is 1e-17", "rounding changes its function by 1.11022302e-16", "instance 0",
+                   "raise the tolerance"},
+                  o);
     o.events[0].tolerance = 2.3e-16;
     CHECK(solve<cash_karp>(one_thread, e, o).count(status::success) == 5);
 
@@ -498,7 +504,8 @@ TEST_CASE("components named by enumerators of another enumeration are refused, a
 
     auto e = good_oscillators();
     o = {};
-    o.record = {.states = {complete::v, 0}, .accessories = std::vector<int>{1}, .integer_accessories = {complete::turns}};
+    o.record = {
+        .states = {complete::v, 0}, .accessories = std::vector<int>{1}, .integer_accessories = {complete::turns}};
     const auto report = solve<cash_karp>(one_thread, e, o);
     CHECK(report.records.state(0)(2, 0) == e.state(0)[2]);
     CHECK(report.records.accessory(complete::entered)(2, 0) == 0);
@@ -535,10 +542,12 @@ TEST_CASE("samples by a method without dense output are refused", "[input]") {
 TEST_CASE("no way, or two ways, of choosing samples is refused", "[input]") {
     options o = sampled();
     o.samples.evenly = 0;
-    options_refused<dense<cash_karp>>(o, {"samples names 0 of evenly, times, times_of_instances and every", "exactly one"});
+    options_refused<dense<cash_karp>>(
+        o, {"samples names 0 of evenly, times, times_of_instances and every", "exactly one"});
     o = sampled();
     o.samples.every = 3;
-    options_refused<dense<cash_karp>>(o, {"samples names 2 of evenly, times, times_of_instances and every", "exactly one"});
+    options_refused<dense<cash_karp>>(
+        o, {"samples names 2 of evenly, times, times_of_instances and every", "exactly one"});
     o.samples.times = {0.5};
     options_refused<dense<cash_karp>>(o, {"samples names 3 of"});
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ensembles that a GPU takes in several chunks, three at a time: no bit depends on it, and what is refused is refused as a
-// whole. On the CPU the same holds of one loop over all.
+// Ensembles that a GPU takes in several chunks, three at a time: no bit depends on it, and what is refused is refused
+// as a whole. On the CPU the same holds of one loop over all.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -49,8 +49,9 @@ myriad::options quarter_steps(std::int64_t chunk) {
 }
 
 bool same(const drifts& a, const drifts& b) {
-    bool all = same_bits(a.state(0), b.state(0)) && same_bits(a.t(), b.t()) && same_bits(a.next_step(), b.next_step()) &&
-               same_bits(a.phases_done(), b.phases_done()) && same_bits(a.accepted_steps(), b.accepted_steps()) &&
+    bool all = same_bits(a.state(0), b.state(0)) && same_bits(a.t(), b.t()) &&
+               same_bits(a.next_step(), b.next_step()) && same_bits(a.phases_done(), b.phases_done()) &&
+               same_bits(a.accepted_steps(), b.accepted_steps()) &&
                same_bits(a.integer_accessory(0), b.integer_accessory(0)) && same_bits(a.accessory(0), b.accessory(0)) &&
                same_bits(a.rhs_evaluations(), b.rhs_evaluations());
     for (std::int64_t i = 0; i < a.size(); ++i) all = all && a.status(i) == b.status(i) && a.ended(i) == b.ended(i);
@@ -78,11 +79,13 @@ TEST_CASE("chunks of a large ensemble, chosen or not, change no bit and no figur
         CHECK(report.rhs_evaluations == expected.rhs_evaluations);
         CHECK(same_bits(report.records.state(drift::x), expected.records.state(drift::x)));
         CHECK(same_bits(report.records.time(), expected.records.time()));
-        CHECK(same_bits(report.records.integer_accessory(drift::phases), expected.records.integer_accessory(drift::phases)));
+        CHECK(same_bits(report.records.integer_accessory(drift::phases),
+                        expected.records.integer_accessory(drift::phases)));
     }
 }
 
-TEST_CASE("an ensemble whose memory is pinned gives the same bits in chunks, whatever was allocated after it was pinned") {
+TEST_CASE(
+    "an ensemble whose memory is pinned gives the same bits in chunks, whatever was allocated after it was pinned") {
     auto o = quarter_steps(33'333);
     o.record = {.from_phase = 1, .states = {drift::x}, .time = true};
     auto ordinary = filled();
@@ -154,7 +157,8 @@ TEST_CASE("bad input in the last chunk is refused, and leaves all chunks as they
         const auto before = filled();
         e.parameter(drift::speed)(bad) = std::numeric_limits<double>::quiet_NaN();
         refused([&] { myriad::solve<runge_kutta_4>(test_device(), e, quarter_steps(20'000)); },
-                {"parameter 0 (speed) is not finite in 1 of 400003 instances", myriad::message("instance ", bad, ' ').c_str()});
+                {"parameter 0 (speed) is not finite in 1 of 400003 instances",
+                 myriad::message("instance ", bad, ' ').c_str()});
         CHECK((e.state(drift::x) == before.state(drift::x)).all());
         CHECK(e.phases_done().maxCoeff() == 0);
         CHECK(e.status(0) == status::not_started);
@@ -219,7 +223,8 @@ TEST_CASE("instances that fail or are marked in later chunks of a pinned ensembl
     CHECK(different == 4);
 }
 
-TEST_CASE("samples and scales of tolerances that a pinned ensemble is asked for later come in chunks as in an ordinary one") {
+TEST_CASE(
+    "samples and scales of tolerances that a pinned ensemble is asked for later come in chunks as in an ordinary one") {
     using dense = myriad::dense<myriad::tsitouras_5>;
     auto o = usual();
     o.samples = {.states = {swing::x, swing::v}, .capacity = 40, .evenly = 10};
@@ -235,7 +240,8 @@ TEST_CASE("samples and scales of tolerances that a pinned ensemble is asked for 
         CHECK(same_results(pinned, ordinary));
         CHECK(same_bits(pinned.samples().stored(), ordinary.samples().stored()));
         CHECK(same_bits(pinned.samples().time(), ordinary.samples().time()));
-        for (const int c : {swing::x, swing::v}) CHECK(same_bits(pinned.samples().state(c), ordinary.samples().state(c)));
+        for (const int c : {swing::x, swing::v})
+            CHECK(same_bits(pinned.samples().state(c), ordinary.samples().state(c)));
     }
     CHECK(pinned.samples().stored().minCoeff() == 40);
     CHECK(pinned.samples().state(swing::v).isFinite().all());
@@ -337,7 +343,8 @@ TEST_CASE("a large solver's arrays come and go row by row where it holds more th
     s.upload(30'000);
     s.integrate();
     s.download();
-    CHECK(same_bits(Eigen::ArrayXd(s.instances().state(drift::x).head(30'000)), Eigen::ArrayXd(expected.state(drift::x))));
+    CHECK(same_bits(Eigen::ArrayXd(s.instances().state(drift::x).head(30'000)),
+                    Eigen::ArrayXd(expected.state(drift::x))));
     CHECK(s.instances().phases_done()(29'999) == expected.phases_done()(29'999));
     CHECK(s.instances().phases_done()(30'000) == 0);
     CHECK(s.instances().integer_accessory(drift::phases)(29'999) == expected.integer_accessory(drift::phases)(29'999));

@@ -75,9 +75,11 @@ TEST_CASE("components are Eigen maps over all instances, written in bulk", "[ens
 
 TEST_CASE("values of another number than there are instances are refused, and do not run past the ends", "[ensemble]") {
     ensemble<complete> e(46);
-    const Eigen::ArrayXd good = Eigen::ArrayXd::LinSpaced(46, 0, 1), few = good.head(10), many = Eigen::ArrayXd::Zero(47);
+    const Eigen::ArrayXd good = Eigen::ArrayXd::LinSpaced(46, 0, 1), few = good.head(10),
+                         many = Eigen::ArrayXd::Zero(47);
     e.state(complete::x) = good;
-    refused([&] { e.state(complete::x) = few; }, {"state 0 (x) has 46 values", "is given 10", "a single number for all"});
+    refused([&] { e.state(complete::x) = few; },
+            {"state 0 (x) has 46 values", "is given 10", "a single number for all"});
     refused([&] { e.state(complete::x) = many; }, {"state 0 (x)", "is given 47"});
     refused([&] { e.state(complete::x) += few; }, {"is given 10"});
     refused([&] { e.state(complete::x) -= few; }, {"is given 10"});
@@ -131,9 +133,12 @@ TEST_CASE("functions of Eigen that give a component another length are refused, 
     CHECK((x.setZero() == 0).all());
     // What else gives Eigen's arrays a length, its maps do not have.
     const auto has_others = [](auto& map) {
-        return requires { map.setZero(46); } || requires { map.setOnes(46); } || requires { map.setConstant(46, 3); } ||
-               requires { map.setRandom(46); } || requires { map.conservativeResize(46); } ||
-               requires { map.resizeLike(map); };
+        return requires { map.setZero(46); }
+        || requires { map.setOnes(46); }
+        || requires { map.setConstant(46, 3); }
+        || requires { map.setRandom(46); }
+        || requires { map.conservativeResize(46); }
+        || requires { map.resizeLike(map); };
     };
     CHECK_FALSE(has_others(x));
 }
@@ -232,7 +237,8 @@ TEST_CASE("an ensemble that was moved away has no instances, and says so to whoe
     CHECK(a.state(complete::x).size() == 3);
 }
 
-TEST_CASE("an ensemble that is being integrated is refused to a second call, from another thread or from progress", "[ensemble]") {
+TEST_CASE("an ensemble that is being integrated is refused to a second call, from another thread or from progress",
+          "[ensemble]") {
     auto e = good_decays(1000), expected = good_decays(1000);
     solve<cash_karp>(one_thread, expected);
     bool tried = false;
@@ -262,11 +268,13 @@ TEST_CASE("phases that would be more than an instance can count are refused unti
     o.phases = 3;
     solve<cash_karp>(one_thread, e, o);
     CHECK(e.phases_done()[1] == most - 2);
-    refused([&] { solve<cash_karp>(one_thread, e, o); }, {"3 phases are asked for after 2147483645", "2147483647", "restart()"});
+    refused([&] { solve<cash_karp>(one_thread, e, o); },
+            {"3 phases are asked for after 2147483645", "2147483647", "restart()"});
     CHECK(e.phases_done()[1] == most - 2);
     e.restart();
     CHECK(solve<cash_karp>(one_thread, e, o).count(status::success) == 3);
-    for (int turn = 0; turn < 10; ++turn) myriad::host::ensemble_access::expect_phases(e, 1'000'000'000);  // of which instances that have ended did none
+    for (int turn = 0; turn < 10; ++turn)
+        myriad::host::ensemble_access::expect_phases(e, 1'000'000'000);  // of which instances that have ended did none
 }
 
 TEST_CASE("an ensemble that was moved keeps its memory", "[ensemble]") {
@@ -278,7 +286,8 @@ TEST_CASE("an ensemble that was moved keeps its memory", "[ensemble]") {
     CHECK(solve<cash_karp>(one_thread, b).count(status::success) == 9);
 }
 
-TEST_CASE("enumerators that a model inherits name its components, beside an enumeration declared anew as numbers", "[ensemble]") {
+TEST_CASE("enumerators that a model inherits name its components, beside an enumeration declared anew as numbers",
+          "[ensemble]") {
     struct stronger : complete {
         enum shared { strength = complete::n_shared, n_shared };
     };
@@ -360,7 +369,8 @@ TEST_CASE("restart lets every instance begin again, failed ones too", "[ensemble
     CHECK((e.rhs_evaluations() == fresh.rhs_evaluations()).all());
 }
 
-TEST_CASE("a failed instance that is given new inputs does not stay failed in silence: the call says restart", "[ensemble]") {
+TEST_CASE("a failed instance that is given new inputs does not stay failed in silence: the call says restart",
+          "[ensemble]") {
     auto e = good_decays(20);
     const auto fresh = good_decays(20);
     e.parameter(bare::rate)[4] = 1e308;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is remembered of instances that have ended: each once, found by its index, with a digest that tells its inputs apart.
+// What is remembered of instances that have ended: each once, found by its index, with a digest that tells its inputs
+// apart.
 #include "myriad/host/ensemble/ended_inputs.hpp"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ensembles so large that the host checks, counts and clears them with several threads: the same answers, wherever in the
-// ensemble there is something to say.
+// Ensembles so large that the host checks, counts and clears them with several threads: the same answers, wherever in
+// the ensemble there is something to say.
 #include <cstdint>
 #include <limits>
 
@@ -35,16 +35,18 @@ void checks_at_a_glance() {
     using limits = std::numeric_limits<R>;
     auto e = good_decays<R>(size);
     CHECK(passes(e));
-    for (const R fine : {limits::max(), limits::lowest(), limits::denorm_min(), limits::min(), R(-0.0), limits::epsilon()})
+    for (const R fine :
+         {limits::max(), limits::lowest(), limits::denorm_min(), limits::min(), R(-0.0), limits::epsilon()})
         for (const std::int64_t i : places) {
             e.state(bare::w)[i] = fine;
             CHECK(passes(e));
         }
     e.state(bare::w) = R(0);
-    for (const R bad : {limits::infinity(), -limits::infinity(), limits::quiet_NaN(), -limits::quiet_NaN(), limits::signaling_NaN()})
+    for (const R bad :
+         {limits::infinity(), -limits::infinity(), limits::quiet_NaN(), -limits::quiet_NaN(), limits::signaling_NaN()})
         for (const std::int64_t i : places)
-            for (R* const values : {e.state(bare::x).data(), e.parameter(bare::rate).data(), e.t_begin().data(),
-                                    e.t_end().data()}) {
+            for (R* const values :
+                 {e.state(bare::x).data(), e.parameter(bare::rate).data(), e.t_begin().data(), e.t_end().data()}) {
                 const R before = values[i];
                 values[i] = bad;
                 CHECK_FALSE(passes(e));
@@ -53,7 +55,9 @@ void checks_at_a_glance() {
     CHECK(passes(e));
 }
 
-TEST_CASE("a glance at the inputs sees what the full check sees, in doubles", "[large]") { checks_at_a_glance<double>(); }
+TEST_CASE("a glance at the inputs sees what the full check sees, in doubles", "[large]") {
+    checks_at_a_glance<double>();
+}
 TEST_CASE("a glance at the inputs sees what the full check sees, in floats", "[large]") { checks_at_a_glance<float>(); }
 
 TEST_CASE("infinite ends pass at a glance where an event may end the phase, and NaN does not", "[large]") {
@@ -76,7 +80,8 @@ TEST_CASE("the only bad value of a large ensemble is named", "[large]") {
         auto e = good_decays(size);
         e.parameter(bare::rate)[i] = std::numeric_limits<double>::quiet_NaN();
         refused([&] { myriad::solve<myriad::cash_karp>(tests::test_device(2), e); },
-                {"parameter 0 (rate) is not finite in 1 of 300001 instances", myriad::message("instance ", i, ' ').c_str()});
+                {"parameter 0 (rate) is not finite in 1 of 300001 instances",
+                 myriad::message("instance ", i, ' ').c_str()});
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Small models for the tests of the ensemble: one with every kind of component and hook, one with an event alone, a bare
-// one, and one that no source file instantiates.
+// Small models for the tests of the ensemble: one with every kind of component and hook, one with an event alone, a
+// bare one, and one that no source file instantiates.
 #pragma once
 
 #include <myriad/model.hpp>

@@ -10,7 +10,8 @@
 #include "tests/catch.hpp"
 #include "tests/host/ensemble/models.hpp"
 
-/// Checks that the call is refused, and that the message has all the given words: the problem, why it is one, what to do.
+/// Checks that the call is refused, and that the message has all the given words: the problem, why it is one, what to
+/// do.
 template <class Call>
 void refused(Call&& call, std::initializer_list<const char*> words) {
     std::string said = "(not refused)";

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What is left of memory, by files like those of the system, and that too much is refused as a whole before any is taken.
+// What is left of memory, by files like those of the system, and that too much is refused as a whole before any is
+// taken.
+#include "myriad/host/memory/memory_need.hpp"
+
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -8,7 +11,6 @@
 
 #include <unistd.h>
 
-#include "myriad/host/memory/memory_need.hpp"
 #include "tests/host/ensemble/refusal.hpp"
 #include "tests/support/device.hpp"
 
@@ -45,12 +47,15 @@ constexpr const char* machine = "MemTotal: 32000 kB\nMemFree: 100 kB\nMemAvailab
 
 TEST_CASE("where nothing can be read nothing is refused") {
     CHECK(std::isinf(files().left().bytes));
-    CHECK(std::isinf(files().write("proc/meminfo", "MemTotal: 32000 kB").write("proc/self/cgroup", "0::/a\nnonsense").left().bytes));
+    CHECK(std::isinf(
+        files().write("proc/meminfo", "MemTotal: 32000 kB").write("proc/self/cgroup", "0::/a\nnonsense").left().bytes));
 }
 
 TEST_CASE("without a limit of its own a program has what the machine has, with swap") {
     files f;
-    f.write("proc/meminfo", machine).write("proc/self/cgroup", "0::/user/job").write("sys/fs/cgroup/user/job/memory.max", "max");
+    f.write("proc/meminfo", machine)
+        .write("proc/self/cgroup", "0::/user/job")
+        .write("sys/fs/cgroup/user/job/memory.max", "max");
     f.write("sys/fs/cgroup/user/job/memory.current", "5000");
     CHECK(f.left().bytes == 1024.0 * 21'000);
     CHECK(f.left().of == "this machine");
@@ -97,7 +102,8 @@ TEST_CASE("a control group of version 1 limits memory, and memory with swap") {
     f.write("proc/meminfo", machine).write("proc/self/cgroup", "4:memory:/job\n0::/");
     f.write(group + "limit_in_bytes", "9223372036854771712").write(group + "usage_in_bytes", "4000000");
     CHECK(f.left().bytes == 1024.0 * 21'000);
-    f.write(group + "limit_in_bytes", "9000000").write(group + "stat", "cache 0\ntotal_inactive_file 700000\ntotal_active_file 300000");
+    f.write(group + "limit_in_bytes", "9000000")
+        .write(group + "stat", "cache 0\ntotal_inactive_file 700000\ntotal_active_file 300000");
     CHECK(f.left().bytes == 6e6 + 1024.0 * 1000);
     f.write(group + "memsw.limit_in_bytes", "9500000").write(group + "memsw.usage_in_bytes", "4000000");
     CHECK(f.left().bytes == 6.5e6);
@@ -108,9 +114,12 @@ TEST_CASE("what would take more than there is is refused with its parts, and sma
     need.add("records", 3.2e9);
     need.add("counters", 20e6);
     need.add("samples", 0);
-    refused([&] { need.check("this call", "ask for less", [] { return memory_left{1.5e9, "the control group /job/"}; }); },
-            {"out of memory: this call would take 3.22 GB (records 3.2 GB, counters 20 MB), and 1.5 GB of "
-             "the control group /job/ are left: ask for less"});
+    refused(
+        [&] { need.check("this call", "ask for less", [] {
+                  return memory_left{1.5e9, "the control group /job/"};
+              }); },
+        {"out of memory: this call would take 3.22 GB (records 3.2 GB, counters 20 MB), and 1.5 GB of "
+         "the control group /job/ are left: ask for less"});
     need.check("this call", "ask for less", [] { return memory_left{3.22e9, "this machine"}; });
     memory_need small;
     small.add("records", 63e6);
@@ -128,22 +137,26 @@ TEST_CASE("sizes are told apart, and never 0.0") {
     CHECK(bytes_texts(40, 20) == std::pair<std::string, std::string>{"40 bytes", "20 bytes"});
 }
 
-TEST_CASE("an ensemble, its records, samples, time domains and a solver that no machine has memory for "
-          "are refused as a whole") {
+TEST_CASE(
+    "an ensemble, its records, samples, time domains and a solver that no machine has memory for "
+    "are refused as a whole") {
     using ensemble_models::bare;
     using ensemble_models::complete;
     const auto here = tests::test_device(1);
     constexpr std::int64_t many = 100'000'000'000;
     refused([] { myriad::ensemble<complete> e(many); },
-            {"an ensemble of 100000000000 instances would take ", "states 1600 GB", "accessories", " are left", "smaller parts"});
+            {"an ensemble of 100000000000 instances would take ", "states 1600 GB", "accessories", " are left",
+             "smaller parts"});
     auto e = good_decays(1000);
     myriad::options o;
     o.phases = 1'000'000'000;
     o.record.states = {bare::x, bare::w};
-    refused([&] { myriad::solve<myriad::cash_karp>(here, e, o); }, {"this call for 1000 instances would take ", "records 16000 GB"});
+    refused([&] { myriad::solve<myriad::cash_karp>(here, e, o); },
+            {"this call for 1000 instances would take ", "records 16000 GB"});
     o = {};
     o.samples = {.states = {bare::x}, .capacity = 1'000'000'000, .every = 1};
-    refused([&] { myriad::solve<myriad::dense<myriad::cash_karp>>(here, e, o); }, {"this call for 1000 instances", "16000 GB"});
+    refused([&] { myriad::solve<myriad::dense<myriad::cash_karp>>(here, e, o); },
+            {"this call for 1000 instances", "16000 GB"});
     CHECK((e.phases_done() == 0).all());
     refused([&] { myriad::solver<bare, myriad::cash_karp>(myriad::device::cpu(1), many); },
             {"a solver for 100000000000 instances", "states", "counters"});

@@ -131,7 +131,8 @@ TEST_CASE("observed quantities show with the number of their reductions", "[desc
 }
 
 TEST_CASE("declarations show, but not those that are denied", "[describe]") {
-    CHECK(has(describe<with_declarations>(), "declares: writes_parameters, writes_time_domain, accessories_are_outputs, scalar_only, rare_events\n"));
+    CHECK(has(describe<with_declarations>(),
+              "declares: writes_parameters, writes_time_domain, accessories_are_outputs, scalar_only, rare_events\n"));
     CHECK(has(describe<with_declarations_denied>(), "declares: nothing\n"));
     CHECK(has(describe<branching>(), "declares: scalar_only\n"));
 }

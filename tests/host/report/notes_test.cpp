@@ -26,8 +26,8 @@ auto follow(double rate, double t_end, const myriad::options& o) {
     return myriad::solve<Method>(tests::test_device(1), e, o);
 }
 
-/// Twenty starts near the attractor of Roessler's equations, each a run of its own over 50 units of time: how many were told that
-/// they are stiff, and the steps of all.
+/// Twenty starts near the attractor of Roessler's equations, each a run of its own over 50 units of time: how many were
+/// told that they are stiff, and the steps of all.
 template <class Method>
 std::pair<int, std::int64_t> stiff_runs_of_roessler(double tolerance) {
     int told = 0;
@@ -38,8 +38,8 @@ std::pair<int, std::int64_t> stiff_runs_of_roessler(double tolerance) {
         e.state(stiff::roessler::y) = 2 * std::sin(7.0 * k);
         e.state(stiff::roessler::z) = 0.1 * k;
         e.time_domain(0, 50);
-        const auto report = solve<Method>(tests::test_device(1), e,
-                                          {.relative_tolerance = tolerance, .absolute_tolerance = tolerance});
+        const auto report =
+            solve<Method>(tests::test_device(1), e, {.relative_tolerance = tolerance, .absolute_tolerance = tolerance});
         told += report.notes.empty() ? 0 : 1;
         steps += report.accepted_steps + report.rejected_steps;
     }
@@ -69,7 +69,7 @@ TEST_CASE("the report remarks that stability limits an explicit method and says 
 
 TEST_CASE("the report does not remark stiffness where accuracy limits the step, or the user, or there were few steps") {
     const myriad::options o{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-6};
-    CHECK(follow<myriad::rodas_5p>(1e4, 1, o).notes.empty());  // what the remark advises
+    CHECK(follow<myriad::rodas_5p>(1e4, 1, o).notes.empty());        // what the remark advises
     CHECK(follow<myriad::tsitouras_5>(1e4, 0.01, o).notes.empty());  // a hundred steps
     myriad::options fine = o;
     fine.relative_tolerance = fine.absolute_tolerance = 1e-13;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The backend under test against itself (block sizes, chunks and order change no bit) and against the CPU backend, and what
-// a GPU that cannot do what is asked says.
+// The backend under test against itself (block sizes, chunks and order change no bit) and against the CPU backend, and
+// what a GPU that cannot do what is asked says.
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -27,8 +27,7 @@ myriad::ensemble<swing> solved(std::int64_t size, const myriad::options& o) {
 myriad::ensemble<heat> rods(std::int64_t size) {
     myriad::ensemble<heat> e(size);
     for (int i = 0; i < heat::points; ++i) {
-        for (std::int64_t k = 0; k < size; ++k)
-            e.state(i)(k) = std::sin(0.1 * i + 0.01 * static_cast<double>(k));
+        for (std::int64_t k = 0; k < size; ++k) e.state(i)(k) = std::sin(0.1 * i + 0.01 * static_cast<double>(k));
         for (int j = 0; j < heat::points; ++j)
             e.shared(i * heat::points + j) = i == j ? -2.0 : std::abs(i - j) == 1 ? 1.0 : 0.0;
     }
@@ -76,8 +75,9 @@ TEST_CASE("turning the ensemble's order around changes no bit") {
     CHECK(different == 0);
 }
 
-// Rounding grows with the 200 steps of an instance, and an impact is located to 1e-8 only, where either backend may stop at
-// another point of that interval: it comes back with a factor of the speed over the slope, a few units, and is damped after.
+// Rounding grows with the 200 steps of an instance, and an impact is located to 1e-8 only, where either backend may
+// stop at another point of that interval: it comes back with a factor of the speed over the slope, a few units, and is
+// damped after.
 TEST_CASE("both backends agree to what the event tolerance implies") {
     const auto here = solved(1000, usual());
     myriad::ensemble<swing> there(1000);
@@ -96,7 +96,8 @@ TEST_CASE("both backends agree to what the event tolerance implies") {
     CHECK(other_impacts <= 5);
     CHECK(compared >= 995);
     CHECK(largest < 1e-5);
-    const double steps = static_cast<double>(here.accepted_steps().sum()) / static_cast<double>(there.accepted_steps().sum());
+    const double steps =
+        static_cast<double>(here.accepted_steps().sum()) / static_cast<double>(there.accepted_steps().sum());
     CHECK(steps == Approx(1).epsilon(0.02));
 }
 
@@ -121,7 +122,8 @@ TEST_CASE("a matrix of 77 x 77 shared parameters gives the same wherever it is k
     const auto report = myriad::solve<myriad::runge_kutta_4>(test_device(), here, o);
     myriad::solve<myriad::runge_kutta_4>(myriad::device::cpu(), there, o);
     double largest = 0;
-    for (int i = 0; i < heat::points; ++i) largest = std::max(largest, (here.state(i) - there.state(i)).abs().maxCoeff());
+    for (int i = 0; i < heat::points; ++i)
+        largest = std::max(largest, (here.state(i) - there.state(i)).abs().maxCoeff());
     // 100 steps of sums of 77 terms of at most 2, none of which grows
     CHECK(largest < 100 * 77 * 2 * std::numeric_limits<double>::epsilon());
     if (tests_cpu()) return;
@@ -133,7 +135,8 @@ TEST_CASE("a matrix of 77 x 77 shared parameters gives the same wherever it is k
           myriad::shared_placement::cache);
     for (int i = 0; i < heat::points; ++i) CHECK(same_bits(cached.state(i), here.state(i)));
     o.shared_placement = myriad::shared_placement::constant_bank;
-    refused([&] { myriad::solve<myriad::runge_kutta_4>(test_device(), cached, o); }, {"constant_bank", "47432 bytes", "1024"});
+    refused([&] { myriad::solve<myriad::runge_kutta_4>(test_device(), cached, o); },
+            {"constant_bank", "47432 bytes", "1024"});
 }
 
 TEST_CASE("a GPU that lacks memory or room for a block says so, and the next solver works", "[small]") {

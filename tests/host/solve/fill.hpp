@@ -45,15 +45,18 @@ bool same_bits(const Map& a, const Map& b) {
 /// Whether all results of the first `count` instances (by default all) are the same bits.
 template <class Model, class R>
 bool same_results(const myriad::ensemble<Model, R>& a, const myriad::ensemble<Model, R>& b) {
-    bool same = same_bits(a.t(), b.t()) && same_bits(a.next_step(), b.next_step()) && same_bits(a.phases_done(), b.phases_done());
+    bool same = same_bits(a.t(), b.t()) && same_bits(a.next_step(), b.next_step()) &&
+                same_bits(a.phases_done(), b.phases_done());
     for (int c = 0; c < myriad::detail::n_state<Model>; ++c) same = same && same_bits(a.state(c), b.state(c));
-    for (int c = 0; c < myriad::detail::n_parameter<Model>; ++c) same = same && same_bits(a.parameter(c), b.parameter(c));
+    for (int c = 0; c < myriad::detail::n_parameter<Model>; ++c)
+        same = same && same_bits(a.parameter(c), b.parameter(c));
     for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c)
         if (c != swing::my_number) same = same && same_bits(a.accessory(c), b.accessory(c));
     for (int c = 0; c < myriad::detail::n_integer_accessory<Model>; ++c)
         same = same && same_bits(a.integer_accessory(c), b.integer_accessory(c));
     for (std::int64_t i = 0; i < a.size(); ++i) same = same && a.status(i) == b.status(i);
-    return same && same_bits(a.accepted_steps(), b.accepted_steps()) && same_bits(a.rhs_evaluations(), b.rhs_evaluations());
+    return same && same_bits(a.accepted_steps(), b.accepted_steps()) &&
+           same_bits(a.rhs_evaluations(), b.rhs_evaluations());
 }
 
 inline myriad::options usual() {

@@ -55,7 +55,8 @@ struct heat {
     enum shared { matrix, n_shared = points * points };
 
     template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& temperature, const auto& p) {
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& temperature,
+                                                       const auto& p) {
         myriad::vec<R, n_state> slope;
 #pragma GCC unroll 1
         for (int i = 0; i < points; ++i) {
@@ -68,8 +69,8 @@ struct heat {
     }
 };
 
-/// x' = speed, for ensembles so large that they are worth several chunks. Counts the phases in which it got beyond a limit,
-/// and there ends the instance.
+/// x' = speed, for ensembles so large that they are worth several chunks. Counts the phases in which it got beyond a
+/// limit, and there ends the instance.
 struct drift {
     enum state { x, n_state };
     enum parameter { speed, n_parameter };

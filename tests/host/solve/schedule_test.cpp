@@ -33,7 +33,8 @@ myriad::options phases_of(std::int64_t phases, schedule how) {
 /// Costs spread over three decades, some zero.
 std::vector<std::uint32_t> some_costs(std::size_t count) {
     std::vector<std::uint32_t> cost(count);
-    for (std::size_t i = 0; i < count; ++i) cost[i] = i % 97 == 0 ? 0 : static_cast<std::uint32_t>((i * 7919) % 10007 + 1);
+    for (std::size_t i = 0; i < count; ++i)
+        cost[i] = i % 97 == 0 ? 0 : static_cast<std::uint32_t>((i * 7919) % 10007 + 1);
     return cost;
 }
 
@@ -133,11 +134,13 @@ TEST_CASE("the report says how a GPU was scheduled, which automatic chooses by p
 
 TEST_CASE("a schedule that is none is refused", "[small]") {
     myriad::options o = phases_of(1, static_cast<schedule>(9));
-    refused([&] {
-        myriad::ensemble<swing> e(3);
-        fill(e);
-        myriad::solve<cash_karp>(test_device(), e, o);
-    }, {"schedule is 9", "choose automatic"});
+    refused(
+        [&] {
+            myriad::ensemble<swing> e(3);
+            fill(e);
+            myriad::solve<cash_karp>(test_device(), e, o);
+        },
+        {"schedule is 9", "choose automatic"});
 }
 
 TEST_CASE("schedules change no bit of phases that carry time and step on, nor of instances that have ended before") {
@@ -163,7 +166,8 @@ TEST_CASE("schedules change no bit of phases that carry time and step on, nor of
     }
 }
 
-TEST_CASE("a solver may get domains of the instances' own after a common one, and fewer instances, with the same bits") {
+TEST_CASE(
+    "a solver may get domains of the instances' own after a common one, and fewer instances, with the same bits") {
     // all but the domains, which would be the instances' own if they were asked for
     const auto set = [](myriad::ensemble<swing>& e) {
         myriad::ensemble<swing> from(e.size());

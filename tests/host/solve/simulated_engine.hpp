@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The engine of the simulated GPU: one chunk in memory of its own, and a thread as its stream, which integrates with the kernel
-// for the CPU.
+// The engine of the simulated GPU: one chunk in memory of its own, and a thread as its stream, which integrates with
+// the kernel for the CPU.
 #pragma once
 
 #include <chrono>
@@ -143,7 +143,8 @@ public:
         const turn mine(taken_);
         synchronise();
         const auto zero = *static_cast<clock::time_point*>(since);
-        return {std::chrono::duration<double>(begun_ - zero).count(), std::chrono::duration<double>(done_ - zero).count()};
+        return {std::chrono::duration<double>(begun_ - zero).count(),
+                std::chrono::duration<double>(done_ - zero).count()};
     }
     void* start_clock() override {
         clock_ = clock::now();
@@ -151,7 +152,9 @@ public:
     }
     myriad::cuda::kernel_facts facts() const override { return {}; }
     std::int64_t full_load() const override { return 1; }
-    std::int64_t affordable(std::int64_t bytes) const override { return (the_gpu.memory - the_gpu.used) * 9 / 10 / bytes; }
+    std::int64_t affordable(std::int64_t bytes) const override {
+        return (the_gpu.memory - the_gpu.used) * 9 / 10 / bytes;
+    }
     void rest() override {
         const turn mine(taken_);
         demand(under_way_ == 0 && !fetching_, "an engine is to rest while it works");
@@ -179,13 +182,16 @@ private:
         return walk(copy, count, visit);
     }
     template <class T>
-    static std::size_t bytes_of(T*, std::int64_t values) { return static_cast<std::size_t>(values) * sizeof(T); }
+    static std::size_t bytes_of(T*, std::int64_t values) {
+        return static_cast<std::size_t>(values) * sizeof(T);
+    }
     template <class T>
     rows rows_of(T* host, std::size_t at, std::int64_t components, std::int64_t size) const {
-        return {reinterpret_cast<std::byte*>(host + first_), at, bytes_of(host, count_), static_cast<std::size_t>(components),
-                bytes_of(host, size)};
+        return {reinterpret_cast<std::byte*>(host + first_), at, bytes_of(host, count_),
+                static_cast<std::size_t>(components), bytes_of(host, size)};
     }
-    /// Bookkeeping is zero before the first call; records and samples are NaN, integers zero, where nothing was written.
+    /// Bookkeeping is zero before the first call; records and samples are NaN, integers zero, where nothing was
+    /// written.
     template <class T>
     static void clear(T* array, std::byte* begin, std::int64_t values, kind what) {
         const bool to_nan = std::is_floating_point_v<T> && what != kind::bookkeeping;

@@ -62,7 +62,8 @@ void pin_memory(int, void* memory, std::size_t bytes) {
 }
 void unpin_memory(void* memory) {
     const std::lock_guard lock(simulated::pinned().mutex);
-    simulated::demand(simulated::pinned().blocks.erase(static_cast<std::byte*>(memory)) == 1, "no such memory is pinned");
+    simulated::demand(simulated::pinned().blocks.erase(static_cast<std::byte*>(memory)) == 1,
+                      "no such memory is pinned");
 }
 
 template <class Model, class Method, class R, class Counts>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A GPU made of the host's memory and threads, so that what `solve` and `solver` do with one runs where there is none: a program
-// that links simulated_gpu.cpp has it as device "cuda". Here is what tests can do to it, and what it notices.
+// A GPU made of the host's memory and threads, so that what `solve` and `solver` do with one runs where there is none:
+// a program that links simulated_gpu.cpp has it as device "cuda". Here is what tests can do to it, and what it notices.
 #pragma once
 
 #include <atomic>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What `solve` and `solver` do with a GPU, on a simulated one, which is late at random and fails where it is told to: its results
-// are those of the CPU bit for bit, and after an error nothing is lost, left at work or waited for.
+// What `solve` and `solver` do with a GPU, on a simulated one, which is late at random and fails where it is told to:
+// its results are those of the CPU bit for bit, and after an error nothing is lost, left at work or waited for.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -111,8 +111,9 @@ std::string error_of(const std::function<void()>& work) {
 
 bool is_as_filled(const drifts& e) {
     const auto before = filled<drifts>(e.size());
-    return same_bits(e.state(drift::x), before.state(drift::x)) && e.t().isNaN().all() && (e.phases_done() == 0).all() &&
-           (e.integer_accessory(drift::phases) == 0).all() && e.status(0) == status::not_started;
+    return same_bits(e.state(drift::x), before.state(drift::x)) && e.t().isNaN().all() &&
+           (e.phases_done() == 0).all() && (e.integer_accessory(drift::phases) == 0).all() &&
+           e.status(0) == status::not_started;
 }
 
 }  // namespace
@@ -163,8 +164,9 @@ TEST_CASE("an error at any call is that of solve, nothing stays at work, and wha
     auto expected = filled<drifts>(size);
     myriad::solve<runge_kutta_4>(cpu, expected, o);
     static std::int64_t new_block_size = 0;
-    constexpr std::pair<call, int> calls[] = {{call::make_engine, 3}, {call::reserve, 3},  {call::upload, 5}, {call::integrate, 5},
-                                              {call::kernel, 5},      {call::download, 5}, {call::wait, 5}};
+    constexpr std::pair<call, int> calls[] = {{call::make_engine, 3}, {call::reserve, 3}, {call::upload, 5},
+                                              {call::integrate, 5},   {call::kernel, 5},  {call::download, 5},
+                                              {call::wait, 5}};
     for (const auto& [kind, count] : calls) {
         for (int at = 0; at <= count; at += size > 1000 ? 2 : 1) {
             CAPTURE(size, pinned, static_cast<int>(kind), at);
@@ -207,8 +209,9 @@ TEST_CASE("too little memory for one of three chunks is an error that leaves the
     CHECK(of_three > 0);
 }
 
-TEST_CASE("chunks cover the ensemble; where none is chosen the first and last are smaller, down to a "
-          "quarter, and none is more so") {
+TEST_CASE(
+    "chunks cover the ensemble; where none is chosen the first and last are smaller, down to a "
+    "quarter, and none is more so") {
     drifts e(1);
     simulated::engine<drift, runge_kutta_4, double> worker;
     const auto plan_for = [&](std::int64_t size, std::int64_t chosen) {
@@ -219,8 +222,10 @@ TEST_CASE("chunks cover the ensemble; where none is chosen the first and last ar
     };
     std::mt19937_64 random(1);
     for (int turn = 0; turn < 2000; ++turn) {
-        const std::int64_t size = 1 + static_cast<std::int64_t>(std::exp2(24 * std::uniform_real_distribution<>()(random)));
-        const std::int64_t chosen = turn % 2 == 0 ? 0 : 1 + size / std::uniform_int_distribution<std::int64_t>(1, 50)(random);
+        const std::int64_t size =
+            1 + static_cast<std::int64_t>(std::exp2(24 * std::uniform_real_distribution<>()(random)));
+        const std::int64_t chosen =
+            turn % 2 == 0 ? 0 : 1 + size / std::uniform_int_distribution<std::int64_t>(1, 50)(random);
         const auto plan = plan_for(size, chosen);
         std::vector<std::int64_t> counts;
         for (std::int64_t first = 0; first < size; first += counts.back()) {
@@ -259,7 +264,8 @@ TEST_CASE("chunks are as large as the memory allows where none is asked for") {
     the_gpu.memory = unlimited;
 }
 
-TEST_CASE("many chunks are begun while the last are checked: all wait for the check, and are fewer where memory is short") {
+TEST_CASE(
+    "many chunks are begun while the last are checked: all wait for the check, and are fewer where memory is short") {
     constexpr std::int64_t size = 1'500'003;
     const auto filled_and_pinned = [] {
         auto e = filled<drifts>(size);
@@ -324,8 +330,7 @@ TEST_CASE("ensembles solved at the same time by several threads have the bits of
     std::vector<drifts> all;
     for (int i = 0; i < 3; ++i) all.push_back(filled<drifts>(size));
     std::vector<std::thread> threads;
-    for (auto& e : all)
-        threads.emplace_back([&e] { myriad::solve<runge_kutta_4>(gpu, e, two_phases(30'000)); });
+    for (auto& e : all) threads.emplace_back([&e] { myriad::solve<runge_kutta_4>(gpu, e, two_phases(30'000)); });
     for (auto& t : threads) t.join();
     the_gpu.longest_delay = 0;
     for (const auto& e : all) CHECK(same_results(e, expected));
@@ -379,7 +384,9 @@ TEST_CASE("a child process of one that has used a GPU is refused it, and may use
         auto mine = filled<drifts>(1000);
         const auto said = error_of([&] { myriad::solve<runge_kutta_4>(gpu, mine, two_phases(0)); });
         const auto said_by_solver = error_of([] { myriad::solver<swing, cash_karp>(gpu, 10, usual()); });
-        const auto forked = [](const std::string& text) { return text.find("forked from one that has used a GPU") != text.npos; };
+        const auto forked = [](const std::string& text) {
+            return text.find("forked from one that has used a GPU") != text.npos;
+        };
         const bool solved = myriad::solve<runge_kutta_4>(myriad::device::cpu(2), mine, two_phases(0)).failed() == 0;
         _exit(!forked(said) ? 1 : !forked(said_by_solver) ? 2 : !solved ? 3 : 0);
     }

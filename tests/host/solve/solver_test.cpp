@@ -202,7 +202,8 @@ TEST_CASE("a solver's failed instances that are given new inputs do not stay fai
     CHECK_NOTHROW(s.upload());
 }
 
-TEST_CASE("phases of a length, asked of a solver one by one, are those that the CPU has in one call of solve", "[small]") {
+TEST_CASE("phases of a length, asked of a solver one by one, are those that the CPU has in one call of solve",
+          "[small]") {
     myriad::options o = usual();
     o.phase_length = 0.75;
     o.phases = 3;

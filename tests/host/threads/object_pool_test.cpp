@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Idle things for the next use: found by their key, taken by one user only, and the oldest destroyed where there are too many.
+// Idle things for the next use: found by their key, taken by one user only, and the oldest destroyed where there are
+// too many.
 #include "myriad/host/threads/object_pool.hpp"
 
 #include <memory>

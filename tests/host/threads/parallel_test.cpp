@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The host's parallel loops reach every element once, however many threads there are.
+#include "myriad/host/threads/parallel.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <vector>
 
-#include "myriad/host/threads/parallel.hpp"
 #include "tests/catch.hpp"
 
 TEST_CASE("a parallel loop reaches every element once, in parts no smaller than the grain") {
@@ -18,7 +19,8 @@ TEST_CASE("a parallel loop reaches every element once, in parts no smaller than 
                 for (std::int64_t i = first; i < last; ++i) ++reached[static_cast<std::size_t>(i)];
                 ++parts;
                 std::int64_t least = smallest;
-                while (last - first < least && !smallest.compare_exchange_weak(least, last - first)) {}
+                while (last - first < least && !smallest.compare_exchange_weak(least, last - first)) {
+                }
             });
             CHECK(std::count(reached.begin(), reached.end(), 1) == size);
             CHECK(parts <= std::clamp(size / grain, std::int64_t{size > 0}, myriad::host::most_threads));

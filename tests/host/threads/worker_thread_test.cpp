@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The background thread does all it is asked, in order, and hands on what its tasks throw.
+#include "myriad/host/threads/worker_thread.hpp"
+
 #include <atomic>
 #include <future>
 #include <memory>
@@ -9,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "myriad/host/threads/worker_thread.hpp"
 #include "tests/catch.hpp"
 
 TEST_CASE("tasks in the background are done in order, by one other thread") {

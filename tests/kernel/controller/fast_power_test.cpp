@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The power of the step-size control: its error, its edges, and that packs and plain reals agree. A model file.
-#include "myriad/kernel/scalar/pack.hpp"
-
 #include "myriad/kernel/controller/fast_power.hpp"
 
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "myriad/kernel/scalar/pack.hpp"
 #include "tests/catch.hpp"
 
 using myriad::detail::get_lane;
@@ -53,7 +52,8 @@ void check_packs() {
                 if (!(get_lane(powers, lane) == one)) ++different;
 #else
                 // contraction changes the exponent, of size 25 at most, by an ulp
-                if (!(std::abs(get_lane(powers, lane) / one - 1) <= 32 * std::numeric_limits<R>::epsilon())) ++different;
+                if (!(std::abs(get_lane(powers, lane) / one - 1) <= 32 * std::numeric_limits<R>::epsilon()))
+                    ++different;
 #endif
             }
         }
@@ -64,13 +64,15 @@ void check_packs() {
 }  // namespace
 
 TEST_CASE("fast_power is accurate to 2e-5 for doubles from 1e-30 to 1e30") {
-    for (const double exponent : {-1.0 / 5, -1.0 / 4, -1.0 / 3, -1.0 / 8, 1.0 / 5, 0.5, 1.0, -1.0}) check_accuracy(exponent);
+    for (const double exponent : {-1.0 / 5, -1.0 / 4, -1.0 / 3, -1.0 / 8, 1.0 / 5, 0.5, 1.0, -1.0})
+        check_accuracy(exponent);
 }
 TEST_CASE("fast_power is accurate to 2e-5 for floats from 1e-30 to 1e30") {
     for (const float exponent : {-1.0f / 5, -1.0f / 4, -1.0f / 3, -1.0f / 8, 1.0f / 5, 0.5f}) check_accuracy(exponent);
 }
 TEST_CASE("fast_power of one is one within 2e-5, for any exponent") {
-    for (const double exponent : {-1.0, -0.25, 0.0, 0.25, 1.0}) CHECK(std::abs(myriad::detail::fast_power(1.0, exponent) - 1) <= 2e-5);
+    for (const double exponent : {-1.0, -0.25, 0.0, 0.25, 1.0})
+        CHECK(std::abs(myriad::detail::fast_power(1.0, exponent) - 1) <= 2e-5);
 }
 TEST_CASE("fast_power of an error of zero asks for a step far above any growth limit") {
     CHECK(myriad::detail::fast_power(0.0, -0.2) > 1e7);

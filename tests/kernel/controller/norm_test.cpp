@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The size of an error estimate: the scale max(atol, rtol max(|y|, |y1|)) of each component, and what is not finite. A model
-// file: it builds trials by hand.
+// The size of an error estimate: the scale max(atol, rtol max(|y|, |y1|)) of each component, and what is not finite. A
+// model file: it builds trials by hand.
 #include "myriad/kernel/controller/norm.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "myriad/methods.hpp"
 #include "myriad/kernel/scalar/pack_math.hpp"
+#include "myriad/methods.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/problems.hpp"
 
@@ -34,9 +34,11 @@ myriad::detail::error_norm<double> norm_of(pair y, pair y1, pair error, pair ato
     args.relative_tolerance[1] = rtol.second;
     const double h = 0.25;
     myriad::detail::trial_step<myriad::cash_karp, double, 2> trial{};
-    trial.k[0] = {error.first / (h * myriad::cash_karp::tableau().e[0]), error.second / (h * myriad::cash_karp::tableau().e[0])};
+    trial.k[0] = {error.first / (h * myriad::cash_karp::tableau().e[0]),
+                  error.second / (h * myriad::cash_karp::tableau().e[0])};
     trial.y = {y1.first, y1.second};
-    return myriad::detail::scaled_error<model, myriad::cash_karp>(args, myriad::vec<double, 2>{y.first, y.second}, h, trial);
+    return myriad::detail::scaled_error<model, myriad::cash_karp>(args, myriad::vec<double, 2>{y.first, y.second}, h,
+                                                                  trial);
 }
 
 bool accepts(const myriad::detail::error_norm<double>& norm) { return norm.finite && norm.worst <= 1; }
@@ -55,10 +57,12 @@ TEST_CASE("an error is measured against the absolute tolerance where that is the
     check_worst(norm_of({1, 0}, {1, 0}, {3e-6, 0}, {1e-5, 1e-5}, {1e-9, 1e-9}), 0.3);
     check_worst(norm_of({1, 0}, {1, 0}, {3e-5, 0}, {1e-5, 1e-5}, {1e-9, 1e-9}), 3.0);
 }
-TEST_CASE("an error is measured against the relative tolerance times the state before the step where that is the larger") {
+TEST_CASE(
+    "an error is measured against the relative tolerance times the state before the step where that is the larger") {
     check_worst(norm_of({-40, 0}, {20, 0}, {3e-6, 0}, {1e-9, 1e-9}, {1e-6, 1e-6}), 3e-6 / 40e-6);
 }
-TEST_CASE("an error is measured against the relative tolerance times the state after the step where that is the larger") {
+TEST_CASE(
+    "an error is measured against the relative tolerance times the state after the step where that is the larger") {
     check_worst(norm_of({20, 0}, {-40, 0}, {3e-6, 0}, {1e-9, 1e-9}, {1e-6, 1e-6}), 3e-6 / 40e-6);
 }
 TEST_CASE("the two tolerances are not added") {
@@ -135,7 +139,8 @@ TEST_CASE("two estimates are combined as in DOP853, and are nothing where the fi
         trial.k[8] = {k.second, k.first};
         const auto size = [&](const auto& weight) {
             double d = 0;
-            for (int c = 0; c < 2; ++c) d = std::max(d, std::abs(weight(0) * trial.k[0][c] + weight(8) * trial.k[8][c]));
+            for (int c = 0; c < 2; ++c)
+                d = std::max(d, std::abs(weight(0) * trial.k[0][c] + weight(8) * trial.k[8][c]));
             return d;
         };
         const double e5 = size([](int i) { return method::tableau().e[static_cast<std::size_t>(i)]; });

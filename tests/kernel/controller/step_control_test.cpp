@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The step-size control as users meet it: one trial at a time through `max_steps = 1`, against textbook steps, and whole
-// integrations through a log of their steps.
+// The step-size control as users meet it: one trial at a time through `max_steps = 1`, against textbook steps, and
+// whole integrations through a log of their steps.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -55,7 +55,9 @@ double error_ratio(const options& o) {
     const textbook::step<Method, oscillator> step(0.5, o.step, start);
     double worst = 0;
     for (std::size_t c = 0; c < 2; ++c) {
-        const double scale = std::max(o.absolute_tolerance[c], o.relative_tolerance[c] * std::max(std::abs(start[static_cast<int>(c)]), std::abs(step.y[c])));
+        const double scale =
+            std::max(o.absolute_tolerance[c],
+                     o.relative_tolerance[c] * std::max(std::abs(start[static_cast<int>(c)]), std::abs(step.y[c])));
         worst = std::max(worst, std::abs(step.estimate[c]) / scale);
     }
     return worst;
@@ -118,10 +120,12 @@ std::vector<recorder::call> steps_of(const options& o, double t_end, double t_be
 
 }  // namespace
 
-TEST_CASE("cash_karp's next step is 0.9 times the fifth root of tolerance over error, or the fourth after a rejection") {
+TEST_CASE(
+    "cash_karp's next step is 0.9 times the fifth root of tolerance over error, or the fourth after a rejection") {
     check_controller<cash_karp>(tolerance(1e-30, 1e-8));
 }
-TEST_CASE("tsitouras_5's next step is 0.9 times the fifth root of tolerance over error, or the fourth after a rejection") {
+TEST_CASE(
+    "tsitouras_5's next step is 0.9 times the fifth root of tolerance over error, or the fourth after a rejection") {
     check_controller<tsitouras_5>(tolerance(1e-30, 1e-8));
 }
 TEST_CASE("the controller works with a relative tolerance alone") {
@@ -211,7 +215,8 @@ TEST_CASE("no step of an integration is below the minimum step but the last") {
         longest = std::max(longest, open[i].h);
     }
     REQUIRE(longest > 1.5 * shortest);
-    // The safety factor leaves room for steps longer by a tenth: the shortest ones can be, and still pass the error test.
+    // The safety factor leaves room for steps longer by a tenth: the shortest ones can be, and still pass the error
+    // test.
     o.minimum_step = 1.05 * shortest;
     const auto steps = steps_of<cash_karp, log_circle>(o, 20);
     for (std::size_t i = 0; i + 1 < steps.size(); ++i) CHECK(steps[i].h >= o.minimum_step - resolution);
@@ -224,7 +229,8 @@ TEST_CASE("steps without error grow by the growth limit, one after the other") {
         o.growth_limit = growth;
         const auto steps = steps_of<cash_karp, problems::uniform>(o, 10);
         REQUIRE(steps.size() > 5);
-        for (std::size_t i = 0; i + 2 < steps.size(); ++i) CHECK(std::abs(steps[i + 1].h - steps[i].h * growth) <= resolution);
+        for (std::size_t i = 0; i + 2 < steps.size(); ++i)
+            CHECK(std::abs(steps[i + 1].h - steps[i].h * growth) <= resolution);
     }
 }
 TEST_CASE("an accepted step shortens its successor by no more than the safety factor") {

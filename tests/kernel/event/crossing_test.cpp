@@ -34,7 +34,8 @@ TEST_CASE("the crossing of a function that is no cubic is off by the fourth powe
     const auto off = [](double h) {
         const double at = 1;  // of cos(x + pi / 2 - 1) in x, over [1 - h / 3, 1 + 2 h / 3]
         const double begin = at - h / 3, end = at + 2 * h / 3;
-        const function_ends<double> g{std::sin(at - begin), -h * std::cos(at - begin), std::sin(at - end), -h * std::cos(at - end)};
+        const function_ends<double> g{std::sin(at - begin), -h * std::cos(at - begin), std::sin(at - end),
+                                      -h * std::cos(at - end)};
         return std::abs(begin + h * crossing_from_above(g) - at);
     };
     CHECK(off(0.2) <= 1e-5);

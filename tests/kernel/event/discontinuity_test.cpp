@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Event functions that jump: what their actions do to them, several that jump at one instant, and phases that end on a jump.
+// Event functions that jump: what their actions do to them, several that jump at one instant, and phases that end on a
+// jump.
+#include <algorithm>
+
 #include "tests/catch.hpp"
 #include "tests/kernel/event/levels.hpp"
 #include "tests/kernel/event/time_models.hpp"
 #include "tests/kernel/event/watching.hpp"
 #include "tests/support/device.hpp"
-
-#include <algorithm>
 
 using namespace watching;
 
@@ -43,8 +44,8 @@ myriad::options hits(std::int64_t stop_after = 0, myriad::direction d = myriad::
 
 using kinds = std::array<int, 3>;
 
-/// Points at speeds from 0.7 to 1.2, some of them just before the level that they pass (others up to 0.9 units of time), in the
-/// direction in which the domain runs.
+/// Points at speeds from 0.7 to 1.2, some of them just before the level that they pass (others up to 0.9 units of
+/// time), in the direction in which the domain runs.
 myriad::ensemble<levels> points(const kinds& of, double t_begin, double direction, const kinds& actions = {}) {
     constexpr int size = 11;
     myriad::ensemble<levels> e(size);
@@ -81,7 +82,8 @@ myriad::options level_options(myriad::direction d = myriad::direction::either) {
 std::vector<int> order_of(const myriad::ensemble<levels>& e, std::int64_t i) {
     std::vector<int> events;
     const int n = e.integer_accessory(levels::fired)[i];
-    for (int k = 0; k < std::min<int>(n, levels::log_length); ++k) events.push_back(e.integer_accessory(levels::which + k)[i]);
+    for (int k = 0; k < std::min<int>(n, levels::log_length); ++k)
+        events.push_back(e.integer_accessory(levels::which + k)[i]);
     return events;
 }
 
@@ -89,8 +91,9 @@ std::vector<int> order_of(const myriad::ensemble<levels>& e, std::int64_t i) {
 
 TEMPLATE_TEST_CASE("event functions that jump at one instant fire once each, in order of index", "", ALL_METHODS) {
     using l = levels;
-    for (const kinds& of : {kinds{l::up, l::up, l::none}, kinds{l::up, l::up, l::up}, kinds{l::none, l::down, l::up},
-                            kinds{l::up, l::down, l::up}, kinds{l::down, l::smooth, l::up}, kinds{l::smooth, l::up, l::up}}) {
+    for (const kinds& of :
+         {kinds{l::up, l::up, l::none}, kinds{l::up, l::up, l::up}, kinds{l::none, l::down, l::up},
+          kinds{l::up, l::down, l::up}, kinds{l::down, l::smooth, l::up}, kinds{l::smooth, l::up, l::up}}) {
         for (const auto d : {myriad::direction::either, myriad::direction::rising, myriad::direction::falling}) {
             std::vector<int> expected;
             for (int j = 0; j < 3; ++j) {
@@ -111,8 +114,9 @@ TEMPLATE_TEST_CASE("event functions that jump at one instant fire once each, in 
                         CAPTURE(i);
                         auto events = order_of(e, i);
                         if (std::ranges::count(of, l::smooth) > 0) {
-                            // It starts on its surface, and has no event, where it starts right before the level; and it is
-                            // still within its tolerance where the trial that shows the jumps happens to end there.
+                            // It starts on its surface, and has no event, where it starts right before the level; and
+                            // it is still within its tolerance where the trial that shows the jumps happens to end
+                            // there.
                             if (i % 4 == 3) continue;
                             std::ranges::sort(events);
                         }
@@ -126,8 +130,8 @@ TEMPLATE_TEST_CASE("event functions that jump at one instant fire once each, in 
 
 TEMPLATE_TEST_CASE("jumps that rounding puts an ulp apart fire once each", "", ALL_METHODS) {
     using l = levels;
-    for (const kinds& of : {kinds{l::up, l::square_up, l::up}, kinds{l::square_up, l::up, l::none}, kinds{l::up, l::time_up, l::none},
-                            kinds{l::time_up, l::square_up, l::up}}) {
+    for (const kinds& of : {kinds{l::up, l::square_up, l::up}, kinds{l::square_up, l::up, l::none},
+                            kinds{l::up, l::time_up, l::none}, kinds{l::time_up, l::square_up, l::up}}) {
         for (const double t_begin : {0.0, 71.3}) {
             for (const bool counts_steps : {false, true}) {
                 for (const std::int64_t sub_samples : {1, 3}) {
@@ -158,7 +162,8 @@ TEMPLATE_TEST_CASE("event functions that jump at one instant fire once each, bac
     for (std::int64_t i = 0; i < e.size(); ++i) CHECK(order_of(e, i).size() == 3);
 }
 
-TEMPLATE_TEST_CASE("an action that moves the state away from a jump leaves the others' events at it alone", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("an action that moves the state away from a jump leaves the others' events at it alone", "",
+                   ALL_METHODS) {
     // All three fire where they jump, though the first action has put x back, or turned the speed round, by then.
     using l = levels;
     for (const int what : {l::step_back, l::turn_round, l::stand_on_level}) {
@@ -180,9 +185,11 @@ TEMPLATE_TEST_CASE("an action that moves the state away from a jump leaves the o
     }
 }
 
-TEMPLATE_TEST_CASE("a phase that one of two jumps ends leaves none of them for the next, and loses none", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("a phase that one of two jumps ends leaves none of them for the next, and loses none", "",
+                   ALL_METHODS) {
     using l = levels;
-    for (const kinds& of : {kinds{l::up, l::up, l::none}, kinds{l::up, l::square_up, l::none}, kinds{l::up, l::time_up, l::none}}) {
+    for (const kinds& of :
+         {kinds{l::up, l::up, l::none}, kinds{l::up, l::square_up, l::none}, kinds{l::up, l::time_up, l::none}}) {
         for (const std::size_t stopping : {0, 1}) {
             for (const bool one_call : {true, false}) {
                 CAPTURE(of, stopping, one_call);
@@ -191,7 +198,8 @@ TEMPLATE_TEST_CASE("a phase that one of two jumps ends leaves none of them for t
                 o.events[stopping].stop_after = 1;
                 o.phase_time = myriad::phase_time::carry_on;
                 o.phases = one_call ? 3 : 1;
-                for (int call = 0; call < (one_call ? 1 : 3); ++call) myriad::solve<TestType>(tests::test_device(1), e, o);
+                for (int call = 0; call < (one_call ? 1 : 3); ++call)
+                    myriad::solve<TestType>(tests::test_device(1), e, o);
                 for (std::int64_t i = 0; i < e.size(); ++i) {
                     if (i % 4 == 3 && of[1] == l::time_up) continue;
                     CAPTURE(i);
@@ -205,7 +213,8 @@ TEMPLATE_TEST_CASE("a phase that one of two jumps ends leaves none of them for t
     }
 }
 
-TEMPLATE_TEST_CASE("a ball does not fall through a floor that a jump tells, and its impacts accumulate", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("a ball does not fall through a floor that a jump tells, and its impacts accumulate", "",
+                   ALL_METHODS) {
     // Dropped from 1/2 with a = -1 and half the speed kept: at rest on the floor after 3 units of time.
     for (const double t_begin : {0.0, 1.0, 1000.0}) {
         for (const bool two_floors : {false, true}) {  // the second one does nothing
@@ -233,8 +242,10 @@ TEMPLATE_TEST_CASE("a ball does not fall through a floor that a jump tells, and 
     }
 }
 
-TEMPLATE_TEST_CASE("a ball between two jumps closer than the rounding of t ends as event_accumulation", "", ALL_METHODS) {
-    auto e = points({levels::up, levels::down, levels::none}, 1000, 1, {levels::turn_round, levels::turn_round, levels::log});
+TEMPLATE_TEST_CASE("a ball between two jumps closer than the rounding of t ends as event_accumulation", "",
+                   ALL_METHODS) {
+    auto e = points({levels::up, levels::down, levels::none}, 1000, 1,
+                    {levels::turn_round, levels::turn_round, levels::log});
     for (std::int64_t i = 0; i < e.size(); ++i) {
         const double level = e.parameter(levels::c0)[i];
         e.state(levels::x)[i] = level + 1e-13;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Event functions that give no number end their instance as not_finite, with the last finite state, and no other.
-#include "tests/catch.hpp"
-#include "tests/kernel/event/time_models.hpp"
-
 #include <cmath>
 
 #include <myriad/myriad.hpp>
+
+#include "tests/catch.hpp"
 #include "tests/kernel/event/methods.hpp"
+#include "tests/kernel/event/time_models.hpp"
 #include "tests/support/device.hpp"
 
 namespace {
@@ -15,7 +15,8 @@ constexpr double never = 1e300;
 
 myriad::ensemble<gate> gates(std::int64_t size, int before, int at, int after) {
     myriad::ensemble<gate> e(size);
-    for (std::int64_t i = 0; i < size; ++i) e.state(gate::x)[i] = 1 + static_cast<double>(i) / static_cast<double>(size);
+    for (std::int64_t i = 0; i < size; ++i)
+        e.state(gate::x)[i] = 1 + static_cast<double>(i) / static_cast<double>(size);
     e.parameter(gate::c) = never;
     e.shared_integer(gate::before) = before;
     e.shared_integer(gate::at) = at;
@@ -63,7 +64,8 @@ TEMPLATE_TEST_CASE("an event function that is NaN only at the start ends the ins
     CHECK(e.state(gate::x)[0] == 1);
 }
 
-TEMPLATE_TEST_CASE("an instance whose event function is NaN leaves all others untouched, bit for bit", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("an instance whose event function is NaN leaves all others untouched, bit for bit", "",
+                   ALL_METHODS) {
     constexpr std::int64_t size = 67;
     auto healthy = gates(size, 1, 0, gate::no_number);
     run<TestType>(healthy);
@@ -77,8 +79,8 @@ TEMPLATE_TEST_CASE("an instance whose event function is NaN leaves all others un
             CHECK(report.first_failed == sick);
             std::int64_t different = 0;
             for (std::int64_t i = 0; i < size; ++i)
-                different += i != sick && !(e.state(gate::x)[i] == healthy.state(gate::x)[i] && e.t()[i] == healthy.t()[i] &&
-                                            e.status(i) == healthy.status(i) &&
+                different += i != sick && !(e.state(gate::x)[i] == healthy.state(gate::x)[i] &&
+                                            e.t()[i] == healthy.t()[i] && e.status(i) == healthy.status(i) &&
                                             e.accepted_steps()[i] == healthy.accepted_steps()[i] &&
                                             e.rhs_evaluations()[i] == healthy.rhs_evaluations()[i]);
             CHECK(different == 0);

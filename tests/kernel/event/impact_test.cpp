@@ -48,7 +48,8 @@ TEMPLATE_TEST_CASE("impacts 1 to 20 of a bouncing ball agree with the closed for
     CHECK(std::abs(times[19] - 7.4810545039369188) <= 1e-10);
 }
 
-TEMPLATE_TEST_CASE("impacts that accumulate end the instance as event_accumulation at the right time", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("impacts that accumulate end the instance as event_accumulation at the right time", "",
+                   ALL_METHODS) {
     for (const double step : {1e-3, 0.01, 0.1, 1.0}) {  // flights become shorter than any of them
         CAPTURE(step);
         auto e = ball(20);
@@ -68,8 +69,8 @@ TEMPLATE_TEST_CASE("the limit of impacts is announced early by the flights that 
         for (const double tolerance : {1e-6, 1e-12}) {
             for (const std::int64_t limit : {10, 50, 200}) {
                 CAPTURE(kept, tolerance, limit);
-                auto e = ensemble_of(motion{.x = height, .a = -gravity}, {position(0, watch::bounce), never(), never()}, 0, 200,
-                                     kept);
+                auto e = ensemble_of(motion{.x = height, .a = -gravity}, {position(0, watch::bounce), never(), never()},
+                                     0, 200, kept);
                 auto o = options_for(tolerance, 0.01, myriad::direction::falling);
                 o.accumulation_limit = limit;
                 solve<TestType>(e, o);
@@ -77,7 +78,8 @@ TEMPLATE_TEST_CASE("the limit of impacts is announced early by the flights that 
                 const double rest = std::sqrt(2 * height / gravity) * (1 + kept) / (1 - kept);
                 const double left = 2 * e.state(watch::v)[0] / (gravity * (1 - kept));
                 if (tolerance < 1e-9) CHECK(std::abs(e.t()[0] + left - rest) <= 1e-9);
-                // An impact is found within the tolerance of zero, so a flight that stays within it rises by twice as much.
+                // An impact is found within the tolerance of zero, so a flight that stays within it rises by twice as
+                // much.
                 const double most = std::sqrt(16 * tolerance / gravity) * std::pow(kept, limit - 1) / (1 - kept);
                 CHECK(std::abs(left) <= most * 1.01 + 1e-12);
             }
@@ -101,7 +103,8 @@ TEMPLATE_TEST_CASE("the limit of accumulating impacts is an option", "", ALL_MET
     CHECK(counts[3] - counts[2] == 50);
 }
 
-TEMPLATE_TEST_CASE("flights shorter than the resolution of time do not let the ball through the floor", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("flights shorter than the resolution of time do not let the ball through the floor", "",
+                   ALL_METHODS) {
     // The later it is, and the less of the speed is left, the sooner a flight is too short for t to advance.
     for (const double t_begin : {0.0, 1e3, 1e6}) {
         for (const double kept : {0.8, 0.5, 0.1, 1e-3}) {
@@ -122,8 +125,10 @@ TEMPLATE_TEST_CASE("flights shorter than the resolution of time do not let the b
     }
 }
 
-TEMPLATE_TEST_CASE("a ball without restitution comes to rest on the floor and does not fall through it", "", ALL_METHODS) {
-    auto e = ensemble_of(motion{.x = height, .a = -gravity}, {position(0, watch::bounce), never(), never()}, 0, 20, 0.0);
+TEMPLATE_TEST_CASE("a ball without restitution comes to rest on the floor and does not fall through it", "",
+                   ALL_METHODS) {
+    auto e =
+        ensemble_of(motion{.x = height, .a = -gravity}, {position(0, watch::bounce), never(), never()}, 0, 20, 0.0);
     const auto report = solve<TestType>(e, ball_options(0.01));
     CHECK(report.count(myriad::status::event_accumulation) == 1);
     // it may sink from a tolerance above the floor to a tolerance below it, 2 sqrt(tol / g) long, before each impact
@@ -131,7 +136,8 @@ TEMPLATE_TEST_CASE("a ball without restitution comes to rest on the floor and do
     CHECK(e.accessory(watch::smallest_x)[0] >= -impact_tolerance);
 }
 
-TEMPLATE_TEST_CASE("balls that bounce for a long time never pass the floor by more than the tolerance", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("balls that bounce for a long time never pass the floor by more than the tolerance", "",
+                   ALL_METHODS) {
     std::vector<motion> starts;
     for (int i = 0; i < 100; ++i) starts.push_back({.x = 0.01 * (i + 1), .v = 0.1 * (i % 7 - 3), .a = -1 - 0.2 * i});
     auto e = ensemble_of(starts, {position(0, watch::bounce), never(), never()}, 0, 3, 0.8);
@@ -145,7 +151,8 @@ TEMPLATE_TEST_CASE("balls that bounce for a long time never pass the floor by mo
 }
 
 TEMPLATE_TEST_CASE("a ball between two walls hits them in turn", "", ALL_METHODS) {
-    auto e = ensemble_of(motion{.x = 0.25, .v = 1}, {position(0, watch::bounce), position(1, watch::bounce), never()}, 0, 5);
+    auto e =
+        ensemble_of(motion{.x = 0.25, .v = 1}, {position(0, watch::bounce), position(1, watch::bounce), never()}, 0, 5);
     const auto report = solve<TestType>(e, options_for(1e-10, 0.1));
     CHECK(report.count(myriad::status::success) == 1);
     // straight flights: each impact is off by at most the tolerance over the speed, 1
@@ -157,7 +164,8 @@ TEMPLATE_TEST_CASE("impacts that a step happens to end on are not taken for accu
     // 200 impacts two units of time apart; every step of 0.25 that ends on a wall is exact
     for (const double step : {0.25, 0.07}) {
         CAPTURE(step);
-        auto e = ensemble_of(motion{.v = 1}, {position(1, watch::bounce), position(-1, watch::bounce), never()}, 0, 400);
+        auto e =
+            ensemble_of(motion{.v = 1}, {position(1, watch::bounce), position(-1, watch::bounce), never()}, 0, 400);
         auto o = options_for(1e-6, step);
         o.maximum_step = step;
         solve<TestType>(e, o);
@@ -168,12 +176,13 @@ TEMPLATE_TEST_CASE("impacts that a step happens to end on are not taken for accu
 }
 
 TEMPLATE_TEST_CASE("impacts far from t = 0 take no time from the flights between them", "", ALL_METHODS) {
-    // 137 impacts on walls two units apart; where t has a resolution of 1e-7, each of them would take about half of that
+    // 137 impacts on walls two units apart; where t has a resolution of 1e-7, each of them would take about half of
+    // that
     constexpr double speed = 1.1, flight = 249;
     for (const double t_begin : {0.0, 1e6, 1e9}) {
         CAPTURE(t_begin);
-        auto e = ensemble_of(motion{.v = speed}, {position(1, watch::bounce), position(-1, watch::bounce), never()}, t_begin,
-                             t_begin + flight);
+        auto e = ensemble_of(motion{.v = speed}, {position(1, watch::bounce), position(-1, watch::bounce), never()},
+                             t_begin, t_begin + flight);
         solve<TestType>(e, options_for(1e-12, 0.1));
         CHECK(e.status(0) == myriad::status::success);
         REQUIRE(count_of(e) == 137);

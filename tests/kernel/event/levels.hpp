@@ -5,8 +5,8 @@
 
 #include <myriad/model.hpp>
 
-/// x' = v, v' = a. Three event functions of the level c_j, each of the kind that a shared integer chooses. Every action is
-/// logged, and then does what another shared integer asks for.
+/// x' = v, v' = a. Three event functions of the level c_j, each of the kind that a shared integer chooses. Every action
+/// is logged, and then does what another shared integer asks for.
 struct levels {
     enum state { x, v, n_state };
     enum parameter { a, c0, c1, c2, n_parameter };
@@ -15,8 +15,8 @@ struct levels {
     enum accessory { at, n_accessory = at + log_length };
     enum integer_accessory { steps, fired, which, n_integer_accessory = which + log_length };
     enum event { first, second, third, n_event };
-    /// A jump up or down where x passes the level, the same told by the square of x (whose rounding differs), a jump where t
-    /// passes it, a smooth crossing, and none.
+    /// A jump up or down where x passes the level, the same told by the square of x (whose rounding differs), a jump
+    /// where t passes it, a smooth crossing, and none.
     enum kinds { up, down, square_up, time_up, smooth, none };
     enum actions { log, step_back, turn_round, stand_on_level, bounce };  // bounce: with half the speed
 

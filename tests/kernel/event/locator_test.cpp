@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Which crossings count and where they are: directions, starts within the tolerance, touching, roots at the ends of the
 // domain, two roots within a step, jumps.
+#include <random>
+
 #include "tests/catch.hpp"
 #include "tests/kernel/event/time_models.hpp"
 #include "tests/kernel/event/watching.hpp"
-
-#include <random>
 #include "tests/support/device.hpp"
 
 using namespace watching;
@@ -13,8 +13,8 @@ using myriad::direction;
 
 namespace {
 
-// Global error of the spring over a dozen units of time with the steps below, and with it that of a crossing of slope 1:
-// adaptive methods accept 1e-12 per step and take some hundred steps; RK4 has h^4 / 120 * t.
+// Global error of the spring over a dozen units of time with the steps below, and with it that of a crossing of slope
+// 1: adaptive methods accept 1e-12 per step and take some hundred steps; RK4 has h^4 / 120 * t.
 constexpr double spring_step = 1e-3, spring_error = 1e-9;
 
 template <class Method>
@@ -54,8 +54,8 @@ myriad::options one_event(double tolerance, double step) {
     return o;
 }
 
-/// x' = rest - x from one away from it, with its threshold there: a decay to zero, or an integrate-and-fire model that its
-/// threshold stops.
+/// x' = rest - x from one away from it, with its threshold there: a decay to zero, or an integrate-and-fire model that
+/// its threshold stops.
 template <class R>
 myriad::ensemble<settling, R> settling_to(R rest, R t_end) {
     myriad::ensemble<settling, R> e(1);
@@ -108,7 +108,8 @@ TEMPLATE_TEST_CASE("every event has its own direction and tolerance at run time"
 
 TEMPLATE_TEST_CASE("an event function of time alone works forwards and backwards", "", ALL_METHODS) {
     for (const double sign : {1.0, -1.0}) {
-        auto e = ensemble_of(motion{.x = 1, .v = 1, .a = 2}, {time(sign * 0.7), time(sign * 2.5), time(-sign)}, 0, sign * 3);
+        auto e =
+            ensemble_of(motion{.x = 1, .v = 1, .a = 2}, {time(sign * 0.7), time(sign * 2.5), time(-sign)}, 0, sign * 3);
         solve<TestType>(e, options_for(1e-13, 0.04));
         const auto log = log_of(e);
         REQUIRE(log.size() == 2);
@@ -148,7 +149,8 @@ TEMPLATE_TEST_CASE("a flight that never leaves the tolerance and then falls far 
         for (const double t_begin : {0.0, 1e6}) {
             for (const double mirror : {1.0, -1.0}) {
                 CAPTURE(v0, t_begin, mirror);
-                auto e = ensemble_of(motion{.v = mirror * v0, .a = -mirror}, {position(), never(), never()}, t_begin, t_begin + 10);
+                auto e = ensemble_of(motion{.v = mirror * v0, .a = -mirror}, {position(), never(), never()}, t_begin,
+                                     t_begin + 10);
                 const auto report = solve<TestType>(e, options_for(tolerance, 10));
                 CHECK(report.count(myriad::status::success) == 1);
                 const auto times = times_of(e);
@@ -167,7 +169,9 @@ TEMPLATE_TEST_CASE("starting on the surface and leaving it is no crossing", "", 
             for (const double step : {1e-7, 0.1, 10.0}) {
                 CAPTURE(x0, v0, step);
                 auto e = ensemble_of(motion{.x = x0, .v = v0, .a = v0}, {position(), never(), never()}, 0, 1);
-                solve<TestType>(e, options_for(tolerance, std::is_same_v<TestType, myriad::runge_kutta_4> ? std::max(step, 1e-4) : step));
+                solve<TestType>(
+                    e, options_for(tolerance,
+                                   std::is_same_v<TestType, myriad::runge_kutta_4> ? std::max(step, 1e-4) : step));
                 CHECK(count_of(e) == 0);
             }
 }
@@ -248,7 +252,8 @@ TEMPLATE_TEST_CASE("a root at t_end that rounding leaves short of zero fires in 
     CHECK(agree(zeros_of_wave<TestType>(1, 0, 0, -pi / 2, o), {-pi / 2, -pi / 2, -pi / 2}, 1e-9));
 }
 
-TEMPLATE_TEST_CASE("a decay that comes within the tolerance of zero at t_end, but not to zero, does not fire", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("a decay that comes within the tolerance of zero at t_end, but not to zero, does not fire", "",
+                   ALL_METHODS) {
     for (const double t_end : {5.0, 14.0, 20.0, 37.0, 100.0, 1e4}) {
         for (const double rest : {0.0, 1.0}) {
             CAPTURE(t_end, rest);
@@ -304,7 +309,8 @@ TEMPLATE_TEST_CASE("an event within the rounding of t_end does not fail the inst
         if (count_of(e) > 0) {
             CHECK(agree(times_of(e), {1000.5}, 2e-13));
         } else {  // the steps' lengths, differences of rounded times, may leave x short of the surface
-            const double rounding = 1000.5 * std::numeric_limits<double>::epsilon() * static_cast<double>(e.accepted_steps()[0]);
+            const double rounding =
+                1000.5 * std::numeric_limits<double>::epsilon() * static_cast<double>(e.accepted_steps()[0]);
             CHECK(std::abs(e.state(watch::x)[0] - 0.5e6) <= 1e6 * rounding);
         }
     }
@@ -348,7 +354,8 @@ TEMPLATE_TEST_CASE("sub-samples look for the wanted direction only", "", ALL_MET
     }
 }
 
-TEMPLATE_TEST_CASE("a discontinuous event function is located to the rounding of time and fires once", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("a discontinuous event function is located to the rounding of time and fires once", "",
+                   ALL_METHODS) {
     // sign(t - 1/2), the same without a value at 1/2, falling, and a jump between large values
     struct values {
         int before, at, after;
@@ -373,7 +380,8 @@ TEMPLATE_TEST_CASE("a discontinuity at t_end fires once", "", ALL_METHODS) {
     CHECK(agree(logged(e), {0.5}, 4 * std::numeric_limits<double>::epsilon()));
 }
 
-TEMPLATE_TEST_CASE("an event function too steep for its tolerance is located to rounding and fires once", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("an event function too steep for its tolerance is located to rounding and fires once", "",
+                   ALL_METHODS) {
     for (const double steepness : {1e6, 1e9, 1e12, -1e9}) {
         for (const int kind : {0, 1}) {
             CAPTURE(steepness, kind);
@@ -408,7 +416,8 @@ TEMPLATE_TEST_CASE("a crossing that redone steps overshoot is not put at the sta
         for (int n = 0; n < 40; ++n) {
             const double a = 0.1 + 0.03 * n;
             CAPTURE(tolerance, a);
-            auto e = ensemble_of(motion{.x = std::sin(a), .v = std::cos(a), .k = 1}, {position(), never(), never()}, 0, 12);
+            auto e =
+                ensemble_of(motion{.x = std::sin(a), .v = std::cos(a), .k = 1}, {position(), never(), never()}, 0, 12);
             auto o = options_for(1e-6, 1e-3);
             o.events[0].tolerance = tolerance;
             solve<TestType>(e, o);
@@ -422,8 +431,8 @@ TEMPLATE_TEST_CASE("a crossing that redone steps overshoot is not put at the sta
 
 TEMPLATE_TEST_CASE("a wall steeper than its tolerance still throws the ball back every time", "", ALL_METHODS) {
     // positions of 1e6 have a resolution of 1e-10, a hundred times the tolerance
-    auto e = ensemble_of(motion{.x = 1e6 + 1.7, .v = -1.3}, {position(1e6, watch::bounce), position(1e6 + 2, watch::bounce), never()},
-                         0, 10);
+    auto e = ensemble_of(motion{.x = 1e6 + 1.7, .v = -1.3},
+                         {position(1e6, watch::bounce), position(1e6 + 2, watch::bounce), never()}, 0, 10);
     CHECK_THROWS_AS(solve<TestType>(e, options_for(1e-12, 0.07)), myriad::error);
     solve_unchecked<TestType>(e, options_for(1e-12, 0.07));
     CHECK(e.status(0) == myriad::status::success);
@@ -434,7 +443,9 @@ TEMPLATE_TEST_CASE("a wall steeper than its tolerance still throws the ball back
 
 TEMPLATE_TEST_CASE("no located state lies beyond its event, for a thousand random springs", "", ALL_METHODS) {
     std::mt19937_64 random(20240611);
-    const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
     std::vector<motion> starts;
     for (int i = 0; i < 1000; ++i) {
         // x = a / k + (1 - a / k) cos(w t): starts at rest at 1, first crossing where cos(w t) = -(a/k) / (1 - a/k)
@@ -456,7 +467,8 @@ TEMPLATE_TEST_CASE("no located state lies beyond its event, for a thousand rando
                     for (const double zero : {2 * pi * n + angle, 2 * pi * (n + 1) - angle})
                         if (zero < turns) ++expected;
                 // a zero this near to the end may fall on either side of it: RK4 is off by t (w h)^5 / 120 / h
-                const double slack = std::abs(std::remainder(turns - angle, 2 * pi)), other = std::abs(std::remainder(turns + angle, 2 * pi));
+                const double slack = std::abs(std::remainder(turns - angle, 2 * pi)),
+                             other = std::abs(std::remainder(turns + angle, 2 * pi));
                 if (std::min(slack, other) < 0.05) continue;
                 wrong_number += count_of(e, i) != expected;
                 if (expected == 0) continue;
@@ -484,8 +496,8 @@ TEST_CASE("a float ball that accumulates never passes the floor") {
     for (const double kept : {0.9, 0.5, 0.1}) {
         for (const double t_begin : {0.0, 1000.0}) {
             CAPTURE(kept, t_begin);
-            auto e = ensemble_of<float>(motion{.x = 1, .a = -9.81}, {position(0, watch::bounce), never(), never()}, t_begin,
-                                        t_begin + 20, kept);
+            auto e = ensemble_of<float>(motion{.x = 1, .a = -9.81}, {position(0, watch::bounce), never(), never()},
+                                        t_begin, t_begin + 20, kept);
             auto o = options_for(1e-5, 0.01, direction::falling);
             o.relative_tolerance = o.absolute_tolerance = 1e-5;
             solve<myriad::cash_karp>(e, o);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The methods that the tests of events run with. That of high order, whose interpolant has stages of its own, takes long to
-// compile: everywhere in preset nightly, and once in all others.
+// The methods that the tests of events run with. That of high order, whose interpolant has stages of its own, takes
+// long to compile: everywhere in preset nightly, and once in all others.
 #pragma once
 
 #include <myriad/methods.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Several events in one step, and what their actions do: order in time, simultaneous events, stopping, which action runs,
-// jumps and resets by an action, and how the steps go on.
+// Several events in one step, and what their actions do: order in time, simultaneous events, stopping, which action
+// runs, jumps and resets by an action, and how the steps go on.
 #include "tests/catch.hpp"
 #include "tests/kernel/event/watching.hpp"
 
@@ -23,8 +23,10 @@ TEMPLATE_TEST_CASE("events within one step are handled in order of time and not 
         double t[3];
         std::vector<int> order;
     };
-    const std::vector<times> cases = {{{0.2, 0.45, 0.7}, {0, 1, 2}}, {{0.7, 0.2, 0.45}, {1, 2, 0}},
-                                      {{0.45, 0.7, 0.2}, {2, 0, 1}}, {{0.7, 0.45, 0.2}, {2, 1, 0}}};
+    const std::vector<times> cases = {{{0.2, 0.45, 0.7}, {0, 1, 2}},
+                                      {{0.7, 0.2, 0.45}, {1, 2, 0}},
+                                      {{0.45, 0.7, 0.2}, {2, 0, 1}},
+                                      {{0.7, 0.45, 0.2}, {2, 1, 0}}};
     for (const times& c : cases) {
         for (const bool of_time : {true, false}) {
             CAPTURE(c.t[0], c.t[1], c.t[2], of_time);
@@ -47,11 +49,11 @@ TEMPLATE_TEST_CASE("events closer together than rounding fire once each", "", AL
 }
 
 TEMPLATE_TEST_CASE("simultaneous events each fire once, in order of index", "", ALL_METHODS) {
-    const function third{.X = -2, .c = -0.6};       // falls where the others rise
+    const function third{.X = -2, .c = -0.6};  // falls where the others rise
     const function steep{.X = 1000, .c = 300};
-    for (const std::array<function, 3>& functions : {std::array{position(0.3), position(0.3), position(0.3)},
-                                                     std::array{time(0.3), time(0.3), time(0.3)},
-                                                     std::array{position(0.3), third, steep}, std::array{steep, third, position(0.3)}}) {
+    for (const std::array<function, 3>& functions :
+         {std::array{position(0.3), position(0.3), position(0.3)}, std::array{time(0.3), time(0.3), time(0.3)},
+          std::array{position(0.3), third, steep}, std::array{steep, third, position(0.3)}}) {
         auto e = ensemble_of(drift, functions, 0, 1);
         const auto report = solve<TestType>(e, options_for(1e-9, 1));
         CHECK(report.count(myriad::status::success) == 1);
@@ -89,7 +91,8 @@ TEMPLATE_TEST_CASE("a phase stops after the chosen number of detections of an ev
     }
 }
 
-TEMPLATE_TEST_CASE("the earlier of two stopping events in one step ends the phase, whatever its index", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("the earlier of two stopping events in one step ends the phase, whatever its index", "",
+                   ALL_METHODS) {
     for (const int early : {0, 1, 2}) {
         std::array<function, 3> f{time(0.8), time(0.8), time(0.8)};
         f[static_cast<std::size_t>(early)] = time(0.3);
@@ -132,14 +135,16 @@ TEMPLATE_TEST_CASE("only the action of the event that fired runs", "", ALL_METHO
     }
 }
 
-TEMPLATE_TEST_CASE("an impact reverses the velocity by the law of restitution and leaves the position", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("an impact reverses the velocity by the law of restitution and leaves the position", "",
+                   ALL_METHODS) {
     auto e = ensemble_of(motion{.x = 1, .v = -2}, {position(0, watch::bounce), never(), never()}, 0, 1, 0.7);
     solve<TestType>(e, options_for(1e-12, 0.1));
     CHECK(std::abs(e.state(watch::v)[0] - 1.4) <= 1e-15);
     CHECK(std::abs(e.state(watch::x)[0] - 0.5 * 1.4) <= 3e-12);  // 1e-12 in x at the impact, twice
 }
 
-TEMPLATE_TEST_CASE("a quantity reset to zero by its own action fires again at the next true crossing only", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("a quantity reset to zero by its own action fires again at the next true crossing only", "",
+                   ALL_METHODS) {
     auto e = ensemble_of(sine, {position(0, watch::zero_x), never(), never()}, 0, 13);
     solve<TestType>(e, options_for(1e-10, 1e-3));
     CHECK(agree(times_of(e), {pi, 2 * pi, 3 * pi, 4 * pi}, 1e-9));

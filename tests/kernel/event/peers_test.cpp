@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What users of other packages suffer from in events (peers.md, "Events"), each as a test that names it.
-#include "tests/catch.hpp"
-#include "tests/kernel/event/watching.hpp"
-
 #include <atomic>
 #include <cstdlib>
 #include <new>
 #include <string>
+
+#include "tests/catch.hpp"
+#include "tests/kernel/event/watching.hpp"
 
 namespace {
 std::atomic<std::int64_t> allocations{0};
@@ -26,8 +26,9 @@ void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 using namespace watching;
 
-TEMPLATE_TEST_CASE("peers: crossings that start inside the tolerance zone are not lost, and nothing falls through the wall", "",
-                   ALL_METHODS) {
+TEMPLATE_TEST_CASE(
+    "peers: crossings that start inside the tolerance zone are not lost, and nothing falls through the wall", "",
+    ALL_METHODS) {
     std::vector<motion> starts;
     for (int i = 0; i < 64; ++i) starts.push_back({.x = 1e-3 * (i + 1), .v = 0, .a = -9.81});
     auto e = ensemble_of(starts, {position(0, watch::bounce), never(), never()}, 0, 5, 0.6);

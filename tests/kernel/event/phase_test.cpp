@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Events where phases and calls end: each crossing fires exactly once, and a loop on the host gives the same bits as phases
-// in one call.
+// Events where phases and calls end: each crossing fires exactly once, and a loop on the host gives the same bits as
+// phases in one call.
 #include "tests/catch.hpp"
 #include "tests/kernel/event/time_models.hpp"
 #include "tests/kernel/event/watching.hpp"
@@ -145,7 +145,9 @@ TEMPLATE_TEST_CASE("crossings on the ends of many phases all fire once", "", ALL
 TEMPLATE_TEST_CASE("a loop of calls gives the same bits as phases in one call", "", ALL_METHODS) {
     std::vector<motion> starts;
     for (int i = 0; i < 23; ++i) starts.push_back({.x = 0.1 * i, .v = 1 - 0.05 * i, .a = -1, .k = 0.2 * i});
-    const auto fresh = [&] { return ensemble_of(starts, {position(0, watch::bounce), velocity(), position(1)}, 0, 2.5, 0.8); };
+    const auto fresh = [&] {
+        return ensemble_of(starts, {position(0, watch::bounce), velocity(), position(1)}, 0, 2.5, 0.8);
+    };
     for (const double length : {0.0, 0.4}) {
         for (const auto step : {myriad::phase_step::restart, myriad::phase_step::carry_on}) {
             CAPTURE(length, static_cast<int>(step));
@@ -201,7 +203,8 @@ TEMPLATE_TEST_CASE("a state that the host puts on the surface between two calls 
     CHECK(count_of(e) == 0);
 }
 
-TEMPLATE_TEST_CASE("a function of time that starts on its surface again in every phase does not fire there", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("a function of time that starts on its surface again in every phase does not fire there", "",
+                   ALL_METHODS) {
     myriad::ensemble<wave> e(1);
     e.state(wave::x) = 1;
     e.parameter(wave::amplitude) = 1;  // cos t rises from -pi/2, falls through zero at pi/2, and ends below it

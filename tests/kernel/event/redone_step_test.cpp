@@ -10,7 +10,8 @@ namespace {
 
 using step = myriad::detail::redone_step<double, 2>;
 
-/// Redoes a step of length 1 until the event at `time` is between lengths that are one up to rounding; guesses are of no use.
+/// Redoes a step of length 1 until the event at `time` is between lengths that are one up to rounding; guesses are of
+/// no use.
 int trials_to(double time, double guess) {
     step s;
     s.begin(1, guess, 0.25);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Two small models with one event that depends on time alone: a smooth one, and one that jumps or is no number; a
-// pendulum; a ball between walls that its event function tells by its sign alone; and a state that settles at its event.
+// pendulum; a ball between walls that its event function tells by its sign alone; and a state that settles at its
+// event.
 #pragma once
 
 #include <limits>
@@ -85,7 +86,8 @@ struct pendulum {
     MYRIAD_FUNCTION static void after_event(int, auto& lane) { log_action<pendulum>(lane); }
 };
 
-/// x'' = 0 between walls at 0 and 1: g is 1 between and -1 beyond them. At an event the ball turns round or goes through.
+/// x'' = 0 between walls at 0 and 1: g is 1 between and -1 beyond them. At an event the ball turns round or goes
+/// through.
 struct walled {
     enum state { x, v, n_state };
     enum shared_integer { turns_round, n_shared_integer };
@@ -108,7 +110,8 @@ struct walled {
     }
 };
 
-/// x' = rest - x with a threshold: an integrate-and-fire model where it resets, a decay where rest and threshold are zero.
+/// x' = rest - x with a threshold: an integrate-and-fire model where it resets, a decay where rest and threshold are
+/// zero.
 struct settling {
     enum state { x, n_state };
     enum parameter { rest, threshold, n_parameter };

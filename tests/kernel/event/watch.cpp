@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compiles, in packs, kernels of the models that the tests of events watch and of levels; time_models.cpp has the others.
+// Compiles, in packs, kernels of the models that the tests of events watch and of levels; time_models.cpp has the
+// others.
 #include "watch.hpp"
 
 #include <myriad/instantiate.hpp>

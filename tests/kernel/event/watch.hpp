@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A model whose motion, event functions and actions are chosen at run time, so that one compilation serves many tests of
-// events. It logs every action: which event, when, and how far its function was beyond zero.
+// A model whose motion, event functions and actions are chosen at run time, so that one compilation serves many tests
+// of events. It logs every action: which event, when, and how far its function was beyond zero.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -51,7 +51,8 @@ struct watch {
         }
         lane.integer_accessory[fired] = n + 1;
         // beyond: how far the function of x has passed zero in the direction of the motion
-        const auto g = function<std::remove_cvref_t<decltype(lane.t)>>(event, lane.t, lane.y, lane.shared, lane.parameter[c0 + event]);
+        const auto g = function<std::remove_cvref_t<decltype(lane.t)>>(event, lane.t, lane.y, lane.shared,
+                                                                       lane.parameter[c0 + event]);
         const auto passed = lane.shared[n_event_shared * event + of_x] * lane.y[v] * lane.h > 0 ? g : -g;
         lane.accessory[beyond] = myriad::max(lane.accessory[beyond], passed);
         lane.accessory[gap] = myriad::max(lane.accessory[gap], -passed);

@@ -35,7 +35,7 @@ inline function never() { return {.c = -1}; }
 struct motion {
     double x = 0, v = 0, a = 0, k = 0;
 };
-inline constexpr motion sine{.x = 0, .v = 1, .k = 1};   // x = sin t
+inline constexpr motion sine{.x = 0, .v = 1, .k = 1};    // x = sin t
 inline constexpr motion cosine{.x = 1, .v = 0, .k = 1};  // x = cos t
 
 /// What fired, and when.
@@ -113,7 +113,8 @@ inline bool agree(const std::vector<double>& found, const std::vector<double>& e
 }
 
 /// Options with one event tolerance for all three functions and steps that suit fixed and adaptive methods.
-inline myriad::options options_for(double event_tolerance, double step, myriad::direction d = myriad::direction::either) {
+inline myriad::options options_for(double event_tolerance, double step,
+                                   myriad::direction d = myriad::direction::either) {
     myriad::options o;
     o.relative_tolerance = 1e-12;
     o.absolute_tolerance = 1e-12;
@@ -127,7 +128,8 @@ auto solve(myriad::ensemble<watch, R>& e, const myriad::options& o) {
     return myriad::solve<Method>(tests::test_device(1), e, o);
 }
 
-/// Without the checks of the options, which refuse what only rounding keeps from working: the kernel itself, on the CPU.
+/// Without the checks of the options, which refuse what only rounding keeps from working: the kernel itself, on the
+/// CPU.
 template <class Method, class R>
 void solve_unchecked(myriad::ensemble<watch, R>& e, const myriad::options& o) {
     myriad::host::prepared_arguments<watch, R> prepared(e, o, myriad::host::traits_of<Method>);
@@ -135,4 +137,3 @@ void solve_unchecked(myriad::ensemble<watch, R>& e, const myriad::options& o) {
 }
 
 }  // namespace watching
-

@@ -88,8 +88,8 @@ TEST_CASE("books that only hooks read change no bit where the model declares the
     const Eigen::Array<std::int64_t, Eigen::Dynamic, 1> impacts =
         declared.integer_accessory(bookkeeper::impacts).cast<std::int64_t>();
     CHECK(impacts.minCoeff() > 0);
-    // The last slope of a step is the first of the next, and stays so: one evaluation less per accepted step, but for those at
-    // impacts, which change the state.
+    // The last slope of a step is the first of the next, and stays so: one evaluation less per accepted step, but for
+    // those at impacts, which change the state.
     const Eigen::Array<std::int64_t, Eigen::Dynamic, 1> saved = plain.rhs_evaluations() - declared.rhs_evaluations();
     CHECK((saved >= declared.accepted_steps() - 2 * impacts - 2).all());
 }
@@ -207,7 +207,8 @@ TEST_CASE("a next step of NaN ends the instance as not_finite, whichever hook se
     check_next_step_of_nan<hooked::step_spoiler>();
     check_next_step_of_nan<hooked::step_spoiler_generic>();
 }
-TEST_CASE("a next step longer than the domain is what is left of it, and one of zero ends the instance as step_underflow") {
+TEST_CASE(
+    "a next step longer than the domain is what is left of it, and one of zero ends the instance as step_underflow") {
     using model = hooked::step_spoiler;
     for (const int hook : {model::in_initialise, model::in_after_step, model::in_after_event}) {
         CAPTURE(hook);

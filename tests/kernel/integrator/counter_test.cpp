@@ -25,7 +25,8 @@ using myriad::status;
 template <class Model>
 ensemble<Model> oscillators(std::int64_t size = 9) {
     ensemble<Model> e(size);
-    e.state(0) = Eigen::ArrayXd::LinSpaced(size, 1.0, 30.0);  // tolerances are absolute for some and relative for others
+    e.state(0) =
+        Eigen::ArrayXd::LinSpaced(size, 1.0, 30.0);  // tolerances are absolute for some and relative for others
     e.state(1) = 0.0;
     e.time_domain(0, 20);
     return e;
@@ -136,7 +137,8 @@ TEST_CASE("a hook that changes nothing costs tsitouras_5 no evaluation") {
     CHECK(idle.accepted_steps == plain.accepted_steps);
     CHECK(idle.rhs_evaluations == plain.rhs_evaluations);
 }
-TEST_CASE("a hook that changes an accessory costs tsitouras_5 one evaluation a step, since the slope may depend on it") {
+TEST_CASE(
+    "a hook that changes an accessory costs tsitouras_5 one evaluation a step, since the slope may depend on it") {
     auto e = oscillators<counted::busy_hook>();
     e.accessory(0) = 0.0;
     counted::take();

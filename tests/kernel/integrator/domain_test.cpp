@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where an integration begins and ends: the end of the domain to the last bit and without a sliver step, empty, endless and
-// backward domains.
+// Where an integration begins and ends: the end of the domain to the last bit and without a sliver step, empty, endless
+// and backward domains.
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -8,10 +8,10 @@
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/compare.hpp"
+#include "tests/support/device.hpp"
 #include "tests/support/hooked.hpp"
 #include "tests/support/problems.hpp"
 #include "tests/support/recorder.hpp"
-#include "tests/support/device.hpp"
 
 namespace {
 
@@ -66,8 +66,8 @@ TEST_CASE("10000 steps of a thousandth over [0, 10] are 10000 steps in single pr
     each_method([]<class Method> { check_steps<Method>(0.0f, 10.0f, fixed_step(1e-3), 10000); });
 }
 TEST_CASE("100000 steps of a ten-thousandth over [0, 10] are 100000 steps in single precision") {
-    // Near t = 10 every hundredth of a step would be lost to the rounding of t, were it not kept; and the last step but one
-    // may be rounded to the end itself.
+    // Near t = 10 every hundredth of a step would be lost to the rounding of t, were it not kept; and the last step but
+    // one may be rounded to the end itself.
     each_method([]<class Method> { check_steps<Method>(0.0f, 10.0f, fixed_step(1e-4), 100000); });
 }
 TEST_CASE("10000 steps of a thousandth back from 10 to 0 are 10000 steps") {
@@ -239,8 +239,9 @@ TEST_CASE("an integration back to its start returns to where it began") {
         e.time_domain(3, 0);
         e.restart();
         const auto back = solve<Method>(tests::test_device(1), e, with_tolerance(1e-9));
-        // Every step adds an error below the tolerance of 1e-9 times |y| <= e. The flow along the circle magnifies it by the
-        // ratio of the coordinates, e^2, at most. RK4 with h = 1/64: error per step h^5 / 120 times derivatives of ten.
+        // Every step adds an error below the tolerance of 1e-9 times |y| <= e. The flow along the circle magnifies it
+        // by the ratio of the coordinates, e^2, at most. RK4 with h = 1/64: error per step h^5 / 120 times derivatives
+        // of ten.
         const double steps = static_cast<double>(there.accepted_steps + back.accepted_steps) / 8;
         const double bound = std::exp(2.0) * steps * std::exp(1.0) * 1e-9;
         CHECK((e.state(0) - u).abs().maxCoeff() < bound);

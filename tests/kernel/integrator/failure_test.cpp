@@ -10,10 +10,10 @@
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/compare.hpp"
+#include "tests/support/device.hpp"
 #include "tests/support/faulty.hpp"
 #include "tests/support/problems.hpp"
 #include "tests/support/recorder.hpp"
-#include "tests/support/device.hpp"
 
 namespace {
 
@@ -36,14 +36,16 @@ ensemble<clock_fault, R> healthy(std::int64_t size, R t_end) {
     ensemble<clock_fault, R> e(size);
     e.state(0) = R(1);
     e.state(1) = R(0.5);
-    for (std::int64_t i = 0; i < size; ++i) e.parameter(clock_fault::rate)[i] = R(0.5) + R(0.125) * static_cast<R>(i % 13);
+    for (std::int64_t i = 0; i < size; ++i)
+        e.parameter(clock_fault::rate)[i] = R(0.5) + R(0.125) * static_cast<R>(i % 13);
     e.parameter(clock_fault::last_good) = static_cast<R>(never);
     e.parameter(clock_fault::kind) = R(0);
     e.time_domain(0, t_end);
     return e;
 }
 
-/// Runs 67 instances, some of which fail at different times, on one and two threads, and once more without the failures.
+/// Runs 67 instances, some of which fail at different times, on one and two threads, and once more without the
+/// failures.
 template <class Method, class R>
 void check_neighbours(const options& o) {
     constexpr std::int64_t size = 67;
@@ -54,7 +56,8 @@ void check_neighbours(const options& o) {
         std::int64_t failing = 0;
         for (std::int64_t i = 0; i < size; ++i) {
             if (i % 5 != 1 && i != 0 && i != 66) continue;
-            mixed.parameter(clock_fault::last_good)[i] = R(-1) + R(0.3125) * static_cast<R>(i % 14);  // some from the start
+            mixed.parameter(clock_fault::last_good)[i] =
+                R(-1) + R(0.3125) * static_cast<R>(i % 14);  // some from the start
             mixed.parameter(clock_fault::kind)[i] = static_cast<R>(i % 2);
             ++failing;
         }
@@ -100,7 +103,8 @@ void check_open_cliff() {
 
 // Not finite ----------------------------------------------------------------------------------------------------------
 
-TEST_CASE("with fixed steps, a right-hand side that turns NaN or infinite ends the instance with the last finite state") {
+TEST_CASE(
+    "with fixed steps, a right-hand side that turns NaN or infinite ends the instance with the last finite state") {
     each_method([]<class Method> {
         for (const double kind : {0.0, 1.0}) {
             auto bad = healthy(1, 4.0), until = healthy(1, 1.0);
@@ -219,13 +223,14 @@ TEST_CASE("a right-hand side without a value beyond the state is not crept up to
         }
     });
 }
-TEMPLATE_TEST_CASE("a slope that is NaN in a stage without weight is seen where the model makes a number of a NaN state", "",
-                   myriad::cash_karp, myriad::tsitouras_5, myriad::dormand_prince_5, myriad::verner_7,
-                   myriad::dormand_prince_8, myriad::rosenbrock_23, myriad::rodas_5p) {
+TEMPLATE_TEST_CASE(
+    "a slope that is NaN in a stage without weight is seen where the model makes a number of a NaN state", "",
+    myriad::cash_karp, myriad::tsitouras_5, myriad::dormand_prince_5, myriad::verner_7, myriad::dormand_prince_8,
+    myriad::rosenbrock_23, myriad::rodas_5p) {
     check_open_cliff<TestType>();
 }
-TEMPLATE_TEST_CASE("a slope that is NaN in a stage without weight is seen in single precision, too", "", myriad::cash_karp,
-                   myriad::dormand_prince_8) {
+TEMPLATE_TEST_CASE("a slope that is NaN in a stage without weight is seen in single precision, too", "",
+                   myriad::cash_karp, myriad::dormand_prince_8) {
     check_open_cliff<TestType, float>();
 }
 TEST_CASE("with fixed steps, a slope that is NaN in a stage without weight ends the instance before that step") {
@@ -297,7 +302,8 @@ TEST_CASE("a failed instance takes no part in further calls, until the ensemble 
     });
 }
 TEST_CASE("with step-size control, a finite trial after one that was not is judged by its error alone") {
-    // NaN for t > 1 costs a rejection where the domain ends at 1 and the first step goes beyond: it must leave no trace.
+    // NaN for t > 1 costs a rejection where the domain ends at 1 and the first step goes beyond: it must leave no
+    // trace.
     each_adaptive_method([]<class Method> {
         auto e = healthy(1, 1.0);
         e.parameter(clock_fault::last_good) = 1.0;
@@ -349,7 +355,8 @@ TEST_CASE("a finalise that writes NaN ends the instance with the state before it
     });
 }
 
-// Vanishing steps -------------------------------------------------------------------------------------------------------
+// Vanishing steps
+// -------------------------------------------------------------------------------------------------------
 
 TEST_CASE("with step-size control, a solution that blows up ends as step_underflow at its pole") {
     each_adaptive_method([]<class Method> {
@@ -411,8 +418,8 @@ TEST_CASE("a slope that jumps is passed with small steps, or ends the instance w
         options o = with_tolerance(1e-9);
         solve<Method>(tests::test_device(1), e, o);
         CHECK(e.status(0) == status::success);
-        // Only the step across the jump has an error. The stages on one side of it leave an estimate of h times a sum of some
-        // first error weights, at least 0.0017 in size for both methods, so h < 1e-9 / 0.0017.
+        // Only the step across the jump has an error. The stages on one side of it leave an estimate of h times a sum
+        // of some first error weights, at least 0.0017 in size for both methods, so h < 1e-9 / 0.0017.
         CHECK(std::abs(e.state(0)[0] - 2.0 / 3) < 1e-9 / 0.0017);
         CHECK(e.rejected_steps()[0] > 3);
 
@@ -429,7 +436,8 @@ TEST_CASE("a slope that jumps is passed with small steps, or ends the instance w
     });
 }
 
-// Too many steps --------------------------------------------------------------------------------------------------------
+// Too many steps
+// --------------------------------------------------------------------------------------------------------
 
 TEST_CASE("with fixed steps, max_steps ends the instance after just so many steps") {
     each_method([]<class Method> {
@@ -453,7 +461,8 @@ TEST_CASE("where max_steps ends an instance does not depend on its neighbours") 
             options o = fixed_step(1.0 / 16);
             o.max_steps = most;
             auto together = healthy(50, 100.0 / 16);
-            for (std::int64_t i = 0; i < together.size(); ++i) together.t_end()[i] = static_cast<double>(1 + 7 * (i % 6)) / 16;
+            for (std::int64_t i = 0; i < together.size(); ++i)
+                together.t_end()[i] = static_cast<double>(1 + 7 * (i % 6)) / 16;
             solve<Method>(tests::test_device(1), together, o);
             for (std::int64_t i = 0; i < together.size(); ++i) {
                 auto alone = healthy(1, together.t_end()[i]);

@@ -9,8 +9,8 @@
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/compare.hpp"
-#include "tests/support/hooked.hpp"
 #include "tests/support/device.hpp"
+#include "tests/support/hooked.hpp"
 
 namespace {
 
@@ -68,7 +68,8 @@ ensemble<Model> one(double state, double t_end, int mode) {
 
 }  // namespace
 
-// Order and view ----------------------------------------------------------------------------------------------------------
+// Order and view
+// ----------------------------------------------------------------------------------------------------------
 
 TEST_CASE("a phase is initialise, steps each followed by the events located at its end, and finalise") {
     each_method([]<class Method> {
@@ -83,28 +84,29 @@ TEST_CASE("a phase is initialise, steps each followed by the events located at i
                 CAPTURE(i, c.t);
                 CHECK(c.phase == (c.which == hook::initialise ? phase + 1 : phase));
                 switch (c.which) {
-                case hook::initialise:
-                    CHECK(before == hook::finalise);
-                    ++phase;
-                    break;
-                case hook::after_step:
-                    CHECK(before != hook::finalise);
-                    break;
-                case hook::after_event:
-                    // right after the step that ends there, or after an event of lower index at the same time
-                    CHECK((before == hook::after_step || (before == hook::after_event && calls[i - 1].event < c.event)));
-                    CHECK(c.t == calls[i - 1].t);
-                    ++events;
-                    break;
-                case hook::finalise:
-                    CHECK((before == hook::after_step || before == hook::after_event));
-                    CHECK(c.t == 5.0);
-                    break;
+                    case hook::initialise:
+                        CHECK(before == hook::finalise);
+                        ++phase;
+                        break;
+                    case hook::after_step:
+                        CHECK(before != hook::finalise);
+                        break;
+                    case hook::after_event:
+                        // right after the step that ends there, or after an event of lower index at the same time
+                        CHECK((before == hook::after_step ||
+                               (before == hook::after_event && calls[i - 1].event < c.event)));
+                        CHECK(c.t == calls[i - 1].t);
+                        ++events;
+                        break;
+                    case hook::finalise:
+                        CHECK((before == hook::after_step || before == hook::after_event));
+                        CHECK(c.t == 5.0);
+                        break;
                 }
             }
             CHECK(phase == 1);
-            // [0, 5] holds a turning point at pi and zeros, of two event functions, at pi/2 and 3 pi/2. The second phase
-            // starts elsewhere on the circle, and has as many of each, or one more or less.
+            // [0, 5] holds a turning point at pi and zeros, of two event functions, at pi/2 and 3 pi/2. The second
+            // phase starts elsewhere on the circle, and has as many of each, or one more or less.
             CHECK(events >= 5);
         }
     });
@@ -200,7 +202,8 @@ TEST_CASE("finalise sees the end of its phase") {
     });
 }
 
-// Scalar and generic hooks --------------------------------------------------------------------------------------------------
+// Scalar and generic hooks
+// --------------------------------------------------------------------------------------------------
 
 TEST_CASE("a scalar and a generic after_step that say the same do the same") {
     using base = hooked::running_base;
@@ -267,7 +270,8 @@ TEST_CASE("a running sum and maximum over the steps are those of the trajectory"
     });
 }
 
-// Writing parameters and time domains -----------------------------------------------------------------------------------------
+// Writing parameters and time domains
+// -----------------------------------------------------------------------------------------
 
 TEST_CASE("a parameter written by finalise is stored and counts from the next phase on") {
     each_method([]<class Method> {
@@ -312,7 +316,8 @@ TEST_CASE("instances that write parameters do not write those of others") {
         e.parameter(parameter_writer::untouched) = Eigen::ArrayXd::LinSpaced(50, -1.0, 1.0);
         e.time_domain(0, 1);
         for (std::int64_t i = 0; i < 50; ++i) e.integer_accessory(parameter_writer::mode)[i] = static_cast<int>(i % 4);
-        const Eigen::ArrayXd rate = e.parameter(parameter_writer::rate), untouched = e.parameter(parameter_writer::untouched);
+        const Eigen::ArrayXd rate = e.parameter(parameter_writer::rate),
+                             untouched = e.parameter(parameter_writer::untouched);
         solve<Method>(tests::test_device(2), e, fixed_step(0.25));
         for (std::int64_t i = 0; i < 50; ++i) {
             const double factor[] = {1, 2, 16, 2};
@@ -434,7 +439,8 @@ TEST_CASE("a step written by after_step is the next to be tried") {
     CHECK(steps[8].h == 0.25);
 }
 
-// What a right-hand side reads ------------------------------------------------------------------------------------------------
+// What a right-hand side reads
+// ------------------------------------------------------------------------------------------------
 
 namespace {
 template <class R>
@@ -457,8 +463,8 @@ void check_reader() {
         e.time_domain(0, 2);
         solve<Method>(tests::test_device(1), e, fixed_step(0.25));
         for (std::int64_t i = 0; i < 40; ++i) {
-            const double rate = static_cast<double>(i) + 0.75 + 30 - 7 +
-                                (i % 5 > i % 7 ? 2000 + 100 * static_cast<double>(i) : 1000);
+            const double rate =
+                static_cast<double>(i) + 0.75 + 30 - 7 + (i % 5 > i % 7 ? 2000 + 100 * static_cast<double>(i) : 1000);
             CAPTURE(i);
             // eight steps, each rounded a few times
             CHECK(std::abs(static_cast<double>(e.state(0)[i]) / (2 * rate) - 1) <
@@ -469,9 +475,12 @@ void check_reader() {
 }  // namespace
 
 TEST_CASE("a right-hand side reads shared numbers, accessories and integers, its own") { check_reader<double>(); }
-TEST_CASE("a right-hand side reads shared numbers, accessories and integers, its own, in single precision") { check_reader<float>(); }
+TEST_CASE("a right-hand side reads shared numbers, accessories and integers, its own, in single precision") {
+    check_reader<float>();
+}
 
-// Hooks that change what slopes depend on -------------------------------------------------------------------------------------
+// Hooks that change what slopes depend on
+// -------------------------------------------------------------------------------------
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/compare.hpp"
+#include "tests/support/device.hpp"
 #include "tests/support/faulty.hpp"
 #include "tests/support/hooked.hpp"
-#include "tests/support/device.hpp"
 
 namespace {
 
@@ -80,7 +80,8 @@ void check_all_splits(double tolerance) {
 template <class Model, class R>
 void check_row(const myriad::phase_records<Model, R>& records, std::int64_t row, const ensemble<Model, R>& e) {
     CAPTURE(row);
-    for (int c = 0; c < myriad::detail::n_state<Model>; ++c) CHECK(compare::same_bits_everywhere(records.state(c).col(row), e.state(c)));
+    for (int c = 0; c < myriad::detail::n_state<Model>; ++c)
+        CHECK(compare::same_bits_everywhere(records.state(c).col(row), e.state(c)));
     for (int c = 0; c < myriad::detail::n_accessory<Model>; ++c)
         CHECK(compare::same_bits_everywhere(records.accessory(c).col(row), e.accessory(c)));
     for (int c = 0; c < myriad::detail::n_integer_accessory<Model>; ++c)
@@ -107,10 +108,13 @@ ensemble<stopper> stoppers(std::int64_t size, double t_end) {
 
 }  // namespace
 
-// One call and many --------------------------------------------------------------------------------------------------------
+// One call and many
+// --------------------------------------------------------------------------------------------------------
 
 TEST_CASE("phases in one call are phases in many calls, bit for bit") { check_all_splits<double>(1e-8); }
-TEST_CASE("phases in one call are phases in many calls, bit for bit, in single precision") { check_all_splits<float>(1e-4); }
+TEST_CASE("phases in one call are phases in many calls, bit for bit, in single precision") {
+    check_all_splits<float>(1e-4);
+}
 TEST_CASE("phases ended by events, in one call, are phases in many calls, bit for bit") {
     each_method([]<class Method> {
         for (const phase_time time : {phase_time::restart, phase_time::carry_on}) {
@@ -147,7 +151,8 @@ TEST_CASE("initialise sees the same times and steps in one call as in many") {
     });
 }
 
-// Time and step at the start of a phase ------------------------------------------------------------------------------------
+// Time and step at the start of a phase
+// ------------------------------------------------------------------------------------
 
 TEST_CASE("a phase starts at t_begin again") {
     // y' = t over [0, 1] adds 1/2 every time; exact for every method but for the roundings of about 6 steps of 6 stages
@@ -172,8 +177,8 @@ TEST_CASE("phases of a forcing's period continue one another") {
         solve<Method>(tests::test_device(1), one, o);
         o.phases = 3;
         solve<Method>(tests::test_device(1), many, o);
-        // Some hundred steps with errors below 1e-10 |y|, |y| < 10 (RK4: (pi / 256)^5 / 120 = 2e-12), none of them amplified
-        // by the oscillator; resonance at w = 1 adds them up.
+        // Some hundred steps with errors below 1e-10 |y|, |y| < 10 (RK4: (pi / 256)^5 / 120 = 2e-12), none of them
+        // amplified by the oscillator; resonance at w = 1 adds them up.
         CHECK((one.state(0) - many.state(0)).abs().maxCoeff() < 1e-6);
         CHECK((one.state(1) - many.state(1)).abs().maxCoeff() < 1e-6);
     });
@@ -216,7 +221,8 @@ TEST_CASE("time that is carried on to a finite t_end leaves no phases without le
     o.phase_time = phase_time::carry_on;
     o.phases = 3;
     CHECK_THROWS_WITH(solve<cash_karp>(tests::test_device(1), e, o),
-                      Contains("the call has 3 phases") && Contains("the first of them ends at t_end, 10") && Contains("phase_length"));
+                      Contains("the call has 3 phases") && Contains("the first of them ends at t_end, 10") &&
+                          Contains("phase_length"));
     CHECK(e.phases_done()[0] == 0);
     o.phases = 1;
     solve<cash_karp>(tests::test_device(1), e, o);
@@ -238,7 +244,8 @@ TEST_CASE("time that is carried on to a finite t_end leaves no phases without le
     CHECK_THAT(r.notes[0], Contains("t had reached t_end in all instances"));
 }
 
-// Phases of a length --------------------------------------------------------------------------------------------------------
+// Phases of a length
+// --------------------------------------------------------------------------------------------------------
 
 TEST_CASE("phases of a length go on in time, and their ends add up no rounding") {
     each_method([]<class Method> {
@@ -255,10 +262,12 @@ TEST_CASE("phases of a length go on in time, and their ends add up no rounding")
                 const auto r = solve<Method>(tests::test_device(1), e, o);
                 CHECK(r.count(status::success) == 5);
                 for (int k = 1; k <= 300; ++k)
-                    for (int i = 0; i < 5; ++i) CHECK(r.records.time()(i, k - 1) == std::fma(sign * 0.1, 300 * call + k, i));
+                    for (int i = 0; i < 5; ++i)
+                        CHECK(r.records.time()(i, k - 1) == std::fma(sign * 0.1, 300 * call + k, i));
             }
             // y' = t; exact but for roundings of y up to 2000, two in each of a thousand steps
-            for (int i = 0; i < 5; ++i) CHECK(std::abs(e.state(0)[i] - 0.5 * (e.t()[i] * e.t()[i] - i * i)) < 2000 * 2000 * 1.2e-16);
+            for (int i = 0; i < 5; ++i)
+                CHECK(std::abs(e.state(0)[i] - 0.5 * (e.t()[i] * e.t()[i] - i * i)) < 2000 * 2000 * 1.2e-16);
         }
     });
 }
@@ -272,10 +281,16 @@ TEST_CASE("the last phase of a length ends at t_end, and none is without length"
     o.phase_length = 0.1;
     o.phases = 11;
     CHECK_THROWS_WITH(solve<cash_karp>(tests::test_device(1), e, o),
-                      Contains("the call has 11 phases") && Contains("instance 0 is at t = 0, from where 10 of phase_length 0.1 lead to its t_end, 1"));
+                      Contains("the call has 11 phases") &&
+                          Contains("instance 0 is at t = 0, from where 10 of phase_length 0.1 lead to its t_end, 1"));
     o.phases = 4;
     solve<cash_karp>(tests::test_device(1), e, o);
-    CHECK_THROWS_WITH(solve<cash_karp>(tests::test_device(1), e, [&] { auto more = o; more.phases = 7; return more; }()),
+    CHECK_THROWS_WITH(solve<cash_karp>(tests::test_device(1), e,
+                                       [&] {
+                                           auto more = o;
+                                           more.phases = 7;
+                                           return more;
+                                       }()),
                       Contains("the call has 7 phases") && Contains("from where 6 of phase_length 0.1"));
     o.phases = 6;
     solve<cash_karp>(tests::test_device(1), e, o);
@@ -287,7 +302,8 @@ TEST_CASE("the last phase of a length ends at t_end, and none is without length"
     CHECK(e.t()[2] == 11 * 0.1);
     e.t_end() = 1;
     o.phases = 2;
-    CHECK_THROWS_WITH(solve<cash_karp>(tests::test_device(1), e, o), Contains("instance 1 is at t = 0.95, from where 1 of"));
+    CHECK_THROWS_WITH(solve<cash_karp>(tests::test_device(1), e, o),
+                      Contains("instance 1 is at t = 0.95, from where 1 of"));
 }
 TEST_CASE("a phase of a length that ends early leaves the rest to the next, and later ones end where they would have") {
     each_method([]<class Method> {
@@ -331,7 +347,8 @@ TEST_CASE("phases of a length in single precision end where rounding lets them")
     o.phases = 100;
     o.record.time = true;
     const auto r = solve<cash_karp>(tests::test_device(1), e, o);
-    for (int k = 1; k <= 100; ++k) CHECK((r.records.time().col(k - 1) == std::fma(0.3f, static_cast<float>(k), 0.0f)).all());
+    for (int k = 1; k <= 100; ++k)
+        CHECK((r.records.time().col(k - 1) == std::fma(0.3f, static_cast<float>(k), 0.0f)).all());
 }
 TEST_CASE("a length of phases that cannot be is refused") {
     using Catch::Matchers::Contains;
@@ -462,7 +479,8 @@ TEST_CASE("an instance that a hook ended and that is given a new state is not le
                       Catch::Matchers::Contains("instance 3 ended in an earlier call (stopped_by_user)"));
 }
 
-// Records ------------------------------------------------------------------------------------------------------------------
+// Records
+// ------------------------------------------------------------------------------------------------------------------
 
 TEST_CASE("records hold what single-phase calls give, bit for bit") {
     each_method([]<class Method> {
@@ -526,7 +544,8 @@ TEST_CASE("records hold the components asked for, in any order") {
     const auto r = solve<cash_karp>(tests::test_device(1), e, o);
     CHECK(compare::same_bits_everywhere(r.records.state(phased::v).col(1), e.state(phased::v)));
     CHECK(compare::same_bits_everywhere(r.records.accessory(phased::x_start).col(1), e.accessory(phased::x_start)));
-    CHECK(compare::same_bits_everywhere(r.records.accessory(phased::sum_of_max).col(1), e.accessory(phased::sum_of_max)));
+    CHECK(
+        compare::same_bits_everywhere(r.records.accessory(phased::sum_of_max).col(1), e.accessory(phased::sum_of_max)));
     CHECK((r.records.integer_accessory(phased::phases_begun).col(0) == 1).all());
     CHECK((r.records.integer_accessory(phased::phases_begun).col(1) == 2).all());
     CHECK_THROWS_AS(r.records.state(phased::x), myriad::error);
@@ -543,7 +562,8 @@ TEST_CASE("nothing is recorded unless asked for") {
 TEST_CASE("an instance that ended itself has NaN and zero in the records of later phases") {
     each_method([]<class Method> {
         auto e = stoppers(20, 1.0);
-        for (std::int64_t i = 0; i < e.size(); i += 3) e.parameter(stopper::instance_stop)[i] = 1.95;  // at the end of phase 1 (from 0)
+        for (std::int64_t i = 0; i < e.size(); i += 3)
+            e.parameter(stopper::instance_stop)[i] = 1.95;  // at the end of phase 1 (from 0)
         options o = fixed_step(0.125);
         o.phases = 4;
         record_everything<stopper>(o);
@@ -595,7 +615,8 @@ TEST_CASE("phases over empty domains are recorded too") {
     }
 }
 
-// Ends by hooks ------------------------------------------------------------------------------------------------------------
+// Ends by hooks
+// ------------------------------------------------------------------------------------------------------------
 
 TEST_CASE("end_phase ends the phase and not the instance") {
     each_method([]<class Method> {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stiff methods in the loop: statuses, counts, events, hooks and dense output, large systems, and results that depend on the
-// instance alone.
+// Stiff methods in the loop: statuses, counts, events, hooks and dense output, large systems, and results that depend
+// on the instance alone.
 #include "tests/support/stiff.hpp"
 
 #include <algorithm>
@@ -32,8 +32,8 @@ using stiff::van_der_pol;
 
 constexpr double pi = 3.14159265358979323846;
 
-/// The rate at which I / (h gamma) - J of `growth` has a pivot of zero: what the method itself computes, 1 / h times the
-/// rounded 1 / gamma.
+/// The rate at which I / (h gamma) - J of `growth` has a pivot of zero: what the method itself computes, 1 / h times
+/// the rounded 1 / gamma.
 template <class Method, class R>
 R singular_rate(R h) {
     return R(1) / h * static_cast<R>(1 / Method::tableau().gamma);
@@ -91,7 +91,8 @@ void check_relay(double tolerance, double slack) {
         CHECK(std::abs(e.accessory(relay::last_event)[i] - 2 * pi / 3) <=
               (slack * tolerance + 1e-9) / std::sin(pi / 3));
         CHECK(std::abs(e.state(relay::y0)[i] - (std::cos(4.0) + 2)) <= slack * tolerance);
-        // the largest state is the one at an event or at the start, before the action: hooks see steps, and these end below
+        // the largest state is the one at an event or at the start, before the action: hooks see steps, and these end
+        // below
         CHECK(e.accessory(relay::largest)[i] >= 1);
         CHECK(e.accessory(relay::largest)[i] <= 1.5 + slack * tolerance);
         CHECK(e.integer_accessory(relay::begun)[i] == 1);
@@ -106,8 +107,8 @@ void check_relay(double tolerance, double slack) {
     }
 }
 
-/// The slowest mode of the rod, exp(-lambda t) sin(j pi / (n + 1)) with lambda = 4 rate sin^2(pi / (2 (n + 1))), and with it
-/// the fastest one, which decays at once.
+/// The slowest mode of the rod, exp(-lambda t) sin(j pi / (n + 1)) with lambda = 4 rate sin^2(pi / (2 (n + 1))), and
+/// with it the fastest one, which decays at once.
 template <class Method, int n, class R = double>
 void check_rod(double tolerance) {
     ensemble<stiff::rod<n>, R> e(19);
@@ -128,8 +129,8 @@ void check_rod(double tolerance) {
     for (int j = 0; j < n; ++j) {
         const double exact = std::exp(-lambda * end) * std::sin((j + 1) * pi / (n + 1));
         CAPTURE(n, j, steps);
-        // The matrix exponential of the rod shrinks errors in every norm but the largest component may collect those of all
-        // others: rows of it sum up to one at most. A step's error is below the tolerance, states are at most 1.1.
+        // The matrix exponential of the rod shrinks errors in every norm but the largest component may collect those of
+        // all others: rows of it sum up to one at most. A step's error is below the tolerance, states are at most 1.1.
         CHECK(std::abs(static_cast<double>(e.state(j)[7]) - exact) <= 1.1 * steps * tolerance);
     }
 }
@@ -211,7 +212,8 @@ TEST_CASE("a step with a singular matrix is shortened, and ends as singular_jaco
     check_singular<rodas_5p, float>();
 }
 
-TEST_CASE("impacts that accumulate end a stiff method as event_accumulation, though its steps are shorter than 1 / 1e308") {
+TEST_CASE(
+    "impacts that accumulate end a stiff method as event_accumulation, though its steps are shorter than 1 / 1e308") {
     for (const double tolerance : {1e-6, 1e-12}) {
         check_accumulation<rosenbrock_23>(tolerance, 1e-8);
         check_accumulation<rodas_5p>(tolerance, 1e-8);
@@ -345,7 +347,8 @@ TEST_CASE("the model's own Jacobian gives what the one by dual numbers gives") {
 
 namespace {
 
-/// The largest errors of samples and of ends of steps of sin t over [0, 10], the solution of Prothero and Robinson's problem.
+/// The largest errors of samples and of ends of steps of sin t over [0, 10], the solution of Prothero and Robinson's
+/// problem.
 template <class Method>
 std::pair<double, double> errors_of_samples(double rate, double maximum_step) {
     const auto error = [&](std::int64_t evenly, std::int64_t every, std::int64_t capacity) {
@@ -367,7 +370,8 @@ std::pair<double, double> errors_of_samples(double rate, double maximum_step) {
 
 TEST_CASE("samples of a very stiff solution err by the fourth power of the step, far above the tolerance of 1e-6") {
     const double free = std::numeric_limits<double>::infinity();
-    // docs/numerics.md has these. Ends of steps are good, so that steps grow with the rate, and with them the error inside.
+    // docs/numerics.md has these. Ends of steps are good, so that steps grow with the rate, and with them the error
+    // inside.
     const std::pair<double, double> expected[] = {{1e4, 6e-5}, {1e6, 2e-2}, {1e8, 2e-1}};
     for (const auto& [rate, inside] : expected) {
         INFO("rate " << rate);

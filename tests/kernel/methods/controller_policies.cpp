@@ -6,5 +6,5 @@
 
 #include "tests/support/problems.hpp"
 
-MYRIAD_INSTANTIATE(problems::van_der_pol, choices::pi, choices::pid, choices::averaged, choices::automatic, choices::high_order,
-                   choices::plain, choices::scaled)
+MYRIAD_INSTANTIATE(problems::van_der_pol, choices::pi, choices::pid, choices::averaged, choices::automatic,
+                   choices::high_order, choices::plain, choices::scaled)

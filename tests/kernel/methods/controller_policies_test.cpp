@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Chosen step-size controls: the steps that kernels take against a loop written out from the formulas.
+#include "tests/kernel/methods/controller_policies.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -8,7 +10,6 @@
 
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
-#include "tests/kernel/methods/controller_policies.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/problems.hpp"
 #include "tests/support/textbook.hpp"
@@ -66,8 +67,8 @@ struct rule {
                 return std::abs(step.estimate[c]) / scale(std::max(std::abs(path.end[c]), std::abs(step.y[c])));
             };
             const double q = norm(ratio(0), ratio(1));
-            const double factor =
-                q <= 1 ? std::pow(q, -now / 5) * std::pow(q1, -last / 5) * std::pow(q2, -before / 5) : std::pow(q, -0.25);
+            const double factor = q <= 1 ? std::pow(q, -now / 5) * std::pow(q1, -last / 5) * std::pow(q2, -before / 5)
+                                         : std::pow(q, -0.25);
             h = length * std::clamp(0.9 * factor, 0.1, 5.0);
             if (q > 1) {
                 ++path.rejected;
@@ -83,9 +84,9 @@ struct rule {
     }
 };
 
-/// The kernels' powers are accurate to 2e-5 where three of them are multiplied, and a step that is wrong by so much makes the
-/// error that the next one follows wrong by five times as much. A rejection at the limit would part the two for good: the
-/// number of rejections must agree, and every step within 0.2 %.
+/// The kernels' powers are accurate to 2e-5 where three of them are multiplied, and a step that is wrong by so much
+/// makes the error that the next one follows wrong by five times as much. A rejection at the limit would part the two
+/// for good: the number of rejections must agree, and every step within 0.2 %.
 template <class Method, class Plain>
 void check(const rule& r) {
     const trajectory expected = r.follow<Plain>(), found = run<Method>(first_step);
@@ -112,7 +113,8 @@ TEST_CASE("rms_norm takes the steps of its formula") {
 
 TEST_CASE("the controls differ where they should") {
     // or the tests above could not fail
-    const auto elementary = rule{1, 0, 0}.follow<myriad::cash_karp>(), pi = rule{0.7, -0.4, 0}.follow<myriad::cash_karp>();
+    const auto elementary = rule{1, 0, 0}.follow<myriad::cash_karp>(),
+               pi = rule{0.7, -0.4, 0}.follow<myriad::cash_karp>();
     CHECK(elementary.t.size() != pi.t.size());
     CHECK(rule{1, 0, 0, root_mean_square}.follow<myriad::cash_karp>().t.size() != elementary.t.size());
     CHECK(rule{1, 0, 0, largest, mixed_scale}.follow<myriad::cash_karp>().t.size() != elementary.t.size());
@@ -184,7 +186,8 @@ TEST_CASE("with tolerance_per_instance each instance is integrated as by a call 
     myriad::options o;
     o.relative_tolerance = o.absolute_tolerance = 0x1p-30;
     auto own = prepare();
-    for (std::int64_t i = 0; i < own.size(); ++i) own.tolerance_scale()[i] = std::ldexp(1.0, static_cast<int>(4 * i) - 8);
+    for (std::int64_t i = 0; i < own.size(); ++i)
+        own.tolerance_scale()[i] = std::ldexp(1.0, static_cast<int>(4 * i) - 8);
     const auto report = myriad::solve<choices::scaled>(tests::test_device(1), own, o);
     REQUIRE(report.count(myriad::status::success) == own.size());
     for (std::int64_t i = 0; i < own.size(); ++i) {

@@ -11,8 +11,8 @@
 #include <set>
 #include <vector>
 
-#include "myriad/methods.hpp"
 #include "myriad/kernel/stepper/dense_output.hpp"
+#include "myriad/methods.hpp"
 #include "tests/catch.hpp"
 
 namespace {
@@ -253,12 +253,18 @@ TEST_CASE("there are 1, 1, 2, 4, 9, 20, 48, 115 and 286 rooted trees of orders o
     for (int order = 1; order <= 9; ++order) CHECK(trees_of_order(order).size() == counts[order - 1]);
 }
 
-TEST_CASE("runge_kutta_4 satisfies the order conditions to four and not to five") { check_solution_order<runge_kutta_4>(4); }
+TEST_CASE("runge_kutta_4 satisfies the order conditions to four and not to five") {
+    check_solution_order<runge_kutta_4>(4);
+}
 TEST_CASE("cash_karp satisfies the order conditions to five and not to six") { check_solution_order<cash_karp>(5); }
 TEST_CASE("tsitouras_5 satisfies the order conditions to five and not to six") { check_solution_order<tsitouras_5>(5); }
-TEST_CASE("dormand_prince_5 satisfies the order conditions to five and not to six") { check_solution_order<dormand_prince_5>(5); }
+TEST_CASE("dormand_prince_5 satisfies the order conditions to five and not to six") {
+    check_solution_order<dormand_prince_5>(5);
+}
 TEST_CASE("verner_7 satisfies the order conditions to seven and not to eight") { check_solution_order<verner_7>(7); }
-TEST_CASE("dormand_prince_8 satisfies the order conditions to eight and not to nine") { check_solution_order<dormand_prince_8>(8); }
+TEST_CASE("dormand_prince_8 satisfies the order conditions to eight and not to nine") {
+    check_solution_order<dormand_prince_8>(8);
+}
 
 TEST_CASE("the embedded solution of cash_karp satisfies the order conditions to four and not to five") {
     check_embedded_order<cash_karp>(4);
@@ -329,8 +335,8 @@ TEST_CASE("the weights of runge_kutta_4 are those of Simpson's rule") {
 
 TEST_CASE("the embedded weights of cash_karp are the published rationals") {
     const auto w = myriad::embedded_weights(cash_karp::tableau());
-    const double published[] = {rational(2825, 27648), 0, rational(18575, 48384), rational(13525, 55296),
-                                rational(277, 14336), rational(1, 4)};
+    const double published[] = {
+        rational(2825, 27648), 0, rational(18575, 48384), rational(13525, 55296), rational(277, 14336), rational(1, 4)};
     // b and e are rounded to double and then subtracted: three roundings of numbers below 0.5
     for (std::size_t i = 0; i < w.size(); ++i) CHECK(std::abs(w[i] - published[i]) <= 1.5 * 0.5 * eps);
 }

@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "myriad/methods.hpp"
 #include "myriad/kernel/stepper/step.hpp"
+#include "myriad/methods.hpp"
 #include "tests/catch.hpp"
 
 namespace {
@@ -21,7 +21,8 @@ struct sums {
     double weights = 0, moments = 0;
 };
 
-/// What a row of an explicit method adds up to, where row 0 has nothing. `nodes` are those that the rows before it have.
+/// What a row of an explicit method adds up to, where row 0 has nothing. `nodes` are those that the rows before it
+/// have.
 template <class Method, int row, class R, std::size_t stages>
 sums sums_of(const std::array<double, stages>& nodes) {
     sums s;
@@ -56,8 +57,8 @@ void check_explicit() {
     }
 }
 
-/// The weights of a Rosenbrock method in the arithmetic of floats: how its stages and its solution answer to a constant slope,
-/// and its solution to a linear one.
+/// The weights of a Rosenbrock method in the arithmetic of floats: how its stages and its solution answer to a constant
+/// slope, and its solution to a linear one.
 template <class Method>
 void check_rosenbrock() {
     constexpr auto stages = static_cast<std::size_t>(Method::stages);
@@ -68,8 +69,9 @@ void check_rosenbrock() {
     const auto advance = [&](auto i) {
         constexpr int row = decltype(i)::value, begin = myriad::detail::first_new_stage<Method, row>;
         myriad::detail::static_for<begin, row>([&](auto j) {
-            argument[static_cast<std::size_t>(j)] = static_cast<double>(
-                myriad::detail::rosenbrock_weight<Method, myriad::detail::rosenbrock_row::argument, row, decltype(j)::value, float>);
+            argument[static_cast<std::size_t>(j)] =
+                static_cast<double>(myriad::detail::rosenbrock_weight<Method, myriad::detail::rosenbrock_row::argument,
+                                                                      row, decltype(j)::value, float>);
         });
         node = moment = 0;
         for (std::size_t j = 0; j < static_cast<std::size_t>(row); ++j) {
@@ -85,17 +87,19 @@ void check_rosenbrock() {
         CHECK(std::abs(node - Method::tableau().c[at]) <= 4 * rounding);
         constant[at] = 1;
         myriad::detail::static_for<0, stage>([&](auto j) {
-            constant[at] += static_cast<double>(myriad::detail::rosenbrock_weight<Method, myriad::detail::rosenbrock_row::coupling, stage,
-                                                                          decltype(j)::value, float>) *
-                            constant[static_cast<std::size_t>(j)];
+            constant[at] +=
+                static_cast<double>(myriad::detail::rosenbrock_weight<Method, myriad::detail::rosenbrock_row::coupling,
+                                                                      stage, decltype(j)::value, float>) *
+                constant[static_cast<std::size_t>(j)];
         });
         constant[at] *= gamma;
         CHECK(std::abs(constant[at] - Method::tableau().d[at]) <= 4 * rounding);
         linear[at] = node + constant[at];
         myriad::detail::static_for<0, stage>([&](auto j) {
-            linear[at] += static_cast<double>(myriad::detail::rosenbrock_weight<Method, myriad::detail::rosenbrock_row::coupling, stage,
-                                                                        decltype(j)::value, float>) *
-                          linear[static_cast<std::size_t>(j)];
+            linear[at] +=
+                static_cast<double>(myriad::detail::rosenbrock_weight<Method, myriad::detail::rosenbrock_row::coupling,
+                                                                      stage, decltype(j)::value, float>) *
+                linear[static_cast<std::size_t>(j)];
         });
         linear[at] *= gamma;
     });
@@ -122,6 +126,7 @@ TEST_CASE("weights in double precision are the tableau's over the first of their
     constexpr auto t = method::tableau();
     myriad::detail::static_for<1, method::stages>([&](auto j) {
         constexpr int stage = decltype(j)::value;
-        CHECK(myriad::detail::relative_weight<method, method::stages, stage, double> == t.b[static_cast<std::size_t>(stage)] / t.b[0]);
+        CHECK(myriad::detail::relative_weight<method, method::stages, stage, double> ==
+              t.b[static_cast<std::size_t>(stage)] / t.b[0]);
     });
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Names in a model's file are the user's: those of the library's internals change nothing.
-#include "tests/catch.hpp"
+#include "tests/kernel/model/own_names.hpp"
 
 #include <myriad/myriad.hpp>
 
-#include "tests/kernel/model/own_names.hpp"
+#include "tests/catch.hpp"
 #include "tests/support/device.hpp"
 
 namespace {

@@ -4,8 +4,8 @@
 
 #include <type_traits>
 
-#include <myriad/model.hpp>
 #include <myriad/kernel/model/random.hpp>
+#include <myriad/model.hpp>
 
 namespace random_draws {
 

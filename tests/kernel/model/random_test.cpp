@@ -25,8 +25,8 @@ constexpr bool same(const random_block& a, const random_block& b) {
 constexpr int side = 16, bins = side * side;
 constexpr std::int64_t samples = 1 << 18;
 
-/// Pearson's statistic of pairs (first(i), second(i)) in 16 x 16 equal parts of the unit square: chi-square with 255 degrees
-/// of freedom if both are uniform and independent, with some 1000 pairs in each part.
+/// Pearson's statistic of pairs (first(i), second(i)) in 16 x 16 equal parts of the unit square: chi-square with 255
+/// degrees of freedom if both are uniform and independent, with some 1000 pairs in each part.
 template <class First, class Second>
 double chi_square(First&& first, Second&& second) {
     std::array<std::int64_t, bins> found{};
@@ -130,8 +130,8 @@ TEST_CASE("the check of pairs refuses what is too even, shifted, or depends on i
 }
 
 TEST_CASE("normal_quantile errs by 1e-15 in double and 1e-6 in single precision") {
-    // The approximation's own error is about 1e-16; rounding adds an ulp in each of p's parts, numerator, denominator and
-    // logarithm. In single precision 16 ulps allow the same.
+    // The approximation's own error is about 1e-16; rounding adds an ulp in each of p's parts, numerator, denominator
+    // and logarithm. In single precision 16 ulps allow the same.
     double worst = 0, worst_float = 0;
     for (std::int64_t i = 0; i < 50'000; ++i) {
         const double u = draw(1, i, 0, 0);
@@ -146,7 +146,8 @@ TEST_CASE("normal_quantile errs by 1e-15 in double and 1e-6 in single precision"
     CHECK(relative_error(0x1p-53) < 1e-15);
 }
 
-TEMPLATE_TEST_CASE("normal_quantile is infinite at 0 and at 1, finite next to them, and no number beyond", "", double, float) {
+TEMPLATE_TEST_CASE("normal_quantile is infinite at 0 and at 1, finite next to them, and no number beyond", "", double,
+                   float) {
     using R = TestType;
     using limits = std::numeric_limits<R>;
     CHECK(myriad::normal_quantile(R(0)) == -limits::infinity());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The kernels of smooth flows with tangents, and of one without.
-#include "tests/kernel/model/tangent_models.hpp"
-
 #include <myriad/instantiate.hpp>
+
+#include "tests/kernel/model/tangent_models.hpp"
 
 MYRIAD_INSTANTIATE(tangents::lorenz, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(tangents::lorenz_spectrum, myriad::tsitouras_5)

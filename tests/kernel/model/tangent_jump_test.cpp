@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Tangents pass events and hooks as the differences of trajectories do, and events and hooks do with tangents what they do
-// without.
+// Tangents pass events and hooks as the differences of trajectories do, and events and hooks do with tangents what they
+// do without.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
 #include <Eigen/Dense>
-
 #include <myriad/myriad.hpp>
 
 #include "tests/catch.hpp"

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Models whose Lyapunov exponents or whose tangents are known, and one with every hook, for the tests of tangent dynamics.
+// Models whose Lyapunov exponents or whose tangents are known, and one with every hook, for the tests of tangent
+// dynamics.
 #pragma once
 
-#include <myriad/model.hpp>
 #include <myriad/kernel/model/tangent.hpp>
+#include <myriad/model.hpp>
 
 #include "tests/support/problems.hpp"
 
@@ -92,7 +93,8 @@ struct recording_table : table {
 };
 using table_spectrum = myriad::with_tangents<recording_table, 2>;
 
-/// x' = 1 until x passes zero and `speed` from there on; each phase ends with x -> 3 x, a scalar after_step stops at x = 9.
+/// x' = 1 until x passes zero and `speed` from there on; each phase ends with x -> 3 x, a scalar after_step stops at x
+/// = 9.
 struct gear {
     enum state { x, n_state };
     enum parameter { speed, n_parameter };

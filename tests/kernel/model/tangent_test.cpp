@@ -8,7 +8,6 @@
 #include <limits>
 
 #include <Eigen/Dense>
-
 #include <myriad/myriad.hpp>
 
 #include "tests/catch.hpp"
@@ -62,8 +61,10 @@ myriad::ensemble<spiral_spectrum> spirals(double t_end) {
     return e;
 }
 
-/// The solution of the spiral's equations, linear in where it starts: z is driven by the real part of a complex exponential.
-Eigen::Vector3d spiral_flow(const myriad::ensemble<spiral_spectrum>& e, Index i, double t, const Eigen::Vector3d& start) {
+/// The solution of the spiral's equations, linear in where it starts: z is driven by the real part of a complex
+/// exponential.
+Eigen::Vector3d spiral_flow(const myriad::ensemble<spiral_spectrum>& e, Index i, double t,
+                            const Eigen::Vector3d& start) {
     const std::complex<double> eigenvalue(e.parameter(spiral::growth)[i], e.parameter(spiral::frequency)[i]);
     const double decay = e.parameter(spiral::decay)[i];
     const std::complex<double> z0(start[0], start[1]), z = z0 * std::exp(eigenvalue * t);
@@ -134,8 +135,8 @@ TEST_CASE("exponents of a linear flow are the real parts of its eigenvalues, and
     CHECK((e.accessory(spiral_spectrum::time_summed) == 0.5 * (phases - transient)).all());  // exact in binary
     const Eigen::ArrayXXd found = myriad::exponents(e);
     const ArrayXd growth = e.parameter(spiral::growth);
-    // By then the tangents of an instance are in their planes to e^(-0.5 * 50), and turn there, being longer and shorter
-    // by a factor of less than 4 (the coupling tilts the plane): over a time of 500 that makes ln 4 / 500.
+    // By then the tangents of an instance are in their planes to e^(-0.5 * 50), and turn there, being longer and
+    // shorter by a factor of less than 4 (the coupling tilts the plane): over a time of 500 that makes ln 4 / 500.
     CHECK((found.col(0) - growth).abs().maxCoeff() <= 2.8e-3);
     CHECK((found.col(1) - growth).abs().maxCoeff() <= 2.8e-3);
     CHECK((found.col(2) + 1).abs().maxCoeff() <= 2.8e-3);

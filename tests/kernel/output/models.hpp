@@ -47,6 +47,6 @@ struct retargeted {
 /// As the backend does it, but one instance at a time.
 template <class Model, class Method>
 myriad::detail::run_statistics run_one_lane(const myriad::detail::kernel_arguments<Model, double>& arguments,
-                                    const myriad::detail::run_options& options);
+                                            const myriad::detail::run_options& options);
 
 }  // namespace output

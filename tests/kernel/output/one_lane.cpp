@@ -4,12 +4,11 @@
 
 #include "tests/kernel/output/models.hpp"
 
-
 namespace output {
 
 template <class Model, class Method>
 myriad::detail::run_statistics run_one_lane(const myriad::detail::kernel_arguments<Model, double>& arguments,
-                                    const myriad::detail::run_options& options) {
+                                            const myriad::detail::run_options& options) {
     return myriad::detail::run_packs<Model, Method, double, 0>(arguments, options);
 }
 

@@ -6,8 +6,9 @@
 
 MYRIAD_INSTANTIATE(reduced::plain_swing, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5,
                    myriad::dense<myriad::dormand_prince_8>)
-MYRIAD_INSTANTIATE(reduced::swing, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5, myriad::dormand_prince_5,
-                   myriad::verner_7, myriad::dormand_prince_8, myriad::rosenbrock_23, myriad::rodas_5p)
+MYRIAD_INSTANTIATE(reduced::swing, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5,
+                   myriad::dormand_prince_5, myriad::verner_7, myriad::dormand_prince_8, myriad::rosenbrock_23,
+                   myriad::rodas_5p)
 MYRIAD_INSTANTIATE(reduced::swing, myriad::dense<myriad::cash_karp>)
 MYRIAD_INSTANTIATE_FLOAT(reduced::swing, myriad::cash_karp, myriad::dormand_prince_5)
 MYRIAD_INSTANTIATE(reduced::peak_of_swing, myriad::cash_karp, myriad::tsitouras_5)

@@ -40,18 +40,32 @@ struct peak_of_swing : plain_swing {
         return myriad::vec<R, n_observed>{y[x]};
     }
 };
-/// Quantities of time alone, beside a state that lets the steps grow: with one extremum, two in one step, NaN, none at all.
+/// Quantities of time alone, beside a state that lets the steps grow: with one extremum, two in one step, NaN, none at
+/// all.
 struct timed {
     static constexpr bool accessories_are_outputs = true;
     enum state { y0, n_state };
     enum shared { from, n_shared };
-    enum accessory { hill_max, hill_at, wave_max, wave_min, log_max, log_integral, level_max, level_at, slope_max, fifth, n_accessory };
+    enum accessory {
+        hill_max,
+        hill_at,
+        wave_max,
+        wave_min,
+        log_max,
+        log_integral,
+        level_max,
+        level_at,
+        slope_max,
+        fifth,
+        n_accessory
+    };
     enum observed { hill, wave, logarithm, level, line, power, n_observed };
-    static constexpr myriad::reduction reductions[] = {{hill, to::maximum, hill_max},        {hill, to::time_of_maximum, hill_at},
-                                                       {wave, to::maximum, wave_max},        {wave, to::minimum, wave_min},
-                                                       {logarithm, to::maximum, log_max},    {logarithm, to::integral, log_integral},
-                                                       {level, to::maximum, level_max},      {level, to::time_of_maximum, level_at},
-                                                       {line, to::maximum, slope_max},       {power, to::integral, fifth}};
+    static constexpr myriad::reduction reductions[] = {
+        {hill, to::maximum, hill_max},     {hill, to::time_of_maximum, hill_at},
+        {wave, to::maximum, wave_max},     {wave, to::minimum, wave_min},
+        {logarithm, to::maximum, log_max}, {logarithm, to::integral, log_integral},
+        {level, to::maximum, level_max},   {level, to::time_of_maximum, level_at},
+        {line, to::maximum, slope_max},    {power, to::integral, fifth}};
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto&) {
@@ -68,7 +82,8 @@ struct timed {
                 s * s * s * s * s};
     }
 };
-/// A ball thrown up, which bounces; the ground moves it up by a given distance at each impact, and keeps a part of its speed.
+/// A ball thrown up, which bounces; the ground moves it up by a given distance at each impact, and keeps a part of its
+/// speed.
 struct ball {
     enum state { x, v, n_state };
     enum shared { lift, kept, n_shared };

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Extrema, their times and integrals along the solution, against closed forms.
-#include "tests/kernel/output/reduced.hpp"
-
 #include <cmath>
 #include <numbers>
 
 #include "tests/catch.hpp"
+#include "tests/kernel/output/reduced.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/device.hpp"
 
@@ -28,14 +27,16 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double from = 0.3;  // x = sin(t + from), so that no extremum is at an end of the domain
 
-/// Eleven swings over domains of a length near `span`, some two and a half periods for 17; a negative one goes backwards.
+/// Eleven swings over domains of a length near `span`, some two and a half periods for 17; a negative one goes
+/// backwards.
 template <class Model, class R = double>
 ensemble<Model, R> swings(double span = 17) {
     ensemble<Model, R> e(11);
     e.state(0) = static_cast<R>(std::sin(from));
     e.state(1) = static_cast<R>(std::cos(from));
     e.t_begin() = R(0);
-    for (std::int64_t i = 0; i < e.size(); ++i) e.t_end()[i] = static_cast<R>(span * (1 + 0.01 * static_cast<double>(i)));
+    for (std::int64_t i = 0; i < e.size(); ++i)
+        e.t_end()[i] = static_cast<R>(span * (1 + 0.01 * static_cast<double>(i)));
     return e;
 }
 
@@ -50,7 +51,9 @@ struct errors {
 template <class R>
 errors errors_of(const ensemble<swing, R>& e) {
     errors worst;
-    const auto add = [](double& to_worst, double error) { to_worst = error <= to_worst ? to_worst : error; };  // NaN wins
+    const auto add = [](double& to_worst, double error) {
+        to_worst = error <= to_worst ? to_worst : error;
+    };  // NaN wins
     for (std::int64_t i = 0; i < e.size(); ++i) {
         const double t = static_cast<double>(e.t_end()[i]);
         add(worst.state, std::hypot(static_cast<double>(e.state(swing::x)[i]) - std::sin(t + from),
@@ -88,7 +91,8 @@ void each(Test test) {
 
 }  // namespace
 
-TEST_CASE("the largest and smallest value of an oscillation are as good as the steps, not as their ends", "[reduction]") {
+TEST_CASE("the largest and smallest value of an oscillation are as good as the steps, not as their ends",
+          "[reduction]") {
     // docs/numerics.md has this.
     each([]<class Method> {
         const errors error = swing_errors<Method>(1e-8);
@@ -159,7 +163,8 @@ TEST_CASE("reductions change no bit of the states and no step", "[reduction]") {
     });
 }
 
-TEST_CASE("what reductions evaluate is counted, and the slope at the end of a step is the next one's first", "[reduction]") {
+TEST_CASE("what reductions evaluate is counted, and the slope at the end of a step is the next one's first",
+          "[reduction]") {
     const options o = compare::with_tolerance(1e-7);
     const auto evaluations = [&]<class Method, class Model> {
         auto e = swings<Model>();
@@ -169,7 +174,8 @@ TEST_CASE("what reductions evaluate is counted, and the slope at the end of a st
     const std::int64_t instances = 11, extrema = 3 * instances;  // sin(t + from) has its maxima at 1.3, 7.6 and 13.8
     const auto plain = evaluations.template operator()<cash_karp, plain_swing>();
     const auto peak = evaluations.template operator()<cash_karp, peak_of_swing>();
-    // The slope at the end of the last step, and one point inside each step that may have an extremum: those of minima, too.
+    // The slope at the end of the last step, and one point inside each step that may have an extremum: those of minima,
+    // too.
     CHECK(peak.first - plain.first >= instances + extrema);
     CHECK(peak.first - plain.first <= instances + 2 * extrema);
     const auto all = evaluations.template operator()<cash_karp, swing>();
@@ -339,6 +345,5 @@ TEST_CASE("a model with tangents keeps the reductions of its own", "[reduction]"
     o.absolute_tolerance = o.relative_tolerance = myriad::without_tangents<swing_with_tangents>(1e-8);
     e.shared_integer(swing_with_tangents::transient_phases) = 0;
     solve<tsitouras_5>(tests::test_device(), e, o);
-    for (int c = 0; c < swing::n_accessory; ++c)
-        CHECK((e.accessory(c) - alone.accessory(c)).abs().maxCoeff() < 1e-13);
+    for (int c = 0; c < swing::n_accessory; ++c) CHECK((e.accessory(c) - alone.accessory(c)).abs().maxCoeff() < 1e-13);
 }

@@ -35,8 +35,8 @@ void check_evenly(double span) {
                 CHECK(e.samples().state(c)(i, 0) == start.state(c)[i]);
                 CHECK(e.samples().state(c)(i, 12) == e.state(c)[i]);
             }
-            // Twenty-odd steps with errors below 1e-5 each, which grow by less than e^2 (problems.hpp: u, w in [1/e, e]);
-            // fixed steps of 1/64 are far better, and rounding adds some eps in every step.
+            // Twenty-odd steps with errors below 1e-5 each, which grow by less than e^2 (problems.hpp: u, w in [1/e,
+            // e]); fixed steps of 1/64 are far better, and rounding adds some eps in every step.
             CHECK(distance(e, i) <= 30 * 7.4 * (1e-5 + eps_of<R>));
         }
     });
@@ -257,7 +257,8 @@ TEST_CASE("phases in one call and in several give the same samples", "[output]")
                 if (every == 0) CHECK((at_once.samples().stored() == (length == 0 ? 20 : 17)).all());
                 if (every == 0 && length > 0) {  // what is between two phases is there once
                     for (int k = 0; k < 17; ++k)
-                        CHECK((at_once.samples().time().col(k) - at_once.t_begin() - 0.125 * k).abs().maxCoeff() < 1e-15 * 64);
+                        CHECK((at_once.samples().time().col(k) - at_once.t_begin() - 0.125 * k).abs().maxCoeff() <
+                              1e-15 * 64);
                 }
             }
         }
@@ -370,7 +371,8 @@ TEST_CASE("each instance may have sample times of its own", "[output]") {
             CHECK((e.samples().stored() == 3).all());
             for (std::int64_t i = 0; i < e.size(); ++i) {
                 for (int k = 0; k < 3; ++k)
-                    CHECK(e.samples().time()(i, k) == o.samples.times_of_instances[static_cast<std::size_t>(3 * i + k)]);
+                    CHECK(e.samples().time()(i, k) ==
+                          o.samples.times_of_instances[static_cast<std::size_t>(3 * i + k)]);
                 // the same as a call with these times for all
                 auto one = curves(span);
                 options common = o;

@@ -32,7 +32,8 @@ std::vector<R> spread(double low, double high, bool as_exponents) {
     std::mt19937_64 random(41);
     std::uniform_real_distribution<double> distribution(low, high);
     std::vector<R> x(20000);
-    for (R& value : x) value = static_cast<R>(as_exponents ? std::pow(10.0, distribution(random)) : distribution(random));
+    for (R& value : x)
+        value = static_cast<R>(as_exponents ? std::pow(10.0, distribution(random)) : distribution(random));
     return x;
 }
 
@@ -85,7 +86,8 @@ TEMPLATE_TEST_CASE("sincos and sincospi err by at most 2.5 and 2 ulps on the dev
     }
 }
 
-TEMPLATE_TEST_CASE("sqrt is rounded correctly on the device, and special values are those of the standard", "", double, float) {
+TEMPLATE_TEST_CASE("sqrt is rounded correctly on the device, and special values are those of the standard", "", double,
+                   float) {
     using R = TestType;
     using limits = std::numeric_limits<R>;
     std::vector<R> x = spread<R>(sizeof(R) == 8 ? -307 : -37, sizeof(R) == 8 ? 308 : 38, true);

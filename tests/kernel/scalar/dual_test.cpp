@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Dual numbers: their values are those of plain code, their derivatives those of a central difference in long double, and
-// those of packs the same lane by lane.
+// Dual numbers: their values are those of plain code, their derivatives those of a central difference in long double,
+// and those of packs the same lane by lane.
 
 #include "myriad/kernel/scalar/dual.hpp"
 
@@ -37,8 +37,8 @@ void check_close(T got, wide wanted) {
     CHECK(std::fabs(static_cast<wide>(got) - wanted) <= tolerance * (1 + std::fabs(wanted)));
 }
 
-/// The derivative of f at x for dual<double>, dual<float> and duals of packs; f is called with a dual number, g is the same
-/// function in long double.
+/// The derivative of f at x for dual<double>, dual<float> and duals of packs; f is called with a dual number, g is the
+/// same function in long double.
 template <class F, class G>
 void check_derivative(const char* name, F f, G g, double x) {
     CAPTURE(name, x);
@@ -106,13 +106,15 @@ TEST_CASE("derivatives of elementary functions agree with differences"){
                 CHECK_DERIVATIVE(tan(x), 0.3, -1.2) CHECK_DERIVATIVE(asin(x), 0.3, -0.8)
                     CHECK_DERIVATIVE(acos(x), 0.3, -0.8) CHECK_DERIVATIVE(atan(x), 0.3, -5.0)
                         CHECK_DERIVATIVE(sinpi(x), 0.3, -1.2) CHECK_DERIVATIVE(cospi(x), 0.3, -1.2)
-                        CHECK_DERIVATIVE(sincos(x).sine, 0.3, -2.0) CHECK_DERIVATIVE(sincos(x).cosine, 0.3, -2.0)
-                        CHECK_DERIVATIVE(sincospi(x).sine, 0.3, -1.2) CHECK_DERIVATIVE(sincospi(x).cosine, 0.3, -1.2)
-                        CHECK_DERIVATIVE(reciprocal(x), 0.3, -2.0) CHECK_DERIVATIVE(powr(x, 1.4), 0.3, 4.0)
-                            CHECK_DERIVATIVE(sinh(x), 0.3, -2.0) CHECK_DERIVATIVE(cosh(x), 0.3, -2.0)
-                                CHECK_DERIVATIVE(tanh(x), 0.3, -2.0) CHECK_DERIVATIVE(exp(x), 0.3, -2.0)
-                                    CHECK_DERIVATIVE(exp2(x), 0.3, -2.0) CHECK_DERIVATIVE(log(x), 0.3, 20.0)
-                                        CHECK_DERIVATIVE(log2(x), 0.3, 20.0) CHECK_DERIVATIVE(log10(x), 0.3, 20.0)}
+                            CHECK_DERIVATIVE(sincos(x).sine, 0.3, -2.0) CHECK_DERIVATIVE(sincos(x).cosine, 0.3, -2.0)
+                                CHECK_DERIVATIVE(sincospi(x).sine, 0.3, -1.2) CHECK_DERIVATIVE(sincospi(x).cosine, 0.3,
+                                                                                               -1.2)
+                                    CHECK_DERIVATIVE(reciprocal(x), 0.3, -2.0) CHECK_DERIVATIVE(powr(x, 1.4), 0.3, 4.0)
+                                        CHECK_DERIVATIVE(sinh(x), 0.3, -2.0) CHECK_DERIVATIVE(cosh(x), 0.3, -2.0)
+                                            CHECK_DERIVATIVE(tanh(x), 0.3, -2.0) CHECK_DERIVATIVE(exp(x), 0.3, -2.0)
+                                                CHECK_DERIVATIVE(exp2(x), 0.3, -2.0) CHECK_DERIVATIVE(log(x), 0.3, 20.0)
+                                                    CHECK_DERIVATIVE(log2(x), 0.3, 20.0)
+                                                        CHECK_DERIVATIVE(log10(x), 0.3, 20.0)}
 
 TEST_CASE("derivatives of functions of two arguments agree with differences in each of them"){
     CHECK_DERIVATIVE(pow(x, 2.5), 0.3, 4.0) CHECK_DERIVATIVE(pow(2.5, x), 0.3, -2.0)

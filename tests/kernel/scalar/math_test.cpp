@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The elementary functions of plain numbers and packs: accuracy in ulp against the next wider type, special values against
-// the standard library, and above all that no lane's result depends on what its neighbours hold.
+// The elementary functions of plain numbers and packs: accuracy in ulp against the next wider type, special values
+// against the standard library, and above all that no lane's result depends on what its neighbours hold.
 
 #include "myriad/kernel/scalar/math.hpp"
 
@@ -540,11 +540,14 @@ TEST_CASE("powr of zero, infinity, negative numbers and beyond the range is that
         const T inf = limits::infinity(), nan = limits::quiet_NaN(), big = limits::max() / 4, small = limits::min() * 4;
         struct {
             T x, y, wanted;
-        } const cases[] = {
-            {0, 2, 0},       {0, T(0.25), 0}, {0, -2, inf},     {0, T(-0.25), inf}, {inf, T(0.5), inf}, {inf, T(-0.5), 0},
-            {0, 0, nan},     {inf, 0, nan},   {-1, 2, nan},     {-inf, 2, nan},     {nan, 2, nan},      {2, nan, nan},
-            {3, 0, 1},       {1, 5000, 1},    {big, 2, inf},    {big, -2, 0},       {small, 2, 0},      {small, -2, inf},
-            {2, T(1e30), inf}, {2, T(-1e30), 0}, {limits::denorm_min(), T(0.5), 0}, {big, 1, big},   {small, 1, small}};
+        } const cases[] = {{0, 2, 0},          {0, T(0.25), 0},    {0, -2, inf},
+                           {0, T(-0.25), inf}, {inf, T(0.5), inf}, {inf, T(-0.5), 0},
+                           {0, 0, nan},        {inf, 0, nan},      {-1, 2, nan},
+                           {-inf, 2, nan},     {nan, 2, nan},      {2, nan, nan},
+                           {3, 0, 1},          {1, 5000, 1},       {big, 2, inf},
+                           {big, -2, 0},       {small, 2, 0},      {small, -2, inf},
+                           {2, T(1e30), inf},  {2, T(-1e30), 0},   {limits::denorm_min(), T(0.5), 0},
+                           {big, 1, big},      {small, 1, small}};
         for (const auto& c : cases) {
             CAPTURE(sizeof(T), c.x, c.y);
             CHECK(same_bits(myriad::powr(c.x, c.y), c.wanted));

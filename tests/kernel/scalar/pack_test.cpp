@@ -307,7 +307,8 @@ TEST_CASE("plain numbers answer to the same functions as packs") {
     STATIC_REQUIRE(std::is_same_v<decltype(select(true, 1.0f, 0.0)), float>);  // no double leaks into float models
 }
 
-TEMPLATE_TEST_CASE("numbers that differ in a bit differ, a NaN from itself not", "", (pack<double, 2>), (pack<float, 1>)) {
+TEMPLATE_TEST_CASE("numbers that differ in a bit differ, a NaN from itself not", "", (pack<double, 2>),
+                   (pack<float, 1>)) {
     using P = TestType;
     using T = typename P::value_type;
     const T nan = std::numeric_limits<T>::quiet_NaN();

@@ -9,11 +9,11 @@
 
 namespace {
 
+using myriad::select;
 using myriad::detail::bracket;
 using myriad::detail::find_root;
 using myriad::detail::get_lane;
 using myriad::detail::set_lane;
-using myriad::select;
 using pack = myriad::pack<double, 2>;
 
 constexpr double eps = 2.3e-16;

@@ -11,7 +11,8 @@ namespace tests {
 template <class T>
 using wider = std::conditional_t<std::is_same_v<T, double>, long double, double>;
 
-/// |got - wanted| in units of the last place of `wanted`, which for subnormal ones is that of the smallest normal number.
+/// |got - wanted| in units of the last place of `wanted`, which for subnormal ones is that of the smallest normal
+/// number.
 template <class T>
 double error_in_ulp(T got, wider<T> wanted) {
     if (std::isnan(got) || std::isnan(wanted)) return std::isnan(got) && std::isnan(wanted) ? 0 : 1e30;

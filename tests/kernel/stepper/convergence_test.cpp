@@ -30,8 +30,8 @@ void check_order_everywhere(double order, window allowed) {
 
 TEST_CASE("runge_kutta_4 has order four") { check_order_everywhere<runge_kutta_4>(4, {0.1, 0.1}); }
 TEST_CASE("cash_karp has order five") { check_order_everywhere<cash_karp>(5, {0.1, 0.1}); }
-// Its leading error coefficients are so small (2e-4 at most) that on the nonlinear problems the next term, with slope six,
-// counts until rounding does; the linear oscillator shows that it is five.
+// Its leading error coefficients are so small (2e-4 at most) that on the nonlinear problems the next term, with slope
+// six, counts until rounding does; the linear oscillator shows that it is five.
 TEST_CASE("tsitouras_5 has order five") { check_order_everywhere<tsitouras_5>(5, {0.1, 0.7}); }
 TEST_CASE("dormand_prince_5 has order five") { check_order_everywhere<dormand_prince_5>(5, {0.1, 0.7}); }
 // On the nonlinear problems rounding comes before the leading term does; on the oscillator it does not.
@@ -47,5 +47,6 @@ TEST_CASE("dormand_prince_8 has order eight") {
 }
 
 TEST_CASE("runge_kutta_4 has order four in single precision") {
-    check_order<runge_kutta_4, problems::oscillator, float>(4, 1.0, 4, {0.2, 0.2});  // h of 1/8: few steps before rounding
+    check_order<runge_kutta_4, problems::oscillator, float>(4, 1.0, 4,
+                                                            {0.2, 0.2});  // h of 1/8: few steps before rounding
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Single steps of given length: local order of the solutions, of the error estimates and of the interpolants, and that a
-// step is what the textbook formulas say. A model file: compiled as kernels are, without Eigen.
+// Single steps of given length: local order of the solutions, of the error estimates and of the interpolants, and that
+// a step is what the textbook formulas say. A model file: compiled as kernels are, without Eigen.
 #include "myriad/kernel/stepper/explicit_rk.hpp"
 
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "myriad/methods.hpp"
 #include "myriad/kernel/stepper/dense_output.hpp"
+#include "myriad/methods.hpp"
 #include "tests/catch.hpp"
 #include "tests/kernel/stepper/local_order.hpp"
 #include "tests/support/problems.hpp"
@@ -67,7 +67,8 @@ myriad::vec<double, n> difference(const myriad::vec<double, n>& a, const myriad:
     return d;
 }
 
-// Errors of one step from the exact solution ----------------------------------------------------------------------------
+// Errors of one step from the exact solution
+// ----------------------------------------------------------------------------
 
 template <class Method, class Model>
 auto solution_error(double t, double h) {
@@ -139,8 +140,8 @@ void check_textbook(double t, double h) {
     const textbook::step<Method, Model> book(t, h, Model::exact(t));
     for (int c = 0; c < step.n; ++c) {
         CAPTURE(c, step.trial.y[c], step.estimate(c));
-        // Every stage rounds its argument, its slope and its share of the sum a few times, each by half an ulp of the terms
-        // in `size`; the problems' slopes pass that on with a factor times h below one.
+        // Every stage rounds its argument, its slope and its share of the sum a few times, each by half an ulp of the
+        // terms in `size`; the problems' slopes pass that on with a factor times h below one.
         const double bound = 4 * Method::stages * eps<double> * book.size[c];
         CHECK(std::abs(step.trial.y[c] - book.y[c]) <= bound);
         CHECK(std::abs(step.estimate(c) - book.estimate[c]) <= bound);
@@ -152,8 +153,8 @@ void check_ends() {
     const single_step<Method, problems::timed_circle> step(0.7, 0.125);
     const auto begin = step.at(0.0), end = step.at(1.0);
     for (int c = 0; c < step.n; ++c) {
-        // The Hermite polynomial: a rounded difference is added to y. The method's own: four coefficients per stage that
-        // cancel, each rounded, as is every sum of them.
+        // The Hermite polynomial: a rounded difference is added to y. The method's own: four coefficients per stage
+        // that cancel, each rounded, as is every sum of them.
         double terms = std::abs(step.trial.y[c] - step.start[c]);
         if constexpr (myriad::detail::has_own_interpolant<Method>) {
             for (int i = 0; i < myriad::detail::interpolant_stages<Method>; ++i) {
@@ -197,7 +198,8 @@ void check_float_step() {
     for (int c = 0; c < wide.n; ++c) {
         CAPTURE(c);
         // state and slopes are of size one to three, the stages at most seven
-        CHECK(std::abs(static_cast<double>(narrow.trial.y[c]) - wide.trial.y[c]) <= 8 * static_cast<double>(eps<float>));
+        CHECK(std::abs(static_cast<double>(narrow.trial.y[c]) - wide.trial.y[c]) <=
+              8 * static_cast<double>(eps<float>));
         // the estimate is a difference of slopes of that size, times h
         CHECK(std::abs(static_cast<double>(narrow.estimate(c)) - wide.estimate(c)) <= static_cast<double>(eps<float>));
     }
@@ -209,20 +211,28 @@ TEST_CASE("a step of runge_kutta_4 has a local error of order five") { check_sol
 TEST_CASE("a step of cash_karp has a local error of order six") { check_solution_order<cash_karp>(6, 0.25); }
 TEST_CASE("a step of tsitouras_5 has a local error of order six") { check_solution_order<tsitouras_5>(6, 0.25); }
 
-TEST_CASE("a step of dormand_prince_5 has a local error of order six") { check_solution_order<dormand_prince_5>(6, 0.25); }
+TEST_CASE("a step of dormand_prince_5 has a local error of order six") {
+    check_solution_order<dormand_prince_5>(6, 0.25);
+}
 // Its error coefficients of order eight are below 1e-5: the next term, of order nine, counts until rounding does.
 TEST_CASE("a step of verner_7 has a local error of order eight at least") {
     check_least_local_order(solution_error<verner_7, problems::log_circle>, 8, 1);
     check_least_local_order(solution_error<verner_7, problems::timed_circle>, 8, 0.125);
 }
-TEST_CASE("a step of dormand_prince_8 has a local error of order nine") { check_solution_order<dormand_prince_8>(9, 1, 0.15); }
+TEST_CASE("a step of dormand_prince_8 has a local error of order nine") {
+    check_solution_order<dormand_prince_8>(9, 1, 0.15);
+}
 
 TEST_CASE("the embedded solution of cash_karp has a local error of order five") { check_embedded_order<cash_karp>(5); }
-TEST_CASE("the embedded solution of tsitouras_5 has a local error of order five") { check_embedded_order<tsitouras_5>(5); }
+TEST_CASE("the embedded solution of tsitouras_5 has a local error of order five") {
+    check_embedded_order<tsitouras_5>(5);
+}
 TEST_CASE("the embedded solution of dormand_prince_5 has a local error of order five") {
     check_embedded_order<dormand_prince_5>(5);
 }
-TEST_CASE("the embedded solution of verner_7 has a local error of order seven") { check_embedded_order<verner_7>(7, 0.5); }
+TEST_CASE("the embedded solution of verner_7 has a local error of order seven") {
+    check_embedded_order<verner_7>(7, 0.5);
+}
 TEST_CASE("the embedded solution of dormand_prince_8 has a local error of order six") {
     check_embedded_order<dormand_prince_8>(6);
 }
@@ -236,9 +246,15 @@ TEST_CASE("the error estimates of dormand_prince_8 have orders six and four") {
     check_estimate_order<dormand_prince_8, myriad::detail::row_of<dormand_prince_8>::coarse_error>(4);
 }
 
-TEST_CASE("the interpolant of runge_kutta_4 has a local error of order four") { check_interpolant_order<runge_kutta_4>(4, 0.125); }
-TEST_CASE("the interpolant of cash_karp has a local error of order four") { check_interpolant_order<cash_karp>(4, 0.125); }
-TEST_CASE("the interpolant of tsitouras_5 has a local error of order five") { check_interpolant_order<tsitouras_5>(5, 0.0625); }
+TEST_CASE("the interpolant of runge_kutta_4 has a local error of order four") {
+    check_interpolant_order<runge_kutta_4>(4, 0.125);
+}
+TEST_CASE("the interpolant of cash_karp has a local error of order four") {
+    check_interpolant_order<cash_karp>(4, 0.125);
+}
+TEST_CASE("the interpolant of tsitouras_5 has a local error of order five") {
+    check_interpolant_order<tsitouras_5>(5, 0.0625);
+}
 TEST_CASE("the interpolant of dormand_prince_5 has a local error of order five") {
     check_interpolant_order<dormand_prince_5>(5, 0.0625);
 }
@@ -259,7 +275,9 @@ TEST_CASE("the interpolant of dormand_prince_5 hits both ends of the step") { ch
 TEST_CASE("the interpolant of verner_7 hits both ends of the step") { check_ends<verner_7>(); }
 TEST_CASE("the interpolant of dormand_prince_8 hits both ends of the step") { check_ends<dormand_prince_8>(); }
 
-TEST_CASE("the interpolant of runge_kutta_4 has the slopes of both ends of the step") { check_end_slopes<runge_kutta_4>(); }
+TEST_CASE("the interpolant of runge_kutta_4 has the slopes of both ends of the step") {
+    check_end_slopes<runge_kutta_4>();
+}
 TEST_CASE("the interpolant of cash_karp has the slopes of both ends of the step") { check_end_slopes<cash_karp>(); }
 TEST_CASE("the interpolant of tsitouras_5 has the slopes of both ends of the step") { check_end_slopes<tsitouras_5>(); }
 
@@ -308,6 +326,12 @@ TEST_CASE("tsitouras_5 integrates quartic slopes exactly and quintic ones not") 
     CHECK(quadrature_error<tsitouras_5, 6>() > 1e-5);
 }
 
-TEST_CASE("a step of runge_kutta_4 in single precision is the step in double precision, rounded") { check_float_step<runge_kutta_4>(); }
-TEST_CASE("a step of cash_karp in single precision is the step in double precision, rounded") { check_float_step<cash_karp>(); }
-TEST_CASE("a step of tsitouras_5 in single precision is the step in double precision, rounded") { check_float_step<tsitouras_5>(); }
+TEST_CASE("a step of runge_kutta_4 in single precision is the step in double precision, rounded") {
+    check_float_step<runge_kutta_4>();
+}
+TEST_CASE("a step of cash_karp in single precision is the step in double precision, rounded") {
+    check_float_step<cash_karp>();
+}
+TEST_CASE("a step of tsitouras_5 in single precision is the step in double precision, rounded") {
+    check_float_step<tsitouras_5>();
+}

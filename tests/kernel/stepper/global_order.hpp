@@ -16,7 +16,8 @@ namespace global_order {
 
 using compare::fixed_step;
 
-/// Root mean square error at the end of instances that start at different times, so that no symmetry hides an error term.
+/// Root mean square error at the end of instances that start at different times, so that no symmetry hides an error
+/// term.
 template <class Method, class Model, class R = double>
 double end_error(double h, double span) {
     myriad::ensemble<Model, R> e(16);

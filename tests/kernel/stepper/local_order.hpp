@@ -35,9 +35,10 @@ struct mean_error {
     }
 };
 
-/// error(h) = C h^order + C' h^(order + 1) + ... for both signs of h. Where C is small, as it should be, the next term hides
-/// it at any h whose error is clear of rounding; a step forward and one back part the two. The leading part must fall with
-/// the order, up to a term in h^2, small enough at the finest h for a window of 0.1, and the whole error no slower.
+/// error(h) = C h^order + C' h^(order + 1) + ... for both signs of h. Where C is small, as it should be, the next term
+/// hides it at any h whose error is clear of rounding; a step forward and one back part the two. The leading part must
+/// fall with the order, up to a term in h^2, small enough at the finest h for a window of 0.1, and the whole error no
+/// slower.
 template <class Error>
 void check_local_order(Error error, int order, double first_h, double window = 0.1) {
     for (const double sign : {1.0, -1.0}) {
@@ -52,7 +53,8 @@ void check_local_order(Error error, int order, double first_h, double window = 0
             coarse = fine;
         }
         CAPTURE(sign, first_h, leading_slopes, slopes);
-        REQUIRE(coarse.leading > 10 * std::numeric_limits<double>::epsilon());  // rounding then changes a slope by 0.1 or less
+        REQUIRE(coarse.leading >
+                10 * std::numeric_limits<double>::epsilon());  // rounding then changes a slope by 0.1 or less
         CHECK(std::abs(leading_slopes[2] - order) < window);
         CHECK(slopes[1] > order - 3 * window);
         CHECK(slopes[2] > order - 3 * window);

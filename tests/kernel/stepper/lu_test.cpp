@@ -75,8 +75,8 @@ struct random_systems {
 };
 
 /// The residual of Gaussian elimination with partial pivoting: |A x - b| <= 3 n eps |L| |U| |x| (Higham, Accuracy and
-/// Stability of Numerical Algorithms, theorem 9.4, with eps twice the unit roundoff), with Eigen's factors, whose pivots
-/// are of the same size; and the solution of Eigen has a residual of that size too.
+/// Stability of Numerical Algorithms, theorem 9.4, with eps twice the unit roundoff), with Eigen's factors, whose
+/// pivots are of the same size; and the solution of Eigen has a residual of that size too.
 void check_against_eigen(kind which, const systems& s) {
     const auto found = lu_lanes::solve(which, s);
     for (int lane = 0; lane < lu_lanes::lanes(which); ++lane) {

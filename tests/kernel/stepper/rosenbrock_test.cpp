@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "myriad/methods.hpp"
 #include "myriad/kernel/stepper/dense_output.hpp"
+#include "myriad/methods.hpp"
 #include "tests/catch.hpp"
 #include "tests/kernel/stepper/local_order.hpp"
 #include "tests/support/problems.hpp"
@@ -41,7 +41,8 @@ struct single_step {
     }
     state estimate() const {
         state e;
-        for (int c = 0; c < n; ++c) e[c] = myriad::detail::error_factor<Method>(h) * myriad::detail::error_sum<Method>(trial, c);
+        for (int c = 0; c < n; ++c)
+            e[c] = myriad::detail::error_factor<Method>(h) * myriad::detail::error_sum<Method>(trial, c);
         return e;
     }
 };
@@ -52,7 +53,8 @@ myriad::vec<double, n> difference(myriad::vec<double, n> a, const myriad::vec<do
     return a;
 }
 
-// The circle at the speed of a clock and, so that the derivative by time counts too, at one that grows with it ------------
+// The circle at the speed of a clock and, so that the derivative by time counts too, at one that grows with it
+// ------------
 
 template <class Method, class Model>
 void check_orders_on(double first_h) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Order of convergence of the stiff methods over whole integrations with fixed steps: on problems that are not stiff, and
-// on Prothero and Robinson's, where stiffness reduces it.
+// Order of convergence of the stiff methods over whole integrations with fixed steps: on problems that are not stiff,
+// and on Prothero and Robinson's, where stiffness reduces it.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -83,8 +83,8 @@ TEST_CASE("rodas_5p keeps a tolerance in single precision") {
 TEST_CASE("rosenbrock_23 keeps order two on Prothero and Robinson's problem, however stiff it is") {
     for (const double rate : {1.0, 1e2, 1e4, 1e6}) check_stiff_order<rosenbrock_23>(rate, 1.95, 2.05);
 }
-// Stiff order three, for which it was built; other methods of its kind fall to one. The order of the tableau is seen where
-// h times the rate is small, and comes back slowly on the way there.
+// Stiff order three, for which it was built; other methods of its kind fall to one. The order of the tableau is seen
+// where h times the rate is small, and comes back slowly on the way there.
 TEST_CASE(
     "rodas_5p has order three on Prothero and Robinson's problem where it is very stiff, and five where it is not") {
     check_stiff_order<rodas_5p>(1.0, 4.9, 5.1);

@@ -214,7 +214,8 @@ public:
     }
     void rest() override {
         const current_device here(device_);
-        const std::size_t held = memory_.bytes() + records_.bytes() + scheduler_.bytes(), always_fine = std::size_t{32} << 20;
+        const std::size_t held = memory_.bytes() + records_.bytes() + scheduler_.bytes(),
+                          always_fine = std::size_t{32} << 20;
         if (held <= always_fine) return;
         std::size_t free = 0, total = 0;
         MYRIAD_CUDA(cudaMemGetInfo(&free, &total));

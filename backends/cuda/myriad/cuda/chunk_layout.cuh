@@ -32,8 +32,8 @@ std::size_t bytes_for(std::int64_t count, Each&& each) {
     return bytes == 0 ? 0 : bytes + piece::padding;  // so that no copy spans two allocations
 }
 
-/// For `for_each_array` and `for_each_record`: calls `visit(pointer, on the device, components, access, kind)` for each array,
-/// the first of which is at `next`.
+/// For `for_each_array` and `for_each_record`: calls `visit(pointer, on the device, components, access, kind)` for each
+/// array, the first of which is at `next`.
 template <class Visit>
 auto placing(std::byte*& next, std::int64_t count, Visit&& visit) {
     return [&next, &visit, count](auto*& array, std::int64_t components, array_access access, array_kind kind) {

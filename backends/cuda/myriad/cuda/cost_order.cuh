@@ -97,7 +97,8 @@ public:
         how.gridDim = dim3(1);
         MYRIAD_CUDA(cudaLaunchKernelEx(&how, &sum_costs, buckets));
         how.gridDim = dim3(blocks);
-        MYRIAD_CUDA(cudaLaunchKernelEx(&how, &place_by_cost, costs, size, buckets, static_cast<std::uint32_t*>(order_.data())));
+        MYRIAD_CUDA(
+            cudaLaunchKernelEx(&how, &place_by_cost, costs, size, buckets, static_cast<std::uint32_t*>(order_.data())));
     }
 
 private:

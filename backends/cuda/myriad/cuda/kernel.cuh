@@ -38,7 +38,8 @@ private:
 /// A supply of that one, and then, if there is a queue, of the next ones in it.
 class queued_instances {
 public:
-    __device__ __forceinline__ queued_instances(std::int64_t size, const std::uint32_t* order, unsigned long long* queue)
+    __device__ __forceinline__ queued_instances(std::int64_t size, const std::uint32_t* order,
+                                                unsigned long long* queue)
         : size_(size), order_(order), queue_(queue) {}
 
     __device__ __forceinline__ std::int64_t next() {
@@ -47,7 +48,8 @@ public:
         std::int64_t place = block * blockDim.x + threadIdx.x;
         if (has_begun_) {
             if (queue_ == nullptr) return -1;
-            place = static_cast<std::int64_t>(gridDim.x) * blockDim.x + static_cast<std::int64_t>(atomicAdd(queue_, 1ull));
+            place =
+                static_cast<std::int64_t>(gridDim.x) * blockDim.x + static_cast<std::int64_t>(atomicAdd(queue_, 1ull));
         }
         has_begun_ = true;
         if (place >= size_) return -1;

@@ -13,7 +13,8 @@
 
 namespace myriad::cuda {
 
-/// The places for which a kernel of the model is compiled: the constant bank for few shared parameters, the others for many.
+/// The places for which a kernel of the model is compiled: the constant bank for few shared parameters, the others for
+/// many.
 template <class Model, class R>
 constexpr bool is_compiled(shared_placement placement) {
     constexpr bool few = shared_parameter_bytes<Model, R> <= 1024;

@@ -42,8 +42,8 @@ __attribute__((weak)) void pin_memory(int device, void* memory, std::size_t byte
     const current_device here(device);
     const cudaError_t status = cudaHostRegister(memory, bytes, cudaHostRegisterPortable);
     if (status != cudaSuccess) cudaGetLastError();
-    require(status == cudaSuccess, static_cast<double>(bytes) / 1e9, " GB of host memory cannot be pinned: ",
-            cudaGetErrorString(status), " (", cudaGetErrorName(status),
+    require(status == cudaSuccess, static_cast<double>(bytes) / 1e9,
+            " GB of host memory cannot be pinned: ", cudaGetErrorString(status), " (", cudaGetErrorName(status),
             "); there may be too little of it, or someone else has pinned it: go on without pinning");
 }
 __attribute__((weak)) void unpin_memory(void* memory) {
@@ -65,8 +65,8 @@ std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options) {
 }  // namespace myriad::cuda
 
 /// Compiles the kernels of one model, method and real type.
-#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                      \
-    template <>                                                                                           \
-    void myriad::detail::instantiated_in_one_file_alone<myriad::cuda::engine_options, Model, Method, R>() {}      \
-    template std::unique_ptr<myriad::cuda::engine<Model, R>> myriad::cuda::make_engine<Model, Method, R>( \
+#define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                         \
+    template <>                                                                                              \
+    void myriad::detail::instantiated_in_one_file_alone<myriad::cuda::engine_options, Model, Method, R>() {} \
+    template std::unique_ptr<myriad::cuda::engine<Model, R>> myriad::cuda::make_engine<Model, Method, R>(    \
         const myriad::cuda::engine_options&);

@@ -107,7 +107,8 @@ public:
         for (buffer& b : buffers_) check(b.wait(), "a copy to the GPU");
         pieces_ = cut(list);
         stream_ = stream;
-        for (std::size_t i = 0; i < std::min(pieces_.size(), buffers); ++i) check(ask(pieces_[i], buffers_[i]), "a download");
+        for (std::size_t i = 0; i < std::min(pieces_.size(), buffers); ++i)
+            check(ask(pieces_[i], buffers_[i]), "a download");
     }
     /// Whether later work in the same stream may overwrite the data: all pieces are enqueued.
     bool asked_for_all() const { return pieces_.size() <= buffers; }
@@ -136,7 +137,8 @@ private:
 
     /// Large enough to use the bus fully, and equally many for each thread.
     static std::vector<piece> cut(const row_list& list) {
-        const std::size_t bytes = bytes_of(list) + list.size() * piece::padding, turns = (bytes - 1) / (workers * largest) + 1;
+        const std::size_t bytes = bytes_of(list) + list.size() * piece::padding,
+                          turns = (bytes - 1) / (workers * largest) + 1;
         const std::size_t each = bytes / (turns * workers) / unit * unit + unit;
         return piece::cut(list, std::clamp(each, smallest, largest));
     }

@@ -67,8 +67,8 @@ public:
         for (const array_rows& rows : list) {
             std::byte* from = rows.device;
             while (from != rows.end()) {
-                const bool joins = !pieces.empty() && from < pieces.back().end() + padding &&
-                                   from < pieces.back().device_ + largest;
+                const bool joins =
+                    !pieces.empty() && from < pieces.back().end() + padding && from < pieces.back().device_ + largest;
                 if (!joins) pieces.push_back(piece(from));
                 piece& p = pieces.back();
                 from = std::min(rows.end(), p.device_ + largest);

@@ -69,7 +69,8 @@ template <class Model, class Method, class S>
 constexpr std::size_t stack_of_kernel() {
     constexpr std::size_t state = sizeof(vec<S, n_state<Model>>), few = 4096;
     constexpr std::size_t matrix = solves_linear_systems<Method> ? n_state<Model> * state : 0;
-    return 2 * (sizeof(integrator<Model, Method, S>) + sizeof(trial_step<Method, S, n_state<Model>>)) + matrix + 16 * state + few;
+    return 2 * (sizeof(integrator<Model, Method, S>) + sizeof(trial_step<Method, S, n_state<Model>>)) + matrix +
+           16 * state + few;
 }
 
 /// One run of a kernel by a team of threads.
@@ -87,7 +88,8 @@ struct team_run {
     /// instruction sets.
     static void work(void* context, int part) noexcept {
         auto& run = *static_cast<team_run*>(context);
-        chunked_instances instances(run.supply, run.count, run.chunk, lanes_of<S>, run.arguments.order, run.options, part == 0);
+        chunked_instances instances(run.supply, run.count, run.chunk, lanes_of<S>, run.arguments.order, run.options,
+                                    part == 0);
         try {
             run.iterations += detail::integrate<Model, Method, S>(run.arguments, run.arguments.shared, instances);
         } catch (...) {
@@ -105,7 +107,8 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
     constexpr int lanes = lanes_of<S>;
     const std::int64_t count = options.count > 0 ? options.count : arguments.size;
     const std::int64_t packs = (count + lanes - 1) / lanes;  // another thread would have nothing to do
-    const std::int64_t threads = std::min<std::int64_t>(options.threads > 0 ? options.threads : omp_get_max_threads(), packs);
+    const std::int64_t threads =
+        std::min<std::int64_t>(options.threads > 0 ? options.threads : omp_get_max_threads(), packs);
     // In order: one chunk per thread.
     const std::int64_t chunk = options.schedule == schedule::in_order
                                    ? (count + threads - 1) / threads
@@ -137,13 +140,13 @@ run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const ke
 
 /// Compiles the kernel of one model, method and real type.
 #define MYRIAD_BACKEND_KERNEL(Model, Method, R)                                           \
-    template myriad::detail::run_statistics myriad::openmp::run_on<Model, Method, R>(             \
+    template myriad::detail::run_statistics myriad::openmp::run_on<Model, Method, R>(     \
         myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, \
         const myriad::detail::kernel_arguments<Model, R>&, const myriad::detail::run_options&);
 
 /// The same, and ensures that no other file does.
 #define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                             \
     template <>                                                                                                  \
-    void myriad::detail::instantiated_in_one_file_alone<                                                                 \
+    void myriad::detail::instantiated_in_one_file_alone<                                                         \
         myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, Model, Method, R>() {} \
     MYRIAD_BACKEND_KERNEL(Model, Method, R)

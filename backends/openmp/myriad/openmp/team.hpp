@@ -23,7 +23,8 @@ class own_threads {
 public:
     /// Creates `count` threads, or as many as the system allows, which call `work(context, number)` with numbers from 1
     /// on.
-    own_threads(int count, std::size_t stack, void (*work)(void*, int), void* context) : work_(work), context_(context) {
+    own_threads(int count, std::size_t stack, void (*work)(void*, int), void* context)
+        : work_(work), context_(context) {
         pthread_attr_t attributes;
         if (pthread_attr_init(&attributes) != 0) return;
         std::size_t usual = 0;
@@ -69,10 +70,13 @@ private:
 inline int obtainable(int wanted) {
     pthread_mutex_t all_made = PTHREAD_MUTEX_INITIALIZER;  // all exist at the same time
     pthread_mutex_lock(&all_made);
-    const own_threads probes(wanted, 0, [](void* gate, int) {
-        pthread_mutex_lock(static_cast<pthread_mutex_t*>(gate));
-        pthread_mutex_unlock(static_cast<pthread_mutex_t*>(gate));
-    }, &all_made);
+    const own_threads probes(
+        wanted, 0,
+        [](void* gate, int) {
+            pthread_mutex_lock(static_cast<pthread_mutex_t*>(gate));
+            pthread_mutex_unlock(static_cast<pthread_mutex_t*>(gate));
+        },
+        &all_made);
     pthread_mutex_unlock(&all_made);
     return probes.made();
 }

@@ -34,8 +34,8 @@ struct run_options {
 
 /// How a run used its lanes.
 struct run_statistics {
-    std::int64_t lane_turns = 0;  ///< trial steps times lanes, those of idle lanes included; 0: not counted
-    int lanes = 1;                ///< instances side by side in one pack, or CUDA threads in a block
+    std::int64_t lane_turns = 0;       ///< trial steps times lanes, those of idle lanes included; 0: not counted
+    int lanes = 1;                     ///< instances side by side in one pack, or CUDA threads in a block
     int threads = 1;                   ///< that did some work
     const char* instruction_set = "";  ///< of the CPU's kernel
     bool computed_as_written = true;   ///< otherwise nothing was integrated, because of compiler flags: ieee.hpp
@@ -47,8 +47,9 @@ struct run_statistics {
 /// How many components of each kind a model has. Part of the names of its kernels, so that host code compiled with a
 /// different model of the same name does not link to them.
 template <class Model>
-using component_counts = std::integer_sequence<int, n_state<Model>, n_parameter<Model>, n_shared<Model>, n_shared_integer<Model>,
-                                               n_accessory<Model>, n_integer_accessory<Model>, n_event<Model>>;
+using component_counts =
+    std::integer_sequence<int, n_state<Model>, n_parameter<Model>, n_shared<Model>, n_shared_integer<Model>,
+                          n_accessory<Model>, n_integer_accessory<Model>, n_event<Model>>;
 
 /// Defined by MYRIAD_INSTANTIATE along with the kernels. It is not weak, so that linkers refuse a program with two
 /// models of one name: the kernels of one would run for both.
@@ -65,8 +66,8 @@ namespace openmp {
 
 /// The kernel for one instruction set. A program may contain several (MYRIAD_ARCH as a list), from which host code
 /// chooses one for the CPU it runs on: cpu_kernel.hpp.
-#define MYRIAD_DECLARE_KERNEL(set)                                                                                    \
-    template <class Model, class Method, class R, class Counts = component_counts<Model>>                             \
+#define MYRIAD_DECLARE_KERNEL(set)                                                                                \
+    template <class Model, class Method, class R, class Counts = component_counts<Model>>                         \
     __attribute__((weak)) run_statistics run_on(for_set<instruction_set::set>, const kernel_arguments<Model, R>&, \
                                                 const run_options&);
 MYRIAD_DECLARE_KERNEL(avx512)

@@ -16,7 +16,8 @@ inline std::vector<std::uint32_t> order_by_cost(const std::uint32_t* cost, std::
     for (std::size_t b = 1; b < next.size(); ++b) next[b] += next[b - 1];
     std::vector<std::uint32_t> order(static_cast<std::size_t>(count));
     for (std::int64_t i = 0; i < count; ++i)
-        order[static_cast<std::size_t>(next[static_cast<std::size_t>(cost_bucket(cost[i]))]++)] = static_cast<std::uint32_t>(i);
+        order[static_cast<std::size_t>(next[static_cast<std::size_t>(cost_bucket(cost[i]))]++)] =
+            static_cast<std::uint32_t>(i);
     return order;
 }
 

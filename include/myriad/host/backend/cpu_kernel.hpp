@@ -32,7 +32,8 @@ cpu_kernel<Model, R> kernel_for() {
     using arguments = kernel_arguments<Model, R>;
     run_statistics (*const compiled)(tag, const arguments&, const run_options&) = &openmp::run_on<Model, Method, R>;
     if (if_defined(compiled) == nullptr) return {};
-    return {[](const arguments& a, const run_options& o) { return openmp::run_on<Model, Method, R>(tag{}, a, o); }, set};
+    return {[](const arguments& a, const run_options& o) { return openmp::run_on<Model, Method, R>(tag{}, a, o); },
+            set};
 }
 template <class Model, class Method, class R>
 cpu_kernel<Model, R> compiled_kernel(openmp::instruction_set set) {
@@ -62,9 +63,10 @@ inline openmp::instruction_set choose_instruction_set(const std::vector<openmp::
     }
     require(wanted.empty(), "MYRIAD_INSTRUCTION_SET is \"", wanted, "\", but this model was compiled for ", names,
             ": name one of these that the CPU has, or unset the variable");
-    throw error(message("this model was compiled for ", names,
-                        ", which this CPU lacks: build it with -DMYRIAD_ARCH=x86-64-v2, or for several instruction sets with "
-                        "-DMYRIAD_ARCH=\"x86-64-v2;x86-64-v3;x86-64-v4\""));
+    throw error(
+        message("this model was compiled for ", names,
+                ", which this CPU lacks: build it with -DMYRIAD_ARCH=x86-64-v2, or for several instruction sets with "
+                "-DMYRIAD_ARCH=\"x86-64-v2;x86-64-v3;x86-64-v4\""));
 }
 
 /// The kernel for the chosen instruction set; null if it was compiled for none.
@@ -84,7 +86,8 @@ run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_argu
     const std::int64_t count = options.count > 0 ? options.count : arguments.size;
     memory_need need;
     need.add("costs", static_cast<double>(arguments.size + count) * sizeof(std::uint32_t));
-    need.check(message("sorting ", count, " instances by cost"), "take another schedule, or integrate the ensemble in smaller parts");
+    need.check(message("sorting ", count, " instances by cost"),
+               "take another schedule, or integrate the ensemble in smaller parts");
     std::vector<std::uint32_t> cost(static_cast<std::size_t>(arguments.size));
     kernel_arguments<Model, R> now = arguments;
     now.cost = cost.data();
@@ -115,8 +118,11 @@ run_statistics run_kernel(const cpu_kernel<Model, R>& kernel, const kernel_argum
     watched.caught = [](void* kept) { *static_cast<std::exception_ptr*>(kept) = std::current_exception(); };
     run_statistics used = sorted ? run_by_cost(kernel, arguments, watched) : kernel.run(arguments, watched);
     require(used.computed_as_written, "the model's file ", not_as_written);
-    require(used.least_stack >= used.stack, "a thread has ", used.least_stack, " bytes of stack, and the kernel of this model and "
-            "method takes about ", used.stack, ": set OMP_STACKSIZE to more, such as 8M, or unset it; a thread of your own that "
+    require(used.least_stack >= used.stack, "a thread has ", used.least_stack,
+            " bytes of stack, and the kernel of this model and "
+            "method takes about ",
+            used.stack,
+            ": set OMP_STACKSIZE to more, such as 8M, or unset it; a thread of your own that "
             "solves needs as much");
     if (failure) std::rethrow_exception(failure);
     used.instruction_set = name_of(kernel.set);

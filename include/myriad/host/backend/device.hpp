@@ -12,7 +12,8 @@
 
 namespace myriad {
 
-/// A device: the CPU with at most so many threads (0 stands for OMP_NUM_THREADS or all cores), or a CUDA GPU by its number.
+/// A device: the CPU with at most so many threads (0 stands for OMP_NUM_THREADS or all cores), or a CUDA GPU by its
+/// number.
 class device {
 public:
     enum class kind { cpu, cuda };

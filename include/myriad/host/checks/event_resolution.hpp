@@ -23,8 +23,8 @@ struct event_resolution {
     /// constant is g - p dg/dp, exact for functions linear in p = (t, y); of others the smaller of its values at p and
     /// at zero counts, and none where that is not finite.
     vec<R, n_event<Model>> of_constant;
-    /// A thousandth of the rounding of g at the start. Time advances in steps of its own rounding, and g, which gets from
-    /// here to zero, in steps proportional to them; a thousandth, since it may slow down on its way.
+    /// A thousandth of the rounding of g at the start. Time advances in steps of its own rounding, and g, which gets
+    /// from here to zero, in steps proportional to them; a thousandth, since it may slow down on its way.
     vec<R, n_event<Model>> of_start;
 
     event_resolution(ensemble<Model, R>& e, std::int64_t i) {
@@ -84,9 +84,9 @@ functions_within_tolerance<Model> find_functions_within(ensemble<Model, R>& e, c
     return found;
 }
 
-/// Throws `error` if an event tolerance is below the resolution of its function in most instances; in single ones, whose
-/// state may be huge, crossings are located as well as rounding lets them. Looks at a thousand or so of the first `count`
-/// instances, spread over them. Not for models with `initialise`, before which `events` cannot be called.
+/// Throws `error` if an event tolerance is below the resolution of its function in most instances; in single ones,
+/// whose state may be huge, crossings are located as well as rounding lets them. Looks at a thousand or so of the first
+/// `count` instances, spread over them. Not for models with `initialise`, before which `events` cannot be called.
 template <class Model, class R>
 void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_t count) {
     if constexpr (has_events<Model> && !has_initialise<Model>) {

@@ -77,19 +77,19 @@ public:
         const R* const scale = ensemble_access::scales_tolerances(e) ? ensemble_.tolerance_scale().data() : nullptr;
         // One parallel loop for all arrays, because of the overhead of starting and ending one.
         return fine && all_parts(count, [&](std::int64_t begin, std::int64_t end) {
-            const auto within = [&](const R* values, R limit) {
-                return values == nullptr || all_within(values + first + begin, end - begin, limit);
-            };
-            for (int c = 0; c < n_state<Model>; ++c)
-                if (!within(e.state(c).data(), largest)) return false;
-            for (int c = 0; c < n_parameter<Model>; ++c)
-                if (!within(e.parameter(c).data(), largest)) return false;
-            if (!within(t_begin, largest) || !within(t_end, latest) || !within(scale, largest)) return false;
-            bool positive = true;
-            if (scale != nullptr)
-                for (std::int64_t i = first + begin; i < first + end; ++i) positive &= scale[i] > 0;
-            return positive;
-        });
+                   const auto within = [&](const R* values, R limit) {
+                       return values == nullptr || all_within(values + first + begin, end - begin, limit);
+                   };
+                   for (int c = 0; c < n_state<Model>; ++c)
+                       if (!within(e.state(c).data(), largest)) return false;
+                   for (int c = 0; c < n_parameter<Model>; ++c)
+                       if (!within(e.parameter(c).data(), largest)) return false;
+                   if (!within(t_begin, largest) || !within(t_end, latest) || !within(scale, largest)) return false;
+                   bool positive = true;
+                   if (scale != nullptr)
+                       for (std::int64_t i = first + begin; i < first + end; ++i) positive &= scale[i] > 0;
+                   return positive;
+               });
     }
 
     /// Checks all instances.
@@ -100,7 +100,8 @@ public:
                     std::isnan(data_.shared(c)) ? " (never set, or set to NaN)" : "",
                     ": set it with ensemble.shared(...) before solving");
         for (int c = 0; c < n_state<Model>; ++c) check(state_numbering<Model>::label(c), data_.state(c).data());
-        for (int c = 0; c < n_parameter<Model>; ++c) check(parameter_numbering<Model>::label(c), data_.parameter(c).data());
+        for (int c = 0; c < n_parameter<Model>; ++c)
+            check(parameter_numbering<Model>::label(c), data_.parameter(c).data());
         if (ensemble_access::scales_tolerances(ensemble_)) check_positive_scales();
         if (ensemble_.has_common_domain()) {
             const std::vector<R> begin(static_cast<std::size_t>(count_), ensemble_.t_begin_of(0)),
@@ -134,7 +135,8 @@ private:
     void check(const component_label& label, const R* values, limit most = limit::finite) {
         std::int64_t bad = 0, first = -1;
         for (std::int64_t i = 0; i < count_; ++i) {
-            if (std::isfinite(values[i]) || (most == limit::endless && std::isinf(values[i])) || ensemble_.ended(i)) continue;
+            if (std::isfinite(values[i]) || (most == limit::endless && std::isinf(values[i])) || ensemble_.ended(i))
+                continue;
             if (options_.invalid_instances == invalid_instances::mark) {
                 ensemble_access::mark_invalid(ensemble_, i);
             } else {
@@ -144,11 +146,13 @@ private:
         }
         if (bad == 0) return;
         if (bad == count_ && std::isnan(values[first])) {
-            const std::string component = label.number < 0            ? std::string()
+            const std::string component = label.number < 0           ? std::string()
                                           : label.enumerator.empty() ? message(label.number)
                                                                      : std::string(label.enumerator);
-            throw error(message(label, " is NaN in all ", bad, " instances: it was never set, or set to NaN; set it with "
-                                "ensemble.", label.what, '(', component, ") = ... before solving"));
+            throw error(message(label, " is NaN in all ", bad,
+                                " instances: it was never set, or set to NaN; set it with "
+                                "ensemble.",
+                                label.what, '(', component, ") = ... before solving"));
         }
         const char* advice =
             std::isinf(values[first]) && most == limit::end
@@ -185,7 +189,8 @@ void check_sample_times(const ensemble<Model, R>& e, const options& o, std::int6
     if (own.empty()) {
         const bool common = e.has_common_domain();
         const R common_begin = e.t_begin_of(0), common_end = e.t_end_of(0);
-        const R *const begin = common ? &common_begin : e.t_begin().data(), *const end = common ? &common_end : e.t_end().data();
+        const R *const begin = common ? &common_begin : e.t_begin().data(), *const end =
+                                                                                common ? &common_end : e.t_end().data();
         const R from = times.empty() ? R(0) : times.front(), to = times.empty() ? R(0) : times.back();
         const bool evenly = times.empty();
         if (evenly && o.phase_length > 0) return;  // then phases are divided evenly, not the domain
@@ -221,8 +226,8 @@ void check_sample_times(const ensemble<Model, R>& e, const options& o, std::int6
         const auto from = static_cast<double>(times.front()), to = static_cast<double>(times.back());
         const bool inside =
             end >= begin ? begin <= from && from <= to && to <= end : begin >= from && from >= to && to >= end;
-        require(inside, own.empty() ? "samples.times go from " : "samples.times_of_instances go from ", from, " to ", to,
-                ", but instance ", i, " is integrated from ", begin, " to ", end,
+        require(inside, own.empty() ? "samples.times go from " : "samples.times_of_instances go from ", from, " to ",
+                to, ", but instance ", i, " is integrated from ", begin, " to ", end,
                 ": give times within the domain, in the order in which the integration reaches them");
     }
 }

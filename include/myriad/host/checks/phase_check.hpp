@@ -86,11 +86,11 @@ phases_left find_phases_left(const ensemble<Model, R>& e, const options& o, std:
         if (e.ended(i) || !std::isfinite(t_begin) || std::isnan(t_end)) continue;  // left to the check of the inputs
         if (t == t_end && (has_begun || length > 0)) {
             if (there++ == 0)
-                left.why_none =
-                    message("t has reached t_end, ", t_end, " in instance ", i,
-                            ", in all instances that take part, so that "
-                            "phases that continue from there would have no length: give a later t_end, or call restart() "
-                            "to begin again at t_begin");
+                left.why_none = message(
+                    "t has reached t_end, ", t_end, " in instance ", i,
+                    ", in all instances that take part, so that "
+                    "phases that continue from there would have no length: give a later t_end, or call restart() "
+                    "to begin again at t_begin");
             continue;
         }
         ++on_the_way;
@@ -120,7 +120,8 @@ phases_left find_phases_left(const ensemble<Model, R>& e, const options& o, std:
     }
     if (on_the_way > 0 || there == 0) left.why_none.clear();
     if (!left.why_none.empty() && !until_the_end) {
-        left.note = "t had reached t_end in all instances that take part, so that the phases of this call had no length";
+        left.note =
+            "t had reached t_end in all instances that take part, so that the phases of this call had no length";
         left.why_none.clear();
     }
     return left;

@@ -41,7 +41,8 @@ public:
             at_a_time_ = std::min((size_ - 1) / largest_ + 1, chunks_at_a_time);
             return;
         }
-        constexpr std::int64_t most_chunks = 32, worthwhile_bytes = std::int64_t{8} << 20, all_memory_has = std::int64_t{64} << 20;
+        constexpr std::int64_t most_chunks = 32, worthwhile_bytes = std::int64_t{8} << 20,
+                               all_memory_has = std::int64_t{64} << 20;
         const std::int64_t least = std::max({worth_chunks, worker.full_load(), worthwhile_bytes / copied});
         const std::int64_t chunks = std::clamp(size_ / least, std::int64_t{1}, most_chunks);
         largest_ = (size_ + chunks - 1) / chunks;

@@ -37,8 +37,8 @@ public:
     chunked_solve(const device& where, const options& o, engine_maker<Model, R> make, ensemble<Model, R>& instances,
                   kernel_arguments<Model, R>& arguments, input_check<Model, R>& check, progress_relay& relay,
                   report<Model, R>& result)
-        : options_(o), make_(make), instances_(instances), arguments_(arguments), check_(check), relay_(relay), result_(result),
-          how_{where.number(), o.block_size, o.shared_placement, o.schedule}, size_(instances.size()),
+        : options_(o), make_(make), instances_(instances), arguments_(arguments), check_(check), relay_(relay),
+          result_(result), how_{where.number(), o.block_size, o.shared_placement, o.schedule}, size_(instances.size()),
           checked_(size_ <= worth_chunks ? size_ : 0),  // `solve` has checked small ensembles
           past_(ensemble_access::untouched(instances) ? cuda::past::none : cuda::past::kept) {}
 
@@ -91,11 +91,15 @@ private:
     void run_chunks() {
         // All before the first result is written: if there is no memory for them, the ensemble is unchanged.
         while (engine_count() < plan_.at_a_time()) add_engine();
-        checking_ = background_->ask([this] {
-            while (checked_ < size_) check(std::min(checked_ + std::max(plan_.count_from(checked_), worth_chunks / 4), size_));
-            count_earlier_work();
-            ensemble_access::touch(instances_);
-        }).share();
+        checking_ =
+            background_
+                ->ask([this] {
+                    while (checked_ < size_)
+                        check(std::min(checked_ + std::max(plan_.count_from(checked_), worth_chunks / 4), size_));
+                    count_earlier_work();
+                    ensemble_access::touch(instances_);
+                })
+                .share();
         for (std::int64_t first = 0, count = 0; first < size_; first += count) {
             engine* const worker = &free_engine();
             if (relay_.failure) break;

@@ -49,7 +49,8 @@ public:
     static void give(maker make, const cuda::engine_options& how, engine e) {
         e->rest();
         idle::all().give({make, how}, std::move(e));
-        idle::all().keep_at_most(static_cast<std::size_t>(most_chunks_held), [make](const use& other) { return other.make == make; });
+        idle::all().keep_at_most(static_cast<std::size_t>(most_chunks_held),
+                                 [make](const use& other) { return other.make == make; });
     }
 };
 

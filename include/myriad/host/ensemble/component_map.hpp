@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The map that an ensemble's accessors return: Eigen's, but values of another number than there are instances are refused, which
-// Eigen itself looks at in builds with assertions alone. Host code only.
+// The map that an ensemble's accessors return: Eigen's, but values of another number than there are instances are
+// refused, which Eigen itself looks at in builds with assertions alone. Host code only.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,9 @@
 
 namespace myriad {
 
-/// One component over all instances, contiguous and writable. Values are assigned from any expression of Eigen with as many, or
-/// from a single one, which all instances take. Parts of it (`head`, `segment`, ...) are Eigen's own, and so are their checks.
+/// One component over all instances, contiguous and writable. Values are assigned from any expression of Eigen with as
+/// many, or from a single one, which all instances take. Parts of it (`head`, `segment`, ...) are Eigen's own, and so
+/// are their checks.
 template <class T>
 class component_map : public Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>> {
     using base = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
@@ -51,7 +52,8 @@ public:
         int before_ = std::uncaught_exceptions();
     };
 
-    component_map(T* values, std::int64_t size, const host::component_label& label) : base(values, size), label_(label) {}
+    component_map(T* values, std::int64_t size, const host::component_label& label)
+        : base(values, size), label_(label) {}
     component_map(const component_map&) = default;
 
     component_map& operator=(const component_map& values) { return assign(values); }

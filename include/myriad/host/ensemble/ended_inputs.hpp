@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What instances that take no further part were given when they ended, so that later calls can tell whether someone has set
-// them anew since, who will want them integrated. Host code only.
+// What instances that take no further part were given when they ended, so that later calls can tell whether someone has
+// set them anew since, who will want them integrated. Host code only.
 #pragma once
 
 #include <algorithm>

@@ -38,39 +38,73 @@ enum class step_sizes { fixed, kept };
 /// The library's internal access to an ensemble, which users need not see.
 struct ensemble_access {
     template <class E>
-    static bool scales_tolerances(const E& e) { return e.scales_tolerances(); }
+    static bool scales_tolerances(const E& e) {
+        return e.scales_tolerances();
+    }
     template <class E>
-    static auto counters(const E& e) { return e.counters(); }
+    static auto counters(const E& e) {
+        return e.counters();
+    }
     template <class E>
-    static bool untouched(const E& e) { return e.untouched(); }
+    static bool untouched(const E& e) {
+        return e.untouched();
+    }
     template <class E>
-    static void touch(E& e) { e.touch(); }
+    static void touch(E& e) {
+        e.touch();
+    }
     template <class E>
-    [[nodiscard]] static occupancy::claim take(E& e) { return e.take(); }
+    [[nodiscard]] static occupancy::claim take(E& e) {
+        return e.take();
+    }
     template <class E>
-    static memory_need memory_of(std::int64_t size) { return E::memory_of(size); }
+    static memory_need memory_of(std::int64_t size) {
+        return E::memory_of(size);
+    }
     template <class E, class... More>
-    static void add_memory_of_call(memory_need& need, const More&... more) { E::add_memory_of_call(need, more...); }
+    static void add_memory_of_call(memory_need& need, const More&... more) {
+        E::add_memory_of_call(need, more...);
+    }
     template <class E>
-    static std::uint64_t identity(const E& e) { return e.identity(); }
+    static std::uint64_t identity(const E& e) {
+        return e.identity();
+    }
     template <class E>
-    static void expect_phases(E& e, std::int64_t phases) { e.expect_phases(phases); }
+    static void expect_phases(E& e, std::int64_t phases) {
+        e.expect_phases(phases);
+    }
     template <class E, class Arguments, class... More>
-    static void describe(E& e, Arguments& a, More... more) { e.describe(a, more...); }
+    static void describe(E& e, Arguments& a, More... more) {
+        e.describe(a, more...);
+    }
     template <class E, class Arguments>
-    static void describe_domain(E& e, Arguments& a) { e.describe_domain(a); }
+    static void describe_domain(E& e, Arguments& a) {
+        e.describe_domain(a);
+    }
     template <class E, class Arguments>
-    static void describe_samples(E& e, Arguments& a, const sample_options& o) { e.describe_samples(a, o); }
+    static void describe_samples(E& e, Arguments& a, const sample_options& o) {
+        e.describe_samples(a, o);
+    }
     template <class E>
-    static void mark_invalid(E& e, std::int64_t i) { e.mark_invalid(i); }
+    static void mark_invalid(E& e, std::int64_t i) {
+        e.mark_invalid(i);
+    }
     template <class E>
-    static bool has_fired_last(const E& e, int event, std::int64_t i) { return e.has_fired_last(event, i); }
+    static bool has_fired_last(const E& e, int event, std::int64_t i) {
+        return e.has_fired_last(event, i);
+    }
     template <class E>
-    static void remember_ended(E& e) { e.remember_ended(); }
+    static void remember_ended(E& e) {
+        e.remember_ended();
+    }
     template <class E>
-    static const auto& ended_before(const E& e) { return e.ended_before(); }
+    static const auto& ended_before(const E& e) {
+        return e.ended_before();
+    }
     template <class E, class Ended>
-    static bool given_anew(const E& e, const Ended& before) { return e.given_anew(before); }
+    static bool given_anew(const E& e, const Ended& before) {
+        return e.given_anew(before);
+    }
 };
 
 }  // namespace host
@@ -100,19 +134,31 @@ public:
 
     /// State component c: initial values before a call, end values after it.
     template <class C>
-    map<R> state(C c) & { return view(state_, host::state_numbering<Model>::find(c)); }
+    map<R> state(C c) & {
+        return view(state_, host::state_numbering<Model>::find(c));
+    }
     template <class C>
-    const_map<R> state(C c) const& { return view(state_, host::state_numbering<Model>::find(c)); }
+    const_map<R> state(C c) const& {
+        return view(state_, host::state_numbering<Model>::find(c));
+    }
     /// Control parameter c.
     template <class C>
-    map<R> parameter(C c) & { return view(parameter_, host::parameter_numbering<Model>::find(c)); }
+    map<R> parameter(C c) & {
+        return view(parameter_, host::parameter_numbering<Model>::find(c));
+    }
     template <class C>
-    const_map<R> parameter(C c) const& { return view(parameter_, host::parameter_numbering<Model>::find(c)); }
+    const_map<R> parameter(C c) const& {
+        return view(parameter_, host::parameter_numbering<Model>::find(c));
+    }
     /// The user's own real storage; NaN until set.
     template <class C>
-    map<R> accessory(C c) & { return view(accessory_, host::accessory_numbering<Model>::find(c)); }
+    map<R> accessory(C c) & {
+        return view(accessory_, host::accessory_numbering<Model>::find(c));
+    }
     template <class C>
-    const_map<R> accessory(C c) const& { return view(accessory_, host::accessory_numbering<Model>::find(c)); }
+    const_map<R> accessory(C c) const& {
+        return view(accessory_, host::accessory_numbering<Model>::find(c));
+    }
     /// The user's own integer storage; 0 until set.
     template <class C>
     map<std::int32_t> integer_accessory(C c) & {
@@ -154,12 +200,18 @@ public:
 
     /// A parameter that all instances share; NaN until set. Throws `error` if the index is out of range.
     template <class C>
-    R& shared(C c) { return present(shared_).data()[host::shared_numbering<Model>::find(c).number]; }
+    R& shared(C c) {
+        return present(shared_).data()[host::shared_numbering<Model>::find(c).number];
+    }
     template <class C>
-    R shared(C c) const { return present(shared_).data()[host::shared_numbering<Model>::find(c).number]; }
+    R shared(C c) const {
+        return present(shared_).data()[host::shared_numbering<Model>::find(c).number];
+    }
     /// An integer that all instances share; 0 until set.
     template <class C>
-    std::int32_t& shared_integer(C c) { return present(shared_integer_).data()[host::shared_integer_numbering<Model>::find(c).number]; }
+    std::int32_t& shared_integer(C c) {
+        return present(shared_integer_).data()[host::shared_integer_numbering<Model>::find(c).number];
+    }
     template <class C>
     std::int32_t shared_integer(C c) const {
         return present(shared_integer_).data()[host::shared_integer_numbering<Model>::find(c).number];
@@ -168,7 +220,8 @@ public:
     /// Results: where the last phase ended, and how.
     const_map<R> t() const& { return view(t_, {"t"}); }
     myriad::status status(std::int64_t i) const {
-        require(i >= 0 && i < present(size_), "instance ", i, " does not exist: the ensemble has ", size_, " instances");
+        require(i >= 0 && i < present(size_), "instance ", i, " does not exist: the ensemble has ", size_,
+                " instances");
         return status_.data()[i];
     }
     const myriad::status* statuses() const { return status_.data(); }
@@ -235,8 +288,8 @@ public:
         try {
             pin_arrays(gpu);
         } catch (const error& e) {
-            throw error(message("an ensemble that takes ", host::bytes_text(memory_of(size_).bytes()), " or more was not pinned: ",
-                                e.what()));
+            throw error(message("an ensemble that takes ", host::bytes_text(memory_of(size_).bytes()),
+                                " or more was not pinned: ", e.what()));
         }
         pinned_for_ = gpu;
     }
@@ -265,9 +318,10 @@ private:
 
     /// Exclusive use of the ensemble for the lifetime of the result. Throws `error` if it is in use, or was moved from.
     [[nodiscard]] host::occupancy::claim take() {
-        return present(occupancy_).take(
-            "this ensemble is being integrated already, by another thread or by the call whose function "
-            "calls this: wait for it, or use an ensemble of its own");
+        return present(occupancy_)
+            .take(
+                "this ensemble is being integrated already, by another thread or by the call whose function "
+                "calls this: wait for it, or use an ensemble of its own");
     }
     /// The memory an ensemble allocates on construction.
     static host::memory_need memory_of(std::int64_t size) {
@@ -275,7 +329,8 @@ private:
         host::memory_need need;
         need.add("states", n * sizeof(R) * detail::n_state<Model>);
         need.add("parameters", n * sizeof(R) * detail::n_parameter<Model>);
-        need.add("accessories", n * (sizeof(R) * detail::n_accessory<Model> + sizeof(std::int32_t) * detail::n_integer_accessory<Model>));
+        need.add("accessories", n * (sizeof(R) * detail::n_accessory<Model> +
+                                     sizeof(std::int32_t) * detail::n_integer_accessory<Model>));
         need.add("times, phases and statuses", n * (sizeof(R) + sizeof(std::int32_t) + 2 + detail::n_event<Model>));
         return need;
     }
@@ -283,7 +338,9 @@ private:
     static void add_memory_of_call(host::memory_need& need, std::int64_t size, const ensemble* there, const options& o,
                                    host::step_sizes steps, bool scales) {
         const auto values = [&](const auto& array, int count) {
-            return array.components() == 0 ? static_cast<double>(size) * static_cast<double>(sizeof(*array.data())) * count : 0;
+            return array.components() == 0
+                       ? static_cast<double>(size) * static_cast<double>(sizeof(*array.data())) * count
+                       : 0;
         };
         const host::component_array<R> no_reals;
         const host::component_array<std::int64_t> no_counters;
@@ -291,7 +348,8 @@ private:
         if (scales) need.add("tolerance scales", values(there ? there->tolerance_scale_ : no_reals, 1));
         if (detail::writes_time_domain<Model>) need.add("time domains", values(there ? there->domain_ : no_reals, 2));
         const int counters = 2 + (steps == host::step_sizes::kept ? 1 : 0) + (detail::n_event<Model> > 0 ? 1 : 0);
-        if (o.counting == counting::on) need.add("counters", values(there ? there->counted_[0] : no_counters, counters));
+        if (o.counting == counting::on)
+            need.add("counters", values(there ? there->counted_[0] : no_counters, counters));
         if (!o.samples.empty() && (there == nullptr || there->samples_.empty()))
             need.add("samples", trajectory_samples<Model, R>::bytes_for(o.samples, size));
     }
@@ -308,7 +366,8 @@ private:
     }
 
     /// Fills in the pointers of a kernel's arguments.
-    void describe(detail::kernel_arguments<Model, R>& a, counting count, host::step_sizes steps = host::step_sizes::kept) {
+    void describe(detail::kernel_arguments<Model, R>& a, counting count,
+                  host::step_sizes steps = host::step_sizes::kept) {
         a.size = size_;
         a.parameter = parameter_.data();
         describe_domain(a);
@@ -346,8 +405,10 @@ private:
         if (o.empty()) return;
         if (samples_.empty()) samples_ = trajectory_samples<Model, R>(o, size_);
         if (pinned()) samples_.pin(pinned_for_);
-        require(samples_.fits(o), "samples has other states or another capacity (", o.capacity, ") than the existing samples "
-                "(", samples_.capacity(), "): use the same in all calls, or a new ensemble");
+        require(samples_.fits(o), "samples has other states or another capacity (", o.capacity,
+                ") than the existing samples "
+                "(",
+                samples_.capacity(), "): use the same in all calls, or a new ensemble");
         samples_.describe(a);
     }
 
@@ -378,11 +439,12 @@ private:
 
     static std::int64_t checked(std::int64_t size) {
         require(size > 0, "the ensemble has ", size, " instances (must be positive): there is nothing to integrate");
-        memory_of(size).check(message("an ensemble of ", size, " instances"), "integrate it in smaller parts, one after the other");
+        memory_of(size).check(message("an ensemble of ", size, " instances"),
+                              "integrate it in smaller parts, one after the other");
         return size;
     }
-    /// Calls `visit(array, value)` for the arrays of bookkeeping (host/backend/arrays.hpp), with their values before the
-    /// first phase; not for t, which a phase writes before anything reads it.
+    /// Calls `visit(array, value)` for the arrays of bookkeeping (host/backend/arrays.hpp), with their values before
+    /// the first phase; not for t, which a phase writes before anything reads it.
     template <class Visit>
     void for_each_bookkeeping(Visit&& visit) {
         visit(h_next_, R(0));
@@ -484,8 +546,8 @@ private:
     host::component_array<R> t_{1, size_, unset};
     host::component_array<R> shared_{detail::n_shared<Model>, 1, unset};
     host::component_array<std::int32_t> shared_integer_{detail::n_shared_integer<Model>, 1, 0};
-    host::component_array<R> tolerance_scale_;   // allocated on first use
-    mutable host::component_array<R> h_next_;    // likewise
+    host::component_array<R> tolerance_scale_;  // allocated on first use
+    mutable host::component_array<R> h_next_;   // likewise
     host::component_array<std::int32_t> phase_{1, size_, 0};
     host::component_array<std::int8_t> side_{detail::n_event<Model>, size_, 0};
     host::component_array<std::uint8_t> ended_{1, size_, 0};

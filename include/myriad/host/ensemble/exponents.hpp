@@ -33,11 +33,11 @@ void initial_tangents(ensemble<with_tangents<Model, vectors>, R>& e) {
 /// time, with the natural logarithm. NaN if there was no phase. For a backward solution they are those of the forward
 /// flow, the smallest first.
 template <class Model, int vectors, class R>
-[[nodiscard]] Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic> exponents(const ensemble<with_tangents<Model, vectors>, R>& e) {
+[[nodiscard]] Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic> exponents(
+    const ensemble<with_tangents<Model, vectors>, R>& e) {
     using wrapped = with_tangents<Model, vectors>;
     Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic> out(e.size(), vectors);
-    for (int i = 0; i < vectors; ++i)
-        out.col(i) = e.accessory(wrapped::growth(i)) / e.accessory(wrapped::time_summed);
+    for (int i = 0; i < vectors; ++i) out.col(i) = e.accessory(wrapped::growth(i)) / e.accessory(wrapped::time_summed);
     return out;
 }
 

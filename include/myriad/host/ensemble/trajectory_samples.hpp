@@ -31,8 +31,8 @@ public:
     trajectory_samples(const sample_options& o, std::int64_t size)
         : size_(size), capacity_(o.capacity), chosen_(o.states), stored_(1, size, 0) {
         for (const int c : o.states) column_[static_cast<std::size_t>(c)] = static_cast<int>(columns_++);
-        require(capacity_ <= std::numeric_limits<std::int64_t>::max() / size, "samples.capacity ", capacity_, " times ", size,
-                " instances exceeds any memory: take fewer samples");
+        require(capacity_ <= std::numeric_limits<std::int64_t>::max() / size, "samples.capacity ", capacity_, " times ",
+                size, " instances exceeds any memory: take fewer samples");
         const std::int64_t cells = size * capacity_;
         time_ = host::component_array<R>(1, cells, std::numeric_limits<R>::quiet_NaN());
         values_ = host::component_array<R>(static_cast<int>(columns_), cells, std::numeric_limits<R>::quiet_NaN());
@@ -54,7 +54,8 @@ public:
     template <class C>
     map state(C c) const& {
         const std::int64_t number = host::state_numbering<Model>::index(c);
-        const int column = number >= 0 && number < detail::n_state<Model> ? column_[static_cast<std::size_t>(number)] : -1;
+        const int column =
+            number >= 0 && number < detail::n_state<Model> ? column_[static_cast<std::size_t>(number)] : -1;
         require(column >= 0, "state ", number, " was not sampled: name it in options::samples.states");
         return map(values_.component(column), size_, capacity_);
     }

@@ -20,7 +20,7 @@ constexpr std::size_t page_size(std::size_t bytes) {
 /// Null if there is too little memory.
 inline void* new_pages(std::size_t bytes) {
     const std::size_t page = page_size(bytes);
-    void* const memory = ::operator new(bytes, std::align_val_t{page}, std::nothrow);
+    void* const memory = ::operator new (bytes, std::align_val_t{page}, std::nothrow);
 #if defined(MADV_HUGEPAGE)
     // A hint, which the system may ignore.
     if (memory != nullptr && page > page_size(0)) madvise(memory, bytes / page * page, MADV_HUGEPAGE);
@@ -28,6 +28,8 @@ inline void* new_pages(std::size_t bytes) {
     return memory;
 }
 /// `bytes` must be as in `new_pages`.
-inline void delete_pages(void* memory, std::size_t bytes) { ::operator delete(memory, std::align_val_t{page_size(bytes)}); }
+inline void delete_pages(void* memory, std::size_t bytes) {
+    ::operator delete (memory, std::align_val_t{page_size(bytes)});
+}
 
 }  // namespace myriad::host

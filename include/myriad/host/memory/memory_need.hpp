@@ -64,7 +64,8 @@ public:
         for (std::string line; std::getline(groups, line);) {  // number:controllers:path
             const std::size_t first = line.find(':'), second = line.find(':', first + 1);
             if (first == std::string::npos || second == std::string::npos) continue;
-            const std::string controllers = ',' + line.substr(first + 1, second - first - 1) + ',', path = line.substr(second + 1);
+            const std::string controllers = ',' + line.substr(first + 1, second - first - 1) + ',',
+                              path = line.substr(second + 1);
             if (controllers == ",,") {
                 look_at_groups(least, "/sys/fs/cgroup", path, version_2, swap);
                 look_at_groups(least, "/sys/fs/cgroup/unified", path, version_2, swap);
@@ -79,11 +80,16 @@ private:
     struct file_names {
         const char *limit, *usage, *swap_limit, *swap_usage, *sum_limit, *sum_usage, *inactive, *active;
     };
-    static constexpr file_names version_2{"memory.max",          "memory.current", "memory.swap.max", "memory.swap.current", "", "",
-                                          "inactive_file", "active_file"};
-    static constexpr file_names version_1{"memory.limit_in_bytes", "memory.usage_in_bytes", "", "",
-                                          "memory.memsw.limit_in_bytes", "memory.memsw.usage_in_bytes",
-                                          "total_inactive_file", "total_active_file"};
+    static constexpr file_names version_2{"memory.max", "memory.current", "memory.swap.max", "memory.swap.current", "",
+                                          "",           "inactive_file",  "active_file"};
+    static constexpr file_names version_1{"memory.limit_in_bytes",
+                                          "memory.usage_in_bytes",
+                                          "",
+                                          "",
+                                          "memory.memsw.limit_in_bytes",
+                                          "memory.memsw.usage_in_bytes",
+                                          "total_inactive_file",
+                                          "total_active_file"};
 
     /// The number after a word, or the file's only number.
     std::optional<double> entry(const std::string& file, const std::string& word = "") const {
@@ -98,7 +104,8 @@ private:
 
     /// The group at `path` and all its ancestors. In a container a path may begin outside of it; groups that do not
     /// exist are skipped.
-    void look_at_groups(memory_left& least, const std::string& mount, std::string path, const file_names& name, double swap) const {
+    void look_at_groups(memory_left& least, const std::string& mount, std::string path, const file_names& name,
+                        double swap) const {
         for (;; path.resize(path.rfind('/'))) {
             while (!path.empty() && path.back() == '/') path.pop_back();
             const std::string group = mount + path + '/', called = "the control group " + path + '/';
@@ -107,7 +114,8 @@ private:
                                  entry(group + "memory.stat", name.active).value_or(0);
             const auto limit = entry(group + name.limit), usage = entry(group + name.usage);
             const auto swap_limit = entry(group + name.swap_limit);
-            const double swapped = swap_limit ? std::min(swap, *swap_limit - entry(group + name.swap_usage).value_or(0)) : swap;
+            const double swapped =
+                swap_limit ? std::min(swap, *swap_limit - entry(group + name.swap_usage).value_or(0)) : swap;
             if (limit && usage) least.at_most(*limit - *usage + cache + std::max(swapped, 0.0), called);
             const auto sum_limit = entry(group + name.sum_limit), sum_usage = entry(group + name.sum_usage);
             if (sum_limit && sum_usage) least.at_most(*sum_limit - *sum_usage + cache, called);
@@ -123,7 +131,8 @@ inline memory_left available_memory() {
     memory_left least = memory_reader().left();
     rlimit space{};
     double pages = 0;
-    if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY && std::ifstream("/proc/self/statm") >> pages)
+    if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY &&
+        std::ifstream("/proc/self/statm") >> pages)
         least.at_most(static_cast<double>(space.rlim_cur) - pages * static_cast<double>(sysconf(_SC_PAGESIZE)),
                       "the address space (ulimit -v)");
     return least;
@@ -151,8 +160,9 @@ public:
         std::string parts;
         for (const auto& [part, size] : parts_)
             parts += message(parts.empty() ? "" : ", ", part, ' ', bytes_text(size));
-        throw error(message("out of memory: ", who, " would take ", needed, parts_.size() > 1 ? " (" + parts + ')' : std::string(),
-                            ", and ", there, " of ", left.of, " are left: ", advice));
+        throw error(message("out of memory: ", who, " would take ", needed,
+                            parts_.size() > 1 ? " (" + parts + ')' : std::string(), ", and ", there, " of ", left.of,
+                            " are left: ", advice));
     }
 
 private:

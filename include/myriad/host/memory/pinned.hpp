@@ -11,8 +11,8 @@ namespace myriad {
 
 // Weak, since only programs with the CUDA backend define them.
 namespace cuda {
-/// Pins whole pages of host memory for all devices, through the driver's context of the given one. Throws `error` if the system
-/// refuses.
+/// Pins whole pages of host memory for all devices, through the driver's context of the given one. Throws `error` if
+/// the system refuses.
 __attribute__((weak)) void pin_memory(int device, void* memory, std::size_t bytes);
 __attribute__((weak)) void unpin_memory(void* memory);
 }  // namespace cuda
@@ -25,7 +25,7 @@ inline void pin_memory(int device, void* memory, std::size_t bytes) {
     require(pin != nullptr, "memory cannot be pinned: the program was built without the CUDA backend");
     pin(device, memory, bytes);
 }
-inline void unpin_memory(void* memory) { if_defined(&cuda::unpin_memory)(memory); }
+inline void unpin_memory(void* memory) { if_defined (&cuda::unpin_memory)(memory); }
 
 }  // namespace host
 }  // namespace myriad

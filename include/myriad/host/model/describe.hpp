@@ -23,9 +23,11 @@ template <class Model>
     add(hooks, detail::gives_jacobian<Model>, "jacobian");
     add(hooks, detail::has_events<Model>, "events");
     if constexpr (detail::has_reductions<Model>)
-        hooks += message(", observe (", detail::n_reduction<Model>, detail::n_reduction<Model> == 1 ? " reduction)" : " reductions)");
+        hooks += message(", observe (", detail::n_reduction<Model>,
+                         detail::n_reduction<Model> == 1 ? " reduction)" : " reductions)");
     add(hooks, detail::has_initialise<Model>, "initialise");
-    add(hooks, detail::has_after_step<Model>, detail::has_generic_after_step<Model> ? "after_step (generic)" : "after_step (scalar)");
+    add(hooks, detail::has_after_step<Model>,
+        detail::has_generic_after_step<Model> ? "after_step (generic)" : "after_step (scalar)");
     add(hooks, detail::has_after_event<Model>, "after_event");
     add(hooks, detail::has_finalise<Model>, "finalise");
     add(declares, detail::writes_parameters<Model>, "writes_parameters");
@@ -33,12 +35,14 @@ template <class Model>
     add(declares, detail::accessories_are_outputs<Model>, "accessories_are_outputs");
     add(declares, detail::scalar_only<Model>, "scalar_only");
     add(declares, detail::rare_events<Model>, "rare_events");
-    return message("components: ", detail::n_state<Model>, " state, ", detail::n_parameter<Model>, " parameter, ", detail::n_shared<Model>,
-                   " shared, ", detail::n_shared_integer<Model>, " shared integer, ", detail::n_accessory<Model>, " accessory, ",
-                   detail::n_integer_accessory<Model>, " integer accessory, ", detail::n_event<Model>, " event\nhooks: ", hooks,
-                   "\ndeclares: ", declares.empty() ? "nothing" : declares, "\nstiff methods: ",
-                   detail::gives_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers", ", LU factors on GPUs in ",
-                   detail::matrix_loop<double, detail::n_state<Model>>::unrolled ? "registers" : "local memory", '\n');
+    return message(
+        "components: ", detail::n_state<Model>, " state, ", detail::n_parameter<Model>, " parameter, ",
+        detail::n_shared<Model>, " shared, ", detail::n_shared_integer<Model>, " shared integer, ",
+        detail::n_accessory<Model>, " accessory, ", detail::n_integer_accessory<Model>, " integer accessory, ",
+        detail::n_event<Model>, " event\nhooks: ", hooks, "\ndeclares: ", declares.empty() ? "nothing" : declares,
+        "\nstiff methods: ", detail::gives_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers",
+        ", LU factors on GPUs in ",
+        detail::matrix_loop<double, detail::n_state<Model>>::unrolled ? "registers" : "local memory", '\n');
 }
 
 }  // namespace myriad

@@ -29,7 +29,8 @@ struct component_label {
     }
 };
 
-// Compilers write a template's argument into __PRETTY_FUNCTION__, after "C = " or "value = " and up to the last bracket.
+// Compilers write a template's argument into __PRETTY_FUNCTION__, after "C = " or "value = " and up to the last
+// bracket.
 template <class C>
 constexpr auto enumeration_text() {
     return std::string_view(__PRETTY_FUNCTION__);
@@ -69,7 +70,8 @@ template <class C, int count>
 constexpr auto enumerators_of() {
     return []<int... number>(std::integer_sequence<int, number...>) {
         return std::array<std::string_view, sizeof...(number)>{enumerator_of<C, number>()...};
-    }(std::make_integer_sequence<int, count>{});
+    }
+    (std::make_integer_sequence<int, count>{});
 }
 
 // How the components of a kind are numbered and named. `index` takes an integer, or an enumerator of the enumeration

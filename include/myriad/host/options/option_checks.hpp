@@ -57,13 +57,13 @@ struct model_components {
             const bool fits = of.empty() || of == kind.enumeration ||
                               (kind.enumeration.empty() &&
                                std::find(enumerations.begin(), enumerations.end(), of) == enumerations.end());
-            require(fits, what, " names component ", c, " by an enumerator of ", of,
-                    ", which numbers other components",
+            require(fits, what, " names component ", c, " by an enumerator of ", of, ", which numbers other components",
                     kind.enumeration.empty() ? std::string() : message(" than ", kind.enumeration),
                     ": give enumerators of the components that are meant, or numbers");
             require(c >= 0 && c < kind.count, what, " names component ", c, ", but the model has ", kind.count,
                     " (numbered from 0): use the model's enumerators");
-            require(!seen[static_cast<std::size_t>(c)], what, " names component ", c, " twice: name each component once");
+            require(!seen[static_cast<std::size_t>(c)], what, " names component ", c,
+                    " twice: name each component once");
             seen[static_cast<std::size_t>(c)] = true;
         }
     }
@@ -106,8 +106,9 @@ inline void check_samples(const sample_options& s, const options& o) {
     if (!s.times_of_instances.empty()) return;  // checked where the ensemble's size is known
     const std::int64_t phases = o.phases - s.from_phase;
     // Phases that continue in time pass each given time once.
-    const std::int64_t wanted = s.evenly != 0 ? s.evenly * phases
-                                              : static_cast<std::int64_t>(s.times.size()) * (o.phase_length > 0 ? 1 : phases);
+    const std::int64_t wanted = s.evenly != 0
+                                    ? s.evenly * phases
+                                    : static_cast<std::int64_t>(s.times.size()) * (o.phase_length > 0 ? 1 : phases);
     require(s.capacity >= wanted, "samples.capacity is ", s.capacity, ", but the chosen times give ", wanted,
             " samples per instance in this call: raise the capacity");
 }
@@ -158,10 +159,12 @@ inline void option_limits::check(const options& o) const {
     check_tolerance_count("relative_tolerance", o.relative_tolerance, n_state);
     check_tolerance_count("absolute_tolerance", o.absolute_tolerance, n_state);
     for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c)
-        check_positive("relative_tolerance", o.relative_tolerance[c], "give the error you accept per step, such as 1e-9");
+        check_positive("relative_tolerance", o.relative_tolerance[c],
+                       "give the error you accept per step, such as 1e-9");
     for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c)
         require(o.absolute_tolerance[c] >= 0 && std::isfinite(o.absolute_tolerance[c]), "absolute_tolerance is ",
-                o.absolute_tolerance[c], " (must not be negative, and finite): give the error you accept per step, such as "
+                o.absolute_tolerance[c],
+                " (must not be negative, and finite): give the error you accept per step, such as "
                 "1e-9, or 0 for that of relative_tolerance alone");
     if (adaptive) {
         require(std::isnan(o.step) || (o.step > 0 && std::isfinite(o.step)), "step is ", o.step,
@@ -191,9 +194,8 @@ inline void option_limits::check(const options& o) const {
             ", which is 1 in single precision, that of step-size control: give a smaller value, such as 0.1");
     // Fixed steps are counted in the state's real type, exact up to its mantissa.
     check_count("max_steps", o.max_steps, 1, digits > 31 ? 2'000'000'000 : 16'000'000);
-    require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), "events has ",
-            o.events.size(), " entries, but the model has ", n_event,
-            " event functions: give one entry for each, or none for defaults");
+    require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), "events has ", o.events.size(),
+            " entries, but the model has ", n_event, " event functions: give one entry for each, or none for defaults");
     for (const event_options& e : o.events) {
         check_positive("event tolerance", e.tolerance,
                        "give the |g| at which an event counts as located, such as 1e-6");
@@ -253,12 +255,12 @@ template <class Model, class Method, class R>
 void check_options(const options& o) {
     require(detail::computes_as_written(), "this file of the program ", detail::not_as_written);
     constexpr option_limits limits{components_of<Model>,
-                                         detail::n_event<Model>,
-                                         detail::writes_time_domain<Model>,
-                                         Method::embedded_order > 0,
-                                         detail::samples_trajectory<Method>,
-                                         std::numeric_limits<R>::digits,
-                                         [](double value) { return static_cast<double>(static_cast<R>(value)); }};
+                                   detail::n_event<Model>,
+                                   detail::writes_time_domain<Model>,
+                                   Method::embedded_order > 0,
+                                   detail::samples_trajectory<Method>,
+                                   std::numeric_limits<R>::digits,
+                                   [](double value) { return static_cast<double>(static_cast<R>(value)); }};
     limits.check(o);
 }
 

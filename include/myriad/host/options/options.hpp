@@ -83,17 +83,18 @@ struct record_options {
 };
 
 /// Dense output, for a method `dense<Method>`: states along every trajectory, by exactly one of `evenly`, `times`,
-/// `times_of_instances` and `every`. Samples are appended phase by phase and call by call until the capacity is reached.
+/// `times_of_instances` and `every`. Samples are appended phase by phase and call by call until the capacity is
+/// reached.
 struct sample_options {
-    component_list states = {};    ///< components to sample; empty: no samples
-    std::int64_t capacity = 0;     ///< samples kept per instance, over all phases and calls
-    std::int64_t evenly = 0;  ///< number of evenly spaced times over [t_begin, t_end] in every phase, ends included; with
-                              ///< phase_length over each phase, those between two phases once
+    component_list states = {};  ///< components to sample; empty: no samples
+    std::int64_t capacity = 0;   ///< samples kept per instance, over all phases and calls
+    std::int64_t evenly = 0;     ///< number of evenly spaced times over [t_begin, t_end] in every phase, ends included;
+                                 ///< with phase_length over each phase, those between two phases once
     std::vector<double> times = {};  ///< or these times in every phase, in the order in which they are reached
     std::vector<double> times_of_instances = {};  ///< or times per instance, equally many: instance 0 first
-    std::int64_t every = 0;          ///< or the start of the phase and the end of every n-th accepted step
-    double minimum_spacing = 0;      ///< least time between samples by steps
-    std::int64_t from_phase = 0;     ///< first phase of the call that is sampled
+    std::int64_t every = 0;                       ///< or the start of the phase and the end of every n-th accepted step
+    double minimum_spacing = 0;                   ///< least time between samples by steps
+    std::int64_t from_phase = 0;                  ///< first phase of the call that is sampled
 
     bool empty() const { return states.empty(); }
 };
@@ -102,8 +103,9 @@ struct sample_options {
 struct options {
     std::int64_t phases = 1;  ///< integration phases in this call, each from t_begin to t_end or until stopped
 
-    per_component relative_tolerance = 1e-8;  ///< error per step over max(|y|, |y1|), per component of the state; raised to
-                                              ///< four times the precision's epsilon, with a note in the report
+    per_component relative_tolerance =
+        1e-8;  ///< error per step over max(|y|, |y1|), per component of the state; raised to
+               ///< four times the precision's epsilon, with a note in the report
     per_component absolute_tolerance = 1e-8;  ///< error per step, per component of the state, in its unit
 
     double step =

@@ -23,8 +23,9 @@ void note_tolerances(report<Model, R>& r, const options& o) {
     if (Method::embedded_order == 0) return;
     for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
         if (static_cast<R>(o.relative_tolerance[c]) >= least_relative_tolerance<R>) continue;
-        r.notes.push_back(message("relative_tolerance ", o.relative_tolerance[c], " is below what the precision can reach: ",
-                                  least_relative_tolerance<R>, " was used"));
+        r.notes.push_back(message("relative_tolerance ", o.relative_tolerance[c],
+                                  " is below what the precision can reach: ", least_relative_tolerance<R>,
+                                  " was used"));
         return;
     }
 }
@@ -39,10 +40,11 @@ void note_event_tolerances(report<Model, R>& r, ensemble<Model, R>& e, const opt
     const auto after = find_functions_within(e, o, count, [&](std::int64_t i) { return e.t()[i]; });
     for (int j = 0; j < n_event<Model>; ++j) {
         if (!before.everywhere(j) || !after.everywhere(j) || after.fired_anywhere(j)) continue;
-        r.notes.push_back(message("the function of event ", j, " is within its tolerance, ", event_tolerance(o, j),
-                                  ", at the start and at the end in all ", after.looked_at,
-                                  " instances looked at, and no crossing was located: a function is seen to cross zero only from "
-                                  "beyond its tolerance; if this one crosses, give a smaller tolerance"));
+        r.notes.push_back(
+            message("the function of event ", j, " is within its tolerance, ", event_tolerance(o, j),
+                    ", at the start and at the end in all ", after.looked_at,
+                    " instances looked at, and no crossing was located: a function is seen to cross zero only from "
+                    "beyond its tolerance; if this one crosses, give a smaller tolerance"));
     }
 }
 
@@ -67,11 +69,12 @@ void note_stiffness(report<Model, R>& r, ensemble<Model, R>& e, const options& o
         if (r.accepted_steps + r.rejected_steps < worthwhile * e.size()) return;
         const stiffness found = find_stiffness<Method>(e, o);
         if (2 * found.limited < found.looked_at || found.limited == 0) return;
-        r.notes.push_back(message("stability, not accuracy, limits the step in ", found.limited, " of ", found.looked_at,
-                                  " instances looked at (step times fastest rate is up to ", found.share,
-                                  " of the method's limit, and of rodas_5p, a method for stiff equations, one ",
-                                  worthwhile_stretch, " times as long meets the tolerances): if the equations are stiff all "
-                                  "along, rodas_5p takes far fewer steps"));
+        r.notes.push_back(
+            message("stability, not accuracy, limits the step in ", found.limited, " of ", found.looked_at,
+                    " instances looked at (step times fastest rate is up to ", found.share,
+                    " of the method's limit, and of rodas_5p, a method for stiff equations, one ", worthwhile_stretch,
+                    " times as long meets the tolerances): if the equations are stiff all "
+                    "along, rodas_5p takes far fewer steps"));
     }
 }
 
@@ -81,7 +84,8 @@ template <class Method, class Model, class R>
 double tangent_error(const options& o) {
     double error = static_cast<double>(epsilon_of<R>);
     if constexpr (Method::embedded_order > 0) {
-        const auto original = static_cast<std::size_t>(Model::n_original), all = static_cast<std::size_t>(n_state<Model>);
+        const auto original = static_cast<std::size_t>(Model::n_original),
+                   all = static_cast<std::size_t>(n_state<Model>);
         for (std::size_t c = original; c < all; ++c)
             error = std::max(error, std::max(o.relative_tolerance[c], o.absolute_tolerance[c]));
         if (error < 1) return error;
@@ -104,11 +108,13 @@ void note_exponents(report<Model, R>& r, ensemble<Model, R>& e, const options& o
         std::int64_t looked_at = 0, doubtful = 0;
         double worst = 0;
         for_sampled_instances(e, e.size(), [&](std::int64_t i) {
-            const std::int64_t phases = e.phases_done()[i] - e.shared_integer(static_cast<int>(Model::transient_phases));
+            const std::int64_t phases =
+                e.phases_done()[i] - e.shared_integer(static_cast<int>(Model::transient_phases));
             if (phases < 1) return;
             double fastest = -std::numeric_limits<double>::infinity(), slowest = -fastest;
             for (int k = 0; k < Model::n_vectors; ++k) {
-                const double growth = static_cast<double>(e.accessory(Model::growth(k))[i]) / static_cast<double>(phases);
+                const double growth =
+                    static_cast<double>(e.accessory(Model::growth(k))[i]) / static_cast<double>(phases);
                 fastest = std::max(fastest, growth);
                 slowest = std::min(slowest, growth);
             }
@@ -119,10 +125,11 @@ void note_exponents(report<Model, R>& r, ensemble<Model, R>& e, const options& o
             worst = std::max(worst, product);
         });
         if (doubtful == 0) return;
-        r.notes.push_back(message("phases may be too long for the smallest exponent in ", doubtful, " of ", looked_at,
-                                  " instances looked at: the tangents grow apart so far in one that the error of a step, ", error,
-                                  ", becomes up to ", worst, " of the slowest (should be below ", limit,
-                                  "): take shorter phases or smaller tolerances, and see whether it changes"));
+        r.notes.push_back(
+            message("phases may be too long for the smallest exponent in ", doubtful, " of ", looked_at,
+                    " instances looked at: the tangents grow apart so far in one that the error of a step, ", error,
+                    ", becomes up to ", worst, " of the slowest (should be below ", limit,
+                    "): take shorter phases or smaller tolerances, and see whether it changes"));
     }
 }
 

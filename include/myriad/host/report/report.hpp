@@ -82,7 +82,8 @@ public:
     }
     template <class C>
     map<std::int32_t> integer_accessory(C c) const& {
-        return column(integer_accessory_, host::integer_accessory_numbering<Model>::index(c), "integer accessory", integers_);
+        return column(integer_accessory_, host::integer_accessory_numbering<Model>::index(c), "integer accessory",
+                      integers_);
     }
     template <class C>
     map<R> state(C) const&& = delete;
@@ -127,7 +128,8 @@ private:
         return columns;
     }
     template <class Columns, class T>
-    map<T> column(const Columns& columns, std::int64_t c, const char* what, const host::component_array<T>& from) const {
+    map<T> column(const Columns& columns, std::int64_t c, const char* what,
+                  const host::component_array<T>& from) const {
         require(c >= 0 && c < static_cast<std::int64_t>(columns.size()) && columns[static_cast<std::size_t>(c)] >= 0,
                 what, " ", c, " was not recorded: name it in options::record");
         require(size_ > 0, "these records were moved away: ask those that they were moved to");
@@ -138,7 +140,8 @@ private:
     std::int64_t from_phase_ = 0;
     int columns_ = 0, integer_columns_ = 0;
     std::array<int, static_cast<std::size_t>(detail::n_state<Model>)> state_ = none<detail::n_state<Model>>();
-    std::array<int, static_cast<std::size_t>(detail::n_accessory<Model>)> accessory_ = none<detail::n_accessory<Model>>();
+    std::array<int, static_cast<std::size_t>(detail::n_accessory<Model>)> accessory_ =
+        none<detail::n_accessory<Model>>();
     std::array<int, static_cast<std::size_t>(detail::n_integer_accessory<Model>)> integer_accessory_ =
         none<detail::n_integer_accessory<Model>>();
     int time_ = -1;
@@ -255,7 +258,8 @@ work_count counted_work(const ensemble<Model, R>& e, std::int64_t count, std::in
 template <class Model, class R>
 std::int64_t count_given_anew(const ensemble<Model, R>& e, std::int64_t count) {
     const auto& before = ensemble_access::ended_before(e);
-    return std::count_if(before.begin(), before.end(), [&](const auto& i) { return i.index < count && ensemble_access::given_anew(e, i); });
+    return std::count_if(before.begin(), before.end(),
+                         [&](const auto& i) { return i.index < count && ensemble_access::given_anew(e, i); });
 }
 
 template <class Model, class R>
@@ -285,7 +289,8 @@ private:
             const status first = statuses[begin];
             unsigned char differs = 0;
             for (std::int64_t i = begin; i < begin + size; ++i)
-                differs |= static_cast<unsigned char>(static_cast<unsigned char>(statuses[i]) ^ static_cast<unsigned char>(first));
+                differs |= static_cast<unsigned char>(static_cast<unsigned char>(statuses[i]) ^
+                                                      static_cast<unsigned char>(first));
             if (differs == 0 && !is_failure(first)) {
                 found[static_cast<std::size_t>(first)] += size;
                 continue;

@@ -110,7 +110,8 @@ class stiff_trial {
 
 public:
     stiff_trial(ensemble<Model, R>& e, std::int64_t i)
-        : p_(inputs_of(e, i)), begin_(static_cast<double>(e.t_begin_of(i))), t0_(static_cast<double>(e.t()[i])), t_(t0_) {
+        : p_(inputs_of(e, i)), begin_(static_cast<double>(e.t_begin_of(i))), t0_(static_cast<double>(e.t()[i])),
+          t_(t0_) {
         for (int c = 0; c < n; ++c) y_[c] = static_cast<double>(e.state(c)[i]);
     }
 
@@ -153,7 +154,8 @@ public:
         double worst = 0;
         for (int c = 0; c < n; ++c) {
             const auto at = static_cast<std::size_t>(c);
-            const double relative = std::max(o.relative_tolerance[at], static_cast<double>(least_relative_tolerance<R>));
+            const double relative =
+                std::max(o.relative_tolerance[at], static_cast<double>(least_relative_tolerance<R>));
             const double size = std::max(std::abs(y_[c]), std::abs(y1[c]));
             const double ratio = std::abs(error[c]) / (scale * std::max(o.absolute_tolerance[at], relative * size));
             worst = ratio <= worst ? worst : ratio;  // NaN propagates

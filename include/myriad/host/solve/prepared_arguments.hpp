@@ -25,7 +25,8 @@ struct method_traits {
     bool adaptive, scales_tolerances, chooses_first_step;
 };
 template <class Method>
-inline constexpr method_traits traits_of{Method::embedded_order > 0, scales_tolerances<Method>, chooses_first_step<Method>};
+inline constexpr method_traits traits_of{Method::embedded_order > 0, scales_tolerances<Method>,
+                                         chooses_first_step<Method>};
 
 /// The options in the form that a kernel of the method takes.
 template <class Model, class R>
@@ -68,8 +69,8 @@ void add_memory_of_call(memory_need& need, std::int64_t size, const ensemble<Mod
                         const method_traits& method) {
     if (!o.record.empty()) need.add("records", phase_records<Model, R>::bytes_for(o.record, o.phases, size));
     need.add("sample times", static_cast<double>(sizeof(R) * o.samples.times_of_instances.size()));
-    ensemble_access::add_memory_of_call<ensemble<Model, R>>(need, size, there, o, method.adaptive ? step_sizes::kept : step_sizes::fixed,
-                                           method.scales_tolerances);
+    ensemble_access::add_memory_of_call<ensemble<Model, R>>(
+        need, size, there, o, method.adaptive ? step_sizes::kept : step_sizes::fixed, method.scales_tolerances);
 }
 
 /// The arguments for an ensemble, and the memory they point to: the records, and the sample times in the ensemble's
@@ -83,7 +84,8 @@ public:
           sample_times_(o.samples.times.begin(), o.samples.times.end()) {
         describe_options(arguments_, o, method);
         if (method.scales_tolerances) instances.tolerance_scale();  // allocates them
-        ensemble_access::describe(instances, arguments_, o.counting, method.adaptive ? step_sizes::kept : step_sizes::fixed);
+        ensemble_access::describe(instances, arguments_, o.counting,
+                                  method.adaptive ? step_sizes::kept : step_sizes::fixed);
         records_.describe(arguments_.record);
         if (o.samples.empty()) return;
         auto& sample = arguments_.sample;
@@ -96,7 +98,8 @@ public:
         if (!own.empty()) {
             own_times_ = component_array<R>(static_cast<int>(count), instances.size(), R(0));
             for (std::size_t i = 0; i < size; ++i)
-                for (std::size_t k = 0; k < count; ++k) own_times_.data()[k * size + i] = static_cast<R>(own[i * count + k]);
+                for (std::size_t k = 0; k < count; ++k)
+                    own_times_.data()[k * size + i] = static_cast<R>(own[i * count + k]);
             sample.own_times = own_times_.data();
         }
         sample.every = static_cast<std::int32_t>(o.samples.every);
@@ -116,7 +119,8 @@ public:
 
 private:
     /// The options, if there is enough memory for them; otherwise throws `error`.
-    static const options& affordable(const ensemble<Model, R>& instances, const options& o, const method_traits& method) {
+    static const options& affordable(const ensemble<Model, R>& instances, const options& o,
+                                     const method_traits& method) {
         memory_need need;
         add_memory_of_call(need, instances.size(), &instances, o, method);
         need.check(message("this call for ", instances.size(), " instances"),
@@ -138,7 +142,8 @@ void check_ended(const ensemble<Model, R>& instances, const options& o, std::int
     const std::int64_t anew = count_given_anew(instances, count);
     if (anew == 0) return;
     for (const auto& e : ensemble_access::ended_before(instances))
-        require(!ensemble_access::given_anew(instances, e), "instance ", e.index, " ended in an earlier call (", name_of(instances.status(e.index)),
+        require(!ensemble_access::given_anew(instances, e), "instance ", e.index, " ended in an earlier call (",
+                name_of(instances.status(e.index)),
                 ") and takes no further part, but its state or parameters were set anew since",
                 anew == 1 ? std::string() : message(", as were those of ", anew - 1, anew == 2 ? " other" : " others"),
                 ": call restart() to start all instances again, or set invalid_instances = invalid_instances::mark to "

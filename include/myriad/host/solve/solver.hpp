@@ -239,7 +239,8 @@ public:
         }
         return report_;
     }
-    /// The records of the last `integrate`, empty (NaN, 0) if there was none since the upload. Waits; throws `error` after an `integrate` without a `download`.
+    /// The records of the last `integrate`, empty (NaN, 0) if there was none since the upload. Waits; throws `error`
+    /// after an `integrate` without a `download`.
     const phase_records<Model, R>& records() {
         const auto claim = take();
         finish();
@@ -262,9 +263,10 @@ private:
     }
     /// The kernel's arguments point to the memory of the original ensemble.
     void require_memory() const {
-        require(host::ensemble_access::identity(instances_) == identity_,
-                "the solver's ensemble was replaced by another or moved away, and its memory with it: set the values of "
-                "instances() instead");
+        require(
+            host::ensemble_access::identity(instances_) == identity_,
+            "the solver's ensemble was replaced by another or moved away, and its memory with it: set the values of "
+            "instances() instead");
     }
     void require_results(const char* what) const {
         require(results_ != held::on_device, what,
@@ -280,7 +282,8 @@ private:
         host::check_options<Model, Method, R>(o);
         host::memory_need need = host::ensemble_access::memory_of<ensemble<Model, R>>(capacity);
         host::add_memory_of_call<Model, R>(need, capacity, nullptr, o, host::traits_of<Method>);
-        need.check(message("a solver for ", capacity, " instances"), "give it a smaller capacity, and integrate part by part");
+        need.check(message("a solver for ", capacity, " instances"),
+                   "give it a smaller capacity, and integrate part by part");
         return o;
     }
     host::work_count counted_work() const {
@@ -315,7 +318,7 @@ private:
     bool uploaded_ = false;      // and `instances()` not called since
     bool downloadable_ = false;  // uploaded, and found valid
     held results_ = held::on_host;
-    bool remembered_ = true;     // which instances have ended, and with what inputs
+    bool remembered_ = true;  // which instances have ended, and with what inputs
     bool integrated_ = false;
     bool has_records_ = true;  // they belong to the instances uploaded last
     host::work_count work_before_{};

@@ -25,8 +25,8 @@ struct team {
     std::size_t least_stack = 0;  ///< least stack of any of them; if less than `stack`, nothing was done
 };
 
-#define MYRIAD_DECLARE_THREADS(set)                                                               \
-    __attribute__((weak)) void in_parts(for_set<instruction_set::set>, team&);                    \
+#define MYRIAD_DECLARE_THREADS(set)                                            \
+    __attribute__((weak)) void in_parts(for_set<instruction_set::set>, team&); \
     __attribute__((weak)) int most_parts(for_set<instruction_set::set>);
 /// `in_parts` runs all parts, each in its own thread as far as there are enough; `most_parts` is the number of threads
 /// worth using, which OpenMP would use. Weak: provided by the OpenMP backend, which is in every program with a kernel,
@@ -61,8 +61,7 @@ lent_threads threads_for() {
     using tag = openmp::for_set<set>;
     void (*const compiled)(tag, openmp::team&) = &openmp::in_parts;
     if (!cpu_has(set) || if_defined(compiled) == nullptr) return {};
-    return {[](openmp::team& all) { openmp::in_parts(tag{}, all); },
-            [] { return openmp::most_parts(tag{}); }};
+    return {[](openmp::team& all) { openmp::in_parts(tag{}, all); }, [] { return openmp::most_parts(tag{}); }};
 }
 inline lent_threads lend_threads() {
     using openmp::instruction_set;
@@ -90,10 +89,10 @@ void in_parallel(std::int64_t size, std::int64_t grain, Body&& body) {
         return;
     }
     openmp::team members{[](void* context, int part) {
-                          const auto& w = *static_cast<const whole*>(context);
-                          if (part < w.parts) (*w.body)(w.begin(part), w.begin(part + 1));
-                      },
-                      &all, static_cast<int>(team)};
+                             const auto& w = *static_cast<const whole*>(context);
+                             if (part < w.parts) (*w.body)(w.begin(part), w.begin(part + 1));
+                         },
+                         &all, static_cast<int>(team)};
     threads.in_parts(members);
 }
 

@@ -34,13 +34,14 @@ MYRIAD_FUNCTION void end_stuck_lanes(integration_state<Model, Method, S>& s, con
 /// Iterations of the loop after which a phase is looked at for whether it creeps.
 inline constexpr std::int32_t creep_interval = 1024;
 
-/// Whether lane i creeps up to where its right-hand side has no value: at the pace of its last `creep_interval` iterations,
-/// `max_steps` of them would take t neither to t_end, nor on by the time since t_begin or by the first step. Where t is finer
-/// than the state, a step too short to change the state is fine and the next, longer one is not, for ever. To be asked after
-/// every so many iterations: the ensemble's array of times, which is of no other use within a phase, holds t at the last look.
+/// Whether lane i creeps up to where its right-hand side has no value: at the pace of its last `creep_interval`
+/// iterations, `max_steps` of them would take t neither to t_end, nor on by the time since t_begin or by the first
+/// step. Where t is finer than the state, a step too short to change the state is fine and the next, longer one is not,
+/// for ever. To be asked after every so many iterations: the ensemble's array of times, which is of no other use within
+/// a phase, holds t at the last look.
 template <class Model, class Method, class S>
-MYRIAD_FUNCTION bool creeps(const kernel_arguments<Model, real_of<S>>& args, const integration_state<Model, Method, S>& s,
-                            int i) {
+MYRIAD_FUNCTION bool creeps(const kernel_arguments<Model, real_of<S>>& args,
+                            const integration_state<Model, Method, S>& s, int i) {
     using R = real_of<S>;
     const std::int64_t index = s.instance[i];
     const R t = get_lane(s.data.t, i), gained = abs(t - args.t[index]);
@@ -54,13 +55,13 @@ MYRIAD_FUNCTION bool creeps(const kernel_arguments<Model, real_of<S>>& args, con
 /// Binary logarithm of 1e-4, as in Hairer and Wanner's DOPRI5.
 inline constexpr double least_error_remembered = -13.2877;
 
-/// Accepts or rejects the trial of every lane and sets `data.h_next`, the elementary (I) controller of the MPGOS package:
-/// factor 0.9 q^(-1/(p+1)) after an accepted and 0.9 q^(-1/p) after a rejected step, with q the largest ratio of error to
-/// tolerance and p the order of the error estimate, kept within the options' limits (Hairer, Norsett, Wanner, Solving
-/// ODE I, II.4, eq. (4.13)); or the one chosen with `controlled`. Lanes whose trial is not finite (or not `valid`, or
-/// singular) are rejected with the smallest factor.
-/// Lanes that are rejected at the minimum step end; so do those in `may_stick` whose step does not advance (`t1`, at which
-/// it ends, is where it began). Returns the accepted lanes.
+/// Accepts or rejects the trial of every lane and sets `data.h_next`, the elementary (I) controller of the MPGOS
+/// package: factor 0.9 q^(-1/(p+1)) after an accepted and 0.9 q^(-1/p) after a rejected step, with q the largest ratio
+/// of error to tolerance and p the order of the error estimate, kept within the options' limits (Hairer, Norsett,
+/// Wanner, Solving ODE I, II.4, eq. (4.13)); or the one chosen with `controlled`. Lanes whose trial is not finite (or
+/// not `valid`, or singular) are rejected with the smallest factor. Lanes that are rejected at the minimum step end; so
+/// do those in `may_stick` whose step does not advance (`t1`, at which it ends, is where it began). Returns the
+/// accepted lanes.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>>& args,
                                         integration_state<Model, Method, S>& s,

@@ -27,10 +27,11 @@ struct float_format<float> {
     static constexpr float magic = 8388608.0f, bias = 127;
 };
 
-// Both polynomials by Estrin's scheme, as the next step waits for them: Horner's costs a tenth of the time of a cheap step.
+// Both polynomials by Estrin's scheme, as the next step waits for them: Horner's costs a tenth of the time of a cheap
+// step.
 
-/// log2(x) of one real or one SIMD batch of positive normal numbers. Chebyshev fit on [1, 2) within 1.6e-5. The shift is one
-/// of unsigned numbers, as AVX2 has no other for 64 bits.
+/// log2(x) of one real or one SIMD batch of positive normal numbers. Chebyshev fit on [1, 2) within 1.6e-5. The shift
+/// is one of unsigned numbers, as AVX2 has no other for 64 bits.
 template <class B>
 MYRIAD_FUNCTION B fast_log2_of(const B& x) {
     using A = arithmetic<B>;
@@ -68,11 +69,11 @@ MYRIAD_FUNCTION S part_by_part(const S& x, Part&& part) {
     } else {
         S result;
         MYRIAD_UNROLL
-        for (std::size_t i = 0; i < sizeof(result.parts) / sizeof(result.parts[0]); ++i) result.parts[i] = part(x.parts[i]);
+        for (std::size_t i = 0; i < sizeof(result.parts) / sizeof(result.parts[0]); ++i)
+            result.parts[i] = part(x.parts[i]);
         return result;
     }
 }
-
 
 /// The binary logarithm within about 2e-5, for x within the range of normal numbers.
 template <class S>

@@ -39,19 +39,20 @@ MYRIAD_FUNCTION void lay_fixed_steps(const kernel_arguments<Model, real_of<S>>& 
     set_count(s.left, i, bounded);
 }
 
-/// Lays the steps of lane i anew from t, where it is after `done` steps up to rounding, which time_low keeps, or after the
-/// last one.
+/// Lays the steps of lane i anew from t, where it is after `done` steps up to rounding, which time_low keeps, or after
+/// the last one.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION void move_fixed_steps(const kernel_arguments<Model, real_of<S>>& args,
                                       integration_state<Model, Method, S>& s, int i, real_of<S> t) {
     using R = real_of<S>;
-    const R taken = detail::elapsed_beyond(get_lane(s.base, i), t, static_cast<R>(get_lane(s.done, i)), get_lane(s.step, i));
+    const R taken =
+        detail::elapsed_beyond(get_lane(s.base, i), t, static_cast<R>(get_lane(s.done, i)), get_lane(s.step, i));
     set_lane(s.time_low, i, get_lane(s.left, i) == 0 ? R(0) : get_lane(s.time_low, i) + taken);
     detail::lay_fixed_steps(args, s, i, t);
 }
 
-/// Where lane i's phase is to end, for rare use: from the ensemble, so that it need not stay in a register. With events, which
-/// compare it with t at every step, it does.
+/// Where lane i's phase is to end, for rare use: from the ensemble, so that it need not stay in a register. With
+/// events, which compare it with t at every step, it does.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION real_of<S> domain_end(const kernel_arguments<Model, real_of<S>>& args,
                                       const integration_state<Model, Method, S>& s, int i) {
@@ -62,12 +63,13 @@ MYRIAD_FUNCTION real_of<S> domain_end(const kernel_arguments<Model, real_of<S>>&
         const auto t_end = own ? args.t_end[s.instance[i]] : args.common_t_end;
         if (args.phase_length == real_of<S>(0)) return t_end;
         const auto t_begin = own ? args.t_begin[s.instance[i]] : args.common_t_begin;
-        return detail::interval_from(args, args.t[s.instance[i]], t_begin, t_end).end;  // where the steps were laid from
+        return detail::interval_from(args, args.t[s.instance[i]], t_begin, t_end)
+            .end;  // where the steps were laid from
     }
 }
 
-/// Time of lane i's committed state. For rare use: from the ensemble's array, so that a model whose right-hand side does
-/// not depend on time keeps none in its registers. Exactly t_end after the last step.
+/// Time of lane i's committed state. For rare use: from the ensemble's array, so that a model whose right-hand side
+/// does not depend on time keeps none in its registers. Exactly t_end after the last step.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION real_of<S> fixed_step_time(const kernel_arguments<Model, real_of<S>>& args,
                                            const integration_state<Model, Method, S>& s, int i) {
@@ -86,8 +88,8 @@ MYRIAD_FUNCTION void propose_fixed_step(const kernel_arguments<Model, real_of<S>
     if (MYRIAD_UNLIKELY(any(s.final_step))) {
         using R = real_of<S>;
         for_each_lane(s.running() & s.final_step, [&](int i) MYRIAD_LAMBDA {
-            R beyond = detail::elapsed_beyond(args.t[s.instance[i]], detail::domain_end(args, s, i), static_cast<R>(get_lane(s.done, i)),
-                                      get_lane(s.step, i));
+            R beyond = detail::elapsed_beyond(args.t[s.instance[i]], detail::domain_end(args, s, i),
+                                              static_cast<R>(get_lane(s.done, i)), get_lane(s.step, i));
             if constexpr (keeps_time_low<Model, Method, R>) beyond += get_lane(s.time_low, i);
             set_lane(s.h, i, -beyond);
         });

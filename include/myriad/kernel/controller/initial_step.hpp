@@ -7,9 +7,9 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Sets `data.h_next` of the lanes whose first step is open. Hairer, Norsett, Wanner, Solving ODE I, II.4, "Starting step
-/// size", with the largest component for the norm: an Euler step that changes y by a hundredth of its size tells how fast
-/// the slope changes; the step's own leading error term is to be a hundredth of the tolerance.
+/// Sets `data.h_next` of the lanes whose first step is open. Hairer, Norsett, Wanner, Solving ODE I, II.4, "Starting
+/// step size", with the largest component for the norm: an Euler step that changes y by a hundredth of its size tells
+/// how fast the slope changes; the step's own leading error term is to be a hundredth of the tolerance.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION void choose_first_step(const kernel_arguments<Model, real_of<S>>& args,
                                        integration_state<Model, Method, S>& s, const mask_of<S>& open) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The size of an error estimate against the tolerances: the largest component, as in the MPGOS package, or their root mean
-// square.
+// The size of an error estimate against the tolerances: the largest component, as in the MPGOS package, or their root
+// mean square.
 #pragma once
 
 #include "myriad/kernel/methods/controller_policies.hpp"
@@ -53,8 +53,8 @@ template <class S>
 inline constexpr bool tells_infinity = false;
 
 #if defined(__CUDA_ARCH__)
-// The same in CUDA threads: the larger of two numbers by the upper halves of their bits, off the floating-point pipe. The lower
-// halves are left out, which is 1e-6 of the number's size.
+// The same in CUDA threads: the larger of two numbers by the upper halves of their bits, off the floating-point pipe.
+// The lower halves are left out, which is 1e-6 of the number's size.
 
 template <>
 inline constexpr bool tells_infinity<double> = true;
@@ -131,8 +131,8 @@ struct error_norm {
     mask_of<S> finite;    // no new value is infinite
 };
 
-/// The size of a trial's error. Two estimates of orders q and q - 2 are combined into e_q^2 / sqrt(e_q^2 + 0.01 e_(q-2)^2),
-/// which falls with h as one of order q + 2 (Hairer, Norsett, Wanner, Solving ODE I, II.10, for DOP853).
+/// The size of a trial's error. Two estimates of orders q and q - 2 are combined into e_q^2 / sqrt(e_q^2 + 0.01
+/// e_(q-2)^2), which falls with h as one of order q + 2 (Hairer, Norsett, Wanner, Solving ODE I, II.10, for DOP853).
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of<S>>& args,
                                            const vec<S, n_state<Model>>& y, const S& h,
@@ -140,9 +140,9 @@ MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of
     const auto scale = detail::scale_of_errors<Method, Model>(args, y, trial.y);
     const auto worst_of = [&](auto row) MYRIAD_LAMBDA {
         constexpr int weights = decltype(row)::value;
-        return error_over_tolerance<Method>(scale.of, detail::error_factor<Method, weights>(h), [&](int c) MYRIAD_LAMBDA {
-            return detail::error_sum<Method, weights>(trial, c);
-        });
+        return error_over_tolerance<Method>(scale.of, detail::error_factor<Method, weights>(h),
+                                            [&](int c)
+                                                MYRIAD_LAMBDA { return detail::error_sum<Method, weights>(trial, c); });
     };
     error_norm<S> norm{worst_of(constant_index<row_of<Method>::error>{}), scale.finite};
     if constexpr (has_coarse_estimate<Method>) {

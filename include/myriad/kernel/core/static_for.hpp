@@ -19,9 +19,8 @@ struct constant_index {
 template <int begin, int end, class F>
 MYRIAD_FUNCTION constexpr void static_for(F&& f) {
     if constexpr (begin < end) {
-        [&]<int... i>(std::integer_sequence<int, i...>) MYRIAD_LAMBDA {
-            (f(constant_index<begin + i>{}), ...);
-        }(std::make_integer_sequence<int, end - begin>{});
+        [&]<int... i>(std::integer_sequence<int, i...>) MYRIAD_LAMBDA { (f(constant_index<begin + i>{}), ...); }
+        (std::make_integer_sequence<int, end - begin>{});
     }
 }
 

@@ -71,8 +71,8 @@ struct vec : vec_values<S, std::make_integer_sequence<int, size>> {
     vec() = default;
     // Chosen for any other number of values, to give a readable error.
     template <class First, class... More>
-        requires(1 + sizeof...(More) != size && std::is_convertible_v<First, S>)
-    MYRIAD_FUNCTION constexpr vec(const First&, const More&...) {
+    requires(1 + sizeof...(More) != size && std::is_convertible_v<First, S>)
+        MYRIAD_FUNCTION constexpr vec(const First&, const More&...) {
         static_assert(
             1 + sizeof...(More) == size,
             "a vec is given as many values as it has components: rhs returns a slope for each state, events a "
@@ -96,8 +96,7 @@ struct vec<S, 0> {
         return nothing[detail::checked_index<0>(i)];
     }
     template <class E>
-        requires std::is_enum_v<E>
-    MYRIAD_FUNCTION S& operator[](E) const {
+    requires std::is_enum_v<E> MYRIAD_FUNCTION S& operator[](E) const {
         static_assert(
             !std::is_enum_v<E>,
             "the model has no components of this kind: end their enumeration with the enumerator that counts them, "

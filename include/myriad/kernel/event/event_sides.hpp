@@ -9,7 +9,8 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// How a phase left an event function, for the next one, in `kernel_arguments::side`; negative where the side is below zero.
+/// How a phase left an event function, for the next one, in `kernel_arguments::side`; negative where the side is below
+/// zero.
 enum class kept_side : std::int8_t {
     unknown = 0,  // on the surface: the side that the function heads for as the next phase begins
     within = 1,   // within its tolerance, having come from this side

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Finds events: which functions crossed zero in a trial step, where in it, and whether a step redone to there has arrived. A
-// trial is never committed beyond a crossing.
+// Finds events: which functions crossed zero in a trial step, where in it, and whether a step redone to there has
+// arrived. A trial is never committed beyond a crossing.
 //
-// A crossing is a change of side: the side an event function was last seen on, beyond its tolerance, is remembered, so a
-// function that lingers within the tolerance neither fires twice nor is lost, and one that only touches zero does not
+// A crossing is a change of side: the side an event function was last seen on, beyond its tolerance, is remembered, so
+// a function that lingers within the tolerance neither fires twice nor is lost, and one that only touches zero does not
 // fire. Where a step starts within the tolerance, the slope of the function along the solution (by dual numbers) tells
 // where it is heading, and a root at the start is divided out, so that a short flight after an impact is not missed.
 //
-// Every step looks at the functions' signs, for all lanes at once. All else is for the few lanes in which something happens,
-// one by one, from values that are computed anew: what it needs costs the other steps neither time nor registers.
+// Every step looks at the functions' signs, for all lanes at once. All else is for the few lanes in which something
+// happens, one by one, from values that are computed anew: what it needs costs the other steps neither time nor
+// registers.
 #pragma once
 
 #include "myriad/kernel/event/crossing.hpp"
@@ -57,8 +58,8 @@ struct event_locator {
     using mask = mask_of<S>;
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
-    using values = vec<S, m>;      // of the event functions in all lanes
-    using reals = vec<R, m>;       // in one
+    using values = vec<S, m>;  // of the event functions in all lanes
+    using reals = vec<R, m>;   // in one
     using flags = mask_set<bool, m>;
     using state = vec<R, n>;
     using trial_type = trial_step<Method, S, n>;
@@ -108,9 +109,9 @@ struct event_locator {
         for (int j = 0; j < m; ++j) kept_at(j, i) = 0;
     }
 
-    /// Takes the event functions after a hook changed what they depend on, from the values `before`. A function within its
-    /// tolerance keeps its side, unless the hook moved it there: then the slope at the next step decides. One that is on a jump
-    /// keeps the side beyond it, which its value here does not show, until `settle` looks again.
+    /// Takes the event functions after a hook changed what they depend on, from the values `before`. A function within
+    /// its tolerance keeps its side, unless the hook moved it there: then the slope at the next step decides. One that
+    /// is on a jump keeps the side beyond it, which its value here does not show, until `settle` looks again.
     MYRIAD_FUNCTION void restart(const mask& lanes, const values& before, const fired& events) {
         const values g = detail::evaluate_events<Model>(s.now(), s.data.y, s.data);
         e.undefined = e.undefined & !lanes;
@@ -125,9 +126,9 @@ struct event_locator {
         }
     }
 
-    /// Looks at an accepted trial that ends at t1 with the event functions g1. Lanes that crossed, or stopped short of their
-    /// target, are set up for a redone step and taken out of `accepted`. Returns the events that have happened, at the end
-    /// of the trial or, in lanes taken out of `accepted` as well, at its start.
+    /// Looks at an accepted trial that ends at t1 with the event functions g1. Lanes that crossed, or stopped short of
+    /// their target, are set up for a redone step and taken out of `accepted`. Returns the events that have happened,
+    /// at the end of the trial or, in lanes taken out of `accepted` as well, at its start.
     MYRIAD_FUNCTION void look(const trial_type& trial, const S& t1, const values& g1, mask& accepted, fired& events) {
         e.locating = e.locating & accepted;  // a trial that failed its error test takes the next one's length
         if constexpr (is_pack<S>) {
@@ -144,7 +145,8 @@ struct event_locator {
             over[j] = g1[j] > S(args.event[j].tolerance);
             under[j] = g1[j] < S(-args.event[j].tolerance);
             const mask above = e.above[j], below = !above;
-            busy = busy | (above & under[j] & mask(args.event[j].falling)) | (below & over[j] & mask(args.event[j].rising));
+            busy = busy | (above & under[j] & mask(args.event[j].falling)) |
+                   (below & over[j] & mask(args.event[j].rising));
             within = within | !(over[j] | under[j]);
         }
         busy = accepted & (busy | (s.final_step & within));
@@ -167,8 +169,8 @@ struct event_locator {
         }
     }
 
-    /// Before the actions of events: whether a function right before a jump is heading for it, which its slope, zero, does not
-    /// tell. It is not where a flight is too short for the resolution of t.
+    /// Before the actions of events: whether a function right before a jump is heading for it, which its slope, zero,
+    /// does not tell. It is not where a flight is too short for the resolution of t.
     MYRIAD_FUNCTION void aim(int i, fired& events) {
         bool jumps = false;
         MYRIAD_UNROLL
@@ -183,12 +185,12 @@ struct event_locator {
         }
     }
 
-    /// Decides on which sides the functions are after the actions of events. One that fired is on the side it is heading
-    /// for. If its slope is zero, it rests on the side it came from if an action changed it, and has passed if none did. If
-    /// it was still moving away when it fired, as in a flight too short for the resolution of the state, an action that
-    /// turned it round must not send it through the surface. One that jumps fired right before the jump: a look ahead tells
-    /// whether it is about to pass. The same holds for one that fired at a jump earlier, as this action may have moved the
-    /// state.
+    /// Decides on which sides the functions are after the actions of events. One that fired is on the side it is
+    /// heading for. If its slope is zero, it rests on the side it came from if an action changed it, and has passed if
+    /// none did. If it was still moving away when it fired, as in a flight too short for the resolution of the state,
+    /// an action that turned it round must not send it through the surface. One that jumps fired right before the jump:
+    /// a look ahead tells whether it is about to pass. The same holds for one that fired at a jump earlier, as this
+    /// action may have moved the state.
     MYRIAD_FUNCTION void settle(int i, const fired& events) {
         const R sense = sign_of(get_lane(s.h, i));
         reals g = get_lanes<R>(events.value, i), slope = get_lanes<R>(events.slope, i);
@@ -314,14 +316,15 @@ private:
         constexpr R fraction = std::is_same_v<R, float> ? R(0x1p-12) : R(0x1p-26);
         return fma(fraction, abs(h_next), R(64) * epsilon_of<R> * abs(get_lane(s.now(), i)));
     }
-    /// Whether event j fired at a jump which a state as near as `length` may not show to be passed: rounding may leave it
-    /// before the jump, where another event is located right after that one.
+    /// Whether event j fired at a jump which a state as near as `length` may not show to be passed: rounding may leave
+    /// it before the jump, where another event is located right after that one.
     MYRIAD_FUNCTION bool is_at_jump(int j, int i, R length) const {
         if (!e.on_jump.get(j, i)) return false;
-        return abs(length) <= past_jump(i, get_lane(e.locating, i) ? memory_of(i).redo.resume : get_lane(s.data.h_next, i));
+        return abs(length) <=
+               past_jump(i, get_lane(e.locating, i) ? memory_of(i).redo.resume : get_lane(s.data.h_next, i));
     }
-    /// Whether `length` is no more than the rounding of t: what is seen there does not say that functions have left where
-    /// they fired.
+    /// Whether `length` is no more than the rounding of t: what is seen there does not say that functions have left
+    /// where they fired.
     MYRIAD_FUNCTION bool is_timeless(int i, R length) const {
         return abs(length) <= R(4) * epsilon_of<R> * abs(get_lane(s.now(), i));
     }
@@ -364,7 +367,8 @@ private:
         step.g1 = is_pack<S> ? detail::evaluate_events<Model>(step.t1, step.y1, p) : get_lanes<R>(ends.g, i);
         settle_open_sides(i, step, p);
 
-        const bool locating = get_lane(e.locating, i), final_step = get_lane(s.final_step, i), scans = args.sub_samples > 1;
+        const bool locating = get_lane(e.locating, i), final_step = get_lane(s.final_step, i),
+                   scans = args.sub_samples > 1;
         reals side;
         flags crossed;
         crossed.clear();
@@ -410,7 +414,9 @@ private:
         }
     }
 
-    MYRIAD_FUNCTION bool crosses(int j, R side, R g) const { return is_asked(j, side) && side * g < -args.event[j].tolerance; }
+    MYRIAD_FUNCTION bool crosses(int j, R side, R g) const {
+        return is_asked(j, side) && side * g < -args.event[j].tolerance;
+    }
 
     /// Settles sides that are open by where the functions are heading.
     MYRIAD_FUNCTION void settle_open_sides(int i, const step_ends& step, const inputs<Model, R>& p) {
@@ -430,8 +436,8 @@ private:
         return detail::evaluate_events<Model>(fma(theta, step.h, step.t), y, p);
     }
 
-    /// Looks at `sub_samples` points of the step for the first that shows a crossing, follows the sides up to there, and makes
-    /// [low, high] the part of the step that holds it.
+    /// Looks at `sub_samples` points of the step for the first that shows a crossing, follows the sides up to there,
+    /// and makes [low, high] the part of the step that holds it.
     MYRIAD_FUNCTION flags scan(int i, const step_ends& step, reals& side, R& low, R& high, const inputs<Model, R>& p) {
         flags crossed;
         crossed.clear();
@@ -480,7 +486,8 @@ private:
         }
         return first;
     }
-    /// The same of crossings between the samples at the fractions `low` and `high` of a step, by the secants between them.
+    /// The same of crossings between the samples at the fractions `low` and `high` of a step, by the secants between
+    /// them.
     MYRIAD_FUNCTION R earliest_between(const step_ends& step, const flags& crossed, R low, R high, std::int32_t& target,
                                        const inputs<Model, R>& p) const {
         const reals g = values_at(step, low, p), g1 = high < R(1) ? values_at(step, high, p) : step.g1;
@@ -502,8 +509,8 @@ private:
     }
 
     /// Sets up a lane whose trial crossed: a step redone to the crossing, or the event at the start of the step.
-    MYRIAD_FUNCTION void begin_or_shorten(int i, const step_ends& step, const reals& side, const flags& crossed, R low, R high,
-                                          fired& events, const inputs<Model, R>& p) {
+    MYRIAD_FUNCTION void begin_or_shorten(int i, const step_ends& step, const reals& side, const flags& crossed, R low,
+                                          R high, fired& events, const inputs<Model, R>& p) {
         auto& redo = memory_of(i).redo;
         const bool again = get_lane(e.locating, i);
         MYRIAD_UNROLL
@@ -536,9 +543,10 @@ private:
         if constexpr (is_adaptive<Method>) set_lane(s.data.h_next, i, redo.resume);
     }
 
-    /// A redone step that ended before its crossing: within the tolerance its events have happened; else it goes further, and
-    /// false is returned.
-    MYRIAD_FUNCTION bool arrive(int i, const step_ends& step, const reals& side, fired& events, const inputs<Model, R>& p) {
+    /// A redone step that ended before its crossing: within the tolerance its events have happened; else it goes
+    /// further, and false is returned.
+    MYRIAD_FUNCTION bool arrive(int i, const step_ends& step, const reals& side, fired& events,
+                                const inputs<Model, R>& p) {
         auto& redo = memory_of(i).redo;
         const reals slope = detail::event_slopes<Model>(step.t1, step.y1, step.slope1, p);
         R gap = R(0), approach = R(0), tolerance = R(0);
@@ -584,10 +592,11 @@ private:
         return true;
     }
 
-    /// Functions within their tolerance and on their way across where the domain ends: their events happen there if they
-    /// are past zero, or short of it by rounding alone, both by the slope and by the last step: a function that settles at
-    /// zero, or is still falling towards it, comes there later or never.
-    MYRIAD_FUNCTION void end_on_root(int i, const step_ends& step, const reals& side, fired& events, const inputs<Model, R>& p) {
+    /// Functions within their tolerance and on their way across where the domain ends: their events happen there if
+    /// they are past zero, or short of it by rounding alone, both by the slope and by the last step: a function that
+    /// settles at zero, or is still falling towards it, comes there later or never.
+    MYRIAD_FUNCTION void end_on_root(int i, const step_ends& step, const reals& side, fired& events,
+                                     const inputs<Model, R>& p) {
         const reals slope = detail::event_slopes<Model>(step.t1, step.y1, step.slope1, p);
         const R rounding = end_rounding(i, step);
         MYRIAD_UNROLL
@@ -595,14 +604,13 @@ private:
             const R g = side[j] * step.g1[j], speed = -side[j] * slope[j] * sign_of(step.h);  // towards zero
             const R last_speed = (side[j] * step.g[j] - g) / abs(step.h);
             const bool at_zero = g <= R(0) || g <= (speed < last_speed ? speed : last_speed) * rounding;
-            const bool happens =
-                is_asked(j, side[j]) && abs(g) <= args.event[j].tolerance && speed > R(0) && at_zero;
+            const bool happens = is_asked(j, side[j]) && abs(g) <= args.event[j].tolerance && speed > R(0) && at_zero;
             events.put(j, i, happens, step.g1[j], slope[j]);
         }
     }
 
-    /// What the rounding of the phase's steps may have put between the end of the domain and a crossing there, in time; not
-    /// more than a small part of a step, from which on it cannot be told from a slow approach.
+    /// What the rounding of the phase's steps may have put between the end of the domain and a crossing there, in time;
+    /// not more than a small part of a step, from which on it cannot be told from a slow approach.
     MYRIAD_FUNCTION R end_rounding(int i, const step_ends& step) const {
         const R t_begin = args.t_begin != nullptr ? args.t_begin[s.instance[i]] : args.common_t_begin;
         const R steps = static_cast<R>(s.iteration - s.phase_start[i]);

@@ -10,8 +10,8 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// The location of an event of one instance. Lengths are signed, like the step itself. It is needed in few steps, so it lies in
-/// memory and not in the registers of a GPU thread.
+/// The location of an event of one instance. Lengths are signed, like the step itself. It is needed in few steps, so it
+/// lies in memory and not in the registers of a GPU thread.
 template <class R, int events>
 struct redone_step {
     /// Trials after which a guess that leads nowhere is left for bisection.
@@ -19,12 +19,12 @@ struct redone_step {
     /// A step halved that often is as long as the rounding of its ends.
     static constexpr std::int32_t most_trials = 80;
 
-    R length;           // of the next trial; 0: the event is where the step begins
-    R before, beyond;   // the longest known to end before the event, the shortest beyond it
-    R resume;           // the step size to go on with afterwards
+    R length;          // of the next trial; 0: the event is where the step begins
+    R before, beyond;  // the longest known to end before the event, the shortest beyond it
+    R resume;          // the step size to go on with afterwards
     std::int32_t tries;
-    std::int32_t target;            // the event that the step is redone to
-    bool narrow;                    // `before` and `beyond` are the same time up to rounding
+    std::int32_t target;             // the event that the step is redone to
+    bool narrow;                     // `before` and `beyond` are the same time up to rounding
     mask_set<bool, events> crossed;  // events that crossed in the trial in which the target was found
 
     /// The trial of a step of length h ended beyond an event.
@@ -52,7 +52,8 @@ struct redone_step {
         length = tries < most_guesses && is_inside(guess, beyond) ? guess : R(0.5) * (h + beyond);
         ++tries;
     }
-    /// A redone step of length h ended within the tolerance of the event: whether a better guess is worth another trial.
+    /// A redone step of length h ended within the tolerance of the event: whether a better guess is worth another
+    /// trial.
     MYRIAD_FUNCTION bool improve(R h, R guess, bool before_event) {
         if (tries >= most_guesses || !is_inside(guess, beyond) || are_one(guess, h)) return false;
         ++tries;

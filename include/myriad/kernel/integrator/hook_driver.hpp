@@ -144,7 +144,8 @@ private:
             for_each_lane(rescaled,
                           [&](int i) MYRIAD_LAMBDA { s.take_step_size(args, i, get_lane(before.h_next, i)); });
         }
-        if constexpr (writes_parameters<Model>) blend_all(d.parameter, after.parameter, before.parameter, n_parameter<Model>);
+        if constexpr (writes_parameters<Model>)
+            blend_all(d.parameter, after.parameter, before.parameter, n_parameter<Model>);
         if constexpr (writes_time_domain<Model>) {
             d.t_begin = select(lanes, after.t_begin, before.t_begin);
             d.t_end = select(lanes, after.t_end, before.t_end);

@@ -53,14 +53,16 @@ struct integrator {
             mask accepted = judge(trial, locator, events);
             if constexpr (samples) sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted);
             mask reduced;
-            if constexpr (has_reductions<Model>) reduced = reducer<Model, Method, S>{s}.reduce(trial, end_time(), accepted);
+            if constexpr (has_reductions<Model>)
+                reduced = reducer<Model, Method, S>{s}.reduce(trial, end_time(), accepted);
             commit(trial, accepted, events);
             hook_driver<Model, Method, S> hooks{args, s, locator, events};
             if constexpr (sees_reductions<Model>) hooks.follow_reductions(reduced);
             if constexpr (has_after_step<Model>) hooks.after_step(accepted);
             if constexpr (has_events<Model>) hooks.act_on_events();
         }
-        if constexpr (requires { source.gives_only_one(); }) phase_driver<Model, Method, S>{args, s, locator, o}.finish(0);
+        if constexpr (requires { source.gives_only_one(); })
+            phase_driver<Model, Method, S>{args, s, locator, o}.finish(0);
     }
 
     /// An empty pack: every lane asks for an instance.
@@ -106,9 +108,9 @@ struct integrator {
         return any(s.active);
     }
 
-    /// Takes the fixed steps that nobody looks at, up to the first lane's last step, in registers and with one check per
-    /// block. What is not finite once stays so: a block that ends with such a value is taken back and halved, and the
-    /// ordinary step after it finds the one to blame.
+    /// Takes the fixed steps that nobody looks at, up to the first lane's last step, in registers and with one check
+    /// per block. What is not finite once stays so: a block that ends with such a value is taken back and halved, and
+    /// the ordinary step after it finds the one to blame.
     MYRIAD_FUNCTION void run_freely() {
         constexpr iteration_number worthwhile = 4, longest_block = 128;
         iteration_number run = iterations_to_look(s.iteration);  // less the last one, which is looked at
@@ -229,8 +231,7 @@ struct integrator {
         if constexpr (keeps_slope) {
             if constexpr (Method::first_same_as_last) {
                 MYRIAD_UNROLL
-                for (int c = 0; c < n; ++c)
-                    s.slope[c] = select(accepted, trial.slope_end()[c], s.slope[c]);
+                for (int c = 0; c < n; ++c) s.slope[c] = select(accepted, trial.slope_end()[c], s.slope[c]);
             } else {
                 s.slope_valid = s.slope_valid & !accepted;
                 if constexpr (knows_slope_end) {
@@ -243,7 +244,8 @@ struct integrator {
         }
         if constexpr (!adaptive) {
             s.ended = s.ended | (accepted & s.final_step);
-            if constexpr (has_events<Model>) s.ended = s.ended | (accepted & events.which.any_of() & (s.data.t == s.data.t_end));
+            if constexpr (has_events<Model>)
+                s.ended = s.ended | (accepted & events.which.any_of() & (s.data.t == s.data.t_end));
         }
     }
 
@@ -256,7 +258,8 @@ struct integrator {
         }
         return left;
     }
-    /// A pack looks when the first of its phases is to be looked at; one instance alone needs to keep no such iteration.
+    /// A pack looks when the first of its phases is to be looked at; one instance alone needs to keep no such
+    /// iteration.
     MYRIAD_FUNCTION void plan_next_look() {
         if constexpr (is_pack<S>) {
             s.next_look = s.iteration + args.max_steps;
@@ -329,7 +332,8 @@ private:
     MYRIAD_FUNCTION mask control(const trial_type& trial, const S& t1, const mask& valid) {
         if constexpr (adaptive) {
             mask may_stick = s.running();
-            if constexpr (has_events<Model>) may_stick = may_stick & !e.locating;  // a flight shorter than the resolution of t
+            if constexpr (has_events<Model>)
+                may_stick = may_stick & !e.locating;  // a flight shorter than the resolution of t
             return detail::control_step(args, s, trial, t1, valid, may_stick);
         } else {
             const mask finite = valid & all_finite(trial.y);
@@ -343,9 +347,9 @@ private:
     }
 };
 
-/// Integrates all instances that `source.next()` hands out (indices, then -1) on one pack of lanes of kind S. The source of a
-/// CUDA thread also says whether it `gives_only_one()`. Returns the iterations that the loop took, each a trial step in every lane.
-/// `shared` stands for `args.shared` where a backend has moved them.
+/// Integrates all instances that `source.next()` hands out (indices, then -1) on one pack of lanes of kind S. The
+/// source of a CUDA thread also says whether it `gives_only_one()`. Returns the iterations that the loop took, each a
+/// trial step in every lane. `shared` stands for `args.shared` where a backend has moved them.
 template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
                                        const shared_parameters<real_of<S>>& shared, Source& source) {

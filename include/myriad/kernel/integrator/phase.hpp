@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The life of an instance in a lane: loaded, taken through its phases, recorded, stored, and the lane refilled. What the
-// steps do not need (counters, phases done, the time at which the phase began) is kept in the ensemble's arrays and not in
-// the lane, where it would cost a GPU thread registers.
+// The life of an instance in a lane: loaded, taken through its phases, recorded, stored, and the lane refilled. What
+// the steps do not need (counters, phases done, the time at which the phase began) is kept in the ensemble's arrays and
+// not in the lane, where it would cost a GPU thread registers.
 #pragma once
 
 #include "myriad/kernel/controller/fixed.hpp"
@@ -59,7 +59,8 @@ struct phase_driver {
     }
 
 private:
-    /// Whether lane i is to end with its instance, in its last phase. Threads of a warp do so side by side, after the loop.
+    /// Whether lane i is to end with its instance, in its last phase. Threads of a warp do so side by side, after the
+    /// loop.
     template <class Source>
     MYRIAD_FUNCTION bool is_last(int i, const Source& source) const {
         if constexpr (requires { source.gives_only_one(); }) {
@@ -87,8 +88,7 @@ private:
             set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
         if constexpr (is_adaptive<Method>) set_lane(s.data.h_next, i, args.h_next[index]);
-        if constexpr (scales_tolerances<Method>)
-            set_lane(s.tolerance_scale, i, args.tolerance_scale[index]);
+        if constexpr (scales_tolerances<Method>) set_lane(s.tolerance_scale, i, args.tolerance_scale[index]);
         set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(args.first_index + index));
         s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases - args.first_phase;
     }
@@ -128,8 +128,8 @@ private:
         args.accepted[index] += trials - rejected - located;
         if constexpr (is_adaptive<Method>) args.rejected[index] += rejected;
         if constexpr (m > 0) args.located[index] += located;
-        args.evaluations[index] += trials * evaluations_per_trial<Model, Method> +
-                                   static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
+        args.evaluations[index] +=
+            trials * evaluations_per_trial<Model, Method> + static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
     }
 
     /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on. Returns false if it is over
@@ -172,7 +172,8 @@ private:
         args.t[index] = t;
         if constexpr (has_reductions<Model>) reducer<Model, Method, S>{s}.begin(i);
         if constexpr (is_adaptive<Method>) {
-            if constexpr (chooses_first_step<Method>) set_lane(s.first_step_open, i, get_lane(s.data.h_next, i) == R(0));
+            if constexpr (chooses_first_step<Method>)
+                set_lane(s.first_step_open, i, get_lane(s.data.h_next, i) == R(0));
             if constexpr (remembers_errors<Method>) {
                 set_lane(s.errors.last, i, 0);
                 set_lane(s.errors.before, i, 0);
@@ -203,8 +204,8 @@ private:
         return s.ending[i] == status::success && t != get_lane(s.data.t_end, i);
     }
 
-    /// Runs `initialise` or `finalise`. A state or step that is not finite is refused; a state that was moved was placed,
-    /// not integrated, where it is, so functions within their tolerance come from no side.
+    /// Runs `initialise` or `finalise`. A state or step that is not finite is refused; a state that was moved was
+    /// placed, not integrated, where it is, so functions within their tolerance come from no side.
     template <class Hook>
     MYRIAD_FUNCTION void place(int i, Hook&& hook) {
         const auto before = get_lanes<R>(s.data.y, i);

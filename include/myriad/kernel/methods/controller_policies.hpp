@@ -5,15 +5,16 @@
 
 namespace myriad {
 
-/// PI control: the factor of the next step is 0.9 q^(-0.7/k) r^(0.4/k), with q and r the errors over tolerance of this and of
-/// the last accepted step and k the order of the error estimate plus one. Fewer rejections where stability limits the step.
-/// Gustafsson, ACM Trans. Math. Softw. 17 (1991) 533; Hairer, Wanner, Solving ODE II, IV.2, eq. (2.43c).
+/// PI control: the factor of the next step is 0.9 q^(-0.7/k) r^(0.4/k), with q and r the errors over tolerance of this
+/// and of the last accepted step and k the order of the error estimate plus one. Fewer rejections where stability
+/// limits the step. Gustafsson, ACM Trans. Math. Softw. 17 (1991) 533; Hairer, Wanner, Solving ODE II, IV.2, eq.
+/// (2.43c).
 struct pi_control {
     static constexpr double exponent_now = 0.7, exponent_last = -0.4, exponent_before = 0;
 };
 
-/// PID control: 0.9 q^(-0.58/k) r^(0.21/k) s^(-0.1/k), s being the error of the accepted step before the last. Kennedy and
-/// Carpenter, Appl. Numer. Math. 44 (2003) 139; the constants are those of SUNDIALS' ARKODE.
+/// PID control: 0.9 q^(-0.58/k) r^(0.21/k) s^(-0.1/k), s being the error of the accepted step before the last. Kennedy
+/// and Carpenter, Appl. Numer. Math. 44 (2003) 139; the constants are those of SUNDIALS' ARKODE.
 struct pid_control {
     static constexpr double exponent_now = 0.58, exponent_last = -0.21, exponent_before = 0.1;
 };
@@ -56,14 +57,24 @@ namespace myriad::detail {
 
 /// Whether a method's control uses the errors of earlier steps.
 template <class Method>
-inline constexpr bool remembers_errors = requires { Method::exponent_last; };
+inline constexpr bool remembers_errors = requires {
+    Method::exponent_last;
+};
 template <class Method>
-inline constexpr bool averages_errors = requires { Method::averages_errors; };
+inline constexpr bool averages_errors = requires {
+    Method::averages_errors;
+};
 template <class Method>
-inline constexpr bool adds_tolerances = requires { Method::adds_tolerances; };
+inline constexpr bool adds_tolerances = requires {
+    Method::adds_tolerances;
+};
 template <class Method>
-inline constexpr bool chooses_first_step = requires { Method::chooses_first_step; };
+inline constexpr bool chooses_first_step = requires {
+    Method::chooses_first_step;
+};
 template <class Method>
-inline constexpr bool scales_tolerances = requires { Method::scales_tolerances; };
+inline constexpr bool scales_tolerances = requires {
+    Method::scales_tolerances;
+};
 
 }  // namespace myriad::detail

@@ -17,6 +17,8 @@ namespace myriad::detail {
 
 /// Whether a method's kernels can sample.
 template <class Method>
-inline constexpr bool samples_trajectory = requires { Method::samples; };
+inline constexpr bool samples_trajectory = requires {
+    Method::samples;
+};
 
 }  // namespace myriad::detail

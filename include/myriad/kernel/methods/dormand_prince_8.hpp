@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Dormand and Prince's method of order eight with Hairer's error estimates of orders five and three, and an interpolant of
-// order seven.
+// Dormand and Prince's method of order eight with Hairer's error estimates of orders five and three, and an interpolant
+// of order seven.
 #pragma once
 
 #include "myriad/kernel/methods/tableau.hpp"
@@ -112,6 +112,7 @@ struct dormand_prince_8 {
 };
 
 static_assert(satisfies_order_conditions(dormand_prince_8::tableau(), dormand_prince_8::tableau().b, 5));
-static_assert(satisfies_order_conditions(dormand_prince_8::tableau(), embedded_weights(dormand_prince_8::tableau()), 5));
+static_assert(satisfies_order_conditions(dormand_prince_8::tableau(), embedded_weights(dormand_prince_8::tableau()),
+                                         5));
 
 }  // namespace myriad

@@ -34,7 +34,8 @@ struct explicit_tableau {
 /// tests.
 template <int stages>
 constexpr bool satisfies_order_conditions(const explicit_tableau<stages>& t,
-                                          const typename explicit_tableau<stages>::row& w, int order, double tolerance = 2e-14) {
+                                          const typename explicit_tableau<stages>::row& w, int order,
+                                          double tolerance = 2e-14) {
     constexpr auto n = static_cast<std::size_t>(stages);
     using column = typename explicit_tableau<stages>::row;
     const column ones = [] {

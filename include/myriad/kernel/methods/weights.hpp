@@ -62,7 +62,9 @@ constexpr std::array<R, stages> rounded_weights(const stage_numbers<stages>& w, 
 
 /// Whether a method has a second error estimate, of lower order.
 template <class Method>
-inline constexpr bool has_coarse_estimate = requires { Method::coarse_error_weight(0); };
+inline constexpr bool has_coarse_estimate = requires {
+    Method::coarse_error_weight(0);
+};
 
 /// Rows of an explicit method's weights: the arguments of stages 1, 2, ... come first.
 template <class Method>
@@ -106,8 +108,8 @@ inline constexpr auto relative_weights = [] {
         if (first == stages) continue;  // a method without error estimate
         // The first weight is rounded, and is one after the division.
         const double divisor = static_cast<double>(static_cast<R>(w[first]));
-        kept[row] = rounded_weights<R>(w, sizeof(R) < sizeof(double) ? divisor : w[first], first + 1, stages, ones, c, ones,
-                                       kept_c);
+        kept[row] = rounded_weights<R>(w, sizeof(R) < sizeof(double) ? divisor : w[first], first + 1, stages, ones, c,
+                                       ones, kept_c);
         kept[row][first] = R(1);
         if (row >= stages) continue;
         for (std::size_t j = 0; j < row; ++j) {
@@ -119,7 +121,8 @@ inline constexpr auto relative_weights = [] {
 }();
 /// The weight of stage j over the first one.
 template <class Method, int row, int j, class R>
-inline constexpr R relative_weight = relative_weights<Method, R>[static_cast<std::size_t>(row)][static_cast<std::size_t>(j)];
+inline constexpr R relative_weight =
+    relative_weights<Method, R>[static_cast<std::size_t>(row)][static_cast<std::size_t>(j)];
 /// The node of stage i.
 template <class Method, int i, class R>
 inline constexpr R node = static_cast<R>(Method::tableau().c[static_cast<std::size_t>(i)]);

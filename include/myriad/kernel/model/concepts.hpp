@@ -10,16 +10,16 @@
 namespace myriad::detail {
 
 // Counts: the last enumerator of each of the model's enumerations; zero if there is none.
-#define MYRIAD_MODEL_COUNT(count)                         \
-    template <class Model>                                \
-    constexpr int count##_of() {                          \
-        if constexpr (requires { Model::count; }) {       \
-            return static_cast<int>(Model::count);        \
-        } else {                                          \
-            return 0;                                     \
-        }                                                 \
-    }                                                     \
-    template <class Model>                                \
+#define MYRIAD_MODEL_COUNT(count)                   \
+    template <class Model>                          \
+    constexpr int count##_of() {                    \
+        if constexpr (requires { Model::count; }) { \
+            return static_cast<int>(Model::count);  \
+        } else {                                    \
+            return 0;                               \
+        }                                           \
+    }                                               \
+    template <class Model>                          \
     inline constexpr int count = count##_of<Model>();
 MYRIAD_MODEL_COUNT(n_state)
 MYRIAD_MODEL_COUNT(n_parameter)
@@ -90,16 +90,16 @@ MYRIAD_INDEX_CHECK(shared_integer)
 #undef MYRIAD_INDEX_CHECK
 
 // Declarations: `static constexpr bool name = true;` in the model.
-#define MYRIAD_MODEL_DECLARATION(name)                    \
-    template <class Model>                                \
-    constexpr bool declares_##name() {                    \
-        if constexpr (requires { Model::name; }) {        \
-            return static_cast<bool>(Model::name);        \
-        } else {                                          \
-            return false;                                 \
-        }                                                 \
-    }                                                     \
-    template <class Model>                                \
+#define MYRIAD_MODEL_DECLARATION(name)             \
+    template <class Model>                         \
+    constexpr bool declares_##name() {             \
+        if constexpr (requires { Model::name; }) { \
+            return static_cast<bool>(Model::name); \
+        } else {                                   \
+            return false;                          \
+        }                                          \
+    }                                              \
+    template <class Model>                         \
     inline constexpr bool name = declares_##name<Model>();
 /// The model's hooks write parameters, which are then stored back.
 MYRIAD_MODEL_DECLARATION(writes_parameters)
@@ -116,23 +116,23 @@ MYRIAD_MODEL_DECLARATION(rare_events)
 // Does a model have a member of that name, whatever its signature? A class that inherits the name twice finds it
 // ambiguous. That finds templates and overloads too, which a plain look at the signature would miss, so that a hook
 // with a wrong signature is an error instead of being ignored.
-#define MYRIAD_HOOK_NAME(hook)                                         \
-    namespace hook_names {                                             \
-    struct hook##_name {                                               \
-        int hook;                                                      \
-    };                                                                 \
-    template <class Model>                                             \
-    struct with_##hook : Model, hook##_name {};                        \
-    }                                                                  \
-    template <class Model>                                             \
-    constexpr bool names_##hook() {                                    \
-        if constexpr (std::is_final_v<Model>) {                        \
-            return false;                                              \
-        } else {                                                       \
+#define MYRIAD_HOOK_NAME(hook)                                           \
+    namespace hook_names {                                               \
+    struct hook##_name {                                                 \
+        int hook;                                                        \
+    };                                                                   \
+    template <class Model>                                               \
+    struct with_##hook : Model, hook##_name {};                          \
+    }                                                                    \
+    template <class Model>                                               \
+    constexpr bool names_##hook() {                                      \
+        if constexpr (std::is_final_v<Model>) {                          \
+            return false;                                                \
+        } else {                                                         \
             return !requires { &hook_names::with_##hook<Model>::hook; }; \
-        }                                                              \
-    }                                                                  \
-    template <class Model>                                             \
+        }                                                                \
+    }                                                                    \
+    template <class Model>                                               \
     inline constexpr bool has_##hook = names_##hook<Model>();
 MYRIAD_HOOK_NAME(rhs)
 MYRIAD_HOOK_NAME(jacobian)
@@ -177,7 +177,7 @@ constexpr bool check_linkage() {
 /// Whether a model has its own Jacobian. One inherited by a model with tangents is that of the states without them, and
 /// does not count.
 template <class Model>
-inline constexpr bool gives_jacobian = has_jacobian<Model> && n_tangent<Model> == 0;
+inline constexpr bool gives_jacobian = has_jacobian<Model>&& n_tangent<Model> == 0;
 
 /// Checks what can be checked of a model without calling it; everything that uses a model starts here.
 template <class Model>

@@ -15,8 +15,9 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// `after_step` with an explicit scalar type runs on whole packs; without one, on one instance at a time.
 template <class Model, class R = double>
-inline constexpr bool has_generic_after_step = has_after_step<Model> &&
-    requires(lane<Model, R>& l) { Model::template after_step<R>(l); };
+inline constexpr bool has_generic_after_step = has_after_step<Model>&& requires(lane<Model, R>& l) {
+    Model::template after_step<R>(l);
+};
 
 template <class T, class R>
 concept generic_hook_result = std::is_void_v<T> || std::same_as<T, mask_of<R>>;
@@ -47,7 +48,7 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
     using square = matrix<R, n_state<Model>>;
     using event_values = vec<R, n_event<Model>>;
     using observed_values = vec<R, n_observed<Model>>;
-    if constexpr (has_rhs<Model> && (n_state<Model> != 0)) {
+    if constexpr (has_rhs<Model> && n_state<Model> != 0) {
         MYRIAD_CHECK_CALL(
             (Model::template rhs<R>(R{}, *y, *p)), std::same_as<slopes>,
             "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "

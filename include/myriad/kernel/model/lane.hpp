@@ -22,8 +22,7 @@ struct lane_integer_type {
     using type = I;
 };
 template <class I>
-    requires(!std::is_integral_v<I>)
-struct lane_integer_type<I> {
+requires(!std::is_integral_v<I>) struct lane_integer_type<I> {
     using type = typename I::value_type;
 };
 template <class I>
@@ -67,8 +66,8 @@ struct shared_values {
     }
 };
 
-/// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value all instances share. It has no
-/// accessories in a model that declares them outputs.
+/// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value all instances share.
+/// It has no accessories in a model that declares them outputs.
 template <class Model, class S>
 struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
     using real = real_of<S>;
@@ -77,7 +76,8 @@ struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
     shared_values<Model, std::int32_t> shared_integer;
 
     template <class I>
-    MYRIAD_FUNCTION const S& operator[](I i) const MYRIAD_WARN_OF_INDEX(static_cast<int>(i), detail::n_parameter<Model>) {
+    MYRIAD_FUNCTION const S& operator[](I i) const
+        MYRIAD_WARN_OF_INDEX(static_cast<int>(i), detail::n_parameter<Model>) {
         static_assert(detail::parameter_index_fits<Model, I>);
         return parameter[static_cast<int>(i)];
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Random numbers for hooks: a function of seed, instance, phase and number of the draw, with the same bits on every backend
-// and on the host, whatever the order of the work.
+// Random numbers for hooks: a function of seed, instance, phase and number of the draw, with the same bits on every
+// backend and on the host, whatever the order of the work.
 #pragma once
 
 #include <cmath>
@@ -21,8 +21,9 @@ using random_block = vec<std::uint32_t, 4>;
 template <class R>
 concept random_real = std::same_as<R, float> || std::same_as<R, double>;
 
-/// Philox4x32-10, a bijection of the counters for every key: Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy
-/// as 1, 2, 3", SC11 (2011), section 3.3. Different counters, or keys, give independent bits. The low word of `key` is key[0].
+/// Philox4x32-10, a bijection of the counters for every key: Salmon, Moraes, Dror and Shaw, "Parallel random numbers:
+/// as easy as 1, 2, 3", SC11 (2011), section 3.3. Different counters, or keys, give independent bits. The low word of
+/// `key` is key[0].
 MYRIAD_FUNCTION constexpr random_block philox_4x32_10(random_block counter, std::uint64_t key) {
     std::uint32_t key_0 = static_cast<std::uint32_t>(key), key_1 = static_cast<std::uint32_t>(key >> 32);
     for (int round = 0; round < 10; ++round) {
@@ -60,7 +61,8 @@ MYRIAD_FUNCTION R fused_polynomial(R x, double c0, More... more) {
     return std::fma(x, fused_polynomial(x, more...), static_cast<R>(c0));
 }
 
-/// -log(x) for normal x below 1 / 2: x = m 2^e with m from 1/2 to 1, log(m) + log(2) / 2 = 2 artanh(s) by its series, |s| < 0.172.
+/// -log(x) for normal x below 1 / 2: x = m 2^e with m from 1/2 to 1, log(m) + log(2) / 2 = 2 artanh(s) by its series,
+/// |s| < 0.172.
 template <class R>
 MYRIAD_FUNCTION R minus_log(R x) {
     constexpr R root_of_half = R(0.70710678118654752);

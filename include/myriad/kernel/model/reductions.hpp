@@ -113,7 +113,8 @@ inline constexpr bool reduces_any = [] {
     return found;
 }();
 template <class Model>
-inline constexpr bool seeks_extrema = reduces_any<Model, over_phase::maximum> || reduces_any<Model, over_phase::minimum>;
+inline constexpr bool seeks_extrema =
+    reduces_any<Model, over_phase::maximum> || reduces_any<Model, over_phase::minimum>;
 
 /// Whether rhs and events may read the accessories that reductions write.
 template <class Model>
@@ -123,9 +124,10 @@ inline constexpr bool sees_reductions = has_reductions<Model> && !accessories_ar
 template <class Model>
 constexpr bool check_reductions() {
     constexpr bool declared = requires { Model::reductions; };
-    static_assert(has_observe<Model> == (n_observed<Model> > 0) && has_observe<Model> == declared,
-                  "a model that observes has all three of `enum observed { ..., n_observed };`, a function `observe`, and "
-                  "`static constexpr myriad::reduction reductions[] = {{quantity, myriad::over_phase::maximum, accessory}};`");
+    static_assert(
+        has_observe<Model> == (n_observed<Model> > 0) && has_observe<Model> == declared,
+        "a model that observes has all three of `enum observed { ..., n_observed };`, a function `observe`, and "
+        "`static constexpr myriad::reduction reductions[] = {{quantity, myriad::over_phase::maximum, accessory}};`");
     if constexpr (declared) {
         static_assert(std::is_same_v<std::remove_cvref_t<decltype(*std::begin(Model::reductions))>, reduction>,
                       "reductions must be `static constexpr myriad::reduction reductions[] = {{quantity, "
@@ -135,21 +137,25 @@ constexpr bool check_reductions() {
                 if (!holds(r)) return false;
             return true;
         };
-        static_assert(n_accessory<Model> > 0, "a reduction goes into an accessory that the model does not have: give it "
-                                              "`enum accessory { ..., n_accessory };`");
+        static_assert(n_accessory<Model> > 0,
+                      "a reduction goes into an accessory that the model does not have: give it "
+                      "`enum accessory { ..., n_accessory };`");
         static_assert(all_of([](const reduction& r) {
-                          return r.quantity >= 0 && r.quantity < n_observed<Model> && marks_observed<Model>(r.quantity_type);
+                          return r.quantity >= 0 && r.quantity < n_observed<Model> &&
+                                 marks_observed<Model>(r.quantity_type);
                       }),
                       "a reduction names a quantity that is not observed: the first of its three is an enumerator of "
                       "`observed`");
         static_assert(all_of([](const reduction& r) {
-                          return r.accessory >= 0 && r.accessory < n_accessory<Model> && marks_accessory<Model>(r.accessory_type);
+                          return r.accessory >= 0 && r.accessory < n_accessory<Model> &&
+                                 marks_accessory<Model>(r.accessory_type);
                       }),
                       "a reduction goes into an accessory that the model does not have: the last of its three is an "
                       "enumerator of `accessory`");
         static_assert(all_of([](const reduction& r) {
                           int same = 0;
-                          for (const reduction& other : Model::reductions) same += other.accessory == r.accessory ? 1 : 0;
+                          for (const reduction& other : Model::reductions)
+                              same += other.accessory == r.accessory ? 1 : 0;
                           return same == 1;
                       }),
                       "two reductions go into the same accessory: give each its own");
@@ -160,12 +166,13 @@ constexpr bool check_reductions() {
                           return same == 1;
                       }),
                       "a reduction is declared twice: one accessory receives it");
-        static_assert(all_of([](const reduction& r) {
-                          return (r.kind != over_phase::time_of_maximum || reduces<Model>(r.quantity, over_phase::maximum)) &&
-                                 (r.kind != over_phase::time_of_minimum || reduces<Model>(r.quantity, over_phase::minimum));
-                      }),
-                      "the time of an extremum needs the extremum itself, by which it is found: declare the `maximum` or "
-                      "`minimum` of the quantity as well");
+        static_assert(
+            all_of([](const reduction& r) {
+                return (r.kind != over_phase::time_of_maximum || reduces<Model>(r.quantity, over_phase::maximum)) &&
+                       (r.kind != over_phase::time_of_minimum || reduces<Model>(r.quantity, over_phase::minimum));
+            }),
+            "the time of an extremum needs the extremum itself, by which it is found: declare the `maximum` or "
+            "`minimum` of the quantity as well");
     }
     return true;
 }

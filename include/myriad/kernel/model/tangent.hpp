@@ -17,7 +17,7 @@ namespace tangent_layers {
 template <class Model, int vectors>
 struct events_layer : Model {};
 template <class Model, int vectors>
-    requires has_events<Model>
+requires has_events<Model>
 struct events_layer<Model, vectors> : Model {
     template <class R>
     MYRIAD_FUNCTION static vec<R, n_event<Model>> events(auto t, const auto& y, const auto& p) {
@@ -28,7 +28,7 @@ struct events_layer<Model, vectors> : Model {
 template <class Model, int vectors>
 struct observe_layer : events_layer<Model, vectors> {};
 template <class Model, int vectors>
-    requires has_observe<Model>
+requires has_observe<Model>
 struct observe_layer<Model, vectors> : events_layer<Model, vectors> {
     template <class R>
     MYRIAD_FUNCTION static vec<R, n_observed<Model>> observe(auto t, const auto& y, const auto& p) {
@@ -39,8 +39,8 @@ struct observe_layer<Model, vectors> : events_layer<Model, vectors> {
 template <class Model, int vectors>
 struct after_step_layer : observe_layer<Model, vectors> {};
 template <class Model, int vectors>
-    requires(has_after_step<Model> && !has_generic_after_step<Model>)
-struct after_step_layer<Model, vectors> : observe_layer<Model, vectors> {
+requires(has_after_step<Model> && !has_generic_after_step<Model>) struct after_step_layer<Model, vectors>
+    : observe_layer<Model, vectors> {
     MYRIAD_FUNCTION static action after_step(auto& wrapped) {
         action wanted = action::proceed;
         detail::move_tangents<Model, vectors>(wrapped, [&](auto& own) MYRIAD_LAMBDA {
@@ -50,7 +50,7 @@ struct after_step_layer<Model, vectors> : observe_layer<Model, vectors> {
     }
 };
 template <class Model, int vectors>
-    requires has_generic_after_step<Model>
+requires has_generic_after_step<Model>
 struct after_step_layer<Model, vectors> : observe_layer<Model, vectors> {
     template <class R>
     MYRIAD_FUNCTION static mask_of<R> after_step(auto& wrapped) {
@@ -72,7 +72,7 @@ struct after_step_layer<Model, vectors> : observe_layer<Model, vectors> {
 template <class Model, int vectors>
 struct after_event_layer : after_step_layer<Model, vectors> {};
 template <class Model, int vectors>
-    requires has_after_event<Model>
+requires has_after_event<Model>
 struct after_event_layer<Model, vectors> : after_step_layer<Model, vectors> {
     MYRIAD_FUNCTION static action after_event(int event, auto& wrapped) {
         constexpr int n = n_state<Model>;
@@ -110,8 +110,8 @@ private:
     }
     template <class R, int n>
     MYRIAD_FUNCTION static R event_along(int event, const auto& wrapped, const vec<R, n>& direction, R dt) {
-        const auto g = Model::template events<dual<R>>(dual<R>(wrapped.t, dt),
-                                                       along(part<n>(wrapped.y), direction), detail::inputs_in<Model>(wrapped));
+        const auto g = Model::template events<dual<R>>(dual<R>(wrapped.t, dt), along(part<n>(wrapped.y), direction),
+                                                       detail::inputs_in<Model>(wrapped));
         return g[event].derivative;
     }
 };
@@ -130,8 +130,8 @@ namespace myriad {
 /// those of Model; actions transform the tangents as they do the distance to a neighbouring solution.
 ///
 /// Model's functions, hooks included, are called with dual numbers: their variables are `auto` or R, their functions
-/// those of `myriad`. What a hook writes elsewhere than to the state, and `rhs` reads, must not depend on the state, and
-/// `rhs` may jump only where an event with `after_event` is.
+/// those of `myriad`. What a hook writes elsewhere than to the state, and `rhs` reads, must not depend on the state,
+/// and `rhs` may jump only where an event with `after_event` is.
 template <class Model, int vectors = 1>
 struct with_tangents : detail::tangent_layers::after_event_layer<Model, vectors> {
     static_assert(detail::check_model<Model>());
@@ -185,9 +185,10 @@ struct with_tangents : detail::tangent_layers::after_event_layer<Model, vectors>
         if constexpr (detail::has_finalise<Model>)
             detail::move_tangents<Model, vectors>(wrapped, [](auto& own) MYRIAD_LAMBDA { Model::finalise(own); });
         const bool counts = wrapped.phase >= wrapped.shared_integer[transient_phases];
-        detail::orthonormalise<n_original, vectors>(wrapped.y, n_original, [&](int i, const auto& length) MYRIAD_LAMBDA {
-            if (counts) wrapped.accessory[growth(i)] += log(length);
-        });
+        detail::orthonormalise<n_original, vectors>(wrapped.y, n_original,
+                                                    [&](int i, const auto& length) MYRIAD_LAMBDA {
+                                                        if (counts) wrapped.accessory[growth(i)] += log(length);
+                                                    });
         if (counts) wrapped.accessory[time_summed] += wrapped.t - wrapped.accessory[phase_began];
     }
 

@@ -127,9 +127,10 @@ MYRIAD_FUNCTION void move_tangents(lane<W, S>& l, Hook&& hook) {
     set_part(l.y, n, detail::move_through<Model, count>(l, part<count * n>(l.y, n), at_once, hook));
 }
 
-/// Makes `count` vectors of n components, from v[from] on, orthonormal, and calls `stretch(i, length)` with the diagonal
-/// of R in their decomposition QR. Gram-Schmidt, modified, and each vector against the others twice, which leaves them
-/// orthogonal to rounding however close they had come (Giraud, Langou, Rozloznik, Comput. Math. Appl. 50 (2005) 1069).
+/// Makes `count` vectors of n components, from v[from] on, orthonormal, and calls `stretch(i, length)` with the
+/// diagonal of R in their decomposition QR. Gram-Schmidt, modified, and each vector against the others twice, which
+/// leaves them orthogonal to rounding however close they had come (Giraud, Langou, Rozloznik, Comput. Math. Appl. 50
+/// (2005) 1069).
 template <int n, int count, class R, int size, class Stretch>
 MYRIAD_FUNCTION void orthonormalise(vec<R, size>& v, int from, Stretch&& stretch) {
     for (int i = 0; i < count; ++i) {

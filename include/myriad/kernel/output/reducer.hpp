@@ -4,8 +4,8 @@
 // of models that declare `reductions`.
 #pragma once
 
-#include "myriad/kernel/scalar/root_finder.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
+#include "myriad/kernel/scalar/root_finder.hpp"
 #include "myriad/kernel/state/inside_step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -64,7 +64,8 @@ struct reducer {
     MYRIAD_FUNCTION mask reduce(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
         const auto before = s.data.accessory;
         step_type step{{s.now(), s.h, s.data.y, trial, s.slope_end, {}}, {}};
-        if constexpr (interpolates_with_slope_end<Method> || (seeks_extrema<Model> && interpolates_between_slopes<Method>))
+        if constexpr (interpolates_with_slope_end<Method> ||
+                      (seeks_extrema<Model> && interpolates_between_slopes<Method>))
             detail::know_slope_end<Model>(s, step.data, t1, accepted);
         const slopes first = at_end<0>(step, step.data.t, step.data.y), last = at_end<1>(step, t1, trial.y);
         if constexpr (integrates) know_interpolant(step, accepted);
@@ -82,8 +83,9 @@ struct reducer {
             if constexpr (is_pack<S>) {
                 // Copies, so that the caller's variables need no address and stay in registers.
                 const trial_step<Method, S, n> trial_copy = trial;
-                step_type copy{{step.data.t, step.data.h, step.data.y, trial_copy, step.data.slope_end, step.data.extra},
-                               step.bend};
+                step_type copy{
+                    {step.data.t, step.data.h, step.data.y, trial_copy, step.data.slope_end, step.data.extra},
+                    step.bend};
                 search_out_of_line(copy, first, last, search);
             } else {
                 search_inside(step, first, last, search);
@@ -138,7 +140,8 @@ private:
         if constexpr (step_type::bends) {
             // The bump theta^2 (1 - theta)^2 is steepest here, and half as far from the other end.
             constexpr R c = static_cast<R>(0.21132486540518711775L);  // (1 - 1 / sqrt(3)) / 2
-            constexpr R steepness = static_cast<R>(2 * 0.21132486540518711775L * 0.78867513459481288225L * 0.57735026918962576451L);
+            constexpr R steepness =
+                static_cast<R>(2 * 0.21132486540518711775L * 0.78867513459481288225L * 0.57735026918962576451L);
             const vec<dual<S>, n> there = detail::interpolate(step.data, dual<S>(S(c), S(R(1))));
             vec<S, n> y;
             MYRIAD_UNROLL
@@ -161,7 +164,8 @@ private:
     MYRIAD_FUNCTION void consider_for(const mask& lanes, const S& value, const S& t) {
         if constexpr (extreme<q, kind>) {
             S& best = s.data.accessory[reduced_into<Model, q, kind>];
-            const mask better = lanes & ((kind == over_phase::maximum ? value > best : value < best) | (value != value));
+            const mask better =
+                lanes & ((kind == over_phase::maximum ? value > best : value < best) | (value != value));
             best = select(better, value, best);
             if constexpr (extreme<q, its_time>) {
                 S& when = s.data.accessory[reduced_into<Model, q, its_time>];
@@ -180,7 +184,8 @@ private:
     }
 
     /// Out of line, as otherwise its operands would stay live throughout the loop.
-    [[gnu::noinline]] void search_out_of_line(step_type& step, const slopes& first, const slopes& last, const mask& search) {
+    [[gnu::noinline]] void search_out_of_line(step_type& step, const slopes& first, const slopes& last,
+                                              const mask& search) {
         search_inside(step, first, last, search);
     }
 
@@ -237,8 +242,8 @@ private:
         return found;
     }
 
-    /// Finds the largest value (sign 1) or the smallest (sign -1) of quantity q inside the step, where it has one: its slope on
-    /// the interpolant changes sign there.
+    /// Finds the largest value (sign 1) or the smallest (sign -1) of quantity q inside the step, where it has one: its
+    /// slope on the interpolant changes sign there.
     template <int q>
     MYRIAD_FUNCTION void find_extremum(const step_type& step, R sign, const mask& lanes, const dual<S>& first,
                                        const dual<S>& last, const turn& middle) {
@@ -263,7 +268,8 @@ private:
 
     /// Lobatto's rule of five points, exact for polynomials up to degree seven: Abramowitz and Stegun, Handbook of
     /// Mathematical Functions, 25.4.32 and table 25.6.
-    MYRIAD_FUNCTION void integrate_step(const step_type& step, const slopes& first, const slopes& last, const mask& lanes) {
+    MYRIAD_FUNCTION void integrate_step(const step_type& step, const slopes& first, const slopes& last,
+                                        const mask& lanes) {
         constexpr R near = static_cast<R>(0.17267316464601142810L);  // (1 - sqrt(3 / 7)) / 2
         values sum;
         MYRIAD_UNROLL

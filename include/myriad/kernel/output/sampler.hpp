@@ -12,11 +12,11 @@ template <class Method, class S, bool samples = samples_trajectory<Method>>
 struct sample_state {};
 template <class Method, class S>
 struct sample_state<Method, S, true> {
-    S next;                                // time of the next sample; infinity: none
-    S last;                                // when sampling by steps: time of the last sample
-    S begin, end;                          // the domain of evenly spaced samples; a hook may move the phase's end
-    std::int32_t index[lanes_of<S>];       // number of the next given time in this phase
-    std::int32_t steps[lanes_of<S>];       // accepted steps since the last sample; -1: this phase is not sampled
+    S next;                           // time of the next sample; infinity: none
+    S last;                           // when sampling by steps: time of the last sample
+    S begin, end;                     // the domain of evenly spaced samples; a hook may move the phase's end
+    std::int32_t index[lanes_of<S>];  // number of the next given time in this phase
+    std::int32_t steps[lanes_of<S>];  // accepted steps since the last sample; -1: this phase is not sampled
 };
 
 template <class Model, class Method, class S>

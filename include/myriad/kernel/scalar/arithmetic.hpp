@@ -56,7 +56,6 @@ MYRIAD_FUNCTION B polynomial(const B& x, typename arithmetic<B>::real c0, More..
     return arithmetic<B>::multiply_add(x, polynomial(x, more...), B(c0));
 }
 
-
 /// Whether two numbers differ in any bit; an unchanged NaN does not. Cheaper than a comparison of values that handles
 /// NaN, and true for zeros of different sign.
 template <class S>

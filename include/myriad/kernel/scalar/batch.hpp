@@ -113,8 +113,9 @@ MYRIAD_FUNCTION B join_masks(F&& f, const B& a, const More&... more) {
         return B(static_cast<register_type>(f(static_cast<register_type>(a), static_cast<register_type>(more)...)));
     } else {
         using integers = typename register_bits<sizeof(register_type)>::type;
-        return B(__builtin_bit_cast(register_type, f(__builtin_bit_cast(integers, static_cast<register_type>(a)),
-                                                     __builtin_bit_cast(integers, static_cast<register_type>(more))...)));
+        return B(
+            __builtin_bit_cast(register_type, f(__builtin_bit_cast(integers, static_cast<register_type>(a)),
+                                                __builtin_bit_cast(integers, static_cast<register_type>(more))...)));
     }
 }
 
@@ -178,7 +179,8 @@ struct arithmetic<xsimd::batch<T>> {
         } else {
             // By the sign bit: a comparison with zero would have to be negated.
             using integer = integer_of_width<T>;
-            return mask_cast<T>(bits_as<integer>(b << static_cast<int>(8 * sizeof(T) - 1)) < xsimd::batch<integer>(integer{0}));
+            return mask_cast<T>(bits_as<integer>(b << static_cast<int>(8 * sizeof(T) - 1)) <
+                                xsimd::batch<integer>(integer{0}));
         }
     }
     static MYRIAD_FUNCTION B reciprocal(const B& x) { return B(T(1)) / x; }

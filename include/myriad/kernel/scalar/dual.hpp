@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Dual numbers, a value with one derivative: a model's functions called with them give exact directional derivatives, for
-// the slopes of event functions and for Jacobians.
+// Dual numbers, a value with one derivative: a model's functions called with them give exact directional derivatives,
+// for the slopes of event functions and for Jacobians.
 #pragma once
 
 #include <type_traits>
@@ -109,8 +109,7 @@ namespace myriad::inline MYRIAD_TARGET {
 // for foreign types, such as iterators of a vector of this namespace's types. Constants are distinguished from dual
 // numbers, as multiplying by a zero derivative is not free and turns infinities into NaN.
 template <class A, class B>
-requires detail::with_dual<A, B> MYRIAD_FUNCTION auto
-operator+(const A& a, const B& b) {
+requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator+(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
     const S value = detail::value_of<S>(a) + detail::value_of<S>(b);
     if constexpr (!detail::is_dual<B>) {
@@ -123,8 +122,7 @@ operator+(const A& a, const B& b) {
 }
 
 template <class A, class B>
-requires detail::with_dual<A, B> MYRIAD_FUNCTION auto
-operator-(const A& a, const B& b) {
+requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator-(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
     const S value = detail::value_of<S>(a) - detail::value_of<S>(b);
     if constexpr (!detail::is_dual<B>) {
@@ -137,8 +135,7 @@ operator-(const A& a, const B& b) {
 }
 
 template <class A, class B>
-requires detail::with_dual<A, B> MYRIAD_FUNCTION auto
-operator*(const A& a, const B& b) {
+requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator*(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
     const S u = detail::value_of<S>(a);
     const S v = detail::value_of<S>(b);
@@ -152,8 +149,7 @@ operator*(const A& a, const B& b) {
 }
 
 template <class A, class B>
-requires detail::with_dual<A, B> MYRIAD_FUNCTION auto
-operator/(const A& a, const B& b) {
+requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator/(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
     const S v = detail::value_of<S>(b);
     const S quotient = detail::value_of<S>(a) / v;
@@ -285,7 +281,8 @@ struct functions<dual<S>> {
         const D of_base = pow_of_base(x, y.value);
         // The logarithm of a base that is not positive must not spoil a constant exponent.
         const S of_exponent = of_base.value * f::log(x.value) * y.derivative;
-        return D(of_base.value, of_base.derivative + select(y.derivative == constant(real(0)), y.derivative, of_exponent));
+        return D(of_base.value,
+                 of_base.derivative + select(y.derivative == constant(real(0)), y.derivative, of_exponent));
     }
     static MYRIAD_FUNCTION D atan2(const D& y, const D& x) {
         const S square = x.value * x.value + y.value * y.value;
@@ -321,4 +318,3 @@ private:
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
-

@@ -232,7 +232,8 @@ struct exponential {
         const B rest = A::multiply_add(y, logarithm, of_exponent - exponent) + lost;
         const B result = scaled_exp(rest * B(constants::ln_2), shifted);
         const B beyond = A::select(power < B(T(0)), B(T(0)), power * B(infinity_of<T>));
-        return A::select(usual & (power >= B(constants::exp2_smallest)) & (power <= B(constants::exp2_largest)), result, beyond);
+        return A::select(usual & (power >= B(constants::exp2_smallest)) & (power <= B(constants::exp2_largest)), result,
+                         beyond);
     }
 
     /// x to the power y where |x| and the result are normal numbers; returns the other lanes, which the caller must
@@ -250,10 +251,8 @@ struct exponential {
         const B half_y = B(T(0.5)) * y;
         const mask even = A::floor(half_y) == half_y;
         const B sign = A::select(even, B(T(0)), x & B(-T(0)));
-        const mask usual =
-            (base >= B(smallest_normal_of<T>)) & (base <= B(largest_of<T>));
-        const mask in_range =
-            (exponent >= B(constants::exp_smallest)) & (exponent <= B(constants::exp_largest));
+        const mask usual = (base >= B(smallest_normal_of<T>)) & (base <= B(largest_of<T>));
+        const mask in_range = (exponent >= B(constants::exp_smallest)) & (exponent <= B(constants::exp_largest));
         const mask real = (A::floor(y) == y) | (x > B(T(0)));
         result = magnitude ^ sign;
         return ~(usual & in_range & real);

@@ -135,7 +135,7 @@ struct functions<T> {
 namespace myriad::inline MYRIAD_TARGET {
 
 #define MYRIAD_UNARY(name)                    \
-    template <detail::real_kind S>                    \
+    template <detail::real_kind S>            \
     MYRIAD_FUNCTION S name(const S& x) {      \
         return detail::functions<S>::name(x); \
     }
@@ -195,11 +195,12 @@ MYRIAD_FUNCTION auto is_finite(const S& x) {
     return detail::functions<S>::is_finite(x);
 }
 
-#define MYRIAD_BINARY(name)                                                                                \
-    template <class A, class B>                                                                            \
-    requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> name(const A& a, const B& b) { \
-        using S = detail::common_kind<A, B>;                                                                       \
-        return detail::functions<S>::name(detail::to_kind<S>(a), detail::to_kind<S>(b));                   \
+#define MYRIAD_BINARY(name)                                                                                            \
+    template <class A, class B>                                                                                        \
+    requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> name(const A& a,   \
+                                                                                                         const B& b) { \
+        using S = detail::common_kind<A, B>;                                                                           \
+        return detail::functions<S>::name(detail::to_kind<S>(a), detail::to_kind<S>(b));                               \
     }
 /// The smaller and the larger; the number where the other argument is NaN.
 MYRIAD_BINARY(min)
@@ -228,16 +229,19 @@ MYRIAD_FUNCTION constexpr T abs(T a) {
 
 /// a * b + c, with one rounding if the target has the instruction and otherwise two, for every kind of number alike.
 template <class A, class B, class C>
-requires detail::real_kind<detail::common_kind<detail::common_kind<A, B>, C>> MYRIAD_FUNCTION auto fma(const A& a, const B& b, const C& c) {
+requires detail::real_kind<detail::common_kind<detail::common_kind<A, B>, C>> MYRIAD_FUNCTION auto fma(const A& a,
+                                                                                                       const B& b,
+                                                                                                       const C& c) {
     using S = detail::common_kind<detail::common_kind<A, B>, C>;
     return detail::functions<S>::fma(detail::to_kind<S>(a), detail::to_kind<S>(b), detail::to_kind<S>(c));
 }
 
-/// x to the power y for x >= 0, without a branch, in about half of the time of pow: NaN for negative x, and for powr(0, 0)
-/// and powr(inf, 0), as in IEEE 754; numbers below the smallest normal one count as zero. The error is at most 1.2 + |y| / 5
-/// ulps (1.5 + |y| / 2 where the target has no fused multiply-add). The exponent may not be a dual number.
+/// x to the power y for x >= 0, without a branch, in about half of the time of pow: NaN for negative x, and for powr(0,
+/// 0) and powr(inf, 0), as in IEEE 754; numbers below the smallest normal one count as zero. The error is at most 1.2 +
+/// |y| / 5 ulps (1.5 + |y| / 2 where the target has no fused multiply-add). The exponent may not be a dual number.
 template <class A, class B>
-requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> powr(const A& x, const B& y) {
+requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> powr(const A& x,
+                                                                                                     const B& y) {
     using S = detail::common_kind<A, B>;
     static_assert(detail::kind_rank<B> != 2, "powr has no derivative by its exponent: use pow");
     if constexpr (detail::kind_rank<A> == 2) {
@@ -250,7 +254,8 @@ requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::co
 /// x to the power y. An exponent of type int multiplies, `pow(x, 3)` is x * x * x, with half an ulp of error per
 /// product and any sign of x.
 template <class A, class B>
-requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> pow(const A& x, const B& y) {
+requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> pow(const A& x,
+                                                                                                    const B& y) {
     using S = detail::common_kind<A, B>;
     if constexpr (std::is_integral_v<B>) {
         const S one(static_cast<real_of<S>>(1));

@@ -64,10 +64,10 @@ public:
     }                                                                                                              \
     friend MYRIAD_FUNCTION pack_mask operator symbol(const pack_mask& a, bool b) { return a symbol pack_mask(b); } \
     friend MYRIAD_FUNCTION pack_mask operator symbol(bool a, const pack_mask& b) { return pack_mask(a) symbol b; }
-    MYRIAD_MASK_OPERATOR(&, x & y)
+    MYRIAD_MASK_OPERATOR(&, x& y)
     MYRIAD_MASK_OPERATOR(|, x | y)
     MYRIAD_MASK_OPERATOR(^, x ^ y)
-    MYRIAD_MASK_OPERATOR(&&, x & y)
+    MYRIAD_MASK_OPERATOR(&&, x& y)
     MYRIAD_MASK_OPERATOR(||, x | y)
     MYRIAD_MASK_OPERATOR(!=, x ^ y)
     MYRIAD_MASK_OPERATOR(==, ~(x ^ y))
@@ -192,8 +192,8 @@ public:
 
     friend MYRIAD_FUNCTION pack operator-(const pack& a) {
         pack result;
-        // The compiler's own vector negation: xsimd's is 0 - x on AVX-512, which loses the sign of zero, and a bitwise one
-        // keeps the compiler from folding it into a fused multiply-add.
+        // The compiler's own vector negation: xsimd's is 0 - x on AVX-512, which loses the sign of zero, and a bitwise
+        // one keeps the compiler from folding it into a fused multiply-add.
         if constexpr (is_real) {
             MYRIAD_EACH_BATCH(result.parts[i] =
                                   batch_type(-static_cast<typename batch_type::register_type>(a.parts[i])));

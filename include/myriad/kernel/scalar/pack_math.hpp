@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The elementary functions of math.hpp for packs: xsimd's where they are accurate and treat every lane alone, own ones
-// otherwise. Lanes outside a function's vector range (huge angles, subnormal or special values) are redone one by one with
-// the standard library, so that a lane's result never depends on its neighbours. Part of pack.hpp, which includes it.
+// otherwise. Lanes outside a function's vector range (huge angles, subnormal or special values) are redone one by one
+// with the standard library, so that a lane's result never depends on its neighbours. Part of pack.hpp, which includes
+// it.
 //
 // Largest errors measured with g++ 12 and xsimd 8.1, in ulp, double / float; 3 million arguments per range, against the
 // next wider type, on AVX-512, on AVX2 with FMA and on SSE2:
@@ -11,9 +12,10 @@
 //   sinh 1.6 / 2.1      cosh 1.3 / 2.0      tanh 1.3 / 1.4
 //   exp 1.0 / 1.0       exp2 1.1 / 1.0      log 0.9 / 0.9       log2 1.8 / 1.9      log10 1.8 / 2.0
 //   pow 1.2 / 1.2 up to |y| = 7, 1.5 / 1.5 at 30, 2.3 / 2.3 at 100, then growing with |y|
-// Results of exp and exp2 below the smallest normal number are 0. What is redone one by one: |x| > 2^30 in sin, cos, tan
-// (float 2^16; without FMA 2^20 and 2^13), NaN and infinities there, arguments of log* below the smallest normal number,
-// zeros and subnormal or non-finite numbers in cbrt and pow, results of pow out of range, zero or extreme hypot.
+// Results of exp and exp2 below the smallest normal number are 0. What is redone one by one: |x| > 2^30 in sin, cos,
+// tan (float 2^16; without FMA 2^20 and 2^13), NaN and infinities there, arguments of log* below the smallest normal
+// number, zeros and subnormal or non-finite numbers in cbrt and pow, results of pow out of range, zero or extreme
+// hypot.
 #pragma once
 
 #include <bit>
@@ -29,7 +31,8 @@
 #include "myriad/kernel/scalar/trigonometry.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
-// Out of line, as it is rare and would be repeated in every stage; its name carries the instruction set like all others.
+// Out of line, as it is rare and would be repeated in every stage; its name carries the instruction set like all
+// others.
 template <class Scalar, class S, class... More>
 [[gnu::noinline, gnu::cold]] void redo_lanes(S& result, std::uint64_t lanes, const S& x, const More&... more) {
     for (; lanes != 0; lanes &= lanes - 1) {
@@ -91,12 +94,18 @@ struct functions<pack<T, batches>> {
     MYRIAD_UNARY(tanh, xsimd::tanh(x.parts[i]))
     MYRIAD_UNARY(exp, exponential<xsimd::batch<T>>::exp(x.parts[i]))
     MYRIAD_UNARY(exp2, exponential<xsimd::batch<T>>::exp2(x.parts[i]))
-    MYRIAD_UNARY_WITH_REDO(sin, trigonometry<xsimd::batch<T>>::sin(x.parts[i]), beyond(trigonometry_constants<T>::limit, x))
-    MYRIAD_UNARY_WITH_REDO(cos, trigonometry<xsimd::batch<T>>::cos(x.parts[i]), beyond(trigonometry_constants<T>::limit, x))
-    MYRIAD_UNARY_WITH_REDO(tan, trigonometry<xsimd::batch<T>>::tan(x.parts[i]), beyond(trigonometry_constants<T>::limit, x))
-    MYRIAD_UNARY_WITH_REDO(sinpi, trigonometry<xsimd::batch<T>>::sinpi(x.parts[i]), beyond(trigonometry<T>::half_turn_limit, x))
-    MYRIAD_UNARY_WITH_REDO(cospi, trigonometry<xsimd::batch<T>>::cospi(x.parts[i]), beyond(trigonometry<T>::half_turn_limit, x))
-    MYRIAD_UNARY_WITH_REDO(cbrt, xsimd::copysign(exponential<xsimd::batch<T>>::cbrt(xsimd::abs(x.parts[i])), x.parts[i]),
+    MYRIAD_UNARY_WITH_REDO(sin, trigonometry<xsimd::batch<T>>::sin(x.parts[i]),
+                           beyond(trigonometry_constants<T>::limit, x))
+    MYRIAD_UNARY_WITH_REDO(cos, trigonometry<xsimd::batch<T>>::cos(x.parts[i]),
+                           beyond(trigonometry_constants<T>::limit, x))
+    MYRIAD_UNARY_WITH_REDO(tan, trigonometry<xsimd::batch<T>>::tan(x.parts[i]),
+                           beyond(trigonometry_constants<T>::limit, x))
+    MYRIAD_UNARY_WITH_REDO(sinpi, trigonometry<xsimd::batch<T>>::sinpi(x.parts[i]),
+                           beyond(trigonometry<T>::half_turn_limit, x))
+    MYRIAD_UNARY_WITH_REDO(cospi, trigonometry<xsimd::batch<T>>::cospi(x.parts[i]),
+                           beyond(trigonometry<T>::half_turn_limit, x))
+    MYRIAD_UNARY_WITH_REDO(cbrt,
+                           xsimd::copysign(exponential<xsimd::batch<T>>::cbrt(xsimd::abs(x.parts[i])), x.parts[i]),
                            !(abs(x) >= S(smallest_normal) && is_finite(x)))
     MYRIAD_UNARY_WITH_REDO(log, exponential<xsimd::batch<T>>::log(x.parts[i]), x < S(smallest_normal))
     MYRIAD_UNARY_WITH_REDO(log2, exponential<xsimd::batch<T>>::log2(x.parts[i]), x < S(smallest_normal))
@@ -133,7 +142,8 @@ struct functions<pack<T, batches>> {
     static MYRIAD_FUNCTION S pow(const S& x, const S& y) {
         S result;
         mask unfinished;
-        MYRIAD_EACH_BATCH(unfinished.parts[i] = exponential<xsimd::batch<T>>::pow(result.parts[i], x.parts[i], y.parts[i]));
+        MYRIAD_EACH_BATCH(unfinished.parts[i] =
+                              exponential<xsimd::batch<T>>::pow(result.parts[i], x.parts[i], y.parts[i]));
         return with_lanes_redone<scalar_pow>(result, unfinished, x, y);
     }
 #undef MYRIAD_SCALAR_UNARY
@@ -174,7 +184,6 @@ private:
     static constexpr T largest_root = is_double ? T(0x1p500L) : T(0x1p60);
 };
 
-
 #if defined(__SSE2__)
 // The general versions in control_number.hpp, a comparison and a selection, are a single x86 instruction, including NaN
 // and signed zeros.
@@ -199,8 +208,8 @@ struct bit_comparison<pack<T, batches>> {
     using integer = integer_of_width<T>;
     static MYRIAD_FUNCTION auto differs(const pack<T, batches>& a, const pack<T, batches>& b) {
         typename pack<T, batches>::mask_type result;
-        MYRIAD_EACH_BATCH(result.parts[i] =
-                              mask_cast<real_of_width<T>>(bits_as<integer>(a.parts[i]) != bits_as<integer>(b.parts[i])));
+        MYRIAD_EACH_BATCH(result.parts[i] = mask_cast<real_of_width<T>>(bits_as<integer>(a.parts[i]) !=
+                                                                        bits_as<integer>(b.parts[i])));
         return result;
     }
 };

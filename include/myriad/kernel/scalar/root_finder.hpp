@@ -33,8 +33,7 @@ MYRIAD_FUNCTION S find_root(bracket<S> b, const mask_of<S>& wanted, F&& f) {
         mask close = mask(false);
         const S value = f(x, close);
         const mask found = open & close;
-        const mask narrow =
-            open & !found & (b.high - b.low <= S(R(4) * epsilon_of<R>) * b.high);
+        const mask narrow = open & !found & (b.high - b.low <= S(R(4) * epsilon_of<R>) * b.high);
         root = select(found, x, select(narrow, b.low, root));
         open = open & !(found | narrow);
         const mask before = value > S(R(0));

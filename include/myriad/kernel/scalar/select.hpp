@@ -84,10 +84,11 @@ using integer_of = typename detail::scalar_traits<S>::integer;
 template <class S>
 inline constexpr int lanes_of = detail::scalar_traits<S>::lanes;
 template <class S>
-concept is_pack = lanes_of<S> > 1;
+concept is_pack = lanes_of<S> >
+1;
 
-/// Spacing of the numbers next to one, the largest finite and the smallest normal number, infinity and NaN; device code may
-/// not call the functions behind them.
+/// Spacing of the numbers next to one, the largest finite and the smallest normal number, infinity and NaN; device code
+/// may not call the functions behind them.
 template <class R>
 inline constexpr R epsilon_of = std::numeric_limits<R>::epsilon();
 template <class R>

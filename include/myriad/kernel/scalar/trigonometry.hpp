@@ -5,7 +5,6 @@
 // one reduction serves every lane up to `limit`; the caller handles larger arguments.
 #pragma once
 
-
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/scalar/arithmetic.hpp"
 
@@ -123,9 +122,7 @@ struct trigonometry {
     }
     static MYRIAD_FUNCTION auto is_odd(const bits& quarters) { return A::is_odd(quarters); }
     static MYRIAD_FUNCTION bits sign_of(const B& x) { return A::to_bits(x) & A::to_bits(B(-T(0))); }
-    static MYRIAD_FUNCTION bits sign_from_bit_1(const bits& quarters) {
-        return (quarters & bits(bit_1)) << to_sign;
-    }
+    static MYRIAD_FUNCTION bits sign_from_bit_1(const bits& quarters) { return (quarters & bits(bit_1)) << to_sign; }
     static MYRIAD_FUNCTION B with_sign(const B& magnitude, const bits& sign) {
         return A::from_bits(A::to_bits(magnitude) ^ sign);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The state of one running pack of lanes, shared by the parts of the loop: the instances' data, and what the loop itself
-// keeps beside them.
+// The state of one running pack of lanes, shared by the parts of the loop: the instances' data, and what the loop
+// itself keeps beside them.
 #pragma once
 
 #include <cstdint>
@@ -25,22 +25,22 @@ inline constexpr bool is_adaptive = Method::embedded_order > 0;
 
 /// Slopes are kept where a step may be repeated or where its last slope is the first of the next.
 template <class Model, class Method>
-inline constexpr bool stepper_keeps_slope =
-    is_adaptive<Method> || has_events<Model> || samples_trajectory<Method> || has_reductions<Model> ||
-    Method::first_same_as_last;
+inline constexpr bool stepper_keeps_slope = is_adaptive<Method> || has_events<Model> || samples_trajectory<Method> ||
+                                            has_reductions<Model> || Method::first_same_as_last;
 
-/// Whether the part of the time that rounding takes from t is kept beside it, so that it does not add up: where steps are too
-/// short for the resolution of t, as in single precision and to events. Other steps are rounded to that resolution.
+/// Whether the part of the time that rounding takes from t is kept beside it, so that it does not add up: where steps
+/// are too short for the resolution of t, as in single precision and to events. Other steps are rounded to that
+/// resolution.
 template <class Model, class Method, class R>
-inline constexpr bool keeps_time_low =
-    has_events<Model> || (is_adaptive<Method> ? std::is_same_v<R, float> : writes_time_domain<Model>);
+inline constexpr bool keeps_time_low = has_events<Model> ||
+                                       (is_adaptive<Method> ? std::is_same_v<R, float> : writes_time_domain<Model>);
 
 /// Evaluations of the right-hand side in every trial step; others are counted where they happen.
 template <class Model, class Method>
 inline constexpr int evaluations_per_trial = stepper_keeps_slope<Model, Method> ? Method::stages - 1 : Method::stages;
 
-/// Binary logarithms of the error over the tolerance of the last accepted step and of the one before; for controllers that
-/// look back.
+/// Binary logarithms of the error over the tolerance of the last accepted step and of the one before; for controllers
+/// that look back.
 template <class Method, class S, bool remembers = remembers_errors<Method>>
 struct control_memory {};
 template <class Method, class S>
@@ -59,21 +59,21 @@ struct integration_state {
     static constexpr int n = n_state<Model>;
 
     lane_data<Model, S> data;
-    mask active;       // lanes that hold an instance
-    vec<S, n> slope;   // f at the committed state, where slope_valid holds
+    mask active;      // lanes that hold an instance
+    vec<S, n> slope;  // f at the committed state, where slope_valid holds
     mask slope_valid;
-    vec<S, n> slope_end;   // f at the end of the trial, where slope_end_known holds
+    vec<S, n> slope_end;  // f at the end of the trial, where slope_end_known holds
     mask slope_end_known;
-    S time_low;            // what rounding took from t, or from base, where keeps_time_low
+    S time_low;  // what rounding took from t, or from base, where keeps_time_low
 
     // the trial step
-    S h;               // its length, signed
-    mask final_step;   // it ends at t_end
-    mask last_not_finite;  // the lane's last rejection was for a value that is not finite
-    mask last_singular;    // and that value came of a singular matrix, if the method solves linear systems
-    mask first_step_open;  // the phase's first step is yet to be chosen
+    S h;                               // its length, signed
+    mask final_step;                   // it ends at t_end
+    mask last_not_finite;              // the lane's last rejection was for a value that is not finite
+    mask last_singular;                // and that value came of a singular matrix, if the method solves linear systems
+    mask first_step_open;              // the phase's first step is yet to be chosen
     control_memory<Method, S> errors;  // of earlier steps
-    S tolerance_scale;  // of the instance, if the method has it
+    S tolerance_scale;                 // of the instance, if the method has it
 
     // fixed steps: t = base + done * step, so that no rounding adds up and no step is added
     S base, step;
@@ -85,13 +85,13 @@ struct integration_state {
     bool instance_over[lanes];
 
     // work, per instance
-    iteration_number iteration;                 // iterations of the loop; every active lane takes a trial step in each
-    iteration_number next_look;            // iteration at which a phase of a pack is to be looked at: too long, or creeping
-    iteration_number phase_start[lanes];   // iteration at which the lane's phase began
-    std::int64_t all_iterations;           // iterations before `iteration` was last set back
+    iteration_number iteration;  // iterations of the loop; every active lane takes a trial step in each
+    iteration_number next_look;  // iteration at which a phase of a pack is to be looked at: too long, or creeping
+    iteration_number phase_start[lanes];  // iteration at which the lane's phase began
+    std::int64_t all_iterations;          // iterations before `iteration` was last set back
     count rejected, located, extra_evaluations;
-    std::int64_t instance[lanes];          // index, or -1: the lane is empty
-    std::int32_t phases_left[lanes];       // phases of this call that the instance has before it, this one included
+    std::int64_t instance[lanes];     // index, or -1: the lane is empty
+    std::int32_t phases_left[lanes];  // phases of this call that the instance has before it, this one included
 
     /// Lanes that hold a running instance, inside the loop, which one lane alone only enters with one.
     MYRIAD_FUNCTION mask running() const {
@@ -120,7 +120,8 @@ struct integration_state {
         extra_evaluations = count_where(needed, extra_evaluations);
         slope_valid = slope_valid | needed;
     }
-    /// The same for one lane, to look at. It is not kept: a pack's functions may round otherwise than those of one lane.
+    /// The same for one lane, to look at. It is not kept: a pack's functions may round otherwise than those of one
+    /// lane.
     MYRIAD_FUNCTION vec<R, n> slope_of(int i) {
         if (get_lane(slope_valid, i)) return get_lanes<R>(slope, i);
         add_to_count(extra_evaluations, i);
@@ -131,7 +132,8 @@ struct integration_state {
             return detail::evaluate_rhs<Model>(get_lane(now(), i), p.y, static_cast<const inputs<Model, R>&>(p));
         }
     }
-    /// The same in every lane, of a method that computes its first slope itself: where it is known, it has the same bits.
+    /// The same in every lane, of a method that computes its first slope itself: where it is known, it has the same
+    /// bits.
     MYRIAD_FUNCTION void renew_slopes() {
         const mask needed = !slope_valid;
         if (!any(needed)) return;

@@ -10,9 +10,9 @@
 
 namespace myriad {
 
-/// Where a GPU keeps the parameters that all instances share: the constant bank is fastest where all threads read the same
-/// value at once, shared memory where they are many, the cache where nothing else has room. Choosing by itself, the
-/// backend takes the constant bank up to 1 KiB, then shared memory as long as it fits.
+/// Where a GPU keeps the parameters that all instances share: the constant bank is fastest where all threads read the
+/// same value at once, shared memory where they are many, the cache where nothing else has room. Choosing by itself,
+/// the backend takes the constant bank up to 1 KiB, then shared memory as long as it fits.
 enum class shared_placement : std::uint8_t { automatic, constant_bank, shared_memory, cache };
 constexpr const char* name_of(shared_placement placement) {
     constexpr const char* names[] = {"automatic", "constant_bank", "shared_memory", "cache"};
@@ -111,8 +111,8 @@ struct kernel_arguments {
     std::int32_t first_phase;  // phases of this call that are done already
     R common_t_begin, common_t_end;
     R phase_length, phases_per_time;  // and one over it; 0: a phase goes to t_end
-    bool carry_time;  // a phase goes on from where the last one ended, instead of from t_begin
-    bool carry_step;  // and with its step size
+    bool carry_time;                  // a phase goes on from where the last one ended, instead of from t_begin
+    bool carry_step;                  // and with its step size
     std::int32_t max_steps;
     R step;  // fixed step, or first step of an adaptive method
     R minimum_step, maximum_step;

@@ -7,7 +7,9 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 template <class Method>
-inline constexpr bool has_own_interpolant = requires { Method::interpolant_degree; };
+inline constexpr bool has_own_interpolant = requires {
+    Method::interpolant_degree;
+};
 
 /// Stages of the interpolant in addition to those of the step and the slope at its end.
 template <class Method>
@@ -50,11 +52,11 @@ inline constexpr bool interpolates_between_slopes =
 /// A trial step, with what the interpolants and event functions need.
 template <class Method, class S, int n>
 struct step_data {
-    S t;        // start
-    S h;        // length
+    S t;          // start
+    S h;          // length
     vec<S, n> y;  // state at the start
     const trial_step<Method, S, n>& trial;
-    vec<S, n> slope_end;  // f at the end of the step
+    vec<S, n> slope_end;                         // f at the end of the step
     vec<vec<S, n>, extra_stages<Method>> extra;  // additional stages, from complete_interpolant
 
     /// The slope of an interpolant's stage.
@@ -82,8 +84,7 @@ MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const i
             if constexpr (extra_weight<Method, own, stage, R> != R(0)) {
                 const S scale = step.h * S(extra_weight<Method, own, stage, R>);
                 MYRIAD_UNROLL
-                for (int c = 0; c < n; ++c)
-                    argument[c] = fma(scale, step.template slope<stage>()[c], argument[c]);
+                for (int c = 0; c < n; ++c) argument[c] = fma(scale, step.template slope<stage>()[c], argument[c]);
             }
         });
         step.extra[own] = detail::evaluate_rhs<Model>(fma(S(extra_node<Method, own, R>), step.h, step.t), argument, p);
@@ -93,8 +94,8 @@ MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const i
 /// The cubic with the values y0, y1 and the slopes k0, k1 at the ends of a step of length h, at the fraction theta of
 /// it; for a dual theta with its derivative. Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7).
 template <class S, int n, class T>
-MYRIAD_FUNCTION vec<T, n> hermite_interpolation(const vec<S, n>& y0, const vec<S, n>& y1, const vec<S, n>& k0, const vec<S, n>& k1,
-                                                const S& h, const T& theta) {
+MYRIAD_FUNCTION vec<T, n> hermite_interpolation(const vec<S, n>& y0, const vec<S, n>& y1, const vec<S, n>& k0,
+                                                const vec<S, n>& k1, const S& h, const T& theta) {
     using R = real_of<S>;
     vec<T, n> out;
     const T theta1 = theta - S(R(1));

@@ -56,7 +56,8 @@ struct trial_step {
     MYRIAD_FUNCTION const vec<S, n>& slope_end() const { return k[Method::stages - 1]; }
 };
 
-/// The order that a method's error estimate falls with, less one: that of the embedded solution, where that is all there is.
+/// The order that a method's error estimate falls with, less one: that of the embedded solution, where that is all
+/// there is.
 template <class Method>
 inline constexpr int estimate_order = [] {
     if constexpr (requires { Method::estimate_order; }) {
@@ -66,8 +67,8 @@ inline constexpr int estimate_order = [] {
     }
 }();
 
-// A GPU's instruction can carry a number whose lower half is zero; of others it takes two more to load one, and one if the
-// number is in constant memory.
+// A GPU's instruction can carry a number whose lower half is zero; of others it takes two more to load one, and one if
+// the number is in constant memory.
 template <class R>
 constexpr bool is_short(R x) {
     if constexpr (sizeof(R) == sizeof(double)) return (__builtin_bit_cast(std::uint64_t, x) & 0xffffffff) == 0;
@@ -119,9 +120,8 @@ MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int compon
     constexpr int first = first_stage<Method, row>;
     constexpr int end = row < Method::stages ? row : Method::stages;
     S sum = k[first][component];
-    static_for<first + 1, end>([&](auto j) MYRIAD_LAMBDA {
-        detail::add_weighted<Method, row, decltype(j)::value>(sum, k[j][component]);
-    });
+    static_for<first + 1, end>(
+        [&](auto j) MYRIAD_LAMBDA { detail::add_weighted<Method, row, decltype(j)::value>(sum, k[j][component]); });
     return sum;
 }
 
@@ -153,8 +153,8 @@ inline constexpr bool is_unseen_stage = [] {
         if (weight_in<Method>(row, stage) != 0) return false;
     return true;
 }();
-/// Makes the slope of a stage NaN where that of an unseen one before it is not finite. Its argument is NaN already, but a
-/// model may give that a finite slope, as select(x > 1, NaN, 1) does. Others keep every bit: minus zero adds nothing.
+/// Makes the slope of a stage NaN where that of an unseen one before it is not finite. Its argument is NaN already, but
+/// a model may give that a finite slope, as select(x > 1, NaN, 1) does. Others keep every bit: minus zero adds nothing.
 template <class Method, int stage, class S, int n>
 MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
     if constexpr (is_unseen_stage<Method, stage - 1>) {
@@ -163,9 +163,9 @@ MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
     }
 }
 
-/// Steps from (t, y) over h to t1; `trial.k[0]`, the slope at the start, is given. A last stage that is the first of the next
-/// step is taken at t1, which may be t + h up to rounding. The new state is summed up stage by stage, so that slopes which
-/// no later stage needs can leave their registers.
+/// Steps from (t, y) over h to t1; `trial.k[0]`, the slope at the start, is given. A last stage that is the first of
+/// the next step is taken at t1, which may be t + h up to rounding. The new state is summed up stage by stage, so that
+/// slopes which no later stage needs can leave their registers.
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                       const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {

@@ -42,7 +42,6 @@ MYRIAD_FUNCTION void exchange_rows(K k, const row_number<S>& pivot, Swap&& swap)
     }
 }
 
-
 /// Factorises `lu.a`. False in lanes with a pivot that is zero or not finite, whose matrix is singular.
 template <class S, int n>
 MYRIAD_FUNCTION mask_of<S> factorise(lu_factors<S, n>& lu) {

@@ -83,7 +83,7 @@ constexpr auto tableau_of_interpolant() {
         for (std::size_t j = 0; j < stages; ++j) t.a[i][j] = step.a[i][j];
         t.b[i] = step.b[i];
     }
-    if constexpr (extra_stages < Method >> 0) {
+    if constexpr (extra_stages<Method> != 0) {
         t.c[stages] = 1;
         for (std::size_t j = 0; j < stages; ++j) t.a[stages][j] = step.b[j];
         for (int i = 0; i < extra_stages<Method>; ++i) {

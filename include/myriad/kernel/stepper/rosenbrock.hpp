@@ -120,7 +120,8 @@ inline constexpr auto kept_rosenbrock_weights = [] {
             if constexpr (kind == rosenbrock_row::argument) return first_new_stage<Method, row>;
             return 0;
         }();
-        return rounded_weights<R>(rosenbrock_weights<Method>(kind, row), 1, first, Method::stages, sums.exact, {}, sums.kept, {});
+        return rounded_weights<R>(rosenbrock_weights<Method>(kind, row), 1, first, Method::stages, sums.exact, {},
+                                  sums.kept, {});
     }
 }();
 template <class Method, rosenbrock_row kind, int row, int j, class R>
@@ -205,7 +206,8 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
         constexpr int i = decltype(row)::value, begin = first_new_stage<Method, i>;
         loop::all([&](auto c) MYRIAD_LAMBDA {
             if constexpr (begin > 0) {
-                increment[c] = detail::add_stages<Method, rosenbrock_row::argument, i, begin, i>(increment[c], trial.u, c);
+                increment[c] =
+                    detail::add_stages<Method, rosenbrock_row::argument, i, begin, i>(increment[c], trial.u, c);
             } else {
                 increment[c] = detail::sum_stages<Method, rosenbrock_row::argument, i, i>(trial.u, c);
             }

@@ -12,8 +12,9 @@ template <class Method, class Model, class S>
 MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                      const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
     if constexpr (rosenbrock_method<Method>) {
-        static_assert(n_tangent<Model> == 0, "stiff methods do not take with_tangents: their Jacobian would need second "
-                                             "derivatives of rhs; use an explicit method");
+        static_assert(n_tangent<Model> == 0,
+                      "stiff methods do not take with_tangents: their Jacobian would need second "
+                      "derivatives of rhs; use an explicit method");
         detail::rosenbrock_step<Method, Model>(t, h, t1, y, p, trial);
     } else {
         detail::explicit_rk_step<Method, Model>(t, h, t1, y, p, trial);
