@@ -46,8 +46,8 @@ device_kernel<Model, R> require_kernel(const device& where) {
         on_cpu ? found.cpu.run != nullptr : found.make_engine != nullptr,
         "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
         ", or with other numbers of components, or its source file was not linked: write MYRIAD_INSTANTIATE(model, "
-        "method) (MYRIAD_INSTANTIATE_FLOAT for float) in the model's source file, and name that file in myriad_add_models for the program or an OBJECT "
-        "library",
+        "method) (MYRIAD_INSTANTIATE_FLOAT for float) in the model's source file, and name that file in "
+        "myriad_add_models for the program or an OBJECT library",
         on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
     require(
         on_cpu || may_use_gpus(),
