@@ -95,7 +95,8 @@ def draw_all(source, target):
         try:
             panel(times, axis)
         except KeyError as error:
-            raise figures.PlotError(f"{source} has no times of {error}: run gpu_ensembles without a choice of cases") from error
+            raise figures.PlotError(f"{source} has no times of {error}: "
+                                    "run gpu_ensembles without a choice of cases") from error
         axis.set_xlabel("instances")
         axis.set_ylabel("kernel, ms")
         axis.legend(frameon=False, fontsize=8)

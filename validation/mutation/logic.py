@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Shows that the validation sees a wrong loop: copies the headers, changes one line in each copy, compiles the kernels of
-one problem with it and runs the validation on them, which must fail; with the headers as they are it must pass on all these
-problems.
+"""Shows that the validation sees a wrong loop: copies the headers, changes one line in each copy, compiles the kernels
+of one problem with it and runs the validation on them, which must fail; with the headers as they are it must pass on
+all these problems.
 
-Usage: logic.py --source DIR --kernels DIR --work DIR --host LIBRARY --compile "COMMAND" --link "ARGUMENTS" [--only NAME,...]
+Usage: logic.py --source DIR --kernels DIR --work DIR --host LIBRARY --compile "COMMAND" --link "ARGUMENTS"
+                [--only NAME,...]
 Exit status 1 if a changed loop passes, or the unchanged one fails.
 """
 import argparse
@@ -31,21 +32,25 @@ MUTATIONS = {
                     "check_finite", "bouncing_ball"),
     "rejected_step_accepted": ("kernel/controller/adaptive.hpp", "mask accepted = s.running() & within;",
                                "mask accepted = s.running() & valid;", "timed_circle"),
-    "error_taken_for_less": ("kernel/controller/norm.hpp", "return abs(error) / scale;", "return abs(error) / scale * S(0.01);", "kepler"),
-    "first_slope_for_the_last": ("kernel/integrator/integrate.hpp", "select(accepted, trial.slope_end()[c], s.slope[c])",
+    "error_taken_for_less": ("kernel/controller/norm.hpp", "return abs(error) / scale;",
+                             "return abs(error) / scale * S(0.01);", "kepler"),
+    "first_slope_for_the_last": ("kernel/integrator/integrate.hpp",
+                                 "select(accepted, trial.slope_end()[c], s.slope[c])",
                                  "select(accepted, trial.k[0][c], s.slope[c])", "kepler"),
-    "stages_at_the_end_of_the_step": ("kernel/stepper/explicit_rk.hpp", "fma(S(node<Method, stage, R>), h, t)", "(t + h)",
-                                      "timed_circle"),
+    "stages_at_the_end_of_the_step": ("kernel/stepper/explicit_rk.hpp",
+                                      "fma(S(node<Method, stage, R>), h, t)",
+                                      "(t + h)", "timed_circle"),
     "short_last_step": ("kernel/controller/adaptive.hpp", "s.h = select(s.final_step, remaining,",
                         "s.h = select(s.final_step, remaining * S(R(0.999)),", "kepler"),
     "event_not_redone": ("kernel/event/locator.hpp",
-                         "low, high, events, p);\n                set_lane(accepted, i, false);", "low, high, events, p);",
-                         "bouncing_ball"),
+                         "low, high, events, p);\n                set_lane(accepted, i, false);",
+                         "low, high, events, p);", "bouncing_ball"),
     "event_counted_twice": ("kernel/integrator/hook_driver.hpp", "get_lane(s.data.event_count[j], i)) + 1;",
                             "get_lane(s.data.event_count[j], i)) + 2;", "bouncing_ball"),
-    "step_other_than_that_of_t": ("kernel/controller/adaptive.hpp", "h = (s.data.t + h) - s.data.t;", "h = h + R(0) * s.data.t;", "orbit"),
-    "weights_rounded_one_by_one": ("kernel/methods/weights.hpp", "sizeof(R) >= sizeof(double)) return rounded;", "true) return rounded;",
-                                   "orbit"),
+    "step_other_than_that_of_t": ("kernel/controller/adaptive.hpp", "h = (s.data.t + h) - s.data.t;",
+                                  "h = h + R(0) * s.data.t;", "orbit"),
+    "weights_rounded_one_by_one": ("kernel/methods/weights.hpp", "sizeof(R) >= sizeof(double)) return rounded;",
+                                   "true) return rounded;", "orbit"),
 }
 DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_accepted"]
 SECONDS = 120  # an endless loop is found too
@@ -62,7 +67,8 @@ def prepare(options, name):
     path = folder / "myriad" / header
     content = path.read_text()
     if content.count(text) != 1:
-        raise SystemExit(f"{name}: {header} has the text {content.count(text)} times, not once; mend the mutation: {text}")
+        raise SystemExit(f"{name}: {header} has the text {content.count(text)} times, not once; "
+                         f"mend the mutation: {text}")
     path.write_text(content.replace(text, becomes))
     return folder
 
@@ -75,8 +81,10 @@ def examine(options, name, problems):
     objects = []
     for problem in problems:
         objects.append(str(build / f"{problem}.o"))
-        folders = (options.kernels, options.source / "validation/problems")  # made from the template, or written by hand
-        kernels = next(folder / f"{problem}_kernels.cpp" for folder in folders if (folder / f"{problem}_kernels.cpp").exists())
+        # Made from the template, or written by hand.
+        candidates = [folder / f"{problem}_kernels.cpp"
+                      for folder in (options.kernels, options.source / "validation/problems")]
+        kernels = next(path for path in candidates if path.exists())
         command = shlex.split(options.compile) + [
             f"-I{include}", f"-I{options.source}/backends/openmp", f"-I{options.source}",
             "-DMYRIAD_SCALAR_LANES", "-O0", "-c", str(kernels), "-o", objects[-1]]
@@ -98,7 +106,8 @@ def examine(options, name, problems):
     missed = [line for line in done.stdout.splitlines() if line.startswith("MISSED")]
     seconds = time.monotonic() - started
     if name is None:
-        return done.returncode == 0, f"unchanged: exit status {done.returncode} after {seconds:.0f} s\n{done.stdout[-2000:] if done.returncode else ''}"
+        output = done.stdout[-2000:] if done.returncode else ""
+        return done.returncode == 0, f"unchanged: exit status {done.returncode} after {seconds:.0f} s\n{output}"
     first = missed[0][:150] if missed else done.stderr[-300:]
     return done.returncode == 1, f"{name}: exit status {done.returncode}, {len(missed)} bounds missed: {first}"
 
