@@ -13,7 +13,7 @@ struct step_ends {
     using event_values = vec<R, n_event<Model>>;
 
     const inputs<Model, R>& p;  // what the event functions read beside t and y
-    R t, h, t1;  // h = t1 - t, without the rounding of t1
+    R t, h, t1;                 // h = t1 - t, without the rounding of t1
     state y, y1, slope, slope1;
     event_values g, g1;  // of the event functions
 
