@@ -40,7 +40,7 @@ struct step : myriad::inputs<thrown, double>, myriad::detail::step_ends<thrown, 
         slope = {1 - from}, slope1 = {1 - to};
         g = myriad::detail::evaluate_events<thrown>(t, y, p);
         g1 = myriad::detail::evaluate_events<thrown>(t1, y1, p);
-        for (auto& one : event) one = {.tolerance = 1e-9, .rising = true, .falling = true, .stop_after = 0};
+        for (auto& one : event) one = {.tolerance = 1e-9, .stop_after = 0};
     }
     /// The crossings between the signs at both ends, but for those that are left out.
     auto first(values side) const {

@@ -25,6 +25,7 @@ struct event_locator {
     using follower = side_follower<Model, Method, S>;
     using values = vec<S, m>;  // of the event functions in all lanes
     using reals = vec<R, m>;   // in one
+    using masks = mask_set<mask, m>;
     using flags = mask_set<bool, m>;
     using ends_of_step = step_ends<Model, R>;
     using trial_type = trial_step<Method, S, n>;
@@ -54,19 +55,18 @@ struct event_locator {
         } else {
             events.clear();
         }
-        mask busy = e.locating | e.open.any_of() | e.on_jump.any_of() | mask(args.sub_samples > 1);
-        mask within = mask(false);
-        vec<mask, m> over, under;
+        masks crossed, beyond;  // its tolerance, on the other side and on the one that the function was on
+        crossed.clear();
+        beyond.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            over[j] = g1[j] > S(args.event[j].tolerance);
-            under[j] = g1[j] < S(-args.event[j].tolerance);
-            const mask above = e.above[j], below = !above;
-            busy = busy | (above & under[j] & mask(args.event[j].falling)) |
-                   (below & over[j] & mask(args.event[j].rising));
-            within = within | !(over[j] | under[j]);
+            const S g = e.above.signed_by(j, g1[j]), tolerance = S(args.event[j].tolerance);
+            crossed.set(j, g < -tolerance);
+            beyond.set(j, g > tolerance);
         }
-        busy = accepted & (busy | (sides.s.final_step & within));
+        const masks asked = (e.above & masks::from_bits(args.falling)) | (~e.above & masks::from_bits(args.rising));
+        mask busy = e.locating | (e.open | e.on_jump | (crossed & asked)).any_of() | mask(args.sub_samples > 1);
+        busy = accepted & (busy | (sides.s.final_step & !(crossed | beyond).all_of()));
         const mask follow = accepted & !busy;
         if (MYRIAD_UNLIKELY(any(busy))) {
             if constexpr (is_pack<S>) {
@@ -79,11 +79,8 @@ struct event_locator {
                 if (look_closer(0, ends_of(trial, t1, g1), events) == trial_outcome::is_redone) accepted = false;
             }
         }
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            e.above.set(j, (e.above[j] & !(follow & under[j])) | (follow & over[j]));
-            e.left.set(j, e.left[j] | (follow & (over[j] | under[j])));
-        }
+        e.above = e.above ^ crossed.in(follow);
+        e.left = e.left | (crossed | beyond).in(follow);
     }
 
 private:
@@ -117,12 +114,10 @@ private:
         step.y = get_lanes<R>(s.data.y, i);
         step.y1 = get_lanes<R>(ends.y, i);
         step.slope = get_lanes<R>(ends.slope_start, i);
-        step.g = detail::evaluate_events<Model>(step.t, step.y, p);
         // Not those of the pack, which may round otherwise than what they are compared with.
         step.g1 = is_pack<S> ? detail::evaluate_events<Model>(step.t1, step.y1, p) : get_lanes<R>(ends.g, i);
         sides.settle_open_sides(i, step);
 
-        const bool locating = get_lane(e.locating, i), final_step = get_lane(s.final_step, i);
         const bool scans = args.sub_samples > 1;
         reals side;
         flags crossed;
@@ -132,32 +127,41 @@ private:
         for (int j = 0; j < m; ++j) {
             side[j] = sides.side_of(j, i);
             within = within || abs(step.g1[j]) <= args.event[j].tolerance;
-            if (e.on_jump.get(j, i)) step.g[j] = copysign(R(infinity_of<R>), side[j]);
             crossed.set(j, sides.crosses(j, side[j], step.g1[j]) && !sides.is_at_jump(j, i, step.h));
         }
-        if (crossed.any_of() || locating || scans || (final_step && within)) {
+        const bool locating = get_lane(e.locating, i), is_last = get_lane(s.final_step, i) && within;
+        if (scans || crossed.any_of() || (locating ? !arrival_of(i, step, side).is_plain() : is_last)) {
             if constexpr (Method::first_same_as_last) {
                 step.slope1 = get_lanes<R>(ends.slope_end, i);
             } else {
                 step.slope1 = detail::evaluate_rhs<Model>(step.t1, step.y1, p);
                 add_to_count(s.extra_evaluations, i);
             }
-            R low = R(0), high = R(1);
-            if (scans) crossed = scan(i, step, side, low, high);
-            if (crossed.any_of()) {
-                begin_or_shorten(i, step, side, crossed, low, high, events);
-                return trial_outcome::is_redone;
-            }
-            if (locating) {
-                if (arrive(i, step, side, events) == trial_outcome::is_redone) return trial_outcome::is_redone;
-            } else if (final_step && within) {
-                end_on_root(i, step, side, events);
-            }
+        }
+        R low = R(0), high = R(1);
+        if (MYRIAD_UNLIKELY(scans)) crossed = scan(i, step, side, low, high);
+        if (crossed.any_of()) {
+            know_start(i, step, side);
+            begin_or_shorten(i, step, side, crossed, low, high, events);
+            return trial_outcome::is_redone;
+        }
+        if (locating) {
+            if (arrive(i, step, side, events) == trial_outcome::is_redone) return trial_outcome::is_redone;
+        } else if (is_last) {
+            know_start(i, step, side);
+            end_on_root(i, step, side, events);
         }
         sides.follow(i, step, side);
         return trial_outcome::stands;
     }
 
+    /// The event functions at the start of the step; beyond a jump that no step has passed yet, as far away as can be.
+    MYRIAD_FUNCTION void know_start(int i, ends_of_step& step, const reals& side) const {
+        step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j)
+            if (sides.e.on_jump.get(j, i)) step.g[j] = copysign(R(infinity_of<R>), side[j]);
+    }
     /// Looks at `sub_samples` points of the step for the first that shows a crossing, follows the sides up to there,
     /// and makes [low, high] the part of the step that holds it.
     MYRIAD_FUNCTION flags scan(int i, const ends_of_step& step, reals& side, R& low, R& high) {
@@ -217,14 +221,39 @@ private:
         const bool here = redo.length == R(0);
         set_lane(sides.e.locating, i, !here);
         if (!here) return;
-        const reals slope = step.slopes();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool near = abs(step.g[j]) <= args.event[j].tolerance;
             const bool happens = redo.target == j || (redo.crossed[j] && (near || redo.narrow));
-            events.put(j, i, happens, step.g[j], slope[j]);
+            events.put(j, i, happens, step.g[j]);
         }
         stepping<Model, Method, S>{args, s}.resume(i, redo.resume);
+    }
+
+    /// Where a redone step has ended that did not cross.
+    struct arrival {
+        R gap, tolerance;  // of the function that it is redone to
+        bool others;       // crossed too, in the trial before
+        bool all_left;     // no function is still where its event last fired
+
+        MYRIAD_FUNCTION bool is_close() const { return abs(gap) <= R(0.1) * tolerance; }
+        /// Nothing but the event itself happens here.
+        MYRIAD_FUNCTION bool is_plain() const { return is_close() && !others && all_left; }
+    };
+    MYRIAD_FUNCTION arrival arrival_of(int i, const ends_of_step& step, const reals& side) const {
+        const auto& redo = sides.memory_of(i).redo;
+        arrival reached{R(0), R(0), false, true};
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            reached.all_left = reached.all_left && sides.e.left.get(j, i);
+            if (redo.target == j) {
+                reached.gap = side[j] * step.g1[j];
+                reached.tolerance = sides.args.event[j].tolerance;
+            } else {
+                reached.others = reached.others || redo.crossed[j];
+            }
+        }
+        return reached;
     }
 
     /// A redone step that ended before its crossing: within the tolerance its events have happened; else it goes
@@ -233,33 +262,29 @@ private:
         const auto& args = sides.args;
         auto& e = sides.e;
         auto& redo = sides.memory_of(i).redo;
-        const reals slope = step.slopes1();
-        R gap = R(0), approach = R(0), tolerance = R(0);
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            if (redo.target != j) continue;
-            gap = side[j] * step.g1[j];
-            approach = side[j] * slope[j];
-            tolerance = args.event[j].tolerance;
-        }
-        const R guess = step.h - gap * reciprocal(approach);
+        const arrival reached = arrival_of(i, step, side);
         const bool narrow = redo.is_between(step.h);
-        bool further = gap > tolerance && !narrow && redo.tries < redo.most_trials;
-        if (further) {
-            redo.lengthen(step.h, guess);
-        } else {
-            further = abs(gap) <= tolerance && abs(gap) > R(0.1) * tolerance && redo.improve(step.h, guess, gap > R(0));
+        reals slope = step.g1, middle = step.g1;
+        if (!reached.is_plain()) {
+            slope = step.slopes1();
+            if (!reached.all_left) middle = step.values_at(R(0.5));
         }
-        if (further) {
-            add_to_count(sides.s.located, i);
-            return trial_outcome::is_redone;
-        }
-        reals middle = step.g1;
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            if (!e.left.get(j, i)) {
-                middle = step.values_at(R(0.5));
-                break;
+        if (!reached.is_close()) {
+            R approach = R(0);
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j)
+                if (redo.target == j) approach = side[j] * slope[j];
+            const R guess = step.h - reached.gap * reciprocal(approach);
+            const bool short_of_it = reached.gap > reached.tolerance;
+            bool further = short_of_it && !narrow && redo.tries < redo.most_trials;
+            if (further) {
+                redo.lengthen(step.h, guess);
+            } else {
+                further = abs(reached.gap) <= reached.tolerance && redo.improve(step.h, guess, reached.gap > R(0));
+            }
+            if (further) {
+                add_to_count(sides.s.located, i);
+                return trial_outcome::is_redone;
             }
         }
         const bool timeless = sides.is_timeless(i, step.h);
@@ -269,8 +294,8 @@ private:
             const bool heads = abs(step.g1[j]) <= near && side[j] * slope[j] * step.h < R(0);
             const bool jumps = narrow && side[j] * step.g1[j] > near;
             const bool happens = redo.target == j || (redo.crossed[j] && (heads || jumps));
-            events.put(j, i, happens, step.g1[j], slope[j]);
-            if (!timeless && !e.on_jump.get(j, i) && abs(middle[j]) > near) e.left.set(j, i, true);
+            events.put(j, i, happens, step.g1[j]);
+            if (!reached.all_left && !timeless && !e.on_jump.get(j, i) && abs(middle[j]) > near) e.left.set(j, i, true);
         }
         set_lane(e.locating, i, false);
         stepping<Model, Method, S>{args, sides.s}.resume(i, redo.resume);
@@ -289,7 +314,7 @@ private:
             const R last_speed = (side[j] * step.g[j] - g) / abs(step.h);
             const bool at_zero = g <= R(0) || g <= (speed < last_speed ? speed : last_speed) * rounding;
             const bool near = abs(g) <= sides.args.event[j].tolerance;
-            events.put(j, i, sides.is_asked(j, side[j]) && near && speed > R(0) && at_zero, step.g1[j], slope[j]);
+            events.put(j, i, sides.is_asked(j, side[j]) && near && speed > R(0) && at_zero, step.g1[j]);
         }
     }
 

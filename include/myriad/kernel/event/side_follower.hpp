@@ -88,80 +88,35 @@ struct side_follower {
         }
     }
 
-    /// Before the actions of events: whether a function right before a jump is heading for it, which its slope, zero,
-    /// does not tell. It is not where a flight is too short for the resolution of t.
-    MYRIAD_FUNCTION void aim(int i, fired& events) {
-        bool jumps = false;
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) jumps = jumps || fires_at_jump(j, i, events);
-        if (!jumps) return;
-        const reals g = look_ahead(i, s.slope_of(i));
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            if (!fires_at_jump(j, i, events)) continue;
-            const R side = side_of(j, i);
-            set_lane(events.slope[j], i, (g[j] * side > R(0) ? side : -side) * sign_of(get_lane(s.h, i)));
-        }
-    }
-
-    /// Decides on which sides the functions are after the actions of events. One that fired is on the side it is
-    /// heading for. If its slope is zero, it rests on the side it came from if an action changed it, and has passed if
-    /// none did. If it was still moving away when it fired, as in a flight too short for the resolution of the state,
-    /// an action that turned it round must not send it through the surface. One that jumps fired right before the jump:
-    /// a look ahead tells whether it is about to pass. The same holds for one that fired at a jump earlier, as this
-    /// action may have moved the state.
-    MYRIAD_FUNCTION void settle(int i, const fired& events) {
-        const R sense = sign_of(get_lane(s.h, i));
-        reals g = get_lanes<R>(events.value, i), slope = get_lanes<R>(events.slope, i);
-        bool known = !get_lane(events.changed, i);
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) known = known && !e.on_jump.get(j, i) && !fires_at_jump(j, i, events);
-        state along;  // the slope of the state, where it is needed
-        if (!known) {
-            along = s.slope_of(i);
-            const auto& p = inputs_of(i);
-            const R t = get_lane(s.now(), i);
-            const state y = get_lanes<R>(s.data.y, i);
-            g = detail::evaluate_events<Model>(t, y, p);
-            slope = detail::event_slopes<Model>(t, y, along, p);
-        }
-        flags at_jump;
-        at_jump.clear();
+    /// Decides on which sides the functions are after the actions of events, which found the lanes as in `before`. One
+    /// that fired is on the side it is heading for. If its slope is zero, it rests on the side it came from if an
+    /// action changed it, and has passed if none did. If it was still moving away when it fired, as in a flight too
+    /// short for the resolution of the state, an action that turned it round must not send it through the surface. One
+    /// that jumps fired right before the jump: a look ahead tells whether it is about to pass. The same holds for one
+    /// that fired at a jump earlier, as this action may have moved the state.
+    MYRIAD_FUNCTION void settle(int i, const fired& events, const lane_data<Model, S>& before) {
+        bool passes = !get_lane(events.changed, i);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool fires = events.which.get(j, i), waits = !fires && e.on_jump.get(j, i);
-            const bool beyond = abs(g[j]) > args.event[j].tolerance;
-            if (g[j] != g[j]) set_lane(e.undefined, i, true);
-            if (waits) {
-                at_jump.set(j, beyond);
-                e.on_jump.set(j, i, false);
-                put_side(j, i, beyond ? sign_of(g[j]) : R(0));
-            } else if (fires) {
-                const R before = get_lane(events.slope[j], i), from = side_of(j, i), ahead = sign_of(slope[j]) * sense;
-                const bool moved = g[j] != get_lane(events.value[j], i);
-                const bool acted = moved || slope[j] != before;
-                const bool unresolved = from * sign_of(before) * sense > R(0);
-                const bool rests = ahead == R(0) && !e.left.get(j, i);
-                at_jump.set(j, (moved || !unresolved) && beyond);
-                R side = ahead;
-                if (unresolved || ahead == R(0)) side = acted || rests ? from : -from;
-                if (moved && beyond) side = sign_of(g[j]);
-                e.on_jump.set(j, i, false);
-                e.left.set(j, i, moved && beyond);
-                put_side(j, i, side);
-            } else if (beyond) {
-                e.left.set(j, i, e.left.get(j, i) || g[j] != get_lane(events.value[j], i));
-            }
+            const bool settled = e.left.get(j, i) && !e.open.get(j, i) && !fires_at_jump(j, i, events);
+            passes = passes && !e.on_jump.get(j, i) && (!events.which.get(j, i) || settled);
         }
-        if (MYRIAD_UNLIKELY(!known && at_jump.any_of())) look_beyond(i, at_jump, g, along);
+        if (!passes) return settle_with_care(i, events, before);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            if (!events.which.get(j, i)) continue;
+            e.above.set(j, i, !e.above.get(j, i));
+            e.left.set(j, i, false);
+        }
     }
 
     /// What the event functions of lane i read beside t and y.
-    MYRIAD_FUNCTION decltype(auto) inputs_of(int i) const {
+    MYRIAD_FUNCTION decltype(auto) inputs_of(int i) const { return inputs_of(i, s.data); }
+    MYRIAD_FUNCTION decltype(auto) inputs_of(int i, const lane_data<Model, S>& at) const {
         if constexpr (is_pack<S>) {
-            return detail::extract_lane(s.data, i);
+            return detail::extract_lane(at, i);
         } else {
-            return static_cast<const inputs<Model, S>&>(s.data);
+            return static_cast<const inputs<Model, S>&>(at);
         }
     }
     /// +1, -1, or 0 where the side is not yet known.
@@ -172,7 +127,8 @@ struct side_follower {
     }
     /// Whether event j is to fire where its function crosses from the given side.
     MYRIAD_FUNCTION bool is_asked(int j, R side) const {
-        return (side > R(0) && args.event[j].falling) || (side < R(0) && args.event[j].rising);
+        const std::uint32_t asked = side > R(0) ? args.falling[j / 32] : side < R(0) ? args.rising[j / 32] : 0u;
+        return ((asked >> (j % 32)) & 1u) != 0;
     }
     /// Whether a function that was on the given side has crossed, by its value g.
     MYRIAD_FUNCTION bool crosses(int j, R side, R g) const {
@@ -224,6 +180,75 @@ private:
     MYRIAD_FUNCTION bool fires_at_jump(int j, int i, const fired& events) const {
         return events.which.get(j, i) && abs(get_lane(events.value[j], i)) > args.event[j].tolerance;
     }
+    /// Slopes of the event functions of lane i along the solution, from the data `at`; of a function right before a
+    /// jump, where its slope is zero, a number that tells whether it is heading for the jump. It is not where a flight
+    /// is too short for the resolution of t.
+    MYRIAD_FUNCTION reals headings(int i, const lane_data<Model, S>& at, const fired& events) {
+        const state along = s.slopes.of_lane(i, s.now(), at, s.extra_evaluations);
+        const auto& p = inputs_of(i, at);
+        reals slope = detail::event_slopes<Model>(get_lane(s.now(), i), get_lanes<R>(at.y, i), along, p);
+        bool jumps = false;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) jumps = jumps || fires_at_jump(j, i, events);
+        if (!jumps) return slope;
+        const reals g = look_ahead(i, at, along);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            if (!fires_at_jump(j, i, events)) continue;
+            const R side = side_of(j, i);
+            slope[j] = (g[j] * side > R(0) ? side : -side) * sign_of(get_lane(s.h, i));
+        }
+        return slope;
+    }
+    /// `settle` for a lane in which a hook has changed what the event functions read, or a function that fired had not
+    /// left its surface, or jumps.
+    MYRIAD_FUNCTION void settle_with_care(int i, const fired& events, const lane_data<Model, S>& found) {
+        const R sense = sign_of(get_lane(s.h, i));
+        const reals before = headings(i, found, events);
+        reals g = get_lanes<R>(events.value, i), slope = before;
+        bool known = !get_lane(events.changed, i);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) known = known && !e.on_jump.get(j, i) && !fires_at_jump(j, i, events);
+        state along;  // the slope of the state, where it is needed
+        if (!known) {
+            along = s.slope_of(i);
+            const auto& p = inputs_of(i);
+            const R t = get_lane(s.now(), i);
+            const state y = get_lanes<R>(s.data.y, i);
+            g = detail::evaluate_events<Model>(t, y, p);
+            slope = detail::event_slopes<Model>(t, y, along, p);
+        }
+        flags at_jump;
+        at_jump.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool fires = events.which.get(j, i), waits = !fires && e.on_jump.get(j, i);
+            const bool beyond = abs(g[j]) > args.event[j].tolerance;
+            if (g[j] != g[j]) set_lane(e.undefined, i, true);
+            if (waits) {
+                at_jump.set(j, beyond);
+                e.on_jump.set(j, i, false);
+                put_side(j, i, beyond ? sign_of(g[j]) : R(0));
+            } else if (fires) {
+                const R from = side_of(j, i), ahead = sign_of(slope[j]) * sense;
+                const bool moved = g[j] != get_lane(events.value[j], i);
+                const bool acted = moved || slope[j] != before[j];
+                const bool unresolved = from * sign_of(before[j]) * sense > R(0);
+                const bool rests = ahead == R(0) && !e.left.get(j, i);
+                at_jump.set(j, (moved || !unresolved) && beyond);
+                R side = ahead;
+                if (unresolved || ahead == R(0)) side = acted || rests ? from : -from;
+                if (moved && beyond) side = sign_of(g[j]);
+                e.on_jump.set(j, i, false);
+                e.left.set(j, i, moved && beyond);
+                put_side(j, i, side);
+            } else if (beyond) {
+                e.left.set(j, i, e.left.get(j, i) || g[j] != get_lane(events.value[j], i));
+            }
+        }
+        if (MYRIAD_UNLIKELY(!known && at_jump.any_of())) look_beyond(i, at_jump, g, along);
+    }
+
     MYRIAD_FUNCTION void begin_lane(int i) {
         const auto& p = inputs_of(i);
         const reals g = detail::evaluate_events<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), p);
@@ -255,17 +280,17 @@ private:
         return fma(fraction, abs(h_next), R(64) * epsilon_of<R> * abs(get_lane(s.now(), i)));
     }
     /// The event functions a little ahead: beyond a jump which a step was located to, if the state is heading for it.
-    MYRIAD_FUNCTION reals look_ahead(int i, const state& slope) const {
+    MYRIAD_FUNCTION reals look_ahead(int i, const lane_data<Model, S>& at, const state& slope) const {
         const R t = get_lane(s.now(), i);
-        const R ahead = copysign(past_jump(i, get_lane(s.data.h_next, i)), get_lane(s.data.t_end, i) - t);
-        state y = get_lanes<R>(s.data.y, i);
+        const R ahead = copysign(past_jump(i, get_lane(at.h_next, i)), get_lane(at.t_end, i) - t);
+        state y = get_lanes<R>(at.y, i);
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) y[c] = fma(ahead, slope[c], y[c]);
-        return detail::evaluate_events<Model>(t + ahead, y, inputs_of(i));
+        return detail::evaluate_events<Model>(t + ahead, y, inputs_of(i, at));
     }
     /// Puts functions, whose values here are g, on the side that they have there.
     MYRIAD_FUNCTION void look_beyond(int i, const flags& at_jump, const reals& g, const state& slope) {
-        const reals there = look_ahead(i, slope);
+        const reals there = look_ahead(i, s.data, slope);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             if (!at_jump[j] || !(abs(there[j]) > args.event[j].tolerance)) continue;

@@ -17,7 +17,7 @@ struct step_ends {
     state y, y1, slope, slope1;
     event_values g, g1;  // of the event functions
 
-    MYRIAD_FUNCTION explicit step_ends(const inputs<Model, R>& given) : p(given) {}
+    MYRIAD_FUNCTION explicit step_ends(const inputs<Model, R>& given) : p(given), slope1{}, g{} {}
 
     /// The event functions at the fraction theta of the step, on the cubic through its ends.
     MYRIAD_FUNCTION event_values values_at(R theta) const {

@@ -69,10 +69,7 @@ struct hook_driver {
         if (!MYRIAD_UNLIKELY(any(acting))) return;
         if constexpr (has_after_event<Model>) {
             const lane_data<Model, S> before = s.data;
-            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA {
-                sides.aim(i, events);
-                act_on_lane(i);
-            });
+            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
             const mask changed = acting & differs(before, s.data);
             if (any(changed)) {
                 events.changed = events.changed | changed;
@@ -80,10 +77,13 @@ struct hook_driver {
                 check_finite(changed, before.y);
                 sides.restart(changed, events.value, events);
             }
+            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { sides.settle(i, events, before); });
         } else {
-            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
+            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA {
+                act_on_lane(i);
+                sides.settle(i, events, s.data);
+            });
         }
-        for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { sides.settle(i, events); });
     }
 
 private:

@@ -30,7 +30,6 @@ constexpr int at_least_one(int n) { return n > 0 ? n : 1; }
 template <class R>
 struct event_arguments {
     R tolerance;              // unit of the event function
-    bool rising, falling;     // the crossings that are asked for
     std::int32_t stop_after;  // detections that end the phase; 0: none
 };
 
@@ -120,6 +119,8 @@ struct kernel_arguments {
     R relative_tolerance[n_state<Model>];
     R absolute_tolerance[n_state<Model>];
     event_arguments<R> event[at_least_one(n_event<Model>)];
+    // The crossings that are asked for, bit j % 32 of word j / 32 for event j.
+    std::uint32_t rising[n_event<Model> / 32 + 1], falling[n_event<Model> / 32 + 1];
     std::int32_t sub_samples;         // points of the interpolant looked at per step
     std::int32_t accumulation_limit;  // actions of one event without leaving its tolerance
     record_arguments<Model, R> record;
