@@ -34,7 +34,7 @@ struct adaptive_stepping {
     MYRIAD_FUNCTION void store(int i) const { args.h_next[s.instance[i]] = get_lane(s.data.h_next, i); }
 
     MYRIAD_FUNCTION void choose_step(int i, std::int32_t phase) {
-        // A method with fixed steps leaves none to carry on with.
+        // A method with fixed steps leaves no step size to carry on with.
         const bool restart = !args.carry_step || phase == 0 || get_lane(s.data.h_next, i) == R(0);
         if (restart) set_lane(s.data.h_next, i, args.step);
     }
