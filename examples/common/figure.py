@@ -14,7 +14,7 @@ import csv
 import os
 import sys
 
-# Of all pictures, and of those with ticks all around.
+# For all pictures, and for those with ticks on all sides.
 PLAIN = {"font.family": "serif", "font.serif": ["STIXGeneral", "DejaVu Serif"], "mathtext.fontset": "stix",
          "axes.linewidth": 0.6, "xtick.direction": "in", "ytick.direction": "in"}
 FRAMED = {**PLAIN, "font.size": 9, "axes.titlesize": 11, "xtick.top": True, "ytick.right": True,

@@ -63,7 +63,7 @@ def draw_map(numpy, axis, table, instance):
     """Temperature over time and radius of one instance, in its last recorded period of sixteen phases."""
     rows = numpy.flatnonzero(table["instance"] == instance)[-16:]
     t = numpy.linspace(0, 1, len(rows) + 1)
-    rows = numpy.append(rows[-1], rows)  # it begins as it ends
+    rows = numpy.append(rows[-1], rows)  # the period closes
     depth = numpy.linspace(0, 1, DEPTHS)
     r = 1 + (OUTER - 1) * depth**2
     temperature = numpy.array([table[f"T_{k}"][rows] for k in range(DEPTHS)])

@@ -18,7 +18,7 @@ import figure as figures  # pylint: disable=wrong-import-position
 COLUMNS = ("instance", "pa1_bar", "pa2_bar", "f1_kHz", "f2_kHz", "expansion", "compression", "collapse_us", "winding",
            "status")
 
-# Column, label of the colours, their map and scale: a row of planes each.
+# Column, label of the colours, colour map and scale: one row of planes each.
 ROWS = (
     ("expansion", r"$(R_\mathrm{max} - R_E)/R_E$ (–)", "viridis", "root"),
     ("compression", r"$R_\mathrm{max}/R_\mathrm{min}$ (–)", "inferno", "log"),
@@ -26,7 +26,7 @@ ROWS = (
     ("winding", "winding number (–)", "plasma", "log"),
 )
 TICKS = (20, 100, 1000)
-COLOURS = 24  # of each map: as many as can be told apart, and a small file
+COLOURS = 24  # per map: as many as can be told apart, for a small file
 
 
 def scale_of(pyplot, numpy, values, scale):

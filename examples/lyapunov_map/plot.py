@@ -15,7 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "common"
 import figure as figures  # pylint: disable=wrong-import-position
 
 COLUMNS = ("k", "B", "lambda_hand", "lambda_library", "status")
-SHOWN = 0.25  # exponents beyond have the colours of the ends
+SHOWN = 0.25  # larger exponents get the colours of the ends
 
 
 def draw(pyplot, numpy, table, _comments):

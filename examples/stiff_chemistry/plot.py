@@ -35,7 +35,7 @@ def draw(pyplot, numpy, table, comments):
             (axes[0], period, "period, in decay times of the catalyst", "viridis", "Period of the oscillation"),
             (axes[1], table["steps"], f"trial steps{cycles}", "cividis", "Cost")):
         mesh = axis.pcolormesh(f_edges, epsilon_edges, values.reshape(shape), cmap=colours, rasterized=True,
-                               # a few that are not done have other periods
+                               # a few that did not finish have other periods
                                norm=LogNorm(*numpy.nanquantile(values,
                                                                (0.002, 1))) if numpy.isfinite(values).any() else None)
         if min(shape) > 1:
