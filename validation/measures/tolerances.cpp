@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Errors over a range of tolerances. What bounds them: every accepted step adds an error below the tolerance, since the
-// solution that goes on is better than the one that is estimated (or a few tolerances, where stability and not accuracy
-// bounds the steps), and a rounding; each event adds what it was located to; and each of these may have grown until it
-// is looked at by the problem's conditioning.
+// Errors over a range of tolerances, and their bounds: every accepted step adds an error below the tolerance, since the
+// solution is more accurate than the one whose error is estimated (or a few tolerances, where stability and not
+// accuracy bounds the steps), and a rounding; each event adds its location error; and each of these may have grown by
+// the problem's conditioning when it is measured.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -28,7 +28,7 @@ constexpr const char* of_tolerance =
 constexpr const char* of_halving =
     "twice the difference to half the step + growth of errors x roundings + error of the reference";
 
-/// The other backend's results, or those it had.
+/// The other backend's results, or its recorded ones.
 void compare_backends(session& s, const problem& p, const method_entry& m, double setting, const char* other,
                       const std::vector<double>& allowed, const outcome& here,
                       const std::map<std::size_t, recorded_result>& there) {
@@ -57,8 +57,8 @@ std::map<std::size_t, recorded_result> as_recorded(const outcome& o) {
     return results;
 }
 
-/// One run; returns the median error of the end states. `finer`: for fixed steps, the same with steps half as long,
-/// whose difference tells the error: 15/16 of it for order four, and half of it at least.
+/// One run; returns the median error of the end states. `finer`: for fixed steps, the same run with steps half as long,
+/// whose difference gives the error: 15/16 of it for order four, and at least half of it.
 double measure_run(session& s, const problem& p, const method_entry& m, const references& r, const char* kind,
                    double setting, double tolerance, myriad::options o, const outcome* finer = nullptr) {
     const subject about = s.about(p, m, setting);
@@ -84,7 +84,7 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
         for (std::size_t a = 0; a < known.accessory.size(); ++a) {
             const bool time =
                 std::find(p.event_times.begin(), p.event_times.end(), static_cast<int>(a)) != p.event_times.end();
-            // a time is also rounded itself
+            // a time is itself rounded too
             (time ? event : accessory)
                 .add(std::abs(is.accessory[a] - known.accessory[a]),
                      std::max(1.0, c.accessory[a]) * made + m.eps * std::abs(known.accessory[a]) +
@@ -133,7 +133,7 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
             error = larger(error, distance(sampled.instances[i].samples[k], r.known[i].samples[k]));
         samples.add(error, bound);
     }
-    // Of others, the order is measured with fixed steps.
+    // For others, the order is measured with fixed steps.
     s.rows.add(about, "samples", samples.value,
                m.adaptive() && m.samples_keep_tolerance() ? bounds::at_most(samples.bound) : bounds::none(),
                "as for the end state, as the interpolant is as good as the steps");
