@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Command line and output of the benchmark: one CSV row per case and implementation, below a header that says what was
-// measured, how and where. Exit status 0; 1 if a promise is broken, instances failed or results differ; 2 for an error.
+// Command line and output of the benchmark: one CSV row per case and implementation, below a header with the work, the
+// method and the machine. Exit status 0; 1 if a promise is broken, instances failed or results differ; 2 for an error.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -40,7 +40,7 @@ std::string number(double value, const char* format) {
     std::snprintf(text, sizeof text, format, value);
     return text;
 }
-/// A figure that there may not be: 0 is none.
+/// A figure that may be missing: 0 is none.
 std::string optional(double value, const char* format) { return value > 0 ? number(value, format) : ""; }
 
 void write_header(const settings& chosen) {
@@ -72,7 +72,7 @@ void write_header(const settings& chosen) {
         "ratio_to_odeint,ratio_to_cvode,max_difference,median_difference,accepted_steps,idle_lanes,fma_peak_share");
 }
 
-/// Returns whether all instances of all implementations were integrated, and to the same results.
+/// Returns whether all implementations integrated all instances, with the same results.
 bool run_case(const benchmark_case& what, const measure_options& options) {
     bool all_well = true;
     double fma_per_nanosecond = 0;

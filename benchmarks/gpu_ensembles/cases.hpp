@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The cases of the benchmark: what each integrates, at which sizes, and how its results are judged.
+// The cases of the benchmark: their equations, sizes, and checks of results.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ benchmark_case duffing_events_case();
 std::vector<benchmark_case> method_cases();
 benchmark_case schedule_case();
 
-/// A value that the package of the paper gives, for the same work.
+/// A value published with the paper's package, for the same work.
 struct check_value {
     std::string name;
     double value, expected, allowed;
