@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The common parts of models of the Keller-Miksis bubble. Their right-hand sides round and cost differently, as the
-// programs that use them study. examples/keller_miksis/constants.hpp has the sources and computes the constants.
+// The common parts of models of the Keller-Miksis bubble. Their right-hand sides round and cost differently, which
+// those programs compare. examples/keller_miksis/constants.hpp has the sources and computes the constants.
 #pragma once
 
 #include <myriad/model.hpp>
