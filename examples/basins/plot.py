@@ -29,7 +29,7 @@ def shade(numpy, hue, depth):
 
 
 def draw(pyplot, numpy, table, _comments):
-    """Returns the figure: the plane of initial places, and three bars for the time."""
+    """Returns the figure: the plane of initial positions, and three bars for the time."""
     side, ends = figures.square_grid(table, "x", "y", "basins")
     magnet = table["magnet"].reshape(side, side).astype(int)
     t = table["t"].reshape(side, side)

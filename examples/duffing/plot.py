@@ -30,7 +30,7 @@ INK = "#10305a"
 
 
 def describe(table, comments):
-    """The line of parameters under the title; what the file does not tell is left out."""
+    """The line of parameters under the title, without those that the file does not state."""
     parts = [rf"$B = {table['B'][0]:.6g}$"]
     start = re.search(r"x\(0\) = ([-\d.e+]+), v\(0\) = ([-\d.e+]+)", comments)
     if start:

@@ -30,7 +30,7 @@ COLOURS = 24  # per map: as many as can be told apart, for a small file
 
 
 def scale_of(pyplot, numpy, values, scale):
-    """The scale of colours that all planes of a row share, without the outermost thousandth of the values."""
+    """The colour scale shared by all planes of a row, without the outermost thousandth of the values."""
     finite = values[numpy.isfinite(values)]
     if finite.size == 0:
         raise figures.PlotError("The file has no finite values to draw: every instance failed")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the map of Lyapunov exponents that the program `lyapunov_map` computed, and how far its two ways agree.
+"""Draws the map of Lyapunov exponents that the program `lyapunov_map` computed, and how well its two methods agree.
 
 Usage: plot.py CSV PNG
 

@@ -17,7 +17,7 @@ MAP_WIDTH = 0.02  # of the interval of c whose points are plotted together
 
 
 def density(axis, numpy, c, values, columns, rows):
-    """Draws how many points there are in each cell, darker where there are more; the axis covers all of them."""
+    """Draws the number of points in each cell, darker for more points; the axis covers all points."""
     low, high = figures.limits(numpy, values)
     counts, c_edges, value_edges = numpy.histogram2d(c, values, bins=(columns, rows),
                                                      range=((c.min(), c.max()), (low, high)))

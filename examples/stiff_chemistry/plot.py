@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the periods of the Oregonator that the program `stiff_chemistry` computed, and what they cost, over f and
-epsilon.
+"""Draws the periods of the Oregonator that the program `stiff_chemistry` computed, and their cost, over f and epsilon.
 
 Usage: plot.py CSV PNG
 """
@@ -17,7 +16,7 @@ COLUMNS = ("instance", "f", "epsilon", "period", "z_least", "z_largest", "growth
 
 
 def draw(pyplot, numpy, table, comments):
-    """Returns the figure: the period where there is an oscillation, and the steps of every instance."""
+    """Returns the figure: the period where the system oscillates, and the steps of every instance."""
     said = re.search(r"of cycle (\d+)", comments)
     cycles = f" in {said[1]} cycles" if said else ""
     f, epsilon = numpy.unique(table["f"]), numpy.unique(table["epsilon"])
