@@ -160,7 +160,7 @@ def read_report(report, names=None):
         elif properties:
             current = properties.group(1)
         elif memory and kernel:
-            # A function that was not inlined is charged to the kernel above it.
+            # A function that was not inlined counts towards the kernel above it.
             target = found[current] if current in found else found[kernel]
             target.stack += int(memory.group(1))
             target.spill += int(memory.group(2)) + int(memory.group(3))

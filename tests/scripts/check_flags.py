@@ -26,7 +26,7 @@ def shared_functions(build, nm, entries):
             continue
         target = build / words[words.index("-o") + 1]
         text = source.read_text(encoding="utf-8")
-        # A file with test cases has what Catch2 brings, and is compiled for one instruction set.
+        # A file with test cases contains Catch2's functions, and is compiled for one instruction set.
         if not target.exists() or "catch.hpp" in text or not re.search(r"^MYRIAD_INSTANTIATE", text, re.MULTILINE):
             continue
         seen += 1
@@ -34,7 +34,7 @@ def shared_functions(build, nm, entries):
                                  check=True).stdout
         for line in symbols.splitlines():
             name = re.match(r"[0-9a-f]+ W (.*)", line)
-            # Those of the kernels carry their instruction set; that of clang++ only ends the program.
+            # The kernels' names carry their instruction set; clang++'s own only ends the program.
             if name and not re.search(r"openmp_|instruction_set\)|__clang_call_terminate", name.group(1)):
                 wrong.append(f"{source} shares {name.group(1)}: put MYRIAD_FUNCTION before it")
     return seen, wrong

@@ -10,8 +10,8 @@ from pathlib import Path
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+(["<])([^">]+)[">]', re.MULTILINE)
 
-# What device code can do without, but for its constants and types, stays out of the kernel body. xsimd is the packs'
-# own.
+# Headers that device code does not need, except for their constants and types, stay out of the kernel body. xsimd
+# belongs to the packs.
 KERNEL_LIBRARY = {
     "array", "bit", "cmath", "concepts", "cstddef", "cstdint", "cstring", "iterator", "limits", "string_view",
     "type_traits", "utility", "xsimd/xsimd.hpp",
@@ -34,7 +34,7 @@ def layer(header):
     return folder[0] if folder and folder[0] in ("kernel", "host", "openmp", "cuda") else "public"
 
 
-# Which layers a header of each may include.
+# The layers that a header of each layer may include.
 BELOW = {
     "kernel": {"kernel"},
     "host": {"host", "kernel"},
