@@ -27,10 +27,10 @@ struct contest {
 
 struct benchmark_case {
     std::string name;
-    std::string work;        ///< what is integrated, for the header
-    std::string difference;  ///< what max_difference compares
+    std::string work;        ///< description of the work, for the header
+    std::string difference;  ///< quantities compared by max_difference
     double allowed_difference;
-    double tolerance, event_tolerance;  ///< of the table of times
+    double tolerance, event_tolerance;  ///< for the table of times
     int components, parameters;
     std::int64_t instances;
     int phases;

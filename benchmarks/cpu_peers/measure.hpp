@@ -10,7 +10,7 @@
 namespace cpu_peers {
 
 struct measure_options {
-    std::int64_t instances = 0;  ///< 0: as many as the case has, times instances_scale
+    std::int64_t instances = 0;  ///< 0: the case's number times instances_scale
     double instances_scale = 1;
     int repetitions = 7;
     int threads = 1;
@@ -24,7 +24,7 @@ struct measurement {
     std::int64_t instances = 0, accepted_steps = 0;
     std::int64_t by_ending[ending_count] = {};
     double milliseconds = 0;       ///< CPU time over threads, median of the repetitions
-    double wall_milliseconds = 0;  ///< by the clock on the wall, shortest of the repetitions
+    double wall_milliseconds = 0;  ///< wall time, shortest of the repetitions
     /// Median over repetitions of odeint's time over this one's; 0 if odeint did not run.
     double ratio_to_odeint = 0;
     double idle_share = 0;
@@ -33,7 +33,7 @@ struct measurement {
     double fma_peak_share = 0;
     double fma_per_nanosecond = 0;                 ///< that rate, for one core and batch; 0 if not measured
     double difference = 0, median_difference = 0;  ///< see benchmark_case::difference
-    std::int64_t compared = 0;                     ///< instances of which it is
+    std::int64_t compared = 0;                     ///< number of instances compared
 };
 
 /// The number of instances requested by the options.

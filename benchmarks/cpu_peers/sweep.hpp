@@ -19,7 +19,7 @@ struct sweep {
     int phases;
     int threads;
     double tolerance;        ///< of steps, relative and absolute; 0: fixed steps
-    double event_tolerance;  ///< of event functions; 0: there are none
+    double event_tolerance;  ///< of event functions; 0: no events
     const double* parameters;
     double* states;          ///< at the start on entry, at the end on return
     std::int64_t* accepted;  ///< accepted steps of each instance
@@ -30,8 +30,8 @@ struct sweep {
 struct outcome {
     double cpu_seconds = 0;  ///< of all threads
     double wall_seconds = 0;
-    int lanes = 1;          ///< instances side by side in one thread
-    double idle_share = 0;  ///< share of lane steps in which the lane had nothing to do
+    int lanes = 1;          ///< SIMD lanes: instances per thread at a time
+    double idle_share = 0;  ///< fraction of lane steps in which the lane was idle
 };
 
 using implementation_function = outcome (*)(const sweep&);

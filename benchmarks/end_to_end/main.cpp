@@ -288,7 +288,7 @@ int run(const settings& chosen) {
 
 int main(int argc, char** argv) {
     settings chosen;
-    CLI::App app("What an ensemble costs on a GPU beside its kernel");
+    CLI::App app("The cost of an ensemble on a GPU besides its kernel");
     app.add_option("--device", chosen.device, "Where to compute: auto, cpu, cpu:THREADS, cuda or cuda:NUMBER")
         ->capture_default_str();
     app.add_option("--instances-scale", chosen.instances_scale, "Factor to the large numbers of instances")

@@ -13,8 +13,8 @@ namespace gpu_ensembles {
 
 struct benchmark_case {
     std::string name;
-    std::string work;   ///< what is integrated, for the header
-    std::string error;  ///< what max_error is
+    std::string work;   ///< description of the work, for the header
+    std::string error;  ///< meaning of max_error
     double allowed_error;
     std::vector<std::int64_t> sizes;
     /// Measures all implementations at one size.

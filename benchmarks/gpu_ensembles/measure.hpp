@@ -23,7 +23,7 @@ struct measure_options {
 struct measurement {
     std::string implementation;
     std::int64_t instances = 0;
-    double kernel_ms = 0, end_to_end_ms = 0;  ///< medians, work not counted
+    double kernel_ms = 0, end_to_end_ms = 0;  ///< medians, without counting work
     double counting_kernel_ms = 0;            ///< of the run that counted the work
     std::int64_t accepted_steps = 0, located_steps = 0, rhs_evaluations = 0, failed = 0;
     double max_error = 0, median_error = 0;

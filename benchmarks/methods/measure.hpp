@@ -26,7 +26,7 @@ struct row {
     std::string study, method;
     std::int64_t instances;
     double tolerance;
-    double milliseconds;  ///< shortest run; on a GPU of the kernel, on the CPU of processor time
+    double milliseconds;  ///< shortest run: kernel time on a GPU, processor time on the CPU
     std::int64_t accepted, rejected, evaluations, failed;
     errors error;
 };

@@ -175,7 +175,7 @@ def write_tables(path, tables):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("tables", nargs="*", metavar="CSV", default=sorted(Path(__file__).parent.glob("*.csv")),
-                        help="what the program wrote, one file for each device (default: the files beside this one)")
+                        help="tables of the program, one file per device (default: the files next to this one)")
     parser.add_argument("--images", metavar="DIR", help="folder for the pictures")
     parser.add_argument("--into", metavar="FILE", help="Markdown file to write the tables into")
     arguments = parser.parse_args()

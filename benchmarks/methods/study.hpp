@@ -20,13 +20,13 @@ namespace methods {
 template <class Model>
 struct study {
     std::string name;
-    std::string work;             ///< what is integrated, for people
-    std::int64_t on_cpu, on_gpu;  ///< instances unless asked for others
+    std::string work;             ///< description of the work
+    std::int64_t on_cpu, on_gpu;  ///< default numbers of instances
     std::vector<double> tolerances;
     const char* reference;  ///< name of the method of the reference
     double reference_tolerance;
     std::vector<double>
-        scale;  ///< per component: errors are relative to max(scale, |y|), the error test's and those shown
+        scale;  ///< per component: both the error test and the reported errors are relative to max(scale, |y|)
     gpu_ensembles::problem<Model> (*at)(double tolerance);
     /// Describes what is wrong with results at that tolerance, of a run from a new ensemble; empty if nothing is.
     std::string (*complaint)(const myriad::ensemble<Model>&, double tolerance);

@@ -63,7 +63,7 @@ references measure_references(session& s, const problem& p) {
     s.rows.add(about, "reference against closed form or quadruple precision", largest(to_exact),
                bounds::at_most(allowed),
                p.closed_form_error > 0 ? "error of the collocation"
-                                       : "ten times what CVODE differs by from itself, or ten thousand steps");
+                                       : "ten times CVODE's difference from itself, or ten thousand steps");
     if (!p.event_times.empty() && largest(events) > 0)
         s.rows.add(about, "event times against closed form", largest(events), bounds::at_most(allowed),
                    "as for the end state");

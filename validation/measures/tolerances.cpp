@@ -26,7 +26,7 @@ struct worst {
 constexpr const char* of_tolerance =
     "growth of errors x (steps x (tolerance + rounding) + events x their tolerance) + error of the reference";
 constexpr const char* of_halving =
-    "twice the difference to half the step + growth of errors x roundings + error of the reference";
+    "twice the difference from half the step + growth of errors x roundings + error of the reference";
 
 /// The other backend's results, or its recorded ones.
 void compare_backends(session& s, const problem& p, const method_entry& m, double setting, const char* other,
@@ -43,9 +43,9 @@ void compare_backends(session& s, const problem& p, const method_entry& m, doubl
     }
     const std::string name = std::string("against ") + other;
     s.rows.add(s.about(p, m, setting), name + ": end state", end.value, bounds::at_most(end.bound),
-               "both are within the bound of the error, so their difference is within twice that");
+               "both are within the bound on the error, so their difference is within twice that");
     s.rows.add(s.about(p, m, setting), name + ": instances with other event counts", other_counts, bounds::at_most(0),
-               "no event is near to being missed");
+               "no event is close to being missed");
     s.rows.add(s.about(p, m, setting), name + ": steps", steps_here / steps_there, bounds::within(0.97, 1.03),
                "step sizes that differ in the fifth digit gain or lose a step here and there");
 }
@@ -107,7 +107,7 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
         s.rows.add(about, "accessories", accessory.value, bounds::at_most(accessory.bound), reason);
     if (!r.known[0].count.empty())
         s.rows.add(about, "instances with other event counts", other_counts, bounds::at_most(0),
-                   "no event is near to being missed");
+                   "no event is close to being missed");
     if (p.invariants) s.rows.add(about, "invariants", invariant.value, bounds::at_most(invariant.bound), reason);
     s.rows.add(about, "accepted steps", plain.sum(plain.accepted));
     s.rows.add(about, "rejected steps", plain.sum(plain.rejected));
@@ -136,7 +136,7 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
     // For others, the order is measured with fixed steps.
     s.rows.add(about, "samples", samples.value,
                m.adaptive() && m.samples_keep_tolerance() ? bounds::at_most(samples.bound) : bounds::none(),
-               "as for the end state, as the interpolant is as good as the steps");
+               "as for the end state, as the interpolant is as accurate as the steps");
     s.rows.add(about, "change of the end state by samples", moved.value, bounds::at_most(moved.bound),
                "samples change no bit of the steps");
     return median(errors);
