@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Compiles a CUDA file and checks what ptxas reports of each kernel against limits written in the file's comments.
+"""Compiles a CUDA file and checks ptxas' report on each kernel against limits written in the file's comments.
 
 A limit is a comment line
 
@@ -28,7 +28,7 @@ from pathlib import Path
 
 @dataclass
 class Resources:
-    """What ptxas reports of one kernel."""
+    """ptxas' report on one kernel."""
 
     stack: int = 0
     spill: int = 0
@@ -45,7 +45,7 @@ class Limit:
 
 
 class WrongLimit(Exception):
-    """A limit line that cannot be understood."""
+    """A malformed limit line."""
 
 
 def read_limits(source):
@@ -176,7 +176,7 @@ def plain(name):
 
 
 def matching(kernels, name):
-    """Names of the kernels that `name` means: itself, or all instances of the template that begin with its
+    """Names of the kernels that match `name`: itself, or all instances of the template that begin with its
     arguments."""
     return [kernel for kernel in kernels
             if plain(kernel) == plain(name) or ("<" not in name and kernel.split("<")[0] == name)

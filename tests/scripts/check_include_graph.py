@@ -19,7 +19,7 @@ KERNEL_LIBRARY = {
 
 
 def read_headers(roots):
-    """The headers of all include roots by the path that includes name them with, each with what it includes."""
+    """The headers of all include roots, by the path used in includes, each with its own includes."""
     headers = {}
     for root in roots:
         for path in sorted(root.rglob("*")):
@@ -45,7 +45,7 @@ BELOW = {
 
 
 def misplaced_includes(headers):
-    """What a header includes that its layer must not."""
+    """The includes of a header that its layer forbids."""
     for header, includes in headers.items():
         own = layer(header)
         for _, name in includes:
@@ -61,7 +61,7 @@ def misplaced_includes(headers):
 
 
 def folder_graph(headers):
-    """For each folder the folders that it includes, each with one include that shows it."""
+    """For each folder, the folders that it includes, each with one such include as an example."""
     graph = {}
     for header, includes in headers.items():
         folder = header.rpartition("/")[0]
