@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Teams of threads for kernels and the host's loops: OpenMP's, but never more threads than the system allows, threads
-// lost in a fork, or threads with too small a stack.
+// Teams of threads, for kernels and for the host's loops: OpenMP's, but no more threads than the system allows, none
+// lost in a fork, and none whose stack is too small.
 #pragma once
 
 #include <algorithm>

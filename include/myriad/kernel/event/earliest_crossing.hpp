@@ -18,8 +18,7 @@ struct located_crossing {
     std::int32_t event;  // whose function crosses there
 };
 
-/// The earliest of the events in `crossed`, by the fractions `fraction_of(j)`; of simultaneous ones, that of smallest
-/// index.
+/// The earliest of the events in `crossed`, by the fractions `fraction_of(j)`; of equal ones the first by index.
 template <class R, int m, class Fraction>
 MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, Fraction&& fraction_of) {
     located_crossing<R> first{R(2), 0};

@@ -14,7 +14,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 enum class kept_side : std::int8_t {
     unknown = 0,  // on the surface: the next phase takes the side that the function is heading for
     within = 1,   // within its tolerance, reached from this side
-    beyond = 2,   // beyond it: if the next phase begins within the tolerance, a hook or the user moved the state there
+    beyond = 2,   // beyond it: if the next phase begins within the tolerance, a hook or the host moved the state there
     on_jump = 3,  // it fired right before a jump: the next phase must find out on which side it begins
 };
 

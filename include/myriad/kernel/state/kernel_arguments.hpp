@@ -11,7 +11,7 @@
 namespace myriad {
 
 /// Where a GPU keeps the parameters that all instances share: the constant bank is fastest if all threads read the same
-/// value at once, shared memory if there are many, the cache if nothing else has room. `automatic` takes the constant
+/// value at once, shared memory if they are many, the cache if they fit nowhere else. `automatic` takes the constant
 /// bank up to 1 KiB, then shared memory as long as they fit.
 enum class shared_placement : std::uint8_t { automatic, constant_bank, shared_memory, cache };
 constexpr const char* name_of(shared_placement placement) {
