@@ -34,7 +34,7 @@ public:
     device_memory& operator=(const device_memory&) = delete;
     ~device_memory() { cudaFree(data_); }
 
-    /// Makes room for `bytes`. The message needs, unless `per_instance` is zero, the bytes per instance and those
+    /// Makes room for `bytes`. For the error message, unless `per_instance` is zero: the bytes per instance, and those
     /// already held for instances.
     void reserve(std::size_t bytes, std::size_t per_instance = 0, std::size_t held = 0) {
         if (bytes <= bytes_) return;

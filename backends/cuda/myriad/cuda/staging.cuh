@@ -110,7 +110,7 @@ public:
         for (std::size_t i = 0; i < std::min(pieces_.size(), buffers); ++i)
             check(ask(pieces_[i], buffers_[i]), "a download");
     }
-    /// Whether later work in the same stream may overwrite the data, as all pieces are enqueued.
+    /// Whether all pieces are enqueued, so that later work in the same stream may overwrite the data.
     bool asked_for_all() const { return pieces_.size() <= buffers; }
     /// Waits for the download that `begin_download` started, and scatters its data.
     void finish_download() {

@@ -65,8 +65,7 @@ private:
     const std::uint32_t* order_;
     const run_options& options_;
     bool reports_;
-    std::int64_t done_;      // instances that this thread has finished; negative: number of lanes that have not asked
-                             // yet
+    std::int64_t done_;      // instances that this thread has finished; negative: lanes that have not asked yet
     std::int64_t told_ = 0;  // instances already added to the shared count
     std::int64_t tell_at_;
     std::int64_t next_ = 0, end_ = 0;

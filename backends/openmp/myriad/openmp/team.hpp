@@ -100,7 +100,7 @@ inline std::size_t stack_left() {
 /// Known facts about the teams that OpenMP has made for one calling thread.
 struct known_teams {
     int last = 1, largest = 1;
-    std::size_t least_stack = SIZE_MAX;  // smallest stack of the other threads
+    std::size_t least_stack = SIZE_MAX;  // smallest unused one of the other threads
 };
 
 /// `all.parts` threads, or as many as are available, which is tested if necessary.
