@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Adaptive steps, controlled by the embedded error estimate: proposes a step, judges the trial, and sets the next
-// length.
+// Adaptive steps by the embedded error estimate: proposes a step, judges the trial, and sets the next length.
 #pragma once
 
 #include "myriad/kernel/controller/fast_power.hpp"

@@ -16,8 +16,7 @@ template <>
 struct float_format<double> {
     static constexpr int mantissa = 52;
     static constexpr std::uint64_t one = 0x3ff0000000000000, mantissa_mask = 0x000fffffffffffff;
-    static constexpr std::uint64_t magic_bits = 0x4330000000000000;  // 2^52: integers below it are stored in the
-                                                                     // mantissa
+    static constexpr std::uint64_t magic_bits = 0x4330000000000000;  // 2^52, whose mantissa counts units
     static constexpr double magic = 4503599627370496.0, bias = 1023;
 };
 template <>

@@ -117,8 +117,7 @@ MYRIAD_FUNCTION vec<S, count * n_state<Model>> move_through(lane<W, S>& l,
     return left;
 }
 
-/// The same for a hook that is called at given times, in the directions of the tangents after Model's state; updates
-/// them.
+/// The same for a hook called at given times, in the directions of the tangents after Model's state; updates them.
 template <class Model, int count, class W, class S, class Hook>
 MYRIAD_FUNCTION void move_tangents(lane<W, S>& l, Hook&& hook) {
     constexpr int n = n_state<Model>;

@@ -20,8 +20,7 @@ inline constexpr int extra_stages = [] {
         return 0;
     }
 }();
-/// Stages of a method's own interpolant. Stage `stages` is the slope at the end of the step, unless the last stage is
-/// it.
+/// Stages of a method's own interpolant. Stage `stages` is the slope at the step's end, unless the last stage is it.
 template <class Method>
 inline constexpr int interpolant_stages = Method::stages + (extra_stages<Method> > 0 ? 1 + extra_stages<Method> : 0);
 /// Whether an interpolant needs the slope at the end of the step in addition to the step's stages.
