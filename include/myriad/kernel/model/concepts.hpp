@@ -179,7 +179,7 @@ constexpr bool check_linkage() {
 template <class Model>
 inline constexpr bool gives_jacobian = has_jacobian<Model>&& n_tangent<Model> == 0;
 
-/// Makes the checks of a model that need no call of it; everything that uses a model starts here.
+/// Checks a model as far as possible without calling it; everything that uses a model starts here.
 template <class Model>
 constexpr bool check_model() {
     static_assert(std::is_class_v<Model>, "a model is a struct with static member functions");

@@ -120,7 +120,7 @@ inline constexpr bool seeks_extrema =
 template <class Model>
 inline constexpr bool sees_reductions = has_reductions<Model> && !accessories_are_outputs<Model>;
 
-/// Makes the checks of a model's reductions that need no call of `observe`.
+/// Checks a model's reductions as far as possible without calling `observe`.
 template <class Model>
 constexpr bool check_reductions() {
     constexpr bool declared = requires { Model::reductions; };
