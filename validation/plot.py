@@ -3,7 +3,7 @@
 """Draws the pictures of a validation run: error against tolerance, and against work.
 
 Usage: plot.py report.csv FOLDER
-Writes tolerance.png and work.png (where work was measured). Needs numpy and matplotlib.
+Writes tolerance.png and, if work was measured, work.png. Needs numpy and matplotlib.
 """
 import os
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the map of Lyapunov exponents that the program `lyapunov_map` computed, and how far its two ways agree.
+"""Draws the map of Lyapunov exponents that the program `lyapunov_map` computed, and how well its two methods agree.
 
 Usage: plot.py CSV PNG
 
@@ -15,7 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "common"
 import figure as figures  # pylint: disable=wrong-import-position
 
 COLUMNS = ("k", "B", "lambda_hand", "lambda_library", "status")
-SHOWN = 0.25  # exponents beyond have the colours of the ends
+SHOWN = 0.25  # larger exponents get the colours of the ends
 
 
 def draw(pyplot, numpy, table, _comments):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the timeline that the program `overlap` recorded: what each solver object did when.
+"""Draws the timeline that the program `overlap` recorded: the steps of each solver object.
 
 Usage: plot.py CSV PNG
 
@@ -22,7 +22,7 @@ INTEGRATE = 2
 
 
 def under_way(numpy, table):
-    """Times at which something begins or ends, and how many steps are under way from then on."""
+    """Times at which a step begins or ends, and how many steps are in progress from then on."""
     t = numpy.concatenate((table["begin"], table["end"]))
     change = numpy.concatenate((numpy.ones(len(table["begin"])), -numpy.ones(len(table["end"]))))
     order = numpy.lexsort((change, t))
@@ -30,7 +30,7 @@ def under_way(numpy, table):
 
 
 def draw(pyplot, numpy, table, comments):
-    """Returns the figure: a lane for each solver object, and below how many steps are under way."""
+    """Returns the figure: a lane for each solver object, and below them the number of steps in progress."""
     solvers = sorted(set(table["solver"]))
     end = table["end"].max()
     scale, unit = (1, "s") if end >= 1 else (1e3, "ms")

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Configures a user's project in the ways that there are, and checks what its model files are compiled with, or why
-not.
+"""Configures a user's project in all supported ways, and checks the options with which its model files are compiled, or
+why they are not.
 
     check.py --source SOURCE --build BUILD --work WORK --compiler COMPILER [--nvcc NVCC] [-D...]
 
-Models are to be optimised in every configuration; without, kernels take 50 to 250 times as long, and nothing says so.
-BUILD is a build of Myriad that can be installed. Exit status: 0 all is as it should be, 1 something is not.
+Models must be optimised in every configuration; otherwise kernels take 50 to 250 times as long, without a message.
+BUILD is a build of Myriad that can be installed. Exit status: 0 all is well, 1 something is wrong.
 """
 import argparse
 import json
@@ -24,7 +24,7 @@ class Project:
         self.further, self.failures, self.count = further, 0, 0
 
     def configure(self, *definitions, by="add_subdirectory", generator="Ninja"):
-        """The folder, and what CMake said if it refused."""
+        """The folder, and CMake's message if it refused."""
         self.count += 1
         folder = self.work / str(self.count)
         command = ["cmake", "-S", str(Path(__file__).resolve().parent), "-B", str(folder), "-G", generator,

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Shows that the validation sees a wrong loop: copies the headers, changes one line in each copy, compiles the kernels
-of one problem with it and runs the validation on them, which must fail; with the headers as they are it must pass on
+"""Shows that the validation detects a wrong loop: copies the headers, changes one line in each copy, compiles the
+kernels of one problem with it and runs the validation on them, which must fail; with unchanged headers it must pass on
 all these problems.
 
 Usage: logic.py --source DIR --kernels DIR --work DIR --host LIBRARY --compile "COMMAND" --link "ARGUMENTS"
@@ -18,7 +18,7 @@ import subprocess
 import sys
 import time
 
-# name: (header, text, what it becomes, the problem that shows it). The text must be there, once.
+# name: (header, text, replacement, the problem that shows it). The text must occur exactly once.
 MUTATIONS = {
     "swapped_direction": ("kernel/event/side_follower.hpp",
                           "(side > R(0) && args.event[j].falling) || (side < R(0) && args.event[j].rising)",
@@ -53,11 +53,11 @@ MUTATIONS = {
                                    "true) return rounded;", "orbit"),
 }
 DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_accepted"]
-SECONDS = 120  # an endless loop is found too
+SECONDS = 120  # so that an endless loop is detected too
 
 
 def stale_mutations(source):
-    """Messages about mutations whose text is not in the sources, or not just once."""
+    """Messages about mutations whose text is not in the sources exactly once."""
     found = {name: (source / "include/myriad" / header).read_text().count(text)
              for name, (header, text, _, _) in MUTATIONS.items()}
     return [f"{name}: {MUTATIONS[name][0]} has the text {count} times, not once: {MUTATIONS[name][1]}"
@@ -79,7 +79,7 @@ def prepare(options, name):
 
 
 def examine(options, name, problems):
-    """Builds and runs; returns (is the verdict right, what to say)."""
+    """Builds and runs; returns (is the verdict right, message)."""
     include = prepare(options, name)
     build = options.work / (name or "unchanged")
     build.mkdir(parents=True, exist_ok=True)

@@ -12,7 +12,7 @@ namespace {
 using myriad::detail::earliest_crossing;
 using myriad::detail::earliest_crossing_between;
 
-/// x = t - t^2 / 2, and how far it is above three levels; and the time left to t = 1, which p gives as a parameter.
+/// x = t - t^2 / 2 relative to three levels; and the time left until t = 1, which is the parameter p.
 struct thrown {
     enum state { x, n_state };
     enum parameter { alarm, n_parameter };
@@ -42,7 +42,7 @@ struct step : myriad::inputs<thrown, double>, myriad::detail::step_ends<thrown, 
         g1 = myriad::detail::evaluate_events<thrown>(t1, y1, p);
         for (auto& one : event) one = {.tolerance = 1e-9, .stop_after = 0};
     }
-    /// The crossings between the signs at both ends, but for those that are left out.
+    /// The crossings between the signs at both ends, except those excluded.
     auto first(values side) const {
         flags crossed;
         crossed.clear();
@@ -82,7 +82,7 @@ TEST_CASE("of events at one instant the first by index is found") {
     crossed.set(thrown::top, true);
     crossed.set(thrown::rings, true);
     auto event = std::vector(both.event, both.event + thrown::n_event);
-    event[thrown::top].tolerance = 1e-300;  // else what is close enough differs
+    event[thrown::top].tolerance = 1e-300;  // otherwise `close` differs
     event[thrown::rings].tolerance = 1e-300;
     const auto found = earliest_crossing(both, values{1, -1, -1, 1}, crossed, event.data());
     CHECK(std::abs(found.fraction - 0.5) <= 4 * epsilon);

@@ -20,8 +20,7 @@
     each(earliest_crossing) each(first_of) each(error_ratio) each(hermite_interpolation)
 // clang-format on
 
-/// One takes vectors, as the model calls it. The other takes anything, and would take what the library means for
-/// itself.
+/// One takes vectors, as the model calls it. The other takes anything, and would intercept the library's own calls.
 #define DECLARE_OWN_NAME(name)                                           \
     template <class S, int n>                                            \
     MYRIAD_FUNCTION myriad::vec<S, n> name(const myriad::vec<S, n>& y) { \
@@ -59,13 +58,13 @@ struct strangely_named : plainly_named {
 #define CALL_OWN_NAME(name) y = name(constant);
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, myriad::vec<R, n_state> y, const auto& p) {
-        const auto& constant = y;  // which the function for vectors fits better
+        const auto& constant = y;  // the function for vectors fits it better
         OWN_NAMES(CALL_OWN_NAME)
         return plainly_named::rhs<R>(t, y, p);
     }
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto t, myriad::vec<R, n_state> y, const auto& p) {
-        const auto& constant = y;  // which the function for vectors fits better
+        const auto& constant = y;  // the function for vectors fits it better
         OWN_NAMES(CALL_OWN_NAME)
         return plainly_named::events<R>(t, y, p);
     }

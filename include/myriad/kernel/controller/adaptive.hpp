@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Adaptive steps, by the embedded error estimate: proposes a step, judges a trial, and says how long the next one is.
+// Adaptive steps by the embedded error estimate: proposes a step, judges the trial, and sets the next length.
 #pragma once
 
 #include "myriad/kernel/controller/fast_power.hpp"
@@ -33,7 +33,7 @@ struct adaptive_stepping {
     MYRIAD_FUNCTION void store(int i) const { args.h_next[s.instance[i]] = get_lane(s.data.h_next, i); }
 
     MYRIAD_FUNCTION void choose_step(int i, std::int32_t phase) {
-        // A method with fixed steps leaves none to carry on with.
+        // A method with fixed steps leaves no step size to carry on with.
         const bool restart = !args.carry_step || phase == 0 || get_lane(s.data.h_next, i) == R(0);
         if (restart) set_lane(s.data.h_next, i, args.step);
     }
@@ -52,9 +52,9 @@ struct adaptive_stepping {
     MYRIAD_FUNCTION void resume(int i, R h) { set_lane(s.data.h_next, i, h); }
     MYRIAD_FUNCTION R time(int i) const { return get_lane(s.data.t, i); }
 
-    /// The next step of every lane: the one wanted, or what is left of the domain. A step that falls short of t_end by
-    /// less than 1/1024 of itself is stretched, so that no sliver is left over; its error is tested like any other. The
-    /// state advances by exactly the step by which t does, else the difference adds up over the steps.
+    /// The next step of every lane: the proposed one, or the rest of the domain. A step that falls short of t_end by
+    /// less than 1/1024 of itself is stretched, so that no sliver remains; its error is tested as usual. The state
+    /// advances by exactly the same step as t; otherwise the difference would accumulate.
     MYRIAD_FUNCTION void propose() {
         S remaining = s.data.t_end - s.data.t;
         if constexpr (keeps_low) remaining = remaining - s.time_low;
@@ -69,13 +69,13 @@ struct adaptive_stepping {
         return select(s.final_step, s.data.t_end, t1);
     }
 
-    /// Accepts or rejects the trial of every lane and sets `data.h_next`, the elementary (I) controller of the MPGOS
+    /// Accepts or rejects the trial of every lane and sets `data.h_next`, by the elementary (I) controller of the MPGOS
     /// package: factor 0.9 q^(-1/(p+1)) after an accepted and 0.9 q^(-1/p) after a rejected step, with q the largest
-    /// ratio of error to tolerance and p the order of the error estimate, kept within the options' limits (Hairer,
-    /// Norsett, Wanner, Solving ODE I, II.4, eq. (4.13)); or the one chosen with `controlled`. Lanes whose trial is not
-    /// finite (or not `valid`, or singular) are rejected with the smallest factor. Lanes that are rejected at the
-    /// minimum step end; so do those in `may_stick` whose step does not advance (`t1`, at which it ends, is where it
-    /// began). Returns the accepted lanes.
+    /// ratio of error to tolerance and p the order of the error estimate, within the options' limits (Hairer, Norsett,
+    /// Wanner, Solving ODE I, II.4, eq. (4.13)); or by the controller chosen with `controlled`. Lanes whose trial is
+    /// not finite (or not `valid`, or singular) are rejected with the smallest factor. Lanes rejected at the minimum
+    /// step end; so do those in `may_stick` whose step does not advance t (it ends, at `t1`, where it began). Returns
+    /// the accepted lanes.
     MYRIAD_FUNCTION mask judge(const trial_step<Method, S, n>& trial, const S& t1, mask valid, const mask& may_stick) {
         if constexpr (solves_linear_systems<Method>) valid = valid & !trial.singular;
         error_norm<S> error = detail::scaled_error<Model, Method>(args, s.data.y, s.h, trial);
@@ -89,15 +89,15 @@ struct adaptive_stepping {
         if (any(rejected)) {
             const mask finite = valid & (error.worst > C(L(1))) & (error.worst <= C(largest_of<L>));
             factor = select(within | finite, factor, C(static_cast<L>(args.shrink_limit)));
-            // Of a few roundings of t, nine tenths may be the same step again.
+            // At a few roundings of t, nine tenths of the step may round to the same step.
             const S rounding = S(epsilon_of<R>) * abs(s.data.t);
             if constexpr (!keeps_low)
                 factor = select(rejected & (abs(s.h) <= S(R(16)) * rounding), smaller(factor, C(L(0.45))), factor);
             s.rejected = count_where(rejected, s.rejected);
-            // A step of length zero says nothing about why the one before it failed.
+            // A step of length zero does not show why the previous one failed.
             const mask moved = rejected & (s.h != S(R(0)));
             s.control.last_not_finite = select(moved, !finite, s.control.last_not_finite);
-            // No Jacobian can be had where the right-hand side itself is not finite.
+            // Where the right-hand side itself is not finite, there is no Jacobian.
             if constexpr (solves_linear_systems<Method>)
                 s.control.last_singular =
                     select(moved & !finite, trial.singular & all_finite(trial.k[0]), s.control.last_singular);
@@ -109,7 +109,7 @@ struct adaptive_stepping {
         const mask ends = accepted & (t1 == s.data.t_end), stuck = may_stick & (t1 == s.data.t);
         if (MYRIAD_UNLIKELY(any(ends | stuck | (s.running() & !clearly_between(minimum, next, maximum))))) {
             S size = limited(abs(next), minimum, maximum);
-            // A step cut short by the end of the domain says little about the step size that goes on from there.
+            // A step cut short by the end of the domain says little about the step size to continue with.
             size = select(ends, larger(size, abs(s.data.h_next)), size);
             next = copysign(size, s.h);
             s.rejected = count_where(stuck & accepted, s.rejected);
@@ -123,15 +123,15 @@ struct adaptive_stepping {
     MYRIAD_FUNCTION void advance(const mask& accepted, const S& t1, const mask&) {
         if constexpr (keeps_low) s.time_low = select(accepted, (s.h + s.time_low) - (t1 - s.data.t), s.time_low);
         s.data.t = select(accepted, t1, s.data.t);
-        // The last step ends there, and so may one before it, by rounding or at an event.
+        // The last step ends there; an earlier one may, by rounding or at an event.
         s.ended = s.ended | (accepted & (t1 == s.data.t_end));
     }
 
-    /// Whether lane i creeps up to where its right-hand side has no value: at the pace of its last `look_interval`
-    /// iterations, `max_steps` of them would take t neither to t_end, nor on by the time since t_begin or by the first
-    /// step. Where t is finer than the state, a step too short to change the state is fine and the next, longer one is
-    /// not, for ever. To be asked after every so many iterations: the ensemble's array of times, which is of no other
-    /// use within a phase, holds t at the last look.
+    /// Whether lane i creeps towards a point where its right-hand side has no value: at the pace of its last
+    /// `look_interval` iterations, `max_steps` of them would take t neither to t_end, nor on by the time since t_begin
+    /// or by the first step. Where t is finer than the state, a step too short to change the state succeeds and the
+    /// next, longer one fails, for ever. To be called after that many iterations each time: the ensemble's array of
+    /// times, unused within a phase, holds t at the last check.
     MYRIAD_FUNCTION bool creeps(int i) {
         const std::int64_t index = s.instance[i];
         const R t = get_lane(s.data.t, i), gained = abs(t - args.t[index]);
@@ -143,7 +143,7 @@ struct adaptive_stepping {
     }
 
 private:
-    /// The next step over the last one, by the size `worst` of the error over the tolerance.
+    /// The ratio of the next step to the last one, from `worst`, the ratio of error to tolerance.
     MYRIAD_FUNCTION C factor_of_step(const C& worst, const mask& within, const mask& accepted) {
         constexpr int order = estimate_order<Method>;
         const L after_accepted = L(-1.0 / (order + 1)), after_rejected = L(-1.0 / order);
@@ -154,7 +154,7 @@ private:
             C sum = fma(C(L(Method::exponent_last)), errors.last, C(L(Method::exponent_now)) * now);
             if constexpr (Method::exponent_before != 0) sum = fma(C(L(Method::exponent_before)), errors.before, sum);
             factor = C(L(0.9)) * fast_exp2(select(within, sum * C(after_accepted), now * C(after_rejected)));
-            // An error of zero counts as 1e-4: less would shorten the next steps for nothing.
+            // An error of zero counts as 1e-4: a smaller one would shorten the next steps needlessly.
             errors.before = select(accepted, errors.last, errors.before);
             errors.last = select(accepted, larger(now, C(L(least_error_remembered))), errors.last);
         } else {
@@ -163,7 +163,7 @@ private:
         return limited(factor, C(static_cast<L>(args.shrink_limit)), C(static_cast<L>(args.growth_limit)));
     }
 
-    /// Ends lanes that can make no step, as not_finite or singular_jacobian where that was why their last trial failed.
+    /// Ends lanes that cannot step, as not_finite or singular_jacobian if that is why their last trial failed.
     MYRIAD_FUNCTION void end_stuck_lanes(const mask& stuck) {
         if constexpr (solves_linear_systems<Method>)
             s.end_lanes(stuck & s.control.last_not_finite & s.control.last_singular,

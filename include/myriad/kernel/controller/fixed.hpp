@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fixed steps: how many there are in a domain and which is the last.
+// Fixed steps: their number in a domain, and the last one.
 #pragma once
 
 #include <limits>
@@ -9,7 +9,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// base + done * step - t, without the rounding of such times: that of base - t is added (Knuth, The Art of Computer
+/// base + done * step - t, without the rounding error of base - t, which is added back (Knuth, The Art of Computer
 /// Programming 2, 4.2.2, theorem B).
 template <class R>
 MYRIAD_FUNCTION R elapsed_beyond(R base, R t, R done, R step) {
@@ -19,7 +19,7 @@ MYRIAD_FUNCTION R elapsed_beyond(R base, R t, R done, R step) {
     return fma(done, step, difference) + rounding;
 }
 
-/// Stepping (see stepping.hpp) with the same step in every lane but for the last one and those to events.
+/// Stepping (see stepping.hpp) with one step size for all lanes, except for the last step and those to events.
 template <class Model, class Method, class S>
 struct fixed_stepping {
     using R = real_of<S>;
@@ -40,8 +40,8 @@ struct fixed_stepping {
         lay(i, t);
         set_lane(s.data.h_next, i, get_lane(s.steps.step, i));
     }
-    /// Lays the steps of lane i anew from t, where it is after `done` steps up to rounding, which time_low keeps, or
-    /// after the last one.
+    /// Lays out the steps of lane i again from t, its time after `done` steps up to rounding, which time_low keeps, or
+    /// after the last step.
     MYRIAD_FUNCTION void move(int i, R t) {
         const R taken = detail::elapsed_beyond(get_lane(s.steps.base, i), t, static_cast<R>(get_lane(s.steps.done, i)),
                                                get_lane(s.steps.step, i));
@@ -50,14 +50,14 @@ struct fixed_stepping {
     }
 
     MYRIAD_FUNCTION void resume(int, R) {}
-    /// Time of lane i's committed state. For rare use: from the ensemble's array, so that a model whose right-hand side
-    /// does not depend on time keeps none in its registers. Exactly t_end after the last step.
+    /// Time of lane i's committed state, exactly t_end after the last step. For rare use: it reads the ensemble's
+    /// array, so that models whose right-hand side does not depend on time keep no time in registers.
     MYRIAD_FUNCTION R time(int i) const {
         if (get_lane(s.steps.left, i) == 0) return domain_end(i);
         return fma(static_cast<R>(get_lane(s.steps.done, i)), get_lane(s.steps.step, i), args.t[s.instance[i]]);
     }
 
-    /// The next step of every lane: the fixed one, or what is left of the domain.
+    /// The next step of every lane: the fixed one, or the rest of the domain.
     MYRIAD_FUNCTION void propose() {
         s.final_step = s.steps.left <= count(1);
         s.h = s.steps.step;
@@ -72,10 +72,10 @@ struct fixed_stepping {
     }
 
     MYRIAD_FUNCTION S end_time() const {
-        // the time at which the next step begins, bit for bit, so that it may take over the slope
+        // bit for bit the time at which the next step begins, so that it can reuse the slope
         S t1 = fma(S(s.steps.done + count(1)), s.steps.step, s.steps.base);
         if constexpr (has_events<Model>) {
-            const S redone = s.now() + (s.h + s.time_low);  // to an event
+            const S redone = s.now() + (s.h + s.time_low);  // a step redone to an event
             t1 = select(s.h == s.steps.step, t1, redone);
         }
         return select(s.final_step, s.data.t_end, t1);
@@ -112,14 +112,13 @@ struct fixed_stepping {
     MYRIAD_FUNCTION bool creeps(int) { return false; }
 
 private:
-    /// The steps count the time; it is only written down where someone looks at it.
+    /// The number of steps gives the time; it is only stored if something reads it.
     static constexpr bool shows_time = has_after_step<Model> || has_events<Model>;
 
-    /// Lays the steps of lane i from t to t_end: their number, and the last one, which ends exactly at t_end. A domain
-    /// that is a whole number of steps up to rounding gets that number, without a sliver at the end.
+    /// Divides the domain of lane i, from t to t_end, into steps, the last ending exactly at t_end. A domain that is a
+    /// whole number of steps up to rounding gets that number, without a sliver at the end.
     MYRIAD_FUNCTION void lay(int i, R t) {
-        // Past it counts are no longer exact; options::max_steps, which is checked to be smaller, ends the phase
-        // before.
+        // Beyond this, counts are inexact; options::max_steps, which is checked to be smaller, ends the phase before.
         constexpr R most = std::numeric_limits<R>::digits > 31 ? R(2147483647) : R(16777216);
         const R t_end = get_lane(s.data.t_end, i);
         const R signed_step = copysign(args.step, t_end - t);
@@ -133,8 +132,8 @@ private:
         set_count(s.steps.left, i, bounded);
     }
 
-    /// Where lane i's phase is to end, for rare use: from the ensemble, so that it need not stay in a register. With
-    /// events, which compare it with t at every step, it does.
+    /// The end of lane i's phase, for rare use: read from the ensemble, so that it need not stay in a register. With
+    /// events, which compare it with t at every step, it stays there.
     MYRIAD_FUNCTION R domain_end(int i) const {
         if constexpr (writes_time_domain<Model> || has_events<Model>) {
             return get_lane(s.data.t_end, i);
@@ -143,8 +142,7 @@ private:
             const auto t_end = own ? args.t_end[s.instance[i]] : args.common_t_end;
             if (args.phase_length == R(0)) return t_end;
             const auto t_begin = own ? args.t_begin[s.instance[i]] : args.common_t_begin;
-            return detail::interval_from(args, args.t[s.instance[i]], t_begin, t_end)
-                .end;  // where the steps were laid from
+            return detail::interval_from(args, args.t[s.instance[i]], t_begin, t_end).end;  // where the steps begin
         }
     }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The first step of a phase where the user gave none: from the size of the slope and of its change.
+// The first step of a phase if the user gave none: from the size of the slope and of its change.
 #pragma once
 
 #include "myriad/kernel/controller/norm.hpp"
@@ -8,8 +8,8 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Sets `data.h_next` of the lanes whose first step is open. Hairer, Norsett, Wanner, Solving ODE I, II.4, "Starting
-/// step size", with the largest component for the norm: an Euler step that changes y by a hundredth of its size tells
-/// how fast the slope changes; the step's own leading error term is to be a hundredth of the tolerance.
+/// step size", in the maximum norm: an Euler step that changes y by a hundredth of its size shows how fast the slope
+/// changes; the leading error term of the first step is to be a hundredth of the tolerance.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION void choose_first_step(const kernel_arguments<Model, real_of<S>>& args,
                                        integration_state<Model, Method, S>& s, const mask_of<S>& open) {
@@ -39,7 +39,7 @@ MYRIAD_FUNCTION void choose_first_step(const kernel_arguments<Model, real_of<S>>
     const S power = S(fast_power(S(R(0.01)) / most, S(R(1.0 / (estimate_order<Method> + 1)))));
     const S h1 = select(most <= S(R(1e-15)), larger(S(R(1e-6)), h0 * S(R(1e-3))), power);
     S h = smaller(S(R(100)) * h0, h1);
-    h = select(h > S(R(0)), h, S(R(1e-6)));  // the slope was NaN: the trial step will say so
+    h = select(h > S(R(0)), h, S(R(1e-6)));  // the slope is NaN: the trial step will report it
     h = limited(h, S(args.minimum_step), S(args.maximum_step));
     s.data.h_next = select(open, direction * h, s.data.h_next);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The first of the crossings within a step, as a guess for the length of the step redone to it.
+// The earliest crossing within a step: the first guess for the length of the redone step.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,10 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class R>
 struct located_crossing {
     R fraction;          // of the step
-    std::int32_t event;  // which event function crosses there
+    std::int32_t event;  // whose function crosses there
 };
 
-/// The first of the events in `crossed`, where `fraction_of(j)` says when each one crosses; of those at one instant the
-/// first by index.
+/// The earliest of the events in `crossed`, by the fractions `fraction_of(j)`; of equal ones the first by index.
 template <class R, int m, class Fraction>
 MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, Fraction&& fraction_of) {
     located_crossing<R> first{R(2), 0};
@@ -32,9 +31,9 @@ MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, F
     return first;
 }
 
-/// The earliest crossing of a step, by the cubic through the values and slopes of each event function at its ends.
-/// `side` is the side of zero that each function was on; one that starts within its tolerance and leaves it crosses
-/// where it comes back.
+/// The earliest crossing in a step, from the cubic through each event function's values and slopes at both ends. `side`
+/// is the side of zero each function was on. A function that starts within its tolerance and leaves it crosses where it
+/// returns.
 template <class Model, class R>
 MYRIAD_FUNCTION located_crossing<R> earliest_crossing(const step_ends<Model, R>& step,
                                                       const vec<R, n_event<Model>>& side,
@@ -50,15 +49,14 @@ MYRIAD_FUNCTION located_crossing<R> earliest_crossing(const step_ends<Model, R>&
     });
 }
 
-/// The same of crossings that show between the samples at the fractions `low` and `high` of a step, by the secants
-/// between them.
+/// The same for crossings found between the fractions `low` and `high` of a step, by the secants between these points.
 template <class Model, class R>
 MYRIAD_FUNCTION located_crossing<R> earliest_crossing_between(R low, R high, const step_ends<Model, R>& step,
                                                               const mask_set<bool, n_event<Model>>& crossed,
                                                               const event_arguments<R>* event) {
     const auto g = step.values_at(low), g1 = high < R(1) ? step.values_at(high) : step.g1;
     return detail::first_of<R>(crossed, [&](int j) MYRIAD_LAMBDA {
-        // A function within its tolerance there may be about to leave it, and to come back.
+        // A function within its tolerance at `low` may be about to leave and return.
         const bool within = abs(g[j]) <= event[j].tolerance;
         return fma(high - low, within ? R(0.5) : g[j] / (g[j] - g1[j]), low);
     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the location of events keeps of one instance from step to step, in memory: it is needed in few steps.
+// The data that event location keeps per instance between steps. It lies in memory, as few steps need it.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class R>
 struct event_memory {
     redone_step<R, n_event<Model>> redo;
-    vec<std::int32_t, n_event<Model>> lingered;  // times that an event fired in a row without its function having left
+    vec<std::int32_t, n_event<Model>> lingered;  // how often in a row the event has fired without its function leaving
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

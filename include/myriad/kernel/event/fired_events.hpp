@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The events that have happened, as the locator tells the loop and the hooks.
+// The events that have fired, passed from the locator to the loop and the hooks.
 #pragma once
 
 #include "myriad/kernel/core/vec.hpp"
@@ -8,19 +8,19 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// The events that have happened where a trial ended, or where it began in lanes whose trial was not accepted.
+/// The events that fired at the end of a trial or, in lanes whose trial was not accepted, at its start.
 template <class Model, class S>
 struct fired_events {
     mask_set<mask_of<S>, n_event<Model>> which;
-    vec<S, n_event<Model>> value;  // of all event functions there
-    mask_of<S> changed;            // lanes in which a hook has since changed what event functions depend on
+    vec<S, n_event<Model>> value;  // of all event functions at that time
+    mask_of<S> changed;            // lanes in which a hook has since changed inputs of event functions
 
-    /// Whether event j happens in lane i, where its function has this value.
+    /// Sets whether event j fires in lane i, and its function's value.
     MYRIAD_FUNCTION void put(int j, int i, bool happens, real_of<S> g) {
         which.set(j, i, happens);
         set_lane(value[j], i, g);
     }
-    /// No event; values that nobody reads any more take no registers from here on.
+    /// No event. Values that are no longer read free their registers here.
     MYRIAD_FUNCTION void clear() {
         which.clear();
         changed = mask_of<S>(false);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Finds events: whether an event function crossed zero in a trial step, and whether a step redone to the crossing has
-// arrived there. A trial is never committed beyond a crossing.
+// Detects and locates events: whether an event function crossed zero in a trial step, and whether a redone step ends at
+// the crossing. No trial is committed beyond a crossing.
 //
-// Every step looks at the functions' signs, for all lanes at once. All else is for the few lanes in which something
-// happens, one by one, from values that are computed anew: what it needs costs the other steps neither time nor
-// registers.
+// Every step checks the functions' signs, in all lanes at once. The rest runs one lane at a time, only where something
+// happens, from recomputed values, so that it costs ordinary steps neither time nor registers.
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
@@ -13,7 +12,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// What becomes of an accepted trial.
+/// What happens to an accepted trial.
 enum class trial_outcome : bool { stands, is_redone };
 
 template <class Model, class Method, class S>
@@ -24,7 +23,7 @@ struct event_locator {
     static constexpr int m = n_event<Model>;
     using follower = side_follower<Model, Method, S>;
     using values = vec<S, m>;  // of the event functions in all lanes
-    using reals = vec<R, m>;   // in one
+    using reals = vec<R, m>;   // in one lane
     using masks = mask_set<mask, m>;
     using flags = mask_set<bool, m>;
     using ends_of_step = step_ends<Model, R>;
@@ -33,7 +32,7 @@ struct event_locator {
 
     follower sides;
 
-    /// The length of the next trial of lanes that redo their step.
+    /// Sets the length of the next trial in lanes that redo their step.
     MYRIAD_FUNCTION void propose_step() {
         auto& s = sides.s;
         const mask locating = sides.e.locating;
@@ -42,13 +41,13 @@ struct event_locator {
         s.final_step = s.final_step & !locating;
     }
 
-    /// Looks at an accepted trial that ends at t1 with the event functions g1. Lanes that crossed, or stopped short of
-    /// their target, are set up for a redone step and taken out of `accepted`. `events` are then those that have
-    /// happened, at the end of the trial or, in lanes taken out of `accepted` as well, at its start.
+    /// Checks an accepted trial that ends at t1 with event functions g1. Lanes that crossed, or stopped short of their
+    /// target, are set up for a redone step and removed from `accepted`. `events` then holds those that fired: at the
+    /// end of the trial or, in lanes removed from `accepted`, at its start.
     MYRIAD_FUNCTION void look(const trial_type& trial, const S& t1, const values& g1, mask& accepted, fired& events) {
         const auto& args = sides.args;
         auto& e = sides.e;
-        e.locating = e.locating & accepted;  // a trial that failed its error test takes the next one's length
+        e.locating = e.locating & accepted;  // a trial that failed its error test gets its length from the controller
         if constexpr (is_pack<S>) {
             events.which.clear();  // a pack's values lie in memory
             events.changed = mask(false);
@@ -70,7 +69,7 @@ struct event_locator {
         const mask follow = accepted & !busy;
         if (MYRIAD_UNLIKELY(any(busy))) {
             if constexpr (is_pack<S>) {
-                // Copies, so that only they and not the caller's registers need an address.
+                // Copies, so that only these need an address and the caller's variables stay in registers.
                 const trial_ends ends = ends_of(trial, t1, g1);
                 mask still_accepted = accepted;
                 look_out_of_line(busy, ends, still_accepted, events);
@@ -84,10 +83,10 @@ struct event_locator {
     }
 
 private:
-    /// A trial's ends, in all lanes.
+    /// The ends of a trial, in all lanes.
     struct trial_ends {
         S t1;
-        vec<S, n> y, slope_start, slope_end;  // slope_end only of methods that know it
+        vec<S, n> y, slope_start, slope_end;  // slope_end only for methods that compute it
         values g;
     };
     MYRIAD_FUNCTION trial_ends ends_of(const trial_type& trial, const S& t1, const values& g1) const {
@@ -101,7 +100,7 @@ private:
         });
     }
 
-    /// Looks at the trial of a lane in which something may have happened.
+    /// Checks the trial of one lane in which an event may have fired.
     MYRIAD_FUNCTION trial_outcome look_closer(int i, const trial_ends& ends, fired& events) {
         const auto& args = sides.args;
         auto& s = sides.s;
@@ -114,7 +113,7 @@ private:
         step.y = get_lanes<R>(s.data.y, i);
         step.y1 = get_lanes<R>(ends.y, i);
         step.slope = get_lanes<R>(ends.slope_start, i);
-        // Not those of the pack, which may round otherwise than what they are compared with.
+        // Not the pack's values, which may round differently from those they are compared with.
         step.g1 = is_pack<S> ? detail::evaluate_events<Model>(step.t1, step.y1, p) : get_lanes<R>(ends.g, i);
         sides.settle_open_sides(i, step);
 
@@ -155,15 +154,16 @@ private:
         return trial_outcome::stands;
     }
 
-    /// The event functions at the start of the step; beyond a jump that no step has passed yet, as far away as can be.
+    /// Evaluates the event functions at the start of the step. A function at a jump that no step has passed yet counts
+    /// as infinite.
     MYRIAD_FUNCTION void know_start(int i, ends_of_step& step, const reals& side) const {
         step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j)
             if (sides.e.on_jump.get(j, i)) step.g[j] = copysign(R(infinity_of<R>), side[j]);
     }
-    /// Looks at `sub_samples` points of the step for the first that shows a crossing, follows the sides up to there,
-    /// and makes [low, high] the part of the step that holds it.
+    /// Checks `sub_samples` points of the step for the first crossing, updates the sides up to it, and sets [low, high]
+    /// to the part of the step that contains it.
     MYRIAD_FUNCTION flags scan(int i, const ends_of_step& step, reals& side, R& low, R& high) {
         const auto& args = sides.args;
         auto& e = sides.e;
@@ -192,7 +192,7 @@ private:
         return crossed;
     }
 
-    /// Sets up a lane whose trial crossed: a step redone to the crossing, or the event at the start of the step.
+    /// Sets up a lane whose trial crossed: either a redone step, or an event at the start of the step.
     MYRIAD_FUNCTION void begin_or_shorten(int i, const ends_of_step& step, const reals& side, const flags& crossed,
                                           R low, R high, fired& events) {
         const auto& args = sides.args;
@@ -230,14 +230,14 @@ private:
         stepping<Model, Method, S>{args, s}.resume(i, redo.resume);
     }
 
-    /// Where a redone step has ended that did not cross.
+    /// How near to its event a redone step that did not cross has ended.
     struct arrival {
-        R gap, tolerance;  // of the function that it is redone to
-        bool others;       // crossed too, in the trial before
-        bool all_left;     // no function is still where its event last fired
+        R gap, tolerance;  // of the event's function
+        bool others;       // other functions crossed in the trial before
+        bool all_left;     // every function has left the surface since its event last fired
 
         MYRIAD_FUNCTION bool is_close() const { return abs(gap) <= R(0.1) * tolerance; }
-        /// Nothing but the event itself happens here.
+        /// Only the event itself happens here.
         MYRIAD_FUNCTION bool is_plain() const { return is_close() && !others && all_left; }
     };
     MYRIAD_FUNCTION arrival arrival_of(int i, const ends_of_step& step, const reals& side) const {
@@ -256,8 +256,8 @@ private:
         return reached;
     }
 
-    /// A redone step that ended before its crossing: within the tolerance its events have happened; else it goes
-    /// further.
+    /// Handles a redone step that ended before its crossing: within the tolerance its events fire; else it is
+    /// lengthened.
     MYRIAD_FUNCTION trial_outcome arrive(int i, const ends_of_step& step, const reals& side, fired& events) {
         const auto& args = sides.args;
         auto& e = sides.e;
@@ -302,9 +302,9 @@ private:
         return trial_outcome::stands;
     }
 
-    /// Functions within their tolerance and on their way across where the domain ends: their events happen there if
-    /// they are past zero, or short of it by rounding alone, both by the slope and by the last step: a function that
-    /// settles at zero, or is still falling towards it, comes there later or never.
+    /// Events at the end of the domain: a function within its tolerance and moving towards zero fires if it is past
+    /// zero, or short of it by rounding alone, judged by both its slope and the last step. A function that settles at
+    /// zero, or is still falling towards it, gets there later or never.
     MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const reals& side, fired& events) {
         const reals slope = step.slopes1();
         const R rounding = end_rounding(i, step);
@@ -318,8 +318,8 @@ private:
         }
     }
 
-    /// What the rounding of the phase's steps may have put between the end of the domain and a crossing there, in time;
-    /// not more than a small part of a step, from which on it cannot be told from a slow approach.
+    /// A bound on the time between the end of the domain and a crossing that the phase's rounding errors may have
+    /// caused; capped at a small part of a step, beyond which it could not be told from a slow approach.
     MYRIAD_FUNCTION R end_rounding(int i, const ends_of_step& step) const {
         const auto& args = sides.args;
         const auto& s = sides.s;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Follows the side of zero that each event function is on: through steps, hooks and phases. All of it is for one lane,
-// or rare, but what `event_locator::look` does for every step.
+// Tracks the side of zero that each event function is on through steps, hooks and phases. It works on one lane, or is
+// rarely called; the check in every step is `event_locator::look`.
 #pragma once
 
 #include <type_traits>
@@ -18,10 +18,10 @@ MYRIAD_FUNCTION R sign_of(R x) {
     return x > R(0) ? R(1) : x < R(0) ? R(-1) : R(0);
 }
 
-/// The sides of a pack's event functions. A crossing is a change of side: the side an event function was last seen on,
-/// beyond its tolerance, is remembered, so a function that lingers within the tolerance neither fires twice nor is
-/// lost, and one that only touches zero does not fire. Where a step starts within the tolerance, the slope of the
-/// function along the solution tells where it is heading.
+/// The sides of a pack's event functions. A crossing is a change of side. The side on which a function was last seen
+/// beyond its tolerance is remembered, so that a function that stays within the tolerance neither fires twice nor is
+/// lost, and one that only touches zero does not fire. Where a step starts within the tolerance, the function's slope
+/// along the solution tells where it is heading.
 template <class Model, class Method, class S>
 struct side_follower {
     using R = real_of<S>;
@@ -29,7 +29,7 @@ struct side_follower {
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
     using values = vec<S, m>;  // of the event functions in all lanes
-    using reals = vec<R, m>;   // in one
+    using reals = vec<R, m>;   // in one lane
     using flags = mask_set<bool, m>;
     using state = vec<R, n>;
     using fired = fired_events<Model, S>;
@@ -41,16 +41,16 @@ struct side_follower {
 
     MYRIAD_FUNCTION event_memory<Model, R>& memory_of(int i) const {
         auto* own = memory + i;
-        MYRIAD_FORGET(own);  // else a GPU's compiler keeps what it points to in registers
+        MYRIAD_FORGET(own);  // else nvcc keeps the values it points to in registers
         return *own;
     }
 
-    /// Takes the sides at the start of a phase, with which the one before ended.
+    /// Starts a phase with the sides that the previous one left.
     MYRIAD_FUNCTION void begin(const mask& lanes) {
         for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA { begin_lane(i); });
     }
 
-    /// Leaves the sides of lane i to its next phase. A phase without a step has not looked at its event functions.
+    /// Stores the sides of lane i for its next phase. A phase without a step has not evaluated its event functions.
     MYRIAD_FUNCTION void keep(int i) const {
         if (s.iteration == s.phase_start[i]) return;
         const auto& p = inputs_of(i);
@@ -65,15 +65,15 @@ struct side_follower {
             kept_at(j, i) = static_cast<std::int8_t>(sign * static_cast<int>(kept));
         }
     }
-    /// Makes the next phase of lane i begin with no side known.
+    /// Makes the next phase of lane i begin with all sides unknown.
     MYRIAD_FUNCTION void forget(int i) const {
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) kept_at(j, i) = 0;
     }
 
-    /// Takes the event functions after a hook changed what they depend on, from the values `before`. A function within
-    /// its tolerance keeps its side, unless the hook moved it there: then the slope at the next step decides. One that
-    /// is on a jump keeps the side beyond it, which its value here does not show, until `settle` looks again.
+    /// Updates the sides after a hook changed inputs of event functions, whose values were `before`. A function within
+    /// its tolerance keeps its side, unless the hook moved it there: then the slope at the next step decides. One at a
+    /// jump keeps the side beyond it, which its value here does not show, until `settle` looks again.
     MYRIAD_FUNCTION void restart(const mask& lanes, const values& before, const fired& events) {
         const values g = detail::evaluate_events<Model>(s.now(), s.data.y, s.data);
         e.undefined = e.undefined & !lanes;
@@ -88,12 +88,12 @@ struct side_follower {
         }
     }
 
-    /// Decides on which sides the functions are after the actions of events, which found the lanes as in `before`. One
-    /// that fired is on the side it is heading for. If its slope is zero, it rests on the side it came from if an
-    /// action changed it, and has passed if none did. If it was still moving away when it fired, as in a flight too
-    /// short for the resolution of the state, an action that turned it round must not send it through the surface. One
-    /// that jumps fired right before the jump: a look ahead tells whether it is about to pass. The same holds for one
-    /// that fired at a jump earlier, as this action may have moved the state.
+    /// Determines the sides after the actions of events; `before` is the data before them. A function that fired is on
+    /// the side it is heading for. If its slope is zero, it stays on the side it came from if an action changed it, and
+    /// has crossed if none did. If it was still moving away when it fired, as in a flight too short for the resolution
+    /// of the state, an action that reversed it must not send it through the surface. A function with a jump fired
+    /// right before the jump: a look ahead tells whether it is about to pass it. The same holds for one that fired at a
+    /// jump earlier, as this action may have moved the state.
     MYRIAD_FUNCTION void settle(int i, const fired& events, const lane_data<Model, S>& before) {
         bool passes = !get_lane(events.changed, i);
         MYRIAD_UNROLL
@@ -110,7 +110,7 @@ struct side_follower {
         }
     }
 
-    /// What the event functions of lane i read beside t and y.
+    /// The inputs of lane i's event functions beside t and y.
     MYRIAD_FUNCTION decltype(auto) inputs_of(int i) const { return inputs_of(i, s.data); }
     MYRIAD_FUNCTION decltype(auto) inputs_of(int i, const lane_data<Model, S>& at) const {
         if constexpr (is_pack<S>) {
@@ -119,23 +119,23 @@ struct side_follower {
             return static_cast<const inputs<Model, S>&>(at);
         }
     }
-    /// +1, -1, or 0 where the side is not yet known.
+    /// +1, -1, or 0 if the side is not yet known.
     MYRIAD_FUNCTION R side_of(int j, int i) const { return e.open.get(j, i) ? R(0) : e.above.get(j, i) ? R(1) : R(-1); }
     MYRIAD_FUNCTION void put_side(int j, int i, R side) {
         e.open.set(j, i, side == R(0));
         e.above.set(j, i, side > R(0));
     }
-    /// Whether event j is to fire where its function crosses from the given side.
+    /// Whether event j fires when its function crosses from the given side.
     MYRIAD_FUNCTION bool is_asked(int j, R side) const {
         const std::uint32_t asked = side > R(0) ? args.falling[j / 32] : side < R(0) ? args.rising[j / 32] : 0u;
         return ((asked >> (j % 32)) & 1u) != 0;
     }
-    /// Whether a function that was on the given side has crossed, by its value g.
+    /// Whether a function with value g has crossed from the given side.
     MYRIAD_FUNCTION bool crosses(int j, R side, R g) const {
         return is_asked(j, side) && side * g < -args.event[j].tolerance;
     }
 
-    /// Settles sides that are open by where the functions are heading.
+    /// Sets open sides to where the functions are heading.
     MYRIAD_FUNCTION void settle_open_sides(int i, const step_ends<Model, R>& step) {
         bool open = false;
         MYRIAD_UNROLL
@@ -147,25 +147,25 @@ struct side_follower {
             if (e.open.get(j, i)) put_side(j, i, sign_of(slope[j]) * sign_of(step.h));
     }
 
-    /// Whether event j fired at a jump which a state as near as `length` may not show to be passed: rounding may leave
-    /// it before the jump, where another event is located right after that one.
+    /// Whether event j fired at a jump that a state within `length` of it may not have passed: if another event is
+    /// located right after that one, rounding may leave the state before the jump.
     MYRIAD_FUNCTION bool is_at_jump(int j, int i, R length) const {
         if (!e.on_jump.get(j, i)) return false;
         return abs(length) <=
                past_jump(i, get_lane(e.locating, i) ? memory_of(i).redo.resume : get_lane(s.data.h_next, i));
     }
-    /// Whether `length` is no more than the rounding of t: what is seen there does not say that functions have left
-    /// where they fired.
+    /// Whether `length` is within the rounding of t: values that near do not show that a function has left the place
+    /// where it fired.
     MYRIAD_FUNCTION bool is_timeless(int i, R length) const {
         return abs(length) <= R(4) * epsilon_of<R> * abs(get_lane(s.now(), i));
     }
 
-    /// Takes the sides at the end of a trial that is accepted; `side` holds those before it.
+    /// Updates the sides at the end of an accepted trial; `side` holds those before it.
     MYRIAD_FUNCTION void follow(int i, const step_ends<Model, R>& step, const reals& side) {
         const bool timeless = is_timeless(i, step.h);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            if (is_at_jump(j, i, step.h)) continue;  // the trial leaves it on the jump at which it fired
+            if (is_at_jump(j, i, step.h)) continue;  // after the trial it is still at the jump where it fired
             const bool beyond = abs(step.g1[j]) > args.event[j].tolerance;
             e.on_jump.set(j, i, false);
             put_side(j, i, beyond ? sign_of(step.g1[j]) : side[j]);
@@ -200,8 +200,8 @@ private:
         }
         return slope;
     }
-    /// `settle` for a lane in which a hook has changed what the event functions read, or a function that fired had not
-    /// left its surface, or jumps.
+    /// `settle` for a lane in which a hook has changed inputs of the event functions, or a function that fired has a
+    /// jump or had not left its surface before.
     MYRIAD_FUNCTION void settle_with_care(int i, const fired& events, const lane_data<Model, S>& found) {
         const R sense = sign_of(get_lane(s.h, i));
         const reals before = headings(i, found, events);
@@ -274,12 +274,12 @@ private:
         }
     }
 
-    /// A time after which a jump that a step was located to is passed: longer than the rounding of t and of the state.
+    /// A time that is sure to pass a jump to which a step was located: longer than the rounding of t and of the state.
     MYRIAD_FUNCTION R past_jump(int i, R h_next) const {
         constexpr R fraction = std::is_same_v<R, float> ? R(0x1p-12) : R(0x1p-26);
         return fma(fraction, abs(h_next), R(64) * epsilon_of<R> * abs(get_lane(s.now(), i)));
     }
-    /// The event functions a little ahead: beyond a jump which a step was located to, if the state is heading for it.
+    /// The event functions a little ahead: beyond the jump to which a step was located, if the state is heading for it.
     MYRIAD_FUNCTION reals look_ahead(int i, const lane_data<Model, S>& at, const state& slope) const {
         const R t = get_lane(s.now(), i);
         const R ahead = copysign(past_jump(i, get_lane(at.h_next, i)), get_lane(at.t_end, i) - t);
@@ -288,7 +288,7 @@ private:
         for (int c = 0; c < n; ++c) y[c] = fma(ahead, slope[c], y[c]);
         return detail::evaluate_events<Model>(t + ahead, y, inputs_of(i, at));
     }
-    /// Puts functions, whose values here are g, on the side that they have there.
+    /// Sets the sides of functions at a jump, with values g here, to those a little ahead.
     MYRIAD_FUNCTION void look_beyond(int i, const flags& at_jump, const reals& g, const state& slope) {
         const reals there = look_ahead(i, s.data, slope);
         MYRIAD_UNROLL

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fixed steps that nothing looks at: no event, hook, sample or error estimate.
+// Runs of fixed steps without events, hooks, samples or error estimates.
 #pragma once
 
 #include "myriad/kernel/integrator/phase_watch.hpp"
@@ -22,12 +22,12 @@ struct free_run {
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
 
-    /// Takes steps up to the first lane's last step, in registers and with one check
-    /// per block. What is not finite once stays so: a block that ends with such a value is taken back and halved, and
-    /// the ordinary step after it finds the one to blame.
+    /// Takes steps up to the first lane's last step, in registers and with one check per block. A value that is not
+    /// finite stays so: a block that ends with one is undone and halved, and the ordinary step that follows finds the
+    /// lane at fault.
     MYRIAD_FUNCTION void take_steps() {
         constexpr iteration_number worthwhile = 4, longest_block = 128;
-        // Less the last one, which is looked at.
+        // Not the last one, after which the watch is due.
         iteration_number run = phase_watch<Model, Method, S>{args, s}.iterations_left() - 1;
         R lane_step = R(0);
         for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA {
@@ -36,7 +36,7 @@ struct free_run {
             lane_step = get_lane(s.steps.step, i);
         });
         if (run < worthwhile) return;
-        // One step size for all lanes is one register; lanes that part in direction take ordinary steps.
+        // One step size for all lanes takes one register; lanes that differ in direction take ordinary steps.
         const S step = S(lane_step), base = s.steps.base;
         if (any(s.running() & (s.steps.step != step))) return;
         const inputs<Model, S> p = s.data;

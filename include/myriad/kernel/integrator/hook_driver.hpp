@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What hooks do inside a phase: after_step on the accepted lanes, after_event on the lanes whose events fired, and what
-// follows from a hook having changed the state.
+// Calls hooks within a phase: after_step in the accepted lanes, after_event in lanes whose events fired; and handles
+// the changes they make.
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
@@ -19,7 +19,7 @@ struct hook_driver {
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
     side_follower<Model, Method, S>& sides;
-    fired_events<Model, S>& events;  // that have happened in this iteration
+    fired_events<Model, S>& events;  // that fired in this iteration
 
     /// Calls after_step on the lanes whose step was accepted.
     MYRIAD_FUNCTION void after_step(const mask& accepted) {
@@ -34,7 +34,7 @@ struct hook_driver {
             } else {
                 stops = accepted & Model::template after_step<S>(view);
             }
-            // By what the hook was given and left, so that the compiler sees what it leaves alone.
+            // Compares the hook's input with its output, so that the compiler sees which members it leaves alone.
             changed = accepted & differs(before, after);
             adopt(accepted, before, after);
             if (MYRIAD_UNLIKELY(any(stops))) s.end_lanes(stops, status::stopped_by_user);
@@ -47,7 +47,7 @@ struct hook_driver {
             });
             changed = accepted & differs(before, s.data);
         }
-        // Where the slope at the end of the step may be known, as the first of the next.
+        // The slope at the end of the step may be known already, as the first of the next.
         if constexpr (Method::first_same_as_last || has_events<Model> || samples_trajectory<Method>) {
             if (any(changed)) {
                 check_finite(changed, before.y);
@@ -58,7 +58,7 @@ struct hook_driver {
         }
     }
 
-    /// Lanes in which a reduction has changed an accessory that rhs and events may read.
+    /// Handles lanes in which a reduction has changed an accessory that rhs or events may read.
     MYRIAD_FUNCTION void follow_reductions(const mask& changed) {
         if (any(changed)) follow_up(changed, s.data);
     }
@@ -87,7 +87,7 @@ struct hook_driver {
     }
 
 private:
-    /// A member where it is taken over, and what it was elsewhere; and where it has changed.
+    /// chosen: the new value in these lanes, the old one elsewhere. changed: the lanes that differ.
     template <class T>
     static MYRIAD_FUNCTION T chosen(const mask& lanes, const T& now, const T& before) {
         return select(lanes, now, before);
@@ -123,7 +123,7 @@ private:
         });
     }
 
-    /// Calls a scalar hook and does what it asks for.
+    /// Calls a scalar hook and carries out the action that it returns.
     template <class Hook>
     MYRIAD_FUNCTION void run_hook(int i, Hook&& hook) {
         const R t_end = get_lane(s.data.t_end, i), h_next = get_lane(s.data.h_next, i);
@@ -137,7 +137,7 @@ private:
         if (wanted == action::end_instance) s.instance_over[i] = true;
     }
 
-    /// A hook moved the end of the phase: it goes on to there, backwards if need be, or is over if it is there.
+    /// A hook moved the end of the phase: the phase continues to it, backwards if need be, or ends if it is there.
     MYRIAD_FUNCTION void retarget(int i) {
         const R t = get_lane(s.data.t, i);
         const R t_end = get_lane(s.data.t_end, i);
@@ -148,7 +148,7 @@ private:
         stepping<Model, Method, S>{args, s}.move(i, t);
     }
 
-    /// Takes over what a generic hook made of `before`, in the given lanes.
+    /// Adopts the changes that a generic hook made to `before`, in the given lanes.
     MYRIAD_FUNCTION void adopt(const mask& lanes, const lane_data<Model, S>& before, const lane_data<Model, S>& after) {
         const auto take = [&](auto use, auto& to, const auto& from, const auto& old) MYRIAD_LAMBDA {
             if constexpr (use.written) to = chosen(lanes, from, old);
@@ -161,7 +161,7 @@ private:
         }
     }
 
-    /// Lanes in which something that rhs or events may read has changed.
+    /// Lanes in which an input of rhs or events has changed.
     MYRIAD_FUNCTION mask differs(const lane_data<Model, S>& a, const lane_data<Model, S>& b) const {
         mask different = mask(false);
         const auto compare = [&](auto use, const auto& x, const auto& y) MYRIAD_LAMBDA {
@@ -171,7 +171,7 @@ private:
         return different;
     }
 
-    /// After a hook has changed something that was as in `before`: slopes and event functions are taken anew.
+    /// After a hook changed lanes that were as in `before`: slopes and event functions are evaluated again.
     MYRIAD_FUNCTION void follow_up(const mask& changed, const lane_data<Model, S>& before) {
         s.slopes.invalidate(changed);
         if constexpr (has_events<Model>) {
@@ -181,7 +181,7 @@ private:
         }
     }
 
-    /// A state that is not finite is refused.
+    /// Refuses a state that is not finite: restores `before` and ends the lane.
     MYRIAD_FUNCTION void check_finite(const mask& lanes, const vec<S, n>& before) {
         const mask bad = lanes & !all_finite(s.data.y);
         if (MYRIAD_UNLIKELY(any(bad))) {

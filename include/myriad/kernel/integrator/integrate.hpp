@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// THE loop: takes every instance a source hands out through its phases, step by step, on one pack of lanes. A lane that
-// ends its instance takes the next one, so no lane waits for another. The same body is the CUDA kernel (one lane) and
+// The main loop: takes every instance of a source through its phases, step by step, on one pack of lanes. A lane whose
+// instance has ended takes the next one, so no lane waits for another. The same body is the CUDA kernel (one lane) and
 // the OpenMP backend's inner loop (a pack of lanes).
 #pragma once
 
@@ -65,7 +65,7 @@ struct integrator {
             phase_driver<Model, Method, S>{args, s, locator.sides, o}.finish(0);
     }
 
-    /// An empty pack: every lane asks for an instance.
+    /// An empty pack: every lane needs an instance.
     MYRIAD_FUNCTION void clear(const shared_parameters<R>& shared) {
         s.data.shared = shared.real;
         s.data.shared_integer = shared.integer;
@@ -78,7 +78,7 @@ struct integrator {
         for (int i = 0; i < lanes_of<S>; ++i) s.instance[i] = -1;
     }
 
-    /// Takes lanes whose phase has ended to their next phase or instance. Returns false when no lane is left running.
+    /// Moves lanes whose phase has ended to their next phase or instance. Returns false when no lane is running.
     template <class Source>
     MYRIAD_FUNCTION bool fill_lanes(Source& source, event_locator_type& locator) {
         phase_watch<Model, Method, S> watch{args, s};
@@ -90,12 +90,12 @@ struct integrator {
                 return true;
             }
         } else if constexpr (is_pack<S>) {
-            watch.look();  // at the other lanes
+            watch.look();  // checks the other lanes
         }
         mask begun = mask(false);
         for_each_lane(s.ended, [&](int i) MYRIAD_LAMBDA {
             const auto* arguments = &args;
-            MYRIAD_FORGET(arguments);  // else what it points to waits in registers through the loop
+            MYRIAD_FORGET(arguments);  // else the values it points to occupy registers through the loop
             set_lane(begun, i, phase_driver<Model, Method, S>{*arguments, s, locator.sides, o}.advance(i, source));
         });
         s.ended = mask(false);
@@ -122,7 +122,7 @@ struct integrator {
         detail::take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
     }
 
-    /// Accepts or rejects the trial: error, finiteness, and that it does not go beyond an event.
+    /// Accepts or rejects the trial by its error, its finiteness, and its not crossing an event.
     MYRIAD_FUNCTION mask judge(const trial_type& trial, event_locator_type& locator, fired_events<Model, S>& events) {
         const S t1 = end_time();
         s.slopes.forget_end();
@@ -141,7 +141,7 @@ struct integrator {
         }
     }
 
-    /// Makes the accepted lanes' new state the committed one.
+    /// Commits the new state of the accepted lanes.
     MYRIAD_FUNCTION void commit(const trial_type& trial, const mask& accepted, const fired_events<Model, S>& events) {
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]);
@@ -159,14 +159,14 @@ private:
     MYRIAD_FUNCTION S end_time() { return stepping_type{args, s}.end_time(); }
 };
 
-/// Integrates all instances that `source.next()` hands out (indices, then -1) on one pack of lanes of kind S. The
-/// source of a CUDA thread also says whether it `gives_only_one()`. Returns the iterations that the loop took, each a
-/// trial step in every lane. `shared` stands for `args.shared` where a backend has moved them.
+/// Integrates all instances that `source.next()` returns (indices, then -1) on one pack of lanes of kind S. The source
+/// of a CUDA thread also says whether it `gives_only_one()`. Returns the number of iterations of the loop, each a trial
+/// step in every lane. `shared` replaces `args.shared` where a backend has moved these parameters.
 template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
                                        const shared_parameters<real_of<S>>& shared, Source& source) {
     static_assert(hooks_fit<Model, real_of<S>>);
-    event_memory<Model, real_of<S>> memory[lanes_of<S>] = {};  // beside the loop's own, which lies in registers
+    event_memory<Model, real_of<S>> memory[lanes_of<S>] = {};  // outside the loop's own state, which is in registers
     integrator<Model, Method, S> loop{args, {}, {}, {}, memory};
     loop.run(source, shared);
     return loop.s.all_iterations + loop.s.iteration;

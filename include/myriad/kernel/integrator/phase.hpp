@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The life of an instance in a lane: loaded, taken through its phases, recorded, stored, and the lane refilled. What
-// the steps do not need (counters, phases done, the time at which the phase began) is kept in the ensemble's arrays and
-// not in the lane, where it would cost a GPU thread registers.
+// The life of an instance in a lane: it is loaded, integrated through its phases, recorded and stored, and the lane
+// refilled. Values that the steps do not need (counters, phases done, the time at which the phase began) stay in the
+// ensemble's arrays, as in the lane they would cost a GPU thread registers.
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
@@ -25,8 +25,8 @@ struct phase_driver {
     side_follower<Model, Method, S>& sides;
     sample_state<Method, S>& o;
 
-    /// Ends the phase of lane i, if it holds an instance, and takes it to its next phase or to the next instance that
-    /// needs work. Returns false when there is none: the lane stays empty.
+    /// Ends the phase of lane i, if it holds an instance, and starts its next phase or the next instance that needs
+    /// work. Returns false if there is none: the lane stays empty.
     template <class Source>
     MYRIAD_FUNCTION bool advance(int i, Source& source) {
         MYRIAD_FORGET(s.instance[i]);
@@ -52,7 +52,7 @@ struct phase_driver {
         }
     }
 
-    /// Ends the phase and the instance that `advance` left to be ended with those of the other threads of a warp.
+    /// Ends the phase and the instance that `advance` left open, together with those of the warp's other threads.
     MYRIAD_FUNCTION void finish(int i) {
         if (s.instance[i] < 0) return;
         end_phase(i);
@@ -60,7 +60,7 @@ struct phase_driver {
     }
 
 private:
-    /// Whether lane i is to end with its instance, in its last phase. Threads of a warp do so side by side, after the
+    /// Whether lane i is in the last phase of its only instance. The threads of a warp end theirs together, after the
     /// loop.
     template <class Source>
     MYRIAD_FUNCTION bool is_last(int i, const Source& source) const {
@@ -132,17 +132,17 @@ private:
             trials * s.slopes.evaluations_per_trial + static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
     }
 
-    /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on. Returns false if it is over
-    /// without a step: its domain is empty, or `initialise` left something that is not finite.
+    /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on. Returns false if the phase is
+    /// over without a step: its domain is empty, or `initialise` left a value that is not finite.
     MYRIAD_FUNCTION bool begin_phase(int i) {
         s.ending[i] = status::success;
-        // Read again for each phase, so that t_begin need not stay in a register.
+        // Loaded again for each phase, so that t_begin need not stay in a register.
         if constexpr (!writes_time_domain<Model>) load_time_domain(i);
         const std::int64_t index = s.instance[i];
         const std::int32_t phase = args.phase[index];
         const bool carry_on = args.carry_time && phase > 0;
         set_lane(s.data.t, i, carry_on ? args.t[index] : get_lane(s.data.t_begin, i));
-        if constexpr (!writes_time_domain<Model>) {  // whose hooks say where phases end
+        if constexpr (!writes_time_domain<Model>) {  // else its hooks set the ends of phases
             if (args.phase_length != R(0)) {
                 const R t_begin = get_lane(s.data.t_begin, i), t_end = get_lane(s.data.t_end, i);
                 const auto part = detail::interval_from(args, get_lane(s.data.t, i), t_begin, t_end);
@@ -186,8 +186,8 @@ private:
         return s.ending[i] == status::success && t != get_lane(s.data.t_end, i);
     }
 
-    /// Runs `initialise` or `finalise`. A state or step that is not finite is refused; a state that was moved was
-    /// placed, not integrated, where it is, so functions within their tolerance come from no side.
+    /// Runs `initialise` or `finalise`. A state or step that is not finite is refused. A state that the hook changed
+    /// was set, not integrated: functions then within their tolerance have no side.
     template <class Hook>
     MYRIAD_FUNCTION void place(int i, Hook&& hook) {
         const auto before = get_lanes<R>(s.data.y, i);
@@ -207,7 +207,7 @@ private:
         }
     }
 
-    /// Ends the phase that lane i is in: `finalise`, record, count; a failed phase ends the instance instead.
+    /// Ends the phase of lane i: `finalise`, record, count; if it failed, ends the instance.
     MYRIAD_FUNCTION void end_phase(int i) {
         const std::int64_t index = s.instance[i];
         if (args.accepted != nullptr) count_work(i);

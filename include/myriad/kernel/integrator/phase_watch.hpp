@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ends phases that would never end by themselves. Each is looked at every so many iterations, so that a step costs one
-// comparison.
+// Ends phases that would never end by themselves. Each is checked at intervals, so that a step costs one comparison.
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
@@ -17,7 +16,7 @@ struct phase_watch {
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
 
-    /// Whether a phase has taken as many iterations as it may, or is to be looked at for whether it creeps.
+    /// Whether a phase has reached its limit of iterations, or is due for the check whether it creeps.
     MYRIAD_FUNCTION bool is_due() const {
         if constexpr (is_pack<S>) {
             return s.iteration >= s.next_look;
@@ -27,7 +26,7 @@ struct phase_watch {
             return s.iteration >= args.max_steps;
         }
     }
-    /// Ends phases that have taken as many trial steps as the options allow, and those that creep.
+    /// Ends phases that have reached the limit of trial steps, and those that creep.
     MYRIAD_FUNCTION void look() {
         for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA {
             const iteration_number iterations = s.iteration - s.phase_start[i];
@@ -35,13 +34,12 @@ struct phase_watch {
             if constexpr (look_interval > 0) {
                 if (iterations == 0 || iterations % look_interval != 0) return;
                 const auto* arguments = &args;
-                MYRIAD_FORGET(arguments);  // else what it points to waits in registers through the loop
+                MYRIAD_FORGET(arguments);  // else the values it points to occupy registers through the loop
                 if (stepping_type{*arguments, s}.creeps(i)) s.end_lane(i, status::not_finite);
             }
         });
     }
-    /// A pack looks when the first of its phases is to be looked at; one instance alone needs to keep no such
-    /// iteration.
+    /// Sets when a pack checks next: when the first of its phases is due. A single instance needs no such counter.
     MYRIAD_FUNCTION void plan() {
         if constexpr (is_pack<S>) {
             s.next_look = s.iteration + args.max_steps;
@@ -51,7 +49,7 @@ struct phase_watch {
             });
         }
     }
-    /// Iterations before the next look.
+    /// Iterations before the next check.
     MYRIAD_FUNCTION iteration_number iterations_left() const {
         if constexpr (is_pack<S>) {
             return s.next_look - s.iteration;
@@ -61,7 +59,7 @@ struct phase_watch {
     }
 
 private:
-    /// Iterations that a phase of so many iterations has before it is looked at again.
+    /// Iterations until the next check of a phase that has taken so many.
     MYRIAD_FUNCTION iteration_number left_after(iteration_number iterations) const {
         iteration_number left = args.max_steps - iterations;
         if constexpr (look_interval > 0) {

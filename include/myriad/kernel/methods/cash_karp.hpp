@@ -6,8 +6,8 @@
 
 namespace myriad {
 
-/// Cash and Karp, ACM Trans. Math. Softw. 16 (1990) 201-222: six stages, advances the solution of order 5, error
-/// estimate of order 4. Its interpolant is the cubic Hermite polynomial through both ends of the step (order 3).
+/// Cash and Karp, ACM Trans. Math. Softw. 16 (1990) 201-222: six stages, solution of order 5, error estimate of order
+/// 4. Its interpolant is the cubic Hermite polynomial through both ends of the step (order 3).
 struct cash_karp {
     static constexpr int stages = 6;
     static constexpr int order = 5;

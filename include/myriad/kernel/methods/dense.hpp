@@ -15,7 +15,7 @@ struct dense : Method {
 
 namespace myriad::detail {
 
-/// Whether a method's kernels can sample.
+/// Whether a method's kernels take samples.
 template <class Method>
 inline constexpr bool samples_trajectory = requires {
     Method::samples;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The coefficients of a Rosenbrock method in the form that needs no product with the Jacobian, and the order conditions
+// The coefficients of a Rosenbrock method in the form that avoids products with the Jacobian, and the order conditions
 // that every method must satisfy. Evaluated at compile time only.
 #pragma once
 
@@ -35,9 +35,9 @@ struct rosenbrock_tableau {
 };
 
 /// Order conditions up to order five of the weights `m` of the stages u, each within `tolerance` relative to the sum of
-/// the sizes of its terms, and that c and d are the row sums of alpha and gamma. In Butcher's form, k_i = f(y + h sum
-/// alpha_ij k_j) + h J sum gamma_ij k_j and beta = alpha + gamma; a vertex of a tree with one child counts beta, one
-/// with several alpha for each (Hairer, Wanner, IV.7, eq. (7.11') and Table 7.1).
+/// the magnitudes of its terms; and that c and d are the row sums of alpha and gamma. In Butcher's form, k_i = f(y + h
+/// sum alpha_ij k_j) + h J sum gamma_ij k_j and beta = alpha + gamma; a vertex of a tree with one child counts beta,
+/// one with several children alpha for each (Hairer, Wanner, IV.7, eq. (7.11') and Table 7.1).
 template <int stages, int dense_terms>
 constexpr bool satisfies_order_conditions(const rosenbrock_tableau<stages, dense_terms>& t,
                                           const typename rosenbrock_tableau<stages, dense_terms>::row& m, int order,

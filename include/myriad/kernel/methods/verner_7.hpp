@@ -6,10 +6,10 @@
 
 namespace myriad {
 
-/// Verner, Numer. Algorithms 53 (2010) 383-396: ten stages, advances order 7, error estimate of order 6. The
-/// interpolant takes the slope at the end of the step and five more stages, evaluated only in steps that contain an
+/// Verner, Numer. Algorithms 53 (2010) 383-396: ten stages, solution of order 7, error estimate of order 6. The
+/// interpolant needs the slope at the end of the step and five more stages, evaluated only in steps that contain an
 /// event or a sample. Coefficients: exact rationals and 40-digit decimals distributed with SciML's OrdinaryDiffEq,
-/// rounded to double. There the interpolant is said to be of order 7; it satisfies the order conditions up to 6.
+/// rounded to double. The interpolant is said there to have order 7; it satisfies the order conditions up to 6.
 struct verner_7 {
     static constexpr int stages = 10;
     static constexpr int order = 7;

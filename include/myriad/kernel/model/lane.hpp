@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the functions of a model see: `inputs` for rhs and events (the argument p), `lane` for the hooks, and the data
-// behind both, with the copying of single lanes out of a pack and back.
+// The arguments of a model's functions: `inputs` for rhs and events (the argument p), `lane` for the hooks, and the
+// data behind both, with the copying of single lanes out of a pack and back.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class S>
 using index_of = std::conditional_t<std::is_floating_point_v<S>, std::int64_t, integer_of<S>>;
 
-/// The integer type of one lane of it.
+/// The integer type of one of its lanes.
 template <class I>
 struct lane_integer_type {
     using type = I;
@@ -35,7 +35,7 @@ struct lane_data;
 
 namespace myriad::inline MYRIAD_TARGET {
 
-/// The user's own storage, or nothing.
+/// The accessories, if `there`.
 template <class Model, class S, bool there>
 struct accessories {
     [[no_unique_address]] vec<S, detail::n_accessory<Model>> accessory;
@@ -44,7 +44,7 @@ struct accessories {
 template <class Model, class S>
 struct accessories<Model, S, false> {};
 
-/// Shared values, reals or integers: a pointer to them that refuses components of other kinds.
+/// Shared values, reals or integers: a pointer that refuses indices of other kinds of components.
 template <class Model, class T>
 struct shared_values {
     static constexpr bool integers = std::is_integral_v<T>;
@@ -66,8 +66,8 @@ struct shared_values {
     }
 };
 
-/// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value all instances share.
-/// It has no accessories in a model that declares them outputs.
+/// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value common to all
+/// instances. It has no accessories in a model that declares them outputs.
 template <class Model, class S>
 struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
     using real = real_of<S>;
@@ -87,7 +87,7 @@ struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Everything of one instance (or of one pack of them) that hooks may see.
+/// All data of one instance (or one pack of them) that hooks may see.
 template <class Model, class S>
 struct lane_data : inputs<Model, S>, accessories<Model, S, accessories_are_outputs<Model>> {
     S t, t_begin, t_end;
@@ -103,7 +103,7 @@ struct lane_data : inputs<Model, S>, accessories<Model, S, accessories_are_outpu
 
 namespace myriad::inline MYRIAD_TARGET {
 
-/// What a hook gets: references into the data, constant where the model may not write. Times and steps are in the
+/// The argument of a hook: references into the data, constant where the model may not write. Times and steps are in the
 /// model's unit of time; `h` is negative when integrating backwards. `index` is the number of the instance, `phase`
 /// counts from zero at the ensemble's start, `event_count[i]` the detections of event i in this phase. Parameters are
 /// writable if the model declares `writes_parameters`, the time domain if it declares `writes_time_domain`: a phase
@@ -138,7 +138,7 @@ struct lane {
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Copies lane i of a vector of packs; `set_lanes` writes it back.
+/// Copies lane i out of a vector of packs; `set_lanes` writes it back.
 template <class R, class S, int n>
 MYRIAD_FUNCTION vec<R, n> get_lanes(const vec<S, n>& v, int i) {
     vec<R, n> out;
@@ -152,7 +152,7 @@ MYRIAD_FUNCTION void set_lanes(vec<S, n>& v, int i, const vec<R, n>& lane) {
     for (int c = 0; c < n; ++c) set_lane(v[c], i, lane[c]);
 }
 
-/// Whether two states are the same in their first components (a NaN differs from everything).
+/// Whether the first components of two states are equal (a NaN equals nothing).
 template <class R, int n>
 MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int count = n) {
     bool same = true;
@@ -161,14 +161,14 @@ MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int cou
     return same;
 }
 
-/// What may happen to a member of `lane_data`.
+/// How a member of `lane_data` is used.
 template <bool written_by_hooks, bool read_by_rhs>
 struct member_use {
     static constexpr bool written = written_by_hooks;              // by hooks
-    static constexpr bool acts = written_by_hooks && read_by_rhs;  // what hooks write there, rhs or events may read
+    static constexpr bool acts = written_by_hooks && read_by_rhs;  // by hooks, and rhs or events may read it
 };
 
-/// The members of `lane_data`: calls `visit(member_use, member of each of the data...)` for every one of them.
+/// Calls `visit(member_use, the member in each of the data...)` for every member of `lane_data`.
 template <class Model, class Visit, class... Data>
 MYRIAD_FUNCTION void for_each_member(Visit&& visit, Data&... d) {
     constexpr bool read = !accessories_are_outputs<Model>;
@@ -188,7 +188,7 @@ MYRIAD_FUNCTION void for_each_member(Visit&& visit, Data&... d) {
     visit(member_use<false, false>{}, d.event_count...);
 }
 
-/// Copies lane i of a member out of a pack, and back.
+/// Copies lane i of a member out of a pack; `put_lane` writes it back.
 template <class R, class S>
 MYRIAD_FUNCTION void copy_lane(R& to, const S& from, int i) {
     to = static_cast<R>(get_lane(from, i));
@@ -219,7 +219,7 @@ MYRIAD_FUNCTION lane_data<Model, real_of<S>> extract_lane(const lane_data<Model,
     return one;
 }
 
-/// Writes back what a hook may have changed.
+/// Writes back the members that a hook may have changed.
 template <class Model, class S>
 MYRIAD_FUNCTION void insert_lane(lane_data<Model, S>& d, int i, const lane_data<Model, real_of<S>>& one) {
     detail::for_each_member<Model>(

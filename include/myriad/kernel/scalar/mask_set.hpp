@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An indexed set of masks, for example one per event. For one instance they are bits of a word, since on a GPU each
-// would otherwise take a register.
+// An indexed set of masks, for example one per event. For one instance they are bits of a word, as on a GPU each would
+// otherwise take a register.
 #pragma once
 
 #include <cstdint>

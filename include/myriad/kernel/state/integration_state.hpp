@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The state of one running pack of lanes, shared by the parts of the loop: the instances' data, and what the loop
-// itself keeps beside them.
+// The state of one running pack of lanes, shared by the parts of the loop: the instances' data and the loop's own
+// variables.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,13 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Whether the part of the time that rounding takes from t is kept beside it, so that it does not add up: where steps
-/// are too short for the resolution of t, as in single precision and to events. Other steps are rounded to that
-/// resolution.
+/// Whether the rounding error of t is stored beside t, so that it does not accumulate: where steps are too short for
+/// the resolution of t, as in single precision and to events. Other steps are rounded to that resolution.
 template <class Model, class Method, class R>
 inline constexpr bool keeps_time_low = has_events<Model> ||
                                        (is_adaptive<Method> ? std::is_same_v<R, float> : writes_time_domain<Model>);
 
-/// Binary logarithms of the error over the tolerance of the last accepted step and of the one before; for controllers
-/// that look back.
+/// Binary logarithms of error / tolerance of the last accepted step and of the one before, for controllers with memory.
 template <class Method, class S, bool remembers = remembers_errors<Method>>
 struct control_memory {};
 template <class Method, class S>
@@ -32,17 +30,17 @@ struct control_memory<Method, S, true> {
     control_of<S> last, before;
 };
 
-/// What step-size control knows of earlier trials, and of the instance.
+/// What step-size control remembers of earlier trials, and of the instance.
 template <class Method, class S>
 struct control_state {
-    mask_of<S> last_not_finite;        // the lane's last rejection was for a value that is not finite
-    mask_of<S> last_singular;          // and that value came of a singular matrix, if the method solves linear systems
+    mask_of<S> last_not_finite;        // the lane's last rejection was due to a value that is not finite
+    mask_of<S> last_singular;          // and that value to a singular matrix, if the method solves linear systems
     mask_of<S> first_step_open;        // the phase's first step is yet to be chosen
     control_memory<Method, S> errors;  // of earlier steps
-    S tolerance_scale;                 // of the instance, if the method has it
+    S tolerance_scale;                 // of the instance, if the method has one
 };
 
-/// Where fixed steps are: t = base + done * step, so that no rounding adds up and no step is added.
+/// The position of fixed steps: t = base + done * step, so that rounding neither accumulates nor adds a step.
 template <class S>
 struct fixed_steps {
     S base, step;
@@ -55,20 +53,20 @@ struct integration_state {
     using mask = mask_of<S>;
     using count = count_of<S>;
     static constexpr int lanes = lanes_of<S>;
-    // One instance alone counts iterations from each phase's start, in one register.
+    // A single instance counts iterations from the start of each phase, in one register.
     using iteration_number = std::conditional_t<lanes == 1, std::int32_t, std::int64_t>;
     static constexpr int n = n_state<Model>;
 
     lane_data<Model, S> data;
     mask active;  // lanes that hold an instance
     slope_cache<Model, Method, S> slopes;
-    S time_low;  // what rounding took from t, or from the fixed steps' base, where keeps_time_low
+    S time_low;  // the rounding error of t, or of the fixed steps' base, where keeps_time_low
 
     // the trial step
     S h;              // its length, signed
     mask final_step;  // it ends at t_end
 
-    // one of these, by the method
+    // one of these, depending on the method
     control_state<Method, S> control;
     fixed_steps<S> steps;
 
@@ -78,15 +76,15 @@ struct integration_state {
     bool instance_over[lanes];
 
     // work, per instance
-    iteration_number iteration;  // iterations of the loop; every active lane takes a trial step in each
-    iteration_number next_look;  // iteration at which a phase of a pack is to be looked at: too long, or creeping
+    iteration_number iteration;           // iterations of the loop; every active lane takes a trial step in each
+    iteration_number next_look;           // iteration at which a phase of a pack must be checked: too long, or creeping
     iteration_number phase_start[lanes];  // iteration at which the lane's phase began
-    std::int64_t all_iterations;          // iterations before `iteration` was last set back
+    std::int64_t all_iterations;          // iterations before `iteration` was last reset
     count rejected, located, extra_evaluations;
     std::int64_t instance[lanes];     // index, or -1: the lane is empty
-    std::int32_t phases_left[lanes];  // phases of this call that the instance has before it, this one included
+    std::int32_t phases_left[lanes];  // phases of this call still to do, this one included
 
-    /// Lanes that hold a running instance, inside the loop, which one lane alone only enters with one.
+    /// Lanes that hold a running instance, inside the loop. With one lane, the loop is only entered with an instance.
     MYRIAD_FUNCTION mask running() const {
         if constexpr (lanes == 1) {
             return true;
@@ -103,16 +101,16 @@ struct integration_state {
         }
     }
 
-    /// The slope at the committed state of lane i, to look at.
+    /// The slope at the committed state of lane i, for inspection.
     MYRIAD_FUNCTION vec<R, n> slope_of(int i) { return slopes.of_lane(i, now(), data, extra_evaluations); }
 
-    /// Keeps a step that a hook or an earlier call left within the options' limits.
+    /// Limits a step set by a hook or an earlier call to the options' bounds.
     MYRIAD_FUNCTION void bound_step(const kernel_arguments<Model, R>& args, int i) {
         const R wanted = get_lane(data.h_next, i);
         set_lane(data.h_next, i, copysign(min(max(abs(wanted), args.minimum_step), args.maximum_step), wanted));
     }
 
-    /// Ends the phase of lane i with the given status; a failure stands.
+    /// Ends the phase of lane i with the given status; an earlier failure stands.
     MYRIAD_FUNCTION void end_lane(int i, myriad::status why) {
         if (!is_failure(ending[i])) ending[i] = why;
         set_lane(ended, i, true);
@@ -122,7 +120,7 @@ struct integration_state {
         for_each_lane(which, [&](int i) MYRIAD_LAMBDA { end_lane(i, why); });
     }
 
-    /// Takes the step that a hook set; NaN is none, and ends the lane, with the step that it had before.
+    /// Takes the step size set by a hook. NaN is refused: the lane keeps its old step size and ends.
     MYRIAD_FUNCTION void take_step_size(const kernel_arguments<Model, R>& args, int i, R before) {
         if (get_lane(data.h_next, i) == get_lane(data.h_next, i)) return bound_step(args, i);
         set_lane(data.h_next, i, before);

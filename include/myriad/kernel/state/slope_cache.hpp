@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is known of the slope f(t, y) at the ends of a step, so that it is evaluated once: at the start for a step that
-// is repeated, at the end for the next one.
+// Known values of the slope f(t, y) at the ends of a step, so that each is evaluated once: at the start for a repeated
+// step, at the end for the next step.
 #pragma once
 
 #include "myriad/kernel/methods/dense.hpp"
@@ -11,12 +11,12 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// True for methods with an error estimate, whose step size is controlled.
+/// True for methods with an error estimate, which control the step size.
 template <class Method>
 inline constexpr bool is_adaptive = Method::embedded_order > 0;
 
-/// The slopes of a pack. Functions that may evaluate the right-hand side take the time and the data of the committed
-/// state, and count what they evaluate beyond the stages of the trial steps.
+/// The slopes of a pack. Functions that may evaluate the right-hand side take the time and data of the committed state,
+/// and count evaluations beyond the stages of the trial steps.
 template <class Model, class Method, class S>
 class slope_cache {
 public:
@@ -27,18 +27,18 @@ public:
     using state = vec<S, n>;
     using data = lane_data<Model, S>;
 
-    /// Slopes are kept where a step may be repeated or where its last slope is the first of the next.
+    /// Slopes are kept if a step may be repeated or its last slope is the first of the next.
     static constexpr bool keeps_start = is_adaptive<Method> || has_events<Model> || samples_trajectory<Method> ||
                                         has_reductions<Model> || Method::first_same_as_last;
-    /// Evaluations of the right-hand side in every trial step.
+    /// Evaluations of the right-hand side per trial step.
     static constexpr int evaluations_per_trial = keeps_start ? Method::stages - 1 : Method::stages;
 
-    /// No slope of lane i is known: its phase begins.
+    /// Discards the slope of lane i: its phase begins.
     MYRIAD_FUNCTION void forget(int i) { set_lane(start_known_, i, false); }
-    /// Hooks have changed what the right-hand side reads.
+    /// Discards slopes after hooks changed inputs of the right-hand side.
     MYRIAD_FUNCTION void invalidate(const mask& lanes) { start_known_ = start_known_ & !lanes; }
 
-    /// Where phases begin: all that steps without hooks and events need.
+    /// At the start of phases: enough for steps without hooks and events.
     MYRIAD_FUNCTION void begin(const mask& begun, const S& t, const data& at, count& evaluations) {
         if constexpr (keeps_start && !loses_start) renew(begun, t, at, evaluations);
     }
@@ -46,7 +46,7 @@ public:
     MYRIAD_FUNCTION void prepare(const S& t, const data& at, count& evaluations) {
         if constexpr (!keeps_start || !loses_start) return;
         if constexpr (is_adaptive<Method> && !Method::first_same_as_last) {
-            // In every lane, as the slope is the trial's first stage: where it is known, it has the same bits.
+            // In every lane, as the slope is the trial's first stage: where it was known, the result has the same bits.
             const mask needed = !start_known_;
             if (!any(needed)) return;
             start_ = detail::evaluate_rhs<Model>(t, at.y, at);
@@ -56,7 +56,7 @@ public:
             renew(mask(true), t, at, evaluations);
         }
     }
-    /// The slope at the committed state, in the lanes where it is not known.
+    /// Evaluates the slope at the committed state, in the lanes where it is not known.
     MYRIAD_FUNCTION void renew(const mask& lanes, const S& t, const data& at, count& evaluations) {
         const mask needed = lanes & !start_known_;
         if (!any(needed)) return;
@@ -76,8 +76,8 @@ public:
             return detail::evaluate_rhs<Model>(t, at.y, at);
         }
     }
-    /// The slope at the committed state of lane i, to look at. It is not kept: a pack's functions may round otherwise
-    /// than those of one lane.
+    /// The slope at the committed state of lane i, for inspection. It is not stored: a pack's functions may round
+    /// differently from those of one lane.
     MYRIAD_FUNCTION vec<R, n> of_lane(int i, const S& t, const data& at, count& evaluations) const {
         if (get_lane(start_known_, i)) return get_lanes<R>(start_, i);
         add_to_count(evaluations, i);
@@ -89,11 +89,11 @@ public:
         }
     }
 
-    /// A new trial: nothing is known of its end.
+    /// A new trial: the slope at its end is unknown.
     MYRIAD_FUNCTION void forget_end() {
         if constexpr (knows_end) end_known_ = mask(false);
     }
-    /// The slope at the end of the trial, as far as it is known, and after it was evaluated in the lanes that need it.
+    /// The slope at the end of the trial: as far as it is known; or after evaluating it in the lanes that need it.
     MYRIAD_FUNCTION const state& end() const { return end_; }
     MYRIAD_FUNCTION const state& end(const mask& lanes, const S& t1, const state& y1, const data& at,
                                      count& evaluations) {
@@ -108,7 +108,7 @@ public:
         return end_;
     }
 
-    /// The end of an accepted trial becomes the committed state.
+    /// Commits the end of an accepted trial.
     MYRIAD_FUNCTION void accept(const mask& accepted, const trial_step<Method, S, n>& trial) {
         if constexpr (!keeps_start) return;
         if constexpr (Method::first_same_as_last) {
@@ -126,7 +126,7 @@ public:
     }
 
 private:
-    /// Within a phase too, the slope at the start may have to be evaluated anew.
+    /// Within a phase too, the slope at the start may have to be evaluated again.
     static constexpr bool loses_start =
         !Method::first_same_as_last || has_after_step<Model> || has_events<Model> || sees_reductions<Model>;
     /// Samples and reductions may need the slope at the end of a step, which is then the first of the next.
