@@ -21,9 +21,11 @@ import time
 # name: (header, text, replacement, the problem that shows it). The text must occur exactly once.
 MUTATIONS = {
     "swapped_direction": ("kernel/event/side_follower.hpp",
-                          "(side > R(0) && args.event[j].falling) || (side < R(0) && args.event[j].rising)",
-                          "(side < R(0) && args.event[j].falling) || (side > R(0) && args.event[j].rising)",
+                          "side > R(0) ? args.falling[j / 32] : side < R(0) ? args.rising[j / 32]",
+                          "side > R(0) ? args.rising[j / 32] : side < R(0) ? args.falling[j / 32]",
                           "bouncing_ball"),
+    "unseen_direction": ("kernel/event/locator.hpp", "(e.above & masks::from_bits(args.falling))",
+                         "(e.above & masks::from_bits(args.rising))", "bouncing_ball"),
     "lost_action": ("kernel/integrator/hook_driver.hpp",
                     "run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_event(j, lane); });",
                     "static_cast<void>(j);", "bouncing_ball"),
@@ -43,7 +45,7 @@ MUTATIONS = {
     "short_last_step": ("kernel/controller/adaptive.hpp", "s.h = select(s.final_step, remaining,",
                         "s.h = select(s.final_step, remaining * S(R(0.999)),", "kepler"),
     "event_not_redone": ("kernel/event/locator.hpp",
-                         "low, high, events);\n                return trial_outcome::is_redone;",
+                         "low, high, events);\n            return trial_outcome::is_redone;",
                          "low, high, events);", "bouncing_ball"),
     "event_counted_twice": ("kernel/integrator/hook_driver.hpp", "get_lane(s.data.event_count[j], i)) + 1;",
                             "get_lane(s.data.event_count[j], i)) + 2;", "bouncing_ball"),
