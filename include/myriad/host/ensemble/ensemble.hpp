@@ -133,7 +133,7 @@ public:
     /// Throws `error` if size is not positive, or if there is not enough memory.
     explicit ensemble(std::int64_t size) : size_(checked(size)) {}
 
-    /// Zero for a moved-from ensemble.
+    /// Number of instances; zero for a moved-from ensemble.
     std::int64_t size() const { return size_; }
 
     /// State component c: initial values before a call, end values after it.
@@ -145,7 +145,7 @@ public:
     const_map<R> state(C c) const& {
         return view(state_, host::state_numbering<Model>::find(c));
     }
-    /// Control parameter c.
+    /// Control parameter c, in its own unit.
     template <class C>
     map<R> parameter(C c) & {
         return view(parameter_, host::parameter_numbering<Model>::find(c));
@@ -154,7 +154,7 @@ public:
     const_map<R> parameter(C c) const& {
         return view(parameter_, host::parameter_numbering<Model>::find(c));
     }
-    /// The user's own real storage; NaN until set.
+    /// Accessory c, the model's own real storage; NaN until set.
     template <class C>
     map<R> accessory(C c) & {
         return view(accessory_, host::accessory_numbering<Model>::find(c));
@@ -163,7 +163,7 @@ public:
     const_map<R> accessory(C c) const& {
         return view(accessory_, host::accessory_numbering<Model>::find(c));
     }
-    /// The user's own integer storage; 0 until set.
+    /// Integer accessory c, the model's own integer storage; 0 until set.
     template <class C>
     map<std::int32_t> integer_accessory(C c) & {
         return view(integer_accessory_, host::integer_accessory_numbering<Model>::find(c));
@@ -224,7 +224,8 @@ public:
         return present(shared_integer_).data()[host::shared_integer_numbering<Model>::find(c).number];
     }
 
-    /// Results: where the last phase ended, and how.
+    /// The time at which the last phase of each instance ended, in the model's unit of time: t_end, or that of the
+    /// event or failure that ended it.
     const_map<R> t() const& { return view(t_, {"t"}); }
     /// How the last phase of instance i ended. Throws `error` if there is no such instance.
     myriad::status status(std::int64_t i) const {
@@ -234,16 +235,16 @@ public:
     }
     /// The statuses of all instances, `size()` of them, instance 0 first.
     const myriad::status* statuses() const { return status_.data(); }
-    /// Phases completed since the start.
+    /// Number of phases that each instance has completed since the ensemble's start or `restart`.
     const_map<std::int32_t> phases_done() const& { return view(phase_, {"phases_done"}); }
     /// True once an instance takes no further part.
     bool ended(std::int64_t i) const { return ended_.data()[i] != 0; }
     /// Step size the instance would try next; zero before the first phase, and with fixed steps. The first call
     /// allocates memory unless an adaptive method has done so.
     const_map<R> next_step() const& { return view(std::as_const(on_demand(h_next_, R(0))), {"next_step"}); }
-    /// Work since the start: accepted and rejected steps, steps redone to locate events, evaluations of rhs. A fixed
-    /// step is never rejected: one with a non-finite result ends the instance, and only its evaluations count. Throws
-    /// `error` if no call has counted. The first access to a counter that no call has used allocates memory.
+    /// Accepted steps since the start, per instance. A fixed step is never rejected: one with a non-finite result ends
+    /// the instance, and only its evaluations count. Throws `error` if no call has counted. The first access to a
+    /// counter that no call has used allocates memory.
     const_map<std::int64_t> accepted_steps() const& { return counter(0); }
     /// Trial steps rejected by the error test since the start, per instance. As for `accepted_steps`.
     const_map<std::int64_t> rejected_steps() const& { return counter(1); }

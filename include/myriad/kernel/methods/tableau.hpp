@@ -15,7 +15,7 @@ struct explicit_tableau {
     /// One coefficient per stage.
     using row = std::array<double, static_cast<std::size_t>(stages)>;
 
-    row c{};  ///< nodes, as fractions of the step
+    row c{};                                                ///< nodes, as fractions of the step
     std::array<row, static_cast<std::size_t>(stages)> a{};  ///< a[i][j]: weight of stage j in the argument of stage i
     row b{};                                                ///< weights of the solution
     row e{};  ///< weights of the error estimate: b minus those of the embedded solution

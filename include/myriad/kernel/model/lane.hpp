@@ -76,7 +76,7 @@ struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
     using real = real_of<S>;  ///< double or float
     /// The parameters of the instance; `p[k]` is short for `p.parameter[k]`.
     [[no_unique_address]] vec<S, detail::n_parameter<Model>> parameter;
-    shared_values<Model, real> shared;                 ///< `p.shared[B]`: real values that all instances share
+    shared_values<Model, real> shared;                  ///< `p.shared[B]`: real values that all instances share
     shared_values<Model, std::int32_t> shared_integer;  ///< `p.shared_integer[i]`: integers that all share
 
     /// Parameter i; an enumerator of another enumeration does not compile.
@@ -119,20 +119,20 @@ struct lane {
     template <class T, bool writable>
     using ref = std::conditional_t<writable, T&, const T&>;
 
-    const S& t;  ///< time
+    const S& t;                                         ///< time
     ref<S, detail::writes_time_domain<Model>> t_begin;  ///< begin of the time domain; with `phase_length` of the phase
-    ref<S, detail::writes_time_domain<Model>> t_end;  ///< end of the time domain; with `phase_length` of the phase
-    const S& h;  ///< length of the step just taken; 0 before the first
-    S& h_next;  ///< length of the next trial step, which a hook may change
-    vec<S, detail::n_state<Model>>& y;  ///< the state
+    ref<S, detail::writes_time_domain<Model>> t_end;    ///< end of the time domain; with `phase_length` of the phase
+    const S& h;                                         ///< length of the step just taken; 0 before the first
+    S& h_next;                                          ///< length of the next trial step, which a hook may change
+    vec<S, detail::n_state<Model>>& y;                  ///< the state
     /// The parameters of the instance.
     ref<vec<S, detail::n_parameter<Model>>, detail::writes_parameters<Model>> parameter;
-    shared_values<Model, real_of<S>> shared;  ///< values that all instances share
-    shared_values<Model, std::int32_t> shared_integer;  ///< integers that all instances share
-    vec<S, detail::n_accessory<Model>>& accessory;  ///< the model's own storage
+    shared_values<Model, real_of<S>> shared;                                    ///< values that all instances share
+    shared_values<Model, std::int32_t> shared_integer;                          ///< integers that all instances share
+    vec<S, detail::n_accessory<Model>>& accessory;                              ///< the model's own storage
     vec<integer_of<S>, detail::n_integer_accessory<Model>>& integer_accessory;  ///< its integers
-    const detail::index_of<S>& index;  ///< number of the instance in the ensemble
-    const integer_of<S>& phase;  ///< number of the phase, from the ensemble's start
+    const detail::index_of<S>& index;                               ///< number of the instance in the ensemble
+    const integer_of<S>& phase;                                     ///< number of the phase, from the ensemble's start
     const vec<integer_of<S>, detail::n_event<Model>>& event_count;  ///< detections of each event in this phase
 
     /// Made by the library.

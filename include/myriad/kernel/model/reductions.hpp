@@ -18,7 +18,7 @@ enum class over_phase : std::uint8_t {
     minimum,          ///< the smallest value, likewise
     time_of_maximum,  ///< the first of equal ones; the model must also have the quantity's `maximum`
     time_of_minimum,  ///< the same with the quantity's `minimum`
-    integral,  ///< over t: backwards in time, that of a positive quantity is negative
+    integral,         ///< over t: backwards in time, that of a positive quantity is negative
 };
 
 }  // namespace myriad
