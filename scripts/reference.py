@@ -29,8 +29,9 @@ PAGES = {
                   "host/ensemble/trajectory_samples.hpp"]),
     "solve": ("Devices, solve and solver", "`<myriad/myriad.hpp>`, or `<myriad/device.hpp>` and `<myriad/solve.hpp>`.",
               ["host/backend/device.hpp", "host/solve/", "host/core/error.hpp"]),
-    "options": ("Options", "`<myriad/options.hpp>`. Checked once per call: `error` names an option that is out of range.",
-                ["host/options/", "kernel/state/kernel_arguments.hpp"]),
+    "options": ("Options",
+                "`<myriad/options.hpp>`. Checked once per call: `error` names an option that is out of range.",
+                ["host/options/options.hpp", "kernel/state/kernel_arguments.hpp", "host/options/"]),
     "report": ("Reports and statuses", "`<myriad/myriad.hpp>`. How a call went, as a whole and instance by instance.",
                ["host/report/", "kernel/core/status.hpp", "host/backend/backend.hpp"]),
     "model": ("In a model", "`<myriad/model.hpp>`: what the functions of a model are called with, and what they use.",
@@ -351,16 +352,30 @@ def check(entities):
     return 1 if missing or homeless else 0
 
 
+# On their pages before all others.
+FIRST = ("options", "report", "MYRIAD_FUNCTION", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT", "vec", "lane", "inputs",
+         "select", "solve", "solver")
+_anchors = {}
+
+
 def anchor(*names):
-    return "api-" + re.sub(r"\W+", "-", "-".join(names)).strip("-").lower().replace("_", "-")
+    """The anchor of an entity: that of the first of its name has no number."""
+    text = "api-" + re.sub(r"\W+", "-", "-".join(names)).strip("-").lower().replace("_", "-")
+    _anchors[text] = _anchors.get(text, 0) + 1
+    return text if _anchors[text] == 1 else f"{text}-{_anchors[text]}"
 
 
 def cell(text):
     return " ".join(text.split()).replace("|", "\\|")
 
 
+def tidy(text):
+    """A declaration without the spaces that Doxygen puts into template arguments."""
+    return re.sub(r"(?<=[\w>*&)]) >", ">", re.sub(r"(?<=\w)< ", "<", text))
+
+
 def code(declarations, language="text"):
-    seen = list(dict.fromkeys(declarations))
+    seen = [tidy(d) for d in dict.fromkeys(declarations)]
     return f"```{language}\n" + "\n".join(seen) + "\n```\n"
 
 
@@ -383,9 +398,9 @@ def write_entity(out, e):
         out.append("| member | default | meaning |\n|---|---|---|")
         for m in data:
             default = f"`{cell(m.default)}`" if m.default and len(m.default) < 60 else ""
-            kind = re.sub(r"\s*\b%s\b.*" % re.escape(m.name), "", m.declarations[-1].split("\n")[-1])
+            kind = m.declarations[-1].split("\n")[-1].rpartition(f" {m.name}")[0]
             kind = re.sub(r"\bstatic constexpr |\[\[no_unique_address\]\] ", "", kind)
-            out.append(f"| `{m.name}`<br>`{cell(kind)}` | {default} | {cell(m.text)} |")
+            out.append(f"| `{m.name}`<br>`{cell(tidy(kind))}` | {default} | {cell(m.text)} |")
         out.append("")
     for m in e.members:
         if m.kind == "variable":
@@ -405,11 +420,14 @@ def write(entities, folder):
     folder.mkdir(parents=True, exist_ok=True)
     for page, (title, lead, _) in PAGES.items():
         out = [f"# {title}\n", lead + "\n"]
-        rank = {"macro": 0, "class": 1, "struct": 1, "concept": 3, "typedef": 3, "variable": 3, "enum": 2}
-        own = sorted((e for e in entities if page_of(e) == page and not e.kind.startswith("CMake")),
-                     key=lambda e: ([f for f in range(len(PAGES[page][2]))
-                                     if e.file.removeprefix("include/myriad/").startswith(PAGES[page][2][f])] or [-1],
-                                    rank.get(e.kind, 1) if page != "solve" else 1, e.file, e.line))
+        files = PAGES[page][2]
+
+        def order(e):
+            below = e.file.removeprefix("include/myriad/")
+            first = FIRST.index(e.name) if e.name in FIRST else len(FIRST)
+            return first, next((i for i, file in enumerate(files) if below.startswith(file)), -1), e.file, e.line
+
+        own = sorted((e for e in entities if not e.kind.startswith("CMake") and page_of(e) == page), key=order)
         for e in own:
             write_entity(out, e)
         (folder / f"{page}.md").write_text("\n".join(out), encoding="utf-8")
