@@ -442,6 +442,15 @@ def write(entities, folder):
             default = e.default.replace('"', "")
             out.append(f"| `{e.name}` | {'`' + cell(default) + '`' if default else 'empty'} | {cell(e.text)} |")
     (folder / "cmake.md").write_text("\n".join(out) + "\n", encoding="utf-8")
+    out = ["# Reference\n", "Every public entity, from the comments in the sources: a test fails on one without.\n",
+           "| page | what |\n|---|---|"]
+    for page, (title, _, _) in PAGES.items():
+        names = [f"`{e.name}`" for e in entities if not e.kind.startswith("CMake") and page_of(e) == page]
+        shown = list(dict.fromkeys(names))
+        out.append(f"| [{title}]({page}.md) | {', '.join(shown[:8])}{', ...' if len(shown) > 8 else ''} |")
+    out.append("| [CMake](cmake.md) | `myriad_add_models`, options |")
+    out.append("\n```{toctree}\n:hidden:\n" + "\n".join(PAGES) + "\ncmake\n```")
+    (folder / "index.md").write_text("\n".join(out) + "\n", encoding="utf-8")
 
 
 def main():

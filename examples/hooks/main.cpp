@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs the small models of docs/writing_a_model.md and the solvers of docs/gpu.md, and compares them with what is known
+// Runs the small models of docs/hooks_and_events.md and the solvers of docs/gpu.md, and compares them with what is known
 // of them; exit status 1 if one is wrong.
 #include <algorithm>
 #include <cmath>
