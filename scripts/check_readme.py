@@ -15,6 +15,9 @@ other commands must occur, letter for letter, in a script or a test.
 Files: a link to a file must lead to one, and a path in backticks must be the end of a path in the repository, or the
 name of a file that some program or script writes.
 
+Messages: those that docs/troubleshooting.md cites in the first column of a table occur in the library, and it has a row
+for every status.
+
 Exit status 1 if something differs or is not there (--fix rewrites blocks of code instead), 2 if a snippet is missing.
 """
 
@@ -246,6 +249,26 @@ def check_files(document):
                 yield f"{where}: there is no file `{token}`, and nothing writes one"
 
 
+@functools.cache
+def messages():
+    """The text of all string literals of the library and of its CMake files, those that stand in a row joined."""
+    files = [f for f in all_files() if f.startswith(("include/", "backends/", "cmake/"))]
+    return "".join(re.findall(r'"((?:[^"\\\n]|\\.)*)"', "\n".join(text_of(f) for f in files)))
+
+
+def check_troubleshooting(document):
+    """Messages that the page about troubleshooting cites and the library does not have, statuses that it leaves out."""
+    text = document.read_text(encoding="utf-8")
+    for number, line in enumerate(text.splitlines(), 1):
+        cited = re.match(r"\| `([^`]* [^`]*)` \|", line)
+        if cited and cited[1] not in messages():
+            yield f"{document.relative_to(ROOT)}:{number}: no message has '{cited[1]}'"
+    enumeration = re.search(r"enum class status.*?\{(.*?)\n\};", text_of("include/myriad/kernel/core/status.hpp"), re.S)
+    for status in re.findall(r"^    (\w+),", enumeration[1], re.M):
+        if not re.search(rf"^\| `{status}` \|", text, re.M):
+            yield f"{document.relative_to(ROOT)}: says nothing about the status {status}"
+
+
 def main(arguments):
     if arguments in (["-h"], ["--help"]):
         print(__doc__.strip())
@@ -255,6 +278,7 @@ def main(arguments):
     different = False
     documents = [*(ROOT / name for name in DOCUMENTS), *sorted((ROOT / "docs").rglob("*.md"))]
     problems = [p for document in documents for p in (*check_commands(document), *check_files(document))]
+    problems += check_troubleshooting(ROOT / "docs" / "troubleshooting.md")
     for problem in problems:
         print(problem)
     for document in documents:

@@ -49,9 +49,7 @@ install_tools() {
         cp docs/requirements.txt "$tools/requirements.txt"
 }
 
-if ! has_command doxygen; then
-    (require_packages doxygen) || true
-fi
+(require_packages doxygen python3-venv) || true
 if ! has_command doxygen; then
     say "The site was NOT built: there is no doxygen, and it could not be installed."
     exit "$missing_status"
