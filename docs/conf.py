@@ -20,6 +20,8 @@ html_theme = "furo"
 html_title = f"Myriad {release}"
 html_copy_source = False
 html_show_sphinx = False
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 html_theme_options = {"navigation_with_keys": True}
 # What cannot be seen from here, and is not asked for by scripts/docs.sh without --external.
 linkcheck_timeout = 20

@@ -395,12 +395,15 @@ def write_entity(out, e):
         out.append(e.text + "\n")
     data = [m for m in e.members if m.kind == "variable"]
     if data:
-        out.append("| member | default | meaning |\n|---|---|---|")
+        out.append("| member | meaning |\n|---|---|")
         for m in data:
-            default = f"`{cell(m.default)}`" if m.default and len(m.default) < 60 else ""
+            default = re.sub(r"std::numeric_limits<.*?>::", "", m.default).replace("quiet_NaN()", "NaN")
+            default = default.replace("infinity()", "infinity")
+            default = f" = {default}" if default and len(default) < 60 else ""
             kind = m.declarations[-1].split("\n")[-1].rpartition(f" {m.name}")[0]
             kind = re.sub(r"\bstatic constexpr |\[\[no_unique_address\]\] ", "", kind)
-            out.append(f"| `{m.name}`<br>`{cell(tidy(kind))}` | {default} | {cell(m.text)} |")
+            shown = tidy(kind + default).replace("myriad::", "")
+            out.append(f"| **`{m.name}`**<br>`{cell(shown)}` | {cell(m.text)} |")
         out.append("")
     for m in e.members:
         if m.kind == "variable":

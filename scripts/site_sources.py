@@ -21,7 +21,14 @@ LANGUAGES = {".hpp": "c++", ".cpp": "c++", ".cu": "cuda", ".cuh": "cuda", ".py":
              ".cmake": "cmake", ".txt": "cmake", ".json": "json", ".cff": "yaml"}
 LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
 IMAGE = re.compile(r"!\[([^\]]*)\]\(([^)\s]+)\)")
-SNIPPET = re.compile(r"^<!-- (?:snippet|shown): (\S+)(?: \w+)? -->\n```(\S+)\n", flags=re.M)
+SNIPPET = re.compile(r"^<!-- snippet: (\S+)(?: \w+)? -->\n```(\S+)\n", flags=re.M)
+
+
+def captioned(match):
+    """The beginning of a block of code with its file as a caption; commands need none."""
+    if match[2] in ("sh", "bash"):
+        return "```bash\n"
+    return f"```{{code-block}} {match[2].replace('cpp', 'c++')}\n:caption: {match[1]}\n\n"
 
 
 class Site:
@@ -67,7 +74,7 @@ class Site:
         for i in range(0, len(parts), 2):
             parts[i] = LINK.sub(lambda m: f"[{m[1]}]({target(m[2])})", parts[i])
         text = "".join(parts)
-        text = SNIPPET.sub(lambda m: f"```{{code-block}} {m[2].replace('cpp', 'c++')}\n:caption: {m[1]}\n\n", text)
+        text = SNIPPET.sub(captioned, text)
         text = re.sub(r"^```sh$", "```bash", text, flags=re.M)
         return re.sub(r"^<!--.*?-->\n", "", text, flags=re.M)
 
@@ -106,7 +113,8 @@ def main(arguments):
         relative = document.relative_to(ROOT)
         page = site.page(relative)
         site.write(page, site.rewrite(document.read_text(encoding="utf-8"), relative, page))
-    shutil.copytree(ROOT / "docs" / "images", folder / "images")
+    for part in ("images", "static"):
+        shutil.copytree(ROOT / "docs" / part, folder / part)
     shutil.copy(ROOT / "docs" / "conf.py", folder)
     version = re.search(r"project\(myriad VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))
     site.write("version.txt", version[1] + "\n")

@@ -139,10 +139,10 @@ struct options {
 
     double step =
         std::numeric_limits<double>::quiet_NaN();  ///< fixed step (must be given), or first step (default 1e-2)
-    double minimum_step = 0;                       ///< 0: the resolution of t
+    double minimum_step = 0;                       ///< smallest step size; 0: the resolution of t
     double maximum_step = std::numeric_limits<double>::infinity();  ///< largest step size; infinity: no limit
     double growth_limit = 5;              ///< largest factor from one step to the next; rounded to single precision
-    double shrink_limit = 0.1;            ///< smallest factor, also rounded
+    double shrink_limit = 0.1;            ///< smallest factor from one step to the next, rounded in the same way
     std::int64_t max_steps = 10'000'000;  ///< trial steps per phase; an instance that needs more ends as `max_steps`
 
     /// Where a phase starts.
