@@ -105,7 +105,8 @@ def write(comments, rows, images, command):
             f"{int(sum(r['value'] for r in counts))}.", ""]
     if images:
         out += [f"![Error against tolerance]({images}/tolerance.png)", "",
-                "Median error of the end states against the tolerance; the dashed line is error = tolerance.", ""]
+                "Median error of the end states against the tolerance; the dashed line is error = tolerance. The bouncing ball has "
+                "no panel: every method integrates its parabolas exactly.", ""]
 
     out += ["## Orders: the tight checks", "",
             "With fixed steps, for methods with step-size control too; medians over the instances. *One step* is compared with the "
