@@ -243,7 +243,15 @@ def check_files(document):
             path = token.removeprefix("<").removesuffix(">").removeprefix("myriad/").removeprefix("./")
             if not re.fullmatch(rf"[\w./-]+\.({FILE_ENDINGS})", path) or path.startswith("build/"):
                 continue
-            if any(f == path or f.endswith("/" + path) for f in all_files()):
+            if token.startswith("<"):  # as a program includes it
+                found = any(f in (f"include/myriad/{path}", f"backends/openmp/myriad/{path}",
+                                  f"backends/cuda/myriad/{path}") for f in all_files())
+            else:
+                found = any(f == path or f.endswith("/" + path) for f in all_files())
+            if found:
+                continue
+            if token.startswith("<"):
+                yield f"{where}: no header is included as {token}"
                 continue
             if not re.search(rf"(?<![\w.]){re.escape(os.path.basename(path))}(?!\w)", programs_and_scripts()):
                 yield f"{where}: there is no file `{token}`, and nothing writes one"

@@ -28,6 +28,7 @@ echo written.csv
 """
 WRONG = {
     "See `a/c.hpp`.": "no file `a/c.hpp`",
+    "See `<myriad/b.hpp>`.": "no header is included as <myriad/b.hpp>",
     "See [this](../scripts/gone.sh).": "leads to nothing",
     "```sh\nscripts/gone.sh\n```": "there is no scripts/gone.sh",
     "```sh\nscripts/go.sh --slow\n```": "has no option --slow",
