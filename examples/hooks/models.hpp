@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small models, one for each thing a model can do beside its right-hand side; docs/hooks_and_events.md shows most of them.
+// Small models, one for each thing a model can do beside its right-hand side; docs/hooks_and_events.md shows most.
 #pragma once
 
 #include <myriad/model.hpp>
