@@ -163,7 +163,8 @@ def problem_of_command(words, line):
     built = re.match(r"build/([\w+,.-]+)/(?:(.*)/)?([\w.+-]+)$", command)
     if built:
         preset, folder, name = built[1], built[2] or "", built[3]
-        if preset not in presets() and not re.search(rf"build/{re.escape(preset.split('-')[0])}", programs_and_scripts()):
+        made_by_a_script = rf"build/{re.escape(preset.split('-')[0])}"
+        if preset not in presets() and not re.search(made_by_a_script, programs_and_scripts()):
             return f"there is no preset {preset}"
         lists = [f for f in all_files() if f.endswith("CMakeLists.txt") and f.startswith(folder)]
         # Some are named by a loop: validate_${problem}.

@@ -39,7 +39,9 @@ while (($#)); do
 done
 
 # The tools are those of docs/requirements.txt if they were installed from the same file.
-tools_are_there() { cmp -s docs/requirements.txt "$tools/requirements.txt" && "$tools/bin/python" -c 'import sphinx' 2>/dev/null; }
+tools_are_there() {
+    cmp -s docs/requirements.txt "$tools/requirements.txt" && "$tools/bin/python" -c 'import sphinx' 2>/dev/null
+}
 install_tools() {
     rm -rf "$tools"
     mkdir -p "${tools%/*}"

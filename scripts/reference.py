@@ -49,7 +49,8 @@ OPAQUE = ("pack", "pack_mask", "dual", "vec_values", "shared_values", "component
 PUBLIC_IN_BACKENDS = ("myriad::cuda::kernel_facts",)  # report::kernel
 MACROS = ("MYRIAD_FUNCTION", "MYRIAD_LAMBDA", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT")
 CMAKE_FUNCTIONS = ("myriad_add_models",)
-CMAKE_FILES = ("CMakeLists.txt", "cmake/MyriadModels.cmake")
+# A user's project gets the defaults of the modules, before those of the library's own build.
+CMAKE_FILES = ("cmake/MyriadModels.cmake", "cmake/MyriadCuda.cmake", "CMakeLists.txt")
 
 DOXYFILE = """
 QUIET = YES
@@ -353,8 +354,8 @@ def check(entities):
 
 
 # On their pages before all others.
-FIRST = ("options", "report", "MYRIAD_FUNCTION", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT", "vec", "lane", "inputs",
-         "select", "solve", "solver")
+FIRST = ("ensemble", "options", "report", "status", "MYRIAD_FUNCTION", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT",
+         "vec", "lane", "inputs", "select", "device", "solve", "solver")
 _anchors = {}
 
 
@@ -385,7 +386,8 @@ def where(entity):
 
 def write_entity(out, e):
     qualified = e.name if e.kind in ("macro",) or e.kind.startswith("CMake") else f"myriad::{e.name}"
-    out.append(f"({anchor(e.name)})=\n## {e.kind.replace('variable', 'constant').replace('typedef', 'type')} `{qualified}`\n")
+    kind = {"variable": "constant", "typedef": "type"}.get(e.kind, e.kind)
+    out.append(f"({anchor(e.name)})=\n## {kind} `{qualified}`\n")
     if e.kind == "enum":
         out.append(e.text + "\n\n| value | meaning |\n|---|---|")
         out.extend(f"| `{value}` | {cell(text)} |" for value, text in e.values)
@@ -419,23 +421,28 @@ def write_entity(out, e):
     out.append(f"*Source:* {where(e)}\n")
 
 
+def entities_of(page, entities):
+    """The entities of a page in their order: those of FIRST, then by file and line."""
+    files = PAGES[page][2]
+
+    def order(e):
+        below = e.file.removeprefix("include/myriad/")
+        first = FIRST.index(e.name) if e.name in FIRST else len(FIRST)
+        return first, next((i for i, file in enumerate(files) if below.startswith(file)), -1), e.file, e.line
+
+    return sorted((e for e in entities if not e.kind.startswith("CMake") and page_of(e) == page), key=order)
+
+
 def write(entities, folder):
     folder.mkdir(parents=True, exist_ok=True)
     for page, (title, lead, _) in PAGES.items():
         out = [f"# {title}\n", lead + "\n"]
-        files = PAGES[page][2]
-
-        def order(e):
-            below = e.file.removeprefix("include/myriad/")
-            first = FIRST.index(e.name) if e.name in FIRST else len(FIRST)
-            return first, next((i for i, file in enumerate(files) if below.startswith(file)), -1), e.file, e.line
-
-        own = sorted((e for e in entities if not e.kind.startswith("CMake") and page_of(e) == page), key=order)
-        for e in own:
+        for e in entities_of(page, entities):
             write_entity(out, e)
         (folder / f"{page}.md").write_text("\n".join(out), encoding="utf-8")
-    out = ["# CMake\n", "What `find_package(myriad)`, `add_subdirectory` and `FetchContent` provide. The targets of the",
-           "library are `myriad::openmp` and, with `MYRIAD_ENABLE_CUDA`, `myriad::cuda`; `myriad_add_models` links them.\n"]
+    out = ["# CMake\n",
+           "What `find_package(myriad)`, `add_subdirectory` and `FetchContent` provide. The targets of the library are",
+           "`myriad::openmp` and, with `MYRIAD_ENABLE_CUDA`, `myriad::cuda`; `myriad_add_models` links them.\n"]
     for e in entities:
         if e.kind == "CMake function":
             write_entity(out, e)
@@ -443,12 +450,15 @@ def write(entities, folder):
     for e in entities:
         if e.kind == "CMake option":
             default = e.default.replace('"', "")
+            if "PROJECT_IS_TOP_LEVEL" in default:
+                out.append(f"| `{e.name}` | `ON` in a build of the library alone, else `OFF` | {cell(e.text)} |")
+                continue
             out.append(f"| `{e.name}` | {'`' + cell(default) + '`' if default else 'empty'} | {cell(e.text)} |")
     (folder / "cmake.md").write_text("\n".join(out) + "\n", encoding="utf-8")
     out = ["# Reference\n", "Every public entity, from the comments in the sources: a test fails on one without.\n",
            "| page | what |\n|---|---|"]
     for page, (title, _, _) in PAGES.items():
-        names = [f"`{e.name}`" for e in entities if not e.kind.startswith("CMake") and page_of(e) == page]
+        names = [f"`{e.name}`" for e in entities_of(page, entities)]
         shown = list(dict.fromkeys(names))
         out.append(f"| [{title}]({page}.md) | {', '.join(shown[:8])}{', ...' if len(shown) > 8 else ''} |")
     out.append("| [CMake](cmake.md) | `myriad_add_models`, options |")

@@ -24,8 +24,8 @@ NAMES = {"lorenz": "Lorenz", "duffing": "Duffing", "van_der_pol": "van der Pol",
          "relief_valve": "relief valve", "heat": "heat conduction", "kepler": "Kepler", "timed_circle": "timed circle",
          "robertson": "Robertson", "oregonator": "Oregonator"}
 # Problems without a panel, each with the reason.
-LEFT_OUT = {"bouncing_ball": "No panel for the bouncing ball:\nits flights are parabolas, which\nevery method integrates exactly,\n"
-                             "so that its errors do not\nfollow the tolerance."}
+LEFT_OUT = {"bouncing_ball": "No panel for the bouncing ball:\nits flights are parabolas, which\n"
+                             "every method integrates exactly,\nso that its errors do not\nfollow the tolerance."}
 LABELS = {"cash_karp": "Cash–Karp 5(4)", "tsitouras_5": "Tsitouras 5(4)", "runge_kutta_4": "Runge–Kutta 4, fixed steps",
           "odeint cash_karp": "Boost.odeint, Cash–Karp", "CVODE": "CVODE, Adams",
           "dormand_prince_5": "Dormand–Prince 5(4)",

@@ -53,9 +53,11 @@ expect "docs.sh refuses an unknown option" 2 "Unknown option '--quick'" scripts/
 mkdir "$work/site"
 printf '<a href="#here">x</a><a href="b.html#gone">y</a><img src="c.png"><p id="here">' >"$work/site/a.html"
 printf '<p id="there">' >"$work/site/b.html"
-expect "check_site.py finds an anchor that is not there" 1 'b.html#gone has no such anchor' scripts/check_site.py "$work/site"
+expect "check_site.py finds an anchor that is not there" 1 'b.html#gone has no such anchor' \
+    scripts/check_site.py "$work/site"
 expect "check_site.py finds an image that is not there" 1 'c.png is not there' scripts/check_site.py "$work/site"
-expect "check_site.py counts what is broken" 1 '2 pages, 3 links within the site, 2 of them broken' scripts/check_site.py "$work/site"
+expect "check_site.py counts what is broken" 1 '2 pages, 3 links within the site, 2 of them broken' \
+    scripts/check_site.py "$work/site"
 expect "check_site.py refuses an empty folder" 1 '0 pages' scripts/check_site.py "$work/none"
 expect "quickstart.sh --help" 0 'Usage: scripts/quickstart.sh' scripts/quickstart.sh --help
 expect "quickstart.sh refuses an unknown option" 2 "Unknown option 'now'" scripts/quickstart.sh now
