@@ -289,16 +289,16 @@ def read_cmake(source):
                 entity.text = entity.text[:1].upper() + entity.text[1:]
                 entities.append(entity)
                 seen.add(match[2])
-        pattern = (r"^\s*(?:option\((MYRIAD_\w+)\s+\"((?:[^\"\\]|\\.)*)\"\s*([^)]*)\)"
-                   r"|set\((MYRIAD_\w+)\s+(\S+)\s+CACHE\s+\w+\s+((?:\"(?:[^\"\\]|\\.)*\"\s*)*))")
+        pattern = (r"^\s*(?:option\((MYRIAD_\w+)\s+\"((?:[^\"\\]|\\[\s\S])*)\"\s*([^)]*)\)"
+                   r"|set\((MYRIAD_\w+)\s+(\S+)\s+CACHE\s+\w+\s+((?:\"(?:[^\"\\]|\\[\s\S])*\"\s*)*))")
         for match in re.finditer(pattern, text, flags=re.M):
             option = match[1] or match[4]
             if option in seen:
                 continue
             seen.add(option)
             entity = Entity("CMake option", option, name, text.count("\n", 0, match.start()) + 1)
-            words = match[2] if match[1] else " ".join(re.findall(r"\"((?:[^\"\\]|\\.)*)\"", match[6]))
-            entity.text = " ".join(words.split())
+            words = match[2] if match[1] else " ".join(re.findall(r"\"((?:[^\"\\]|\\[\s\S])*)\"", match[6]))
+            entity.text = " ".join(words.replace("\\\n", "").split())
             entity.default = (match[3] if match[1] else match[5]).strip()
             entities.append(entity)
     for name in CMAKE_FUNCTIONS:

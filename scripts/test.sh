@@ -49,7 +49,8 @@ while (($#)); do
             IFS=, read -r -a wanted <<<"$2"
             ((${#wanted[@]})) || usage_error "--only needs steps: ${all_steps[*]}"
             for step in "${wanted[@]}"; do
-                [[ " ${all_steps[*]} " == *" $step "* ]] || usage_error "There is no step '$step': choose from ${all_steps[*]}"
+                [[ " ${all_steps[*]} " == *" $step "* ]] ||
+                    usage_error "There is no step '$step': choose from ${all_steps[*]}"
             done
             steps=()
             for step in "${all_steps[@]}"; do
@@ -93,7 +94,8 @@ build() {
 # kernels, and scripts/case_studies.sh builds the case studies).
 build_kernels() {
     local kernels
-    quietly build/cuda/configure.log cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return
+    quietly build/cuda/configure.log \
+        cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return
     mapfile -t kernels < <(ninja -C build/cuda -t targets all | sed -n 's/: CUDA_COMPILER__.*//p' |
         if [[ $every_kernel == yes ]]; then cat; else
             grep -E '^(tests|examples/(duffing|hooks|own_method|quickstart))/' | grep -vFf build/cuda/single_lanes.txt
@@ -114,9 +116,11 @@ slowest_files() {
 
 # Registers, stack and spills of every kernel that the tests compile.
 kernel_table() {
-    sed -nE 's/^(.*): ([0-9]+) registers, stack ([0-9]+), spill ([0-9]+).*/\2 \3 \4 \1/p' build/cuda/Testing/Temporary/LastTest.log |
+    local log=build/cuda/Testing/Temporary/LastTest.log
+    sed -nE 's/^(.*): ([0-9]+) registers, stack ([0-9]+), spill ([0-9]+).*/\2 \3 \4 \1/p' "$log" |
         sed -E 's/myriad:://g; s/, \(shared_placement\)1>$/>/' | sort -u -k4 |
-        awk 'BEGIN { print "   registers stack spill kernel" } { printf "   %9s %5s %5s", $1, $2, $3; $1 = $2 = $3 = ""; print substr($0, 3) }'
+        awk 'BEGIN { print "   registers stack spill kernel" }
+             { printf "   %9s %5s %5s", $1, $2, $3; $1 = $2 = $3 = ""; print substr($0, 3) }'
 }
 
 # run_tests STEP PRESET [CTEST ARGUMENT...]: sets `result` and adds to the counts.

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws what scripts/bench.sh measured: ratios with their goals, time against the number of instances, scaling over threads.
+"""Draws what scripts/bench.sh measured: ratios with their goals, time against the number of instances, scaling
+over threads.
 
 Usage: plot.py CSV PNG
 
@@ -67,7 +68,8 @@ def ratios(rows, axis, _pyplot):
 
 def equal_error(rows, axis, _pyplot):
     """The best method's speed beside CVODE's at the finest error that both reached."""
-    cases = [case for case in TITLES if any(row["case"] == case + ":equal_error" and row["ratio_to_cvode"] for row in rows)]
+    cases = [case for case in TITLES
+             if any(row["case"] == case + ":equal_error" and row["ratio_to_cvode"] for row in rows)]
     heights = {}
     for name in sets_of(rows):
         heights[name] = []

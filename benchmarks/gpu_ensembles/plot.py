@@ -95,7 +95,8 @@ def draw_all(source, target):
         try:
             panel(times, axis)
         except KeyError as error:
-            raise figures.PlotError(f"{source} has no times of {error}: run gpu_ensembles without a choice of cases") from error
+            raise figures.PlotError(f"{source} has no times of {error}: "
+                                    "run gpu_ensembles without a choice of cases") from error
         figures.label_ticks(pyplot, axis.xaxis)
         figures.label_ticks(pyplot, axis.yaxis)
         axis.set_xlabel("instances")

@@ -4,9 +4,9 @@
 
 Usage: plot.py [CSV [CSV of another device]] [--images DIR] [--into FILE]
 
-Without CSV: the files beside this one. One picture per case, DIR/CASE.png: median error against evaluations of f, and against time on each device. Tables go between
-the lines `<!-- measured: NAME -->` and `<!-- end of measured -->` of FILE. Needs matplotlib (Debian: python3-matplotlib).
-Exit status 2 if something is missing or wrong.
+Without CSV: the files beside this one. One picture per case, DIR/CASE.png: median error against evaluations of f, and
+against time on each device. Tables go between the lines `<!-- measured: NAME -->` and `<!-- end of measured -->` of
+FILE. Needs matplotlib (Debian: python3-matplotlib). Exit status 2 if something is missing or wrong.
 """
 import argparse
 import math
@@ -63,8 +63,8 @@ def kind_of(table):
 
 
 def cost_at(rows, error, cost):
-    """The cost of a median error or a smaller one: that of the loosest tolerance if it is small enough, else between two
-    measured points straight in the logarithms; None if it was not reached."""
+    """The cost of a median error or a smaller one: that of the loosest tolerance if it is small enough, else between
+    two measured points straight in the logarithms; None if it was not reached."""
     if rows[0]["median_error"] <= error:
         return cost(rows[0])
     for one, other in zip(rows, rows[1:]):

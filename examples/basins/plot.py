@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the basins of attraction that the program `basins` computed: colours for magnets, shades for the time to capture.
+"""Draws the basins of attraction that the program `basins` computed: colours for magnets, shades for the time to
+capture.
 
 Usage: plot.py CSV PNG
 

@@ -20,8 +20,8 @@ PLAIN = {"font.family": "serif", "font.serif": ["STIXGeneral", "DejaVu Serif"], 
 FRAMED = {**PLAIN, "font.size": 9, "axes.titlesize": 11, "xtick.top": True, "ytick.right": True,
           "xtick.minor.visible": True, "ytick.minor.visible": True}
 # Okabe and Ito's colours, which the colour-blind can tell apart.
-BLUE, ORANGE, GREEN, PINK, RED, SKY, YELLOW = "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442"
-COLOURS = (BLUE, ORANGE, GREEN, PINK, RED, SKY, YELLOW)
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
+BLUE, ORANGE, GREEN, PINK, RED, SKY, YELLOW = COLOURS
 
 
 class PlotError(Exception):
@@ -53,7 +53,10 @@ def label_ticks(pyplot, axis):
 
 
 def read_rows(path, program, columns):
-    """Returns the rows of a table as dictionaries of text, and the comments at the top of the file. Other columns are allowed."""
+    """Returns the rows of a table as dictionaries of text, and the comments at the top of the file.
+
+    Other columns are allowed.
+    """
     try:
         with open(path, encoding="utf-8") as file:
             lines = file.readlines()
@@ -66,7 +69,7 @@ def read_rows(path, program, columns):
 
 
 def read_table(numpy, path, program, columns):
-    """Returns all columns but `status` as a dictionary of arrays, and the comments at the top of the file as one text."""
+    """Returns all columns but `status` as a dictionary of arrays, and the comments at the file's top as one text."""
     wanted = [name for name in columns if name != "status"]
     comments = []
     again = f"run the program `{program}` again"
@@ -89,7 +92,8 @@ def read_table(numpy, path, program, columns):
             table = numpy.loadtxt(file, comments="#", delimiter=",", usecols=[columns.index(name) for name in wanted],
                                   ndmin=2)
     except OSError as error:
-        raise PlotError(f"{path} cannot be read: {error.strerror or error}; run the program `{program}` first") from error
+        raise PlotError(f"{path} cannot be read: {error.strerror or error}; "
+                        f"run the program `{program}` first") from error
     except (ValueError, IndexError) as error:
         raise PlotError(f"{path} cannot be read as a table: {error}") from error
     missing = int((~numpy.isfinite(table)).any(axis=1).sum())

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the planes that the program `bubble_dual_frequency` computed: growth, collapse and winding over both frequencies.
+"""Draws the planes that the program `bubble_dual_frequency` computed: growth, collapse and winding over both
+frequencies.
 
 Usage: plot_dual_frequency.py CSV PNG
 

@@ -19,7 +19,7 @@ SHOWN = 0.25  # exponents beyond have the colours of the ends
 
 
 def draw(pyplot, numpy, table, _comments):
-    """Returns the figure: the map, and beside it the difference of both exponents, over the plane and over the exponent."""
+    """Returns the figure: the map, and beside it the difference of both exponents, over the plane and the exponent."""
     from matplotlib import colors  # pylint: disable=import-outside-toplevel
     figure = pyplot.figure(figsize=(7.2, 4.4), layout="constrained")
     left, right = figure.subfigures(1, 2, width_ratios=(1.75, 1))

@@ -24,7 +24,8 @@ def constants(comments):
         rf"mean of the peak: found {number}, expected {number},",
         rf"variance of the peak: found {number}, expected {number},")]
     if not all(found):
-        raise figures.PlotError("The comments at the top of the file lack constants: run the program `monte_carlo` again")
+        raise figures.PlotError("The comments at the top of the file lack constants: "
+                                "run the program `monte_carlo` again")
     return (*map(float, found[0].groups()), float(found[1][1]), float(found[2][2]), float(found[3][2]))
 
 
@@ -36,7 +37,8 @@ def density(numpy, R0, mean, deviation, start):
 
 
 def convergence(numpy, errors):
-    """Sizes n of which there are ten disjoint samples or more; root mean square of their means' errors; number of samples."""
+    """Sizes n of which there are ten disjoint samples or more; for each, the root mean square of the errors of their
+    means, and the number of samples."""
     sizes = 2 ** numpy.arange(max(1, int(numpy.log2(max(errors.size / 10, 1))) + 1))
     means = [errors[:errors.size // n * n].reshape(-1, n).mean(axis=1) for n in sizes]
     return sizes, numpy.array([numpy.sqrt((m ** 2).mean()) for m in means]), errors.size // sizes

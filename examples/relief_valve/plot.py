@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the smallest and largest displacements of the relief valve that the program `relief_valve` computed, over the flow.
+"""Draws the smallest and largest displacements of the relief valve that the program `relief_valve` computed, over the
+flow.
 
 Usage: plot.py CSV PNG
 """

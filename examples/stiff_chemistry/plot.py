@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the periods of the Oregonator that the program `stiff_chemistry` computed, and what they cost, over f and epsilon.
+"""Draws the periods of the Oregonator that the program `stiff_chemistry` computed, and what they cost, over f and
+epsilon.
 
 Usage: plot.py CSV PNG
 """
@@ -22,7 +23,8 @@ def draw(pyplot, numpy, table, comments):
     f, epsilon = numpy.unique(table["f"]), numpy.unique(table["epsilon"])
     shape = (epsilon.size, f.size)
     if table["f"].size != epsilon.size * f.size:
-        raise figures.PlotError("The rows are no complete plane of f and epsilon: run the program `stiff_chemistry` again")
+        raise figures.PlotError("The rows are no complete plane of f and epsilon: "
+                                "run the program `stiff_chemistry` again")
     oscillates = (table["period"] > 0) & (table["z_largest"] - table["z_least"] > 0.05 * table["z_largest"])
     period = numpy.where(oscillates, table["period"], numpy.nan)
     f_edges, epsilon_edges = figures.edges(numpy, f), figures.edges_of_ratios(numpy, epsilon)

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Configures a user's project in the ways that there are, and checks what its model files are compiled with, or why not.
+"""Configures a user's project in the ways that there are, and checks what its model files are compiled with, or why
+not.
 
     check.py --source SOURCE --build BUILD --work WORK --compiler COMPILER [--nvcc NVCC] [-D...]
 
-Models are to be optimised in every configuration; without, kernels take 50 to 250 times as long, and nothing says so. BUILD is a
-build of Myriad that can be installed. Exit status: 0 all is as it should be, 1 something is not.
+Models are to be optimised in every configuration; without, kernels take 50 to 250 times as long, and nothing says so.
+BUILD is a build of Myriad that can be installed. Exit status: 0 all is as it should be, 1 something is not.
 """
 import argparse
 import json

@@ -176,7 +176,8 @@ def plain(name):
 
 
 def matching(kernels, name):
-    """Names of the kernels that `name` means: itself, or all instances of the template that begin with its arguments."""
+    """Names of the kernels that `name` means: itself, or all instances of the template that begin with its
+    arguments."""
     return [kernel for kernel in kernels
             if plain(kernel) == plain(name) or ("<" not in name and kernel.split("<")[0] == name)
             or (name.endswith(">") and plain(kernel).startswith(plain(name)[:-1] + ","))]

@@ -13,7 +13,8 @@ expect() {
     shift 3
     output=$("$@" 2>&1) || actual=$?
     if ((actual != status)) || ! grep -qE -- "$pattern" <<<"$output"; then
-        printf 'FAILED %s: exit status %d (expected %d), output (expected %s):\n%s\n' "$name" "$actual" "$status" "$pattern" "$output"
+        printf 'FAILED %s: exit status %d (expected %d), output (expected %s):\n%s\n' \
+            "$name" "$actual" "$status" "$pattern" "$output"
         failures=$((failures + 1))
     else
         printf 'ok     %s\n' "$name"
@@ -40,7 +41,8 @@ expect "test.sh refuses a wrong number of jobs" 2 '--jobs needs' scripts/test.sh
 expect "format.sh --help" 0 'Usage: scripts/format.sh' scripts/format.sh --help
 expect "format.sh refuses an unknown option" 2 "Unknown option '--now'" scripts/format.sh --now
 printf 'int  wrong ( );\n' >"$work/wrong.cpp"
-expect "format.sh finds a file that is not formatted" 1 'wrong.cpp|Formatting not checked' scripts/format.sh --required "$work/wrong.cpp"
+expect "format.sh finds a file that is not formatted" 1 'wrong.cpp|Formatting not checked' \
+    scripts/format.sh --required "$work/wrong.cpp"
 printf '# %0200d\n' 0 >"$work/long.py"
 expect "format.sh finds a line that is too long" 1 'long.py:1: 202 columns' scripts/format.sh "$work/long.py"
 expect "validate.sh --help" 0 'Usage: scripts/validate.sh' scripts/validate.sh --help
@@ -62,9 +64,10 @@ expect "check_site.py refuses an empty folder" 1 '0 pages' scripts/check_site.py
 expect "quickstart.sh --help" 0 'Usage: scripts/quickstart.sh' scripts/quickstart.sh --help
 expect "quickstart.sh refuses an unknown option" 2 "Unknown option 'now'" scripts/quickstart.sh now
 
-printf '%s\n' '1/3 Test #1: a .......   Passed    0.01 sec' '100% tests passed, 0 tests failed out of 3' >"$work/good.log"
+none_failed='100% tests passed, 0 tests failed out of 3'
+printf '%s\n' '1/3 Test #1: a .......   Passed    0.01 sec' "$none_failed" >"$work/good.log"
 printf '%s\n' '67% tests passed, 1 tests failed out of 3' >"$work/bad.log"
-printf '%s\n' '2/3 Test #2: b .......***Skipped   0.01 sec' '100% tests passed, 0 tests failed out of 3' >"$work/skipped.log"
+printf '%s\n' '2/3 Test #2: b .......***Skipped   0.01 sec' "$none_failed" >"$work/skipped.log"
 printf '%s\n' 'No tests were found!!!' >"$work/none.log"
 expect "tests that passed are counted" 0 '^3 0 0$' in_lib "count_tests '$work/good.log' 0"
 expect "tests that failed are counted" 0 '^2 1 0$' in_lib "count_tests '$work/bad.log' 8"
@@ -73,21 +76,29 @@ expect "a run without tests is a failure" 0 '^0 1 0$' in_lib "count_tests '$work
 
 missing='has_package() { return 1; }'
 expect "without root and sudo, packages and command are named" 1 'apt-get install libxsimd-dev catch2' \
-    in_lib "$missing; id() { echo 1000; }; has_command() { [[ \$1 == apt-get ]]; }; require_packages libxsimd-dev catch2"
+    in_lib "$missing; id() { echo 1000; }; has_command() { [[ \$1 == apt-get ]]; }
+            require_packages libxsimd-dev catch2"
 expect "without apt-get, packages are named" 1 'Debian.s packages: libxsimd-dev catch2' \
     in_lib "$missing; has_command() { return 1; }; require_packages libxsimd-dev catch2"
 expect "nothing is installed if nothing is missing" 0 'All packages needed' \
     in_lib "has_package() { return 0; }; apt_get() { exit 9; }; require_packages libxsimd-dev"
-expect "with sudo, apt-get runs through it" 0 'called with env DEBIAN_FRONTEND=noninteractive apt-get .*install --yes --no-install-recommends catch2' \
+installs='apt-get .*install --yes --no-install-recommends catch2'
+expect "with sudo, apt-get runs through it" 0 "called with env DEBIAN_FRONTEND=noninteractive $installs" \
     in_lib "has_package() { [[ -e '$work/done' ]]; }; id() { echo 1000; }; has_command() { return 0; }
-            sudo() { [[ \$1 == -n ]] && return; echo called with \"\$@\" >>'$work/sudo.log'; [[ \$* == *install* ]] && touch '$work/done'; return 0; }
+            sudo() {
+                [[ \$1 == -n ]] && return
+                echo called with \"\$@\" >>'$work/sudo.log'
+                [[ \$* == *install* ]] && touch '$work/done'
+                return 0
+            }
             require_packages catch2; cat '$work/sudo.log'"
 expect "output of apt-get is shown if it fails" 1 'no such thing' \
     in_lib "$missing; root_prefix() { return 0; }; env() { echo no such thing; return 100; }; require_packages catch2"
 
 # Every file with code says its licence, and none knows where it was written.
 unlicensed=$(find . \( -name '.?*' -o -name build -o -name results -o -name __pycache__ \) -prune -o -type f \
-    \( -name '*.hpp' -o -name '*.cuh' -o -name '*.cpp' -o -name '*.cu' -o -name '*.sh' -o -name '*.py' -o -name '*.cmake' -o -name CMakeLists.txt \) \
+    \( -name '*.hpp' -o -name '*.cuh' -o -name '*.cpp' -o -name '*.cu' \
+    -o -name '*.sh' -o -name '*.py' -o -name '*.cmake' -o -name CMakeLists.txt \) \
     -exec grep -L 'SPDX-License-Identifier: MIT' {} +)
 expect "every file with code has its SPDX line" 0 '^$' echo "$unlicensed"
 

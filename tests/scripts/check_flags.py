@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks, in a finished Ninja build, that no file compiled for an instruction set includes Eigen, and that none shares functions.
+"""Checks, in a finished Ninja build, that no file compiled for an instruction set includes Eigen, and that none shares
+functions.
 
 The alignment of Eigen's objects depends on the instruction set, so such a file and main would disagree about it, which
-ends in a "double free". A function that a model calls without MYRIAD_FUNCTION, if it is not inlined, is shared by all files that
-have it, and the linker keeps one of them, whatever its flags. Exit status: 0 all is well, 1 at least one file is wrong.
+ends in a "double free". A function that a model calls without MYRIAD_FUNCTION, if it is not inlined, is shared by all
+files that have it, and the linker keeps one of them, whatever its flags. Exit status: 0 all is well, 1 at least one
+file is wrong.
 """
 import json
 import re

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks that the layers of the library only point down: folders of headers include each other without a cycle, and the
-kernel body, which both compilers see, includes nothing of the host side, no Eigen and no library that only a host has."""
+"""Checks that the layers of the library only point down: folders of headers include each other without a cycle, and
+the kernel body, which both compilers see, includes nothing of the host side, no Eigen and no library that only a host
+has."""
 import argparse
 import re
 import sys
@@ -9,7 +10,8 @@ from pathlib import Path
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+(["<])([^">]+)[">]', re.MULTILINE)
 
-# What device code can do without, but for its constants and types, stays out of the kernel body. xsimd is the packs' own.
+# What device code can do without, but for its constants and types, stays out of the kernel body. xsimd is the packs'
+# own.
 KERNEL_LIBRARY = {
     "array", "bit", "cmath", "concepts", "cstddef", "cstdint", "cstring", "iterator", "limits", "string_view",
     "type_traits", "utility", "xsimd/xsimd.hpp",

@@ -55,7 +55,8 @@ def main(folder):
     sine, cosine = sine_and_cosine(decimal.Decimal(ANGLE))
     start = [sine.exp(), cosine.exp()]
     print("// SPDX-License-Identifier: MIT")
-    print("// One step of each method on the timed circle, from published coefficients in 60 decimal digits. Written by one_step.py.")
+    print("// One step of each method on the timed circle, from published coefficients in 60 decimal digits. "
+          "Written by one_step.py.")
     print("#pragma once\n\n#include <map>\n#include <string>\n#include <vector>\n\nnamespace validation {\n")
     print(f"inline constexpr double one_step_length = {H}, one_step_angle = {ANGLE};\n")
     print("inline const std::map<std::string, std::vector<double>> one_step = {")

@@ -42,13 +42,12 @@ device_kernel<Model, R> require_kernel(const device& where) {
     } else {
         found.make_engine = if_defined(&cuda::make_engine<Model, Method, R>);
     }
-    require(
-        on_cpu ? found.cpu.run != nullptr : found.make_engine != nullptr,
-        "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
-        ", or with other numbers of components, or its source file was not linked: write MYRIAD_INSTANTIATE(model, "
-        "method) (MYRIAD_INSTANTIATE_FLOAT for float) in the model's source file, and name that file in myriad_add_models for the program or an OBJECT "
-        "library",
-        on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
+    require(on_cpu ? found.cpu.run != nullptr : found.make_engine != nullptr,
+            "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
+            ", or with other numbers of components, or its source file was not linked: write MYRIAD_INSTANTIATE(model, "
+            "method) (MYRIAD_INSTANTIATE_FLOAT for float) in the model's source file, and name that file in "
+            "myriad_add_models for the program or an OBJECT library",
+            on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
     require(
         on_cpu || may_use_gpus(),
         "this process was forked from one that has used a GPU, which a fork cannot: fork before that, use the CPU, or "

@@ -4,8 +4,8 @@
 // not in the lane, where it would cost a GPU thread registers.
 #pragma once
 
-#include "myriad/kernel/controller/fixed.hpp"
-#include "myriad/kernel/event/locator.hpp"
+#include "myriad/kernel/controller/stepping.hpp"
+#include "myriad/kernel/event/side_follower.hpp"
 #include "myriad/kernel/output/reducer.hpp"
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
@@ -16,12 +16,13 @@ template <class Model, class Method, class S>
 struct phase_driver {
     using R = real_of<S>;
     using arguments = kernel_arguments<Model, R>;
+    using stepping_type = stepping<Model, Method, S>;
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
 
     const arguments& args;
     integration_state<Model, Method, S>& s;
-    event_locator<Model, Method, S>& locator;
+    side_follower<Model, Method, S>& sides;
     sample_state<Method, S>& o;
 
     /// Ends the phase of lane i, if it holds an instance, and takes it to its next phase or to the next instance that
@@ -87,8 +88,7 @@ private:
         for (int c = 0; c < n_integer_accessory<Model>; ++c)
             set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
-        if constexpr (is_adaptive<Method>) set_lane(s.data.h_next, i, args.h_next[index]);
-        if constexpr (scales_tolerances<Method>) set_lane(s.tolerance_scale, i, args.tolerance_scale[index]);
+        stepping_type{args, s}.load(i);
         set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(args.first_index + index));
         s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases - args.first_phase;
     }
@@ -116,7 +116,7 @@ private:
         MYRIAD_UNROLL
         for (int c = 0; c < n_integer_accessory<Model>; ++c)
             at(args.integer_accessory, c, i) = static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
-        if constexpr (is_adaptive<Method>) args.h_next[index] = get_lane(s.data.h_next, i);
+        stepping_type{args, s}.store(i);
     }
 
     /// Adds the work of the phase to the instance's counters.
@@ -129,7 +129,7 @@ private:
         if constexpr (is_adaptive<Method>) args.rejected[index] += rejected;
         if constexpr (m > 0) args.located[index] += located;
         args.evaluations[index] +=
-            trials * evaluations_per_trial<Model, Method> + static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
+            trials * s.slopes.evaluations_per_trial + static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
     }
 
     /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on. Returns false if it is over
@@ -155,13 +155,8 @@ private:
         set_lane(s.data.h, i, R(0));
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) set_lane(s.data.event_count[j], i, 0);
-        if constexpr (is_adaptive<Method>) {
-            // A method with fixed steps leaves none to carry on with.
-            const bool restart_step = !args.carry_step || phase == 0 || get_lane(s.data.h_next, i) == R(0);
-            if (restart_step) set_lane(s.data.h_next, i, args.step);
-        } else {
-            set_lane(s.data.h_next, i, args.step);
-        }
+        stepping_type steps{args, s};
+        steps.choose_step(i, phase);
         if constexpr (has_initialise<Model>) {
             place(i, [](auto& lane) MYRIAD_LAMBDA { Model::initialise(lane); });
             if constexpr (writes_time_domain<Model>) {
@@ -171,27 +166,14 @@ private:
         const R t = get_lane(s.data.t, i);
         args.t[index] = t;
         if constexpr (has_reductions<Model>) reducer<Model, Method, S>{s}.begin(i);
-        if constexpr (is_adaptive<Method>) {
-            if constexpr (chooses_first_step<Method>)
-                set_lane(s.first_step_open, i, get_lane(s.data.h_next, i) == R(0));
-            if constexpr (remembers_errors<Method>) {
-                set_lane(s.errors.last, i, 0);
-                set_lane(s.errors.before, i, 0);
-            }
-            set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), get_lane(s.data.t_end, i) - t));
-            s.bound_step(args, i);
-        } else {
-            detail::lay_fixed_steps(args, s, i, t);
-            set_lane(s.data.h_next, i, get_lane(s.step, i));
-        }
+        steps.begin(i, t);
         if constexpr (m > 0) {
-            if (phase == 0) locator.forget(i);
+            if (phase == 0) sides.forget(i);
         }
         if constexpr (samples_trajectory<Method>)
             sampler<Model, Method, S>{args, s, o}.begin(i, args.phases - s.phases_left[i]);
         set_lane(s.active, i, true);
-        set_lane(s.slope_valid, i, false);
-        set_lane(s.last_not_finite, i, false);
+        s.slopes.forget(i);
         s.instance_over[i] = false;
         set_count(s.rejected, i, 0);
         set_count(s.located, i, 0);
@@ -221,7 +203,7 @@ private:
             set_lane(s.data.h_next, i, h_next);
             s.ending[i] = status::not_finite;
         } else if (!same_values(before, after, n - n_tangent<Model>)) {
-            if constexpr (m > 0) locator.forget(i);
+            if constexpr (m > 0) sides.forget(i);
         }
     }
 
@@ -229,8 +211,8 @@ private:
     MYRIAD_FUNCTION void end_phase(int i) {
         const std::int64_t index = s.instance[i];
         if (args.accepted != nullptr) count_work(i);
-        if constexpr (!is_adaptive<Method>) set_lane(s.data.t, i, detail::fixed_step_time(args, s, i));
-        if constexpr (m > 0) locator.keep(i);
+        set_lane(s.data.t, i, stepping_type{args, s}.time(i));
+        if constexpr (m > 0) sides.keep(i);
         args.t[index] = get_lane(s.data.t, i);
         if constexpr (has_finalise<Model>) {
             if (!is_failure(s.ending[i])) place(i, [](auto& lane) MYRIAD_LAMBDA { Model::finalise(lane); });

@@ -169,40 +169,72 @@ MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int cou
     return same;
 }
 
+/// What may happen to a member of `lane_data`.
+template <bool written_by_hooks, bool read_by_rhs>
+struct member_use {
+    static constexpr bool written = written_by_hooks;              // by hooks
+    static constexpr bool acts = written_by_hooks && read_by_rhs;  // what hooks write there, rhs or events may read
+};
+
+/// The members of `lane_data`: calls `visit(member_use, member of each of the data...)` for every one of them.
+template <class Model, class Visit, class... Data>
+MYRIAD_FUNCTION void for_each_member(Visit&& visit, Data&... d) {
+    constexpr bool read = !accessories_are_outputs<Model>;
+    visit(member_use<true, true>{}, d.y...);
+    visit(member_use<true, read>{}, d.accessory...);
+    visit(member_use<true, read>{}, d.integer_accessory...);
+    visit(member_use<writes_parameters<Model>, true>{}, d.parameter...);
+    visit(member_use<writes_time_domain<Model>, false>{}, d.t_begin...);
+    visit(member_use<writes_time_domain<Model>, false>{}, d.t_end...);
+    visit(member_use<true, false>{}, d.h_next...);
+    visit(member_use<false, true>{}, d.t...);
+    visit(member_use<false, true>{}, d.shared...);
+    visit(member_use<false, true>{}, d.shared_integer...);
+    visit(member_use<false, false>{}, d.h...);
+    visit(member_use<false, false>{}, d.index...);
+    visit(member_use<false, false>{}, d.phase...);
+    visit(member_use<false, false>{}, d.event_count...);
+}
+
+/// Copies lane i of a member out of a pack, and back.
+template <class R, class S>
+MYRIAD_FUNCTION void copy_lane(R& to, const S& from, int i) {
+    to = static_cast<R>(get_lane(from, i));
+}
+template <class R, class S, int n>
+MYRIAD_FUNCTION void copy_lane(vec<R, n>& to, const vec<S, n>& from, int i) {
+    to = get_lanes<R>(from, i);
+}
+template <class Model, class T>
+MYRIAD_FUNCTION void copy_lane(shared_values<Model, T>& to, const shared_values<Model, T>& from, int) {
+    to = from;
+}
+template <class S, class R>
+MYRIAD_FUNCTION void put_lane(S& to, int i, const R& from) {
+    set_lane(to, i, from);
+}
+template <class S, class R, int n>
+MYRIAD_FUNCTION void put_lane(vec<S, n>& to, int i, const vec<R, n>& from) {
+    set_lanes(to, i, from);
+}
+
 /// Lane i of a pack as the data of one instance.
 template <class Model, class S>
 MYRIAD_FUNCTION lane_data<Model, real_of<S>> extract_lane(const lane_data<Model, S>& d, int i) {
-    using R = real_of<S>;
-    lane_data<Model, R> one;
-    one.parameter = get_lanes<R>(d.parameter, i);
-    one.accessory = get_lanes<R>(d.accessory, i);
-    one.integer_accessory = get_lanes<std::int32_t>(d.integer_accessory, i);
-    one.shared = d.shared;
-    one.shared_integer = d.shared_integer;
-    one.t = get_lane(d.t, i);
-    one.t_begin = get_lane(d.t_begin, i);
-    one.t_end = get_lane(d.t_end, i);
-    one.h = get_lane(d.h, i);
-    one.h_next = get_lane(d.h_next, i);
-    one.y = get_lanes<R>(d.y, i);
-    one.index = static_cast<std::int64_t>(get_lane(d.index, i));
-    one.phase = static_cast<std::int32_t>(get_lane(d.phase, i));
-    one.event_count = get_lanes<std::int32_t>(d.event_count, i);
+    lane_data<Model, real_of<S>> one;
+    detail::for_each_member<Model>(
+        [&](auto, auto& to, const auto& from) MYRIAD_LAMBDA { detail::copy_lane(to, from, i); }, one, d);
     return one;
 }
 
 /// Writes back what a hook may have changed.
 template <class Model, class S>
 MYRIAD_FUNCTION void insert_lane(lane_data<Model, S>& d, int i, const lane_data<Model, real_of<S>>& one) {
-    if constexpr (writes_parameters<Model>) set_lanes(d.parameter, i, one.parameter);
-    if constexpr (writes_time_domain<Model>) {
-        set_lane(d.t_begin, i, one.t_begin);
-        set_lane(d.t_end, i, one.t_end);
-    }
-    set_lanes(d.accessory, i, one.accessory);
-    set_lanes(d.integer_accessory, i, one.integer_accessory);
-    set_lane(d.h_next, i, one.h_next);
-    set_lanes(d.y, i, one.y);
+    detail::for_each_member<Model>(
+        [&](auto use, auto& to, const auto& from) MYRIAD_LAMBDA {
+            if constexpr (use.written) detail::put_lane(to, i, from);
+        },
+        d, one);
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

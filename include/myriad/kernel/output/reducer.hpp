@@ -63,7 +63,7 @@ struct reducer {
     /// the lanes in which an accessory has changed.
     MYRIAD_FUNCTION mask reduce(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
         const auto before = s.data.accessory;
-        step_type step{{s.now(), s.h, s.data.y, trial, s.slope_end, {}}, {}};
+        step_type step{{s.now(), s.h, s.data.y, trial, s.slopes.end(), {}}, {}};
         if constexpr (interpolates_with_slope_end<Method> ||
                       (seeks_extrema<Model> && interpolates_between_slopes<Method>))
             detail::know_slope_end<Model>(s, step.data, t1, accepted);

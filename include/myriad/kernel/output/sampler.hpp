@@ -85,7 +85,7 @@ private:
         const S t0 = s.now();
         mask due = accepted & falls_between(t0, t1);
         if (!any(due)) return;
-        step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slope_end, {}};
+        step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slopes.end(), {}};
         if constexpr (Method::first_same_as_last || interpolates_with_slope_end<Method>)
             detail::know_slope_end<Model>(s, step, t1, due);
         detail::know_inside<Model>(s, step, due);

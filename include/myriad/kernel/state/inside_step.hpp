@@ -16,14 +16,7 @@ MYRIAD_FUNCTION void know_slope_end(integration_state<Model, Method, S>& s, step
     if constexpr (Method::first_same_as_last) {
         step.slope_end = step.trial.slope_end();
     } else {
-        const mask_of<S> needed = lanes & !s.slope_end_known;
-        if (!any(needed)) return;
-        const auto slope = detail::evaluate_rhs<Model>(t1, step.trial.y, s.data);
-        MYRIAD_UNROLL
-        for (int c = 0; c < n_state<Model>; ++c) step.slope_end[c] = select(needed, slope[c], step.slope_end[c]);
-        s.extra_evaluations = count_where(needed, s.extra_evaluations);
-        s.slope_end_known = s.slope_end_known | needed;
-        s.slope_end = step.slope_end;
+        step.slope_end = s.slopes.end(lanes, t1, step.trial.y, s.data, s.extra_evaluations);
     }
 }
 

@@ -8,25 +8,13 @@
 #include <utility>
 
 #include "myriad/kernel/methods/controller_policies.hpp"
-#include "myriad/kernel/methods/dense.hpp"
-#include "myriad/kernel/model/hooks.hpp"
-#include "myriad/kernel/model/reductions.hpp"
 #include "myriad/kernel/scalar/control_number.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
-#include "myriad/kernel/stepper/step.hpp"
+#include "myriad/kernel/state/slope_cache.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
-
-/// True for methods with an error estimate, whose step size is controlled.
-template <class Method>
-inline constexpr bool is_adaptive = Method::embedded_order > 0;
-
-/// Slopes are kept where a step may be repeated or where its last slope is the first of the next.
-template <class Model, class Method>
-inline constexpr bool stepper_keeps_slope = is_adaptive<Method> || has_events<Model> || samples_trajectory<Method> ||
-                                            has_reductions<Model> || Method::first_same_as_last;
 
 /// Whether the part of the time that rounding takes from t is kept beside it, so that it does not add up: where steps
 /// are too short for the resolution of t, as in single precision and to events. Other steps are rounded to that
@@ -35,10 +23,6 @@ template <class Model, class Method, class R>
 inline constexpr bool keeps_time_low = has_events<Model> ||
                                        (is_adaptive<Method> ? std::is_same_v<R, float> : writes_time_domain<Model>);
 
-/// Evaluations of the right-hand side in every trial step; others are counted where they happen.
-template <class Model, class Method>
-inline constexpr int evaluations_per_trial = stepper_keeps_slope<Model, Method> ? Method::stages - 1 : Method::stages;
-
 /// Binary logarithms of the error over the tolerance of the last accepted step and of the one before; for controllers
 /// that look back.
 template <class Method, class S, bool remembers = remembers_errors<Method>>
@@ -46,6 +30,23 @@ struct control_memory {};
 template <class Method, class S>
 struct control_memory<Method, S, true> {
     control_of<S> last, before;
+};
+
+/// What step-size control knows of earlier trials, and of the instance.
+template <class Method, class S>
+struct control_state {
+    mask_of<S> last_not_finite;        // the lane's last rejection was for a value that is not finite
+    mask_of<S> last_singular;          // and that value came of a singular matrix, if the method solves linear systems
+    mask_of<S> first_step_open;        // the phase's first step is yet to be chosen
+    control_memory<Method, S> errors;  // of earlier steps
+    S tolerance_scale;                 // of the instance, if the method has it
+};
+
+/// Where fixed steps are: t = base + done * step, so that no rounding adds up and no step is added.
+template <class S>
+struct fixed_steps {
+    S base, step;
+    count_of<S> done, left;
 };
 
 template <class Model, class Method, class S>
@@ -59,25 +60,17 @@ struct integration_state {
     static constexpr int n = n_state<Model>;
 
     lane_data<Model, S> data;
-    mask active;      // lanes that hold an instance
-    vec<S, n> slope;  // f at the committed state, where slope_valid holds
-    mask slope_valid;
-    vec<S, n> slope_end;  // f at the end of the trial, where slope_end_known holds
-    mask slope_end_known;
-    S time_low;  // what rounding took from t, or from base, where keeps_time_low
+    mask active;  // lanes that hold an instance
+    slope_cache<Model, Method, S> slopes;
+    S time_low;  // what rounding took from t, or from the fixed steps' base, where keeps_time_low
 
     // the trial step
-    S h;                               // its length, signed
-    mask final_step;                   // it ends at t_end
-    mask last_not_finite;              // the lane's last rejection was for a value that is not finite
-    mask last_singular;                // and that value came of a singular matrix, if the method solves linear systems
-    mask first_step_open;              // the phase's first step is yet to be chosen
-    control_memory<Method, S> errors;  // of earlier steps
-    S tolerance_scale;                 // of the instance, if the method has it
+    S h;              // its length, signed
+    mask final_step;  // it ends at t_end
 
-    // fixed steps: t = base + done * step, so that no rounding adds up and no step is added
-    S base, step;
-    count done, left;
+    // one of these, by the method
+    control_state<Method, S> control;
+    fixed_steps<S> steps;
 
     // lanes whose phase ends in this iteration of the loop, and how
     mask ended;
@@ -106,41 +99,12 @@ struct integration_state {
         if constexpr (is_adaptive<Method>) {
             return data.t;
         } else {
-            return fma(S(done), step, base);
+            return fma(S(steps.done), steps.step, steps.base);
         }
     }
 
-    /// f at the committed state, in the lanes where it is not known.
-    MYRIAD_FUNCTION void renew_slope(const mask& lanes) {
-        const mask needed = lanes & !slope_valid;
-        if (!any(needed)) return;
-        const auto fresh = detail::evaluate_rhs<Model>(now(), data.y, data);
-        MYRIAD_UNROLL
-        for (int c = 0; c < n; ++c) slope[c] = select(needed, fresh[c], slope[c]);
-        extra_evaluations = count_where(needed, extra_evaluations);
-        slope_valid = slope_valid | needed;
-    }
-    /// The same for one lane, to look at. It is not kept: a pack's functions may round otherwise than those of one
-    /// lane.
-    MYRIAD_FUNCTION vec<R, n> slope_of(int i) {
-        if (get_lane(slope_valid, i)) return get_lanes<R>(slope, i);
-        add_to_count(extra_evaluations, i);
-        if constexpr (lanes == 1) {
-            return detail::evaluate_rhs<Model>(now(), data.y, data);
-        } else {
-            const lane_data<Model, R> p = detail::extract_lane(data, i);
-            return detail::evaluate_rhs<Model>(get_lane(now(), i), p.y, static_cast<const inputs<Model, R>&>(p));
-        }
-    }
-    /// The same in every lane, of a method that computes its first slope itself: where it is known, it has the same
-    /// bits.
-    MYRIAD_FUNCTION void renew_slopes() {
-        const mask needed = !slope_valid;
-        if (!any(needed)) return;
-        slope = detail::evaluate_rhs<Model>(now(), data.y, data);
-        extra_evaluations = count_where(needed, extra_evaluations);
-        slope_valid = mask(true);
-    }
+    /// The slope at the committed state of lane i, to look at.
+    MYRIAD_FUNCTION vec<R, n> slope_of(int i) { return slopes.of_lane(i, now(), data, extra_evaluations); }
 
     /// Keeps a step that a hook or an earlier call left within the options' limits.
     MYRIAD_FUNCTION void bound_step(const kernel_arguments<Model, R>& args, int i) {
