@@ -355,7 +355,8 @@ def check(entities):
 
 # On their pages before all others.
 FIRST = ("ensemble", "options", "report", "status", "MYRIAD_FUNCTION", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT",
-         "vec", "lane", "inputs", "select", "device", "solve", "solver")
+         "vec", "lane", "inputs", "select", "device", "solve", "solver", "runge_kutta_4", "cash_karp", "tsitouras_5",
+         "dormand_prince_5", "verner_7", "dormand_prince_8", "rosenbrock_23", "rodas_5p", "dense", "controlled")
 _anchors = {}
 
 
@@ -403,7 +404,7 @@ def write_entity(out, e):
             default = default.replace("infinity()", "infinity")
             default = f" = {default}" if default and len(default) < 60 else ""
             kind = m.declarations[-1].split("\n")[-1].rpartition(f" {m.name}")[0]
-            kind = re.sub(r"\bstatic constexpr |\[\[no_unique_address\]\] ", "", kind)
+            kind = re.sub(r"\b(static )?constexpr |\[\[no_unique_address\]\] ", "", kind)
             shown = tidy(kind + default).replace("myriad::", "")
             out.append(f"| **`{m.name}`**<br>`{cell(shown)}` | {cell(m.text)} |")
         out.append("")
