@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks README.md, CONTRIBUTING.md, CHANGELOG.md and docs/ against the sources: code, commands, and files.
+"""Checks README.md, CONTRIBUTING.md, CHANGELOG.md, other README.md and docs/ against the sources: code, commands, and files.
 
 Usage: scripts/check_readme.py [--fix]
 
@@ -38,7 +38,7 @@ END = re.compile(r"^\s*(//|#)\s*end of snippet\s*$")
 SHOWN = re.compile(r"<!-- shown: (?P<source>\S.*) -->")
 CHECKED_LANGUAGES = ("cpp", "c++", "cmake", "python", "julia", "cuda")
 SHELL = ("sh", "bash", "console")
-DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
+DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "benchmarks/README.md", "validation/gpu/README.md")
 SKIPPED_FOLDERS = {".git", "build", "results", ".cache", ".deps", "__pycache__"}
 FILE_ENDINGS = "hpp|cuh|cpp|cu|py|sh|cmake|md|csv|txt|png|svg|in|json|jl"
 
@@ -136,7 +136,8 @@ def presets():
 
 
 def option_of(word):
-    return word.split("=")[0] if word.startswith("--") and len(word) > 2 else None
+    """The option that a word is; all programs have --help, those with CLI11 without naming it."""
+    return word.split("=")[0] if word.startswith("--") and word not in ("--", "--help") else None
 
 
 def is_in_sources(word, files):
