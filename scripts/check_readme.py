@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks README.md, CONTRIBUTING.md, CHANGELOG.md, other README.md and docs/ against the sources: code, commands, and files.
+"""Checks README.md, CONTRIBUTING.md, CHANGELOG.md, other README.md and docs/ against the sources: code, commands and
+files.
 
 Usage: scripts/check_readme.py [--fix]
 
