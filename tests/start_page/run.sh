@@ -7,7 +7,7 @@ source_dir=$1
 work=$2
 rm -rf "$work"
 mkdir -p "$work"
-cp -r "$source_dir"/{CMakeLists.txt,LICENSE,backends,cmake,examples,include} "$work"
+tar -C "$source_dir" --exclude=./build --exclude=./.git --exclude=./results -cf - . | tar -C "$work" -xf -
 cd "$work"
 has_matplotlib() { python3 -c 'import matplotlib' >/dev/null 2>&1; }
 if ! has_matplotlib && /usr/bin/python3 -c 'import matplotlib' >/dev/null 2>&1; then
@@ -17,6 +17,7 @@ fi
 # snippet: library
 cmake -S . -B build/library -DMYRIAD_BUILD_TESTS=OFF -DMYRIAD_BUILD_EXAMPLES=OFF \
       -DMYRIAD_BUILD_BENCHMARKS=OFF -DMYRIAD_BUILD_VALIDATION=OFF
+cmake --build build/library
 cmake --install build/library --prefix build/prefix
 # end of snippet
 
