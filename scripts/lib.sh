@@ -67,6 +67,8 @@ has_package() {
         libomp-dev) has_clang_openmp ;;
         libclang-rt-dev) has_clang_runtime ;;
         python3-matplotlib) plotting_python >/dev/null ;;
+        python3-venv) python3 -c 'import ensurepip, venv' >/dev/null 2>&1 ;;
+        doxygen) has_command doxygen ;;
         *) return 1 ;;
     esac
 }

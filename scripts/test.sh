@@ -6,8 +6,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
 source scripts/lib.sh
 
-all_steps=(ci cuda strict clang asan tsan)
-usual_steps=(ci cuda tsan)
+all_steps=(ci docs cuda strict clang asan tsan)
+usual_steps=(ci docs cuda tsan)
 
 usage() {
     cat <<'END'
@@ -18,6 +18,8 @@ Its last line is "N passed, N failed"; the exit status is 0 if none failed.
 
 Steps, in this order, of which strict, clang and asan run only if asked for, for the sake of the usual run's time:
   ci      g++, release, warnings are errors: all tests, examples, benchmarks, validation
+  docs    the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx cannot
+          be installed)
   cuda    the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
           both backends runs without a GPU (skipped without nvcc)
   strict  no contraction of a * b + c: scalar lanes and packs agree bit for bit
@@ -69,6 +71,8 @@ packages=(g++ cmake ninja-build python3 libeigen3-dev libxsimd-dev catch2)
 if wants ci || wants cuda || wants clang; then
     packages+=(libboost-dev libcli11-dev libsundials-dev python3-matplotlib)
 fi
+if wants ci || wants docs; then packages+=(doxygen); fi
+if wants docs; then packages+=(python3-venv); fi
 if wants clang || wants tsan; then packages+=(clang libomp-dev); fi
 if wants tsan; then packages+=(libclang-rt-dev); fi
 
@@ -143,6 +147,18 @@ run_step() {
     say "$step"
     mkdir -p build build/cuda
     case $step in
+        docs)
+            local status=0
+            quietly build/docs.log scripts/docs.sh || status=$?
+            if ((status == 77)); then
+                say "docs: skipped, $(tail -n 1 build/docs.log)"
+                summary+=("docs: SKIPPED, the site was not built: see build/docs.log")
+                return
+            elif ((status)); then
+                failed=$((failed + 1)) result="failed"
+            else
+                passed=$((passed + 1)) result="$(tail -n 2 build/docs.log | head -n 1)"
+            fi ;;
         cuda)
             if ! has_command nvcc; then
                 say "cuda: skipped, nvcc is not on the PATH"

@@ -123,7 +123,8 @@ def write(comments, rows, images, command):
             f"reference's in {int(sum(r['value'] for r in counts))} instances.", ""]
     if images:
         out += [f"![Error against tolerance]({images}/tolerance.png)", "",
-                "Median error of the end states against the tolerance; the dashed line is error = tolerance.", ""]
+                "Median error of the end states against the tolerance; the dashed line is error = tolerance. "
+                "The bouncing ball has no panel: every method integrates its parabolas exactly.", ""]
 
     out += ["## Orders: the tight checks", "",
             "With fixed steps, also for methods with step-size control; medians over the instances. *One step* is "

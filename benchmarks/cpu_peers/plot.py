@@ -21,6 +21,7 @@ TITLES = {"lorenz_rk4": "Lorenz", "duffing_cash_karp": "Duffing", "keller_miksis
 GOALS = {("lorenz_rk4", "avx512"): 9, ("lorenz_rk4", "avx2"): 5, "duffing_cash_karp": 5, "keller_miksis_cash_karp": 5,
          "relief_valve": 4}
 GOAL_AT_EQUAL_ERROR = 15
+GOAL = "goal that the project set itself (g++)"
 
 
 def read(path):
@@ -45,12 +46,12 @@ def draw_bars(axis, labels, heights_by_set, goals):
         axis.bar(places, heights, 0.9 * width, color=figures.COLOURS[s], label=name)
         for i, place in enumerate(places):
             axis.plot([place - width / 2, place + width / 2], [goals(i, name)] * 2, color="black", linewidth=1.2,
-                      label="goal" if s == i == 0 else None)
+                      label=GOAL if s == i == 0 else None)
     axis.set_xticks(range(len(labels)), labels)
-    axis.legend(frameon=False, fontsize=8)
+    axis.legend(frameon=False, fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))  # bars fill the panel
 
 
-def ratios(rows, axis):
+def ratios(rows, axis, _pyplot):
     """Myriad's speed relative to odeint's, from the table of times."""
     cases = [case for case in TITLES if any(row["case"] == case for row in rows)]
     heights = {}
@@ -65,7 +66,7 @@ def ratios(rows, axis):
     axis.set_ylabel("times as fast as Boost.odeint")
 
 
-def equal_error(rows, axis):
+def equal_error(rows, axis, _pyplot):
     """The best method's speed relative to CVODE's, at the finest error that both reached."""
     cases = [case for case in TITLES
              if any(row["case"] == case + ":equal_error" and row["ratio_to_cvode"] for row in rows)]
@@ -82,7 +83,7 @@ def equal_error(rows, axis):
     axis.set_ylabel("times as fast as CVODE at equal error")
 
 
-def growth(rows, axis):
+def growth(rows, axis, pyplot):
     """Core time per step and instance against the number of instances."""
     for s, name in enumerate(sets_of(rows)):
         for implementation, line in (("odeint", "--"), ("myriad", "-")):
@@ -93,10 +94,11 @@ def growth(rows, axis):
                         label=f"{implementation}, {name}")
     axis.set_xlabel("instances")
     axis.set_ylabel("Lorenz: ns of a core per step and instance")
+    figures.label_ticks(pyplot, axis.yaxis)
     axis.legend(frameon=False, fontsize=8)
 
 
-def scaling(rows, axis):
+def scaling(rows, axis, _pyplot):
     """Wall time with one thread over that with several; one instruction set is enough."""
     name = sets_of(rows)[0]
     most = 1
@@ -137,7 +139,7 @@ def draw(source, target):
         panels.append(scaling)
     figure, axes = pyplot.subplots(1, len(panels), figsize=(4.6 * len(panels), 4), layout="constrained")
     for panel, axis in zip(panels, axes):
-        panel(rows, axis)
+        panel(rows, axis, pyplot)
     figures.save(figure, target, 160)
 
 

@@ -97,6 +97,8 @@ def draw_all(source, target):
         except KeyError as error:
             raise figures.PlotError(f"{source} has no times of {error}: "
                                     "run gpu_ensembles without a choice of cases") from error
+        figures.label_ticks(pyplot, axis.xaxis)
+        figures.label_ticks(pyplot, axis.yaxis)
         axis.set_xlabel("instances")
         axis.set_ylabel("kernel, ms")
         axis.legend(frameon=False, fontsize=8)

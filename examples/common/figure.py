@@ -42,6 +42,16 @@ def import_libraries(style=None):
     return pyplot, numpy
 
 
+def label_ticks(pyplot, axis):
+    """Labels the ticks of a logarithmic axis at 1, 2 and 5 of each decade, if it has less than two decades and so
+    perhaps a single label, from which a scale cannot be read."""
+    least, most = axis.get_view_interval()
+    if most / least < 100:
+        axis.set_major_locator(pyplot.matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(pyplot.matplotlib.ticker.StrMethodFormatter("{x:.10g}"))
+        axis.set_minor_formatter(pyplot.matplotlib.ticker.NullFormatter())
+
+
 def read_rows(path, program, columns):
     """Returns the rows of a table as dictionaries of text, and the comments at the top of the file.
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small models, one for each feature besides the right-hand side; docs/writing_a_model.md shows them.
+// Small models, one for each thing a model can do beside its right-hand side; docs/hooks_and_events.md shows most.
 #pragma once
 
 #include <myriad/model.hpp>

@@ -19,6 +19,7 @@ COLUMNS = ("solver", "device", "chunk", "step", "begin", "end", "kernel_seconds"
 STEPS = (("fill", "#88ccee"), ("upload", "#44aa99"), ("integrate", "#10305a"), ("download", "#ddaa33"),
          ("write", "#cc6677"))
 INTEGRATE = 2
+LEAST_VISIBLE = 0.002  # of the whole time: three pixels
 
 
 def under_way(numpy, table):
@@ -53,7 +54,12 @@ def draw(pyplot, numpy, table, comments):
     lanes.tick_params(axis="y", which="both", left=False, right=False)
     lanes.invert_yaxis()
     handles = [pyplot.Rectangle((0, 0), 1, 1, color=colour) for _name, colour in STEPS]
-    lanes.legend(handles, [name for name, _colour in STEPS], ncols=len(STEPS), loc="lower center", frameon=False,
+    labels = []
+    for number, (name, _colour) in enumerate(STEPS):
+        rows = table["step"] == number
+        longest = (table["end"] - table["begin"])[rows].max(initial=0)
+        labels.append(name if longest > LEAST_VISIBLE * end else f"{name} (too short to be seen)")
+    lanes.legend(handles, labels, ncols=len(STEPS), loc="lower center", frameon=False,
                  bbox_to_anchor=(0.5, 1), fontsize=8, handlelength=1)
 
     t, running = under_way(numpy, table)

@@ -25,7 +25,7 @@ expect() {
 # shellcheck disable=SC2317 # called through expect
 in_lib() { bash -c "set -euo pipefail; source scripts/lib.sh; $1"; }
 
-scripts=(scripts/*.sh .ci/run tests/scripts/check.sh tests/must_not_compile/check.sh)
+scripts=(scripts/*.sh .ci/run tests/scripts/check.sh tests/must_not_compile/check.sh tests/start_page/run.sh)
 for script in "${scripts[@]}"; do
     expect "$script is valid bash" 0 '' bash -n "$script"
 done
@@ -50,6 +50,17 @@ expect "validate.sh refuses an unknown device" 2 "no device 'abacus'" scripts/va
 expect "case_studies.sh --help" 0 'Usage: scripts/case_studies.sh' scripts/case_studies.sh --help
 expect "case_studies.sh refuses an unknown program" 2 "no case study 'abacus'" scripts/case_studies.sh --only abacus
 expect "case_studies.sh refuses an unknown device" 2 "no device 'abacus'" scripts/case_studies.sh --device abacus
+expect "docs.sh --help" 0 'Usage: scripts/docs.sh' scripts/docs.sh --help
+expect "docs.sh refuses an unknown option" 2 "Unknown option '--quick'" scripts/docs.sh --quick
+mkdir "$work/site"
+printf '<a href="#here">x</a><a href="b.html#gone">y</a><img src="c.png"><p id="here">' >"$work/site/a.html"
+printf '<p id="there">' >"$work/site/b.html"
+expect "check_site.py finds an anchor that is not there" 1 'b.html#gone has no such anchor' \
+    scripts/check_site.py "$work/site"
+expect "check_site.py finds an image that is not there" 1 'c.png is not there' scripts/check_site.py "$work/site"
+expect "check_site.py counts what is broken" 1 '2 pages, 3 links within the site, 2 of them broken' \
+    scripts/check_site.py "$work/site"
+expect "check_site.py refuses an empty folder" 1 '0 pages' scripts/check_site.py "$work/none"
 expect "quickstart.sh --help" 0 'Usage: scripts/quickstart.sh' scripts/quickstart.sh --help
 expect "quickstart.sh refuses an unknown option" 2 "Unknown option 'now'" scripts/quickstart.sh now
 

@@ -25,8 +25,10 @@ namespace myriad {
 template <class Model, class R>
 class trajectory_samples {
 public:
+    /// An array of Eigen with one row per instance and one column per sample.
     using map = Eigen::Map<const Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic>>;
 
+    /// Made by `solve` and `solver`, for `size` instances.
     trajectory_samples() = default;
     trajectory_samples(const sample_options& o, std::int64_t size)
         : size_(size), capacity_(o.capacity), chosen_(o.states), stored_(1, size, 0) {
@@ -49,8 +51,10 @@ public:
     /// Samples stored, per instance; `capacity()` if there may have been more.
     Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const& { return {stored_.data(), size_}; }
     Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const&& = delete;
+    /// The times of the samples, in the model's unit of time; NaN beyond those stored.
     map time() const& { return map(time_.data(), size_, capacity_); }
     map time() const&& = delete;
+    /// State component c at those times; NaN beyond the samples stored. Throws `error` if it was not sampled.
     template <class C>
     map state(C c) const& {
         const std::int64_t number = host::state_numbering<Model>::index(c);
@@ -62,20 +66,24 @@ public:
     template <class C>
     map state(C) const&& = delete;
 
+    /// Whether no samples were asked for.
     bool empty() const { return capacity_ == 0; }
     /// Whether samples with these options can be appended to the existing ones.
     bool fits(const sample_options& o) const { return o.capacity == capacity_ && o.states == chosen_; }
+    /// Forgets all samples, as `ensemble::restart` does.
     void clear() {
         if (empty()) return;
         stored_.fill(0);
         time_.fill(std::numeric_limits<R>::quiet_NaN());
         values_.fill(std::numeric_limits<R>::quiet_NaN());
     }
+    /// Pins their memory, for copies from GPUs; used by the library.
     void pin(int device) {
         stored_.pin(device);
         time_.pin(device);
         values_.pin(device);
     }
+    /// Passes their memory to a kernel; used by the library.
     void describe(detail::sample_arguments<Model, R>& a) {
         a.time = time_.data();
         a.values = values_.data();

@@ -47,9 +47,11 @@ inline const char* name_of(status s) {
 template <class Model, class R>
 class phase_records {
 public:
+    /// An array of Eigen with one row per instance and one column per recorded phase.
     template <class T>
     using map = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic>>;
 
+    /// Made by `solve` and `solver`, for `size` instances and `phases` phases.
     phase_records() = default;
     phase_records(const record_options& o, std::int64_t phases, std::int64_t size) : size_(size) {
         if (o.empty()) return;
@@ -72,14 +74,17 @@ public:
 
     /// Number of recorded phases.
     std::int64_t phases() const { return phases_; }
+    /// State component c at the end of each recorded phase. Throws `error` if it was not recorded.
     template <class C>
     map<R> state(C c) const& {
         return column(state_, host::state_numbering<Model>::index(c), "state", values_);
     }
+    /// Accessory c at the end of each recorded phase. Throws `error` if it was not recorded.
     template <class C>
     map<R> accessory(C c) const& {
         return column(accessory_, host::accessory_numbering<Model>::index(c), "accessory", values_);
     }
+    /// Integer accessory c at the end of each recorded phase. Throws `error` if it was not recorded.
     template <class C>
     map<std::int32_t> integer_accessory(C c) const& {
         return column(integer_accessory_, host::integer_accessory_numbering<Model>::index(c), "integer accessory",
@@ -107,6 +112,7 @@ public:
         integers_.pin(device);
     }
 
+    /// Passes their memory to a kernel; used by the library.
     void describe(detail::record_arguments<Model, R>& a) {
         a.values = values_.data();
         a.integers = integers_.data();
@@ -152,31 +158,34 @@ private:
 /// The outcome of one call to solve.
 template <class Model, class R>
 struct report {
-    std::int64_t instances = 0;
+    std::int64_t instances = 0;                          ///< number of instances of the call
     std::array<std::int64_t, status_count> by_status{};  ///< number of instances with each status
 
-    std::int64_t first_failed = -1;  ///< index of the first instance with a failure status, or -1
-    myriad::status first_status = status::not_started;
-    R first_t = 0, first_t_begin = 0, first_t_end = 0;
+    std::int64_t first_failed = -1;                     ///< index of the first instance with a failure status, or -1
+    myriad::status first_status = status::not_started;  ///< its status
+    R first_t = 0;                                      ///< the time at which it failed
+    R first_t_begin = 0;                                ///< the begin of its time domain
+    R first_t_end = 0;                                  ///< the end of its time domain
     std::vector<R> first_state;  ///< its last finite state; empty if that or its parameters were set since it failed
-    std::vector<R> first_parameter;
+    std::vector<R> first_parameter;  ///< its parameters; empty in the same case
 
-    std::int64_t accepted_steps = 0;  ///< of all instances in this call; zero with `counting::off`
-    std::int64_t rejected_steps = 0;
-    std::int64_t located_steps = 0;  ///< trial steps redone to locate events
-    std::int64_t rhs_evaluations = 0;
-    std::int64_t lane_turns = 0;  ///< trial steps times lanes, including idle lanes
-    int lanes = 1;
-    int threads = 1;              ///< that did some work; may be fewer than the device has
-    double seconds = 0;           ///< wall time of the integration, on a GPU with transfers
-    std::string device;           ///< its name, as in device::parse
-    std::string instruction_set;  ///< on the CPU, of the kernel that ran: avx512, avx2, sse2 or generic
-    cuda::kernel_facts kernel;    ///< on a GPU: the kernel's registers, block size and shared parameters
-    double kernel_seconds = 0;    ///< on a GPU: time of the kernels alone
-    phase_records<Model, R> records;
-    std::vector<std::string> notes;  ///< tolerances raised; from `solve` also that the equations are stiff, or
-                                     ///< phases too long for the smallest Lyapunov exponent
+    std::int64_t accepted_steps = 0;   ///< of all instances in this call; zero with `counting::off`
+    std::int64_t rejected_steps = 0;   ///< trial steps that failed the error test, of all instances
+    std::int64_t located_steps = 0;    ///< trial steps redone to locate events
+    std::int64_t rhs_evaluations = 0;  ///< evaluations of `rhs`, of all instances
+    std::int64_t lane_turns = 0;       ///< trial steps times lanes, including idle lanes
+    int lanes = 1;                     ///< instances side by side in one pack, or CUDA threads in a block
+    int threads = 1;                   ///< that did some work; may be fewer than the device has
+    double seconds = 0;                ///< wall time of the integration, on a GPU with transfers
+    std::string device;                ///< its name, as in device::parse
+    std::string instruction_set;       ///< on the CPU, of the kernel that ran: avx512, avx2, sse2 or generic
+    cuda::kernel_facts kernel;         ///< on a GPU: the kernel's registers, block size and shared parameters
+    double kernel_seconds = 0;         ///< on a GPU: time of the kernels alone
+    phase_records<Model, R> records;   ///< what `options::record` asked for
+    std::vector<std::string> notes;    ///< tolerances raised; from `solve` also that the equations are stiff, or
+                                       ///< phases too long for the smallest Lyapunov exponent
 
+    /// Number of instances with that status.
     std::int64_t count(status s) const { return by_status[static_cast<std::size_t>(s)]; }
     /// Instances with a failure status.
     std::int64_t failed() const {

@@ -12,6 +12,7 @@
 /// A function of the kernel body: device code under nvcc, inlined host code elsewhere. Required for a model's functions
 /// and the helpers they call, so that files compiled for different instruction sets share no copy of them.
 #define MYRIAD_FUNCTION __host__ __device__ __forceinline__
+/// `MYRIAD_FUNCTION` for a lambda, placed between its parameters and its body.
 #define MYRIAD_LAMBDA
 /// A constant at namespace scope that device code reads from constant memory as an operand of its instructions.
 #define MYRIAD_CONSTANT_MEMORY __constant__
@@ -38,7 +39,6 @@
 #define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
 #else
 #define MYRIAD_FUNCTION inline __attribute__((always_inline))
-/// The same for a lambda, placed between its parameters and its body.
 #define MYRIAD_LAMBDA __attribute__((always_inline))
 #define MYRIAD_CONSTANT_MEMORY inline constexpr
 #define MYRIAD_FORGET(value) static_cast<void>(value)

@@ -23,6 +23,7 @@ enum class status : std::uint8_t {
     singular_jacobian,   ///< a linear solve of an implicit method failed
     invalid_input,       ///< a state, parameter or time was not finite at the start
 };
+/// The number of statuses.
 inline constexpr int status_count = 10;
 
 /// True for the statuses that end an instance for good.

@@ -65,9 +65,11 @@ struct vec_values<S, std::integer_sequence<int, c...>> {
 /// `return myriad::vec<S, 1>{a};`, as nvcc has rejected the short form in templates.
 template <class S, int size>
 struct vec : vec_values<S, std::make_integer_sequence<int, size>> {
+    /// What holds the values.
     using base = vec_values<S, std::make_integer_sequence<int, size>>;
     using base::base;
 
+    /// Uninitialised, or `size` values; any other number of values does not compile.
     vec() = default;
     // Selected for any other number of values, to give a readable error.
     template <class First, class... More>
@@ -79,6 +81,8 @@ struct vec : vec_values<S, std::make_integer_sequence<int, size>> {
             "value for each event, a matrix has a row in braces for each");
     }
 
+    /// Component i, counted from 0. An index that is known to be out of range when the model is compiled is an error;
+    /// others are not checked.
     MYRIAD_FUNCTION constexpr S& operator[](int i) MYRIAD_WARN_OF_INDEX(i, size) {
         return this->values[detail::checked_index<size>(i)];
     }
@@ -90,7 +94,8 @@ struct vec : vec_values<S, std::make_integer_sequence<int, size>> {
 /// Empty: takes the place of parameters, accessories or events that a model does not have.
 template <class S>
 struct vec<S, 0> {
-    // Needed to compile loops over zero components; never called.
+    // Needed to compile loops over no components; never called.
+    /// Never called; an enumerator as index does not compile, with a message that names the missing enumeration.
     MYRIAD_FUNCTION S& operator[](int i) const {
         S* nothing = nullptr;
         return nothing[detail::checked_index<0>(i)];

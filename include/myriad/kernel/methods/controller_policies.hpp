@@ -10,35 +10,39 @@ namespace myriad {
 /// limits the step. Gustafsson, ACM Trans. Math. Softw. 17 (1991) 533; Hairer, Wanner, Solving ODE II, IV.2, eq.
 /// (2.43c).
 struct pi_control {
-    static constexpr double exponent_now = 0.7, exponent_last = -0.4, exponent_before = 0;
+    static constexpr double exponent_now = 0.7;    ///< of this step's error, times -1 / k
+    static constexpr double exponent_last = -0.4;  ///< of the last accepted step's error, times -1 / k
+    static constexpr double exponent_before = 0;   ///< of the error of the step before that, times -1 / k
 };
 
 /// PID control: 0.9 q^(-0.58/k) r^(0.21/k) s^(-0.1/k), with s the ratio for the accepted step before the last. Kennedy
 /// and Carpenter, Appl. Numer. Math. 44 (2003) 139; the constants are those of SUNDIALS' ARKODE.
 struct pid_control {
-    static constexpr double exponent_now = 0.58, exponent_last = -0.21, exponent_before = 0.1;
+    static constexpr double exponent_now = 0.58;    ///< as in `pi_control`
+    static constexpr double exponent_last = -0.21;  ///< as in `pi_control`
+    static constexpr double exponent_before = 0.1;  ///< as in `pi_control`
 };
 
 /// The root mean square of the components' ratios of error to tolerance, instead of the largest.
 struct rms_norm {
-    static constexpr bool averages_errors = true;
+    static constexpr bool averages_errors = true;  ///< how a method that has this choice is recognised
 };
 
 /// Errors are compared with atol + rtol max(|y|, |y1|), not with the larger of the two.
 struct mixed_scale {
-    static constexpr bool adds_tolerances = true;
+    static constexpr bool adds_tolerances = true;  ///< how a method that has this choice is recognised
 };
 
 /// If options::step is not given, the first step of a phase is computed from the slope and its change over a short
 /// Euler step, with two evaluations, one of which the first step reuses. Hairer, Norsett, Wanner, Solving ODE I, II.4,
 /// "Starting step size".
 struct automatic_first_step {
-    static constexpr bool chooses_first_step = true;
+    static constexpr bool chooses_first_step = true;  ///< how a method that has this choice is recognised
 };
 
 /// Both tolerances are multiplied by `ensemble::tolerance_scale`, which may differ between instances.
 struct tolerance_per_instance {
-    static constexpr bool scales_tolerances = true;
+    static constexpr bool scales_tolerances = true;  ///< how a method that has this choice is recognised
 };
 
 /// The adaptive `Method` with the chosen controls. Instantiate it like any method, under a name of its own, as macro

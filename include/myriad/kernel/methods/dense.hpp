@@ -8,6 +8,7 @@ namespace myriad {
 /// `MYRIAD_INSTANTIATE(duffing, myriad::dense<myriad::cash_karp>)`.
 template <class Method>
 struct dense : Method {
+    /// How a method with dense output is recognised.
     static constexpr bool samples = true;
 };
 

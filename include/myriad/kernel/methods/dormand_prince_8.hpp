@@ -15,7 +15,7 @@ struct dormand_prince_8 {
     static constexpr int stages = 12;
     static constexpr int order = 8;
     static constexpr int embedded_order = 5;
-    static constexpr int estimate_order = 7;  // of both estimates together
+    static constexpr int estimate_order = 7;  ///< order of both error estimates together
     static constexpr bool first_same_as_last = false;
 
     static constexpr explicit_tableau<stages> tableau() {

@@ -15,16 +15,19 @@ namespace myriad {
 ///     y(theta) = (1 - theta) y + theta (y1 + (1 - theta) (v_0 + theta (v_1 + ...))),  v_r = sum_i dense_ri u_i.
 template <int stages, int dense_terms>
 struct rosenbrock_tableau {
+    /// One coefficient per stage.
     using row = std::array<double, static_cast<std::size_t>(stages)>;
+    /// One coefficient per pair of stages.
     using square = std::array<row, static_cast<std::size_t>(stages)>;
 
-    double gamma{};
-    row c{};
-    row d{};
-    square a{};
-    square coupling{};
-    row m{};
-    row e{};
+    double gamma{};     ///< the diagonal element
+    row c{};            ///< nodes, as fractions of the step
+    row d{};            ///< factors of df/dt
+    square a{};         ///< weights in the arguments of the stages
+    square coupling{};  ///< factors of earlier stages on the right-hand side
+    row m{};            ///< weights of the solution
+    row e{};            ///< weights of the error estimate
+    /// Weights v_r of the interpolant.
     std::array<row, static_cast<std::size_t>(dense_terms)> dense{};
 
     /// Weight of stage j in the argument of stage `of`, or in the solution (of == stages).

@@ -12,12 +12,13 @@ namespace myriad {
 /// b - b_hat (zero for a method without error estimate).
 template <int stages>
 struct explicit_tableau {
+    /// One coefficient per stage.
     using row = std::array<double, static_cast<std::size_t>(stages)>;
 
-    row c{};
-    std::array<row, static_cast<std::size_t>(stages)> a{};
-    row b{};
-    row e{};
+    row c{};                                                ///< nodes, as fractions of the step
+    std::array<row, static_cast<std::size_t>(stages)> a{};  ///< a[i][j]: weight of stage j in the argument of stage i
+    row b{};                                                ///< weights of the solution
+    row e{};  ///< weights of the error estimate: b minus those of the embedded solution
 
     /// Weight of stage j in the argument of stage `of` (1 <= of < stages), in the solution (of == stages) or in the
     /// error estimate (of == stages + 1).

@@ -34,7 +34,9 @@ struct tsitouras_5 {
         return t;
     }
 
+    /// Order of the method's own interpolant; a method without this member gets the cubic Hermite polynomial.
     static constexpr int interpolant_order = 4;
+    /// Degree of that polynomial in theta, the fraction of the step.
     static constexpr int interpolant_degree = 4;
     /// Coefficient of theta^(power + 1) in the weight of a stage: y(t + theta h) = y + h sum_i b_i(theta) k_i.
     static constexpr double interpolant_weight(int stage, int power) {

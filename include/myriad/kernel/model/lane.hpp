@@ -38,9 +38,12 @@ namespace myriad::inline MYRIAD_TARGET {
 /// The accessories, if `there`.
 template <class Model, class S, bool there>
 struct accessories {
+    /// `p.accessory[a]`: real accessories of the instance.
     [[no_unique_address]] vec<S, detail::n_accessory<Model>> accessory;
+    /// `p.integer_accessory[a]`: its integer accessories.
     [[no_unique_address]] vec<integer_of<S>, detail::n_integer_accessory<Model>> integer_accessory;
 };
+/// None, where the model declares that accessories are outputs.
 template <class Model, class S>
 struct accessories<Model, S, false> {};
 
@@ -70,11 +73,13 @@ struct shared_values {
 /// instances. It has no accessories in a model that declares them outputs.
 template <class Model, class S>
 struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
-    using real = real_of<S>;
+    using real = real_of<S>;  ///< double or float
+    /// The parameters of the instance; `p[k]` is short for `p.parameter[k]`.
     [[no_unique_address]] vec<S, detail::n_parameter<Model>> parameter;
-    shared_values<Model, real> shared;
-    shared_values<Model, std::int32_t> shared_integer;
+    shared_values<Model, real> shared;                  ///< `p.shared[B]`: real values that all instances share
+    shared_values<Model, std::int32_t> shared_integer;  ///< `p.shared_integer[i]`: integers that all share
 
+    /// Parameter i; an enumerator of another enumeration does not compile.
     template <class I>
     MYRIAD_FUNCTION const S& operator[](I i) const
         MYRIAD_WARN_OF_INDEX(static_cast<int>(i), detail::n_parameter<Model>) {
@@ -110,24 +115,27 @@ namespace myriad::inline MYRIAD_TARGET {
 /// continues to a new t_end, backwards if need be; a new t_begin takes effect in the next phase.
 template <class Model, class S>
 struct lane {
+    /// A reference, constant where the model may not write.
     template <class T, bool writable>
     using ref = std::conditional_t<writable, T&, const T&>;
 
-    const S& t;
-    ref<S, detail::writes_time_domain<Model>> t_begin;
-    ref<S, detail::writes_time_domain<Model>> t_end;
-    const S& h;
-    S& h_next;
-    vec<S, detail::n_state<Model>>& y;
+    const S& t;                                         ///< time
+    ref<S, detail::writes_time_domain<Model>> t_begin;  ///< begin of the time domain; with `phase_length` of the phase
+    ref<S, detail::writes_time_domain<Model>> t_end;    ///< end of the time domain; with `phase_length` of the phase
+    const S& h;                                         ///< length of the step just taken; 0 before the first
+    S& h_next;                                          ///< length of the next trial step, which a hook may change
+    vec<S, detail::n_state<Model>>& y;                  ///< the state
+    /// The parameters of the instance.
     ref<vec<S, detail::n_parameter<Model>>, detail::writes_parameters<Model>> parameter;
-    shared_values<Model, real_of<S>> shared;
-    shared_values<Model, std::int32_t> shared_integer;
-    vec<S, detail::n_accessory<Model>>& accessory;
-    vec<integer_of<S>, detail::n_integer_accessory<Model>>& integer_accessory;
-    const detail::index_of<S>& index;
-    const integer_of<S>& phase;
-    const vec<integer_of<S>, detail::n_event<Model>>& event_count;
+    shared_values<Model, real_of<S>> shared;                                    ///< values that all instances share
+    shared_values<Model, std::int32_t> shared_integer;                          ///< integers that all instances share
+    vec<S, detail::n_accessory<Model>>& accessory;                              ///< the model's own storage
+    vec<integer_of<S>, detail::n_integer_accessory<Model>>& integer_accessory;  ///< its integers
+    const detail::index_of<S>& index;                               ///< number of the instance in the ensemble
+    const integer_of<S>& phase;                                     ///< number of the phase, from the ensemble's start
+    const vec<integer_of<S>, detail::n_event<Model>>& event_count;  ///< detections of each event in this phase
 
+    /// Made by the library.
     MYRIAD_FUNCTION explicit lane(detail::lane_data<Model, S>& d)
         : t(d.t), t_begin(d.t_begin), t_end(d.t_end), h(d.h), h_next(d.h_next), y(d.y), parameter(d.parameter),
           shared(d.shared), shared_integer(d.shared_integer), accessory(d.accessory),

@@ -127,6 +127,7 @@ MYRIAD_FUNCTION R normal_quantile(R p) {
 template <random_real R>
 class random_numbers {
 public:
+    /// Draws of instance `index` in phase `phase`, from number `first` on.
     MYRIAD_FUNCTION constexpr random_numbers(std::uint64_t seed, std::int64_t index, std::int32_t phase,
                                              std::uint32_t first = 0)
         : seed_(seed), index_(static_cast<std::uint64_t>(index)), phase_(static_cast<std::uint32_t>(phase)),

@@ -14,11 +14,11 @@ namespace myriad {
 
 /// The reductions of an observed quantity over a phase, along the solution and not only at the ends of steps.
 enum class over_phase : std::uint8_t {
-    maximum,
-    minimum,
-    time_of_maximum,  ///< the first of equal maxima; the model must also have the quantity's `maximum`
-    time_of_minimum,
-    integral,  ///< over t: of a positive quantity, negative when integrating backwards
+    maximum,          ///< the largest value; the ends of the phase count too
+    minimum,          ///< the smallest value, likewise
+    time_of_maximum,  ///< the first of equal ones; the model must also have the quantity's `maximum`
+    time_of_minimum,  ///< the same with the quantity's `minimum`
+    integral,         ///< over t: backwards in time, that of a positive quantity is negative
 };
 
 }  // namespace myriad
@@ -36,12 +36,13 @@ namespace myriad {
 /// An observed quantity, what to compute from it, and the accessory that receives it: `static constexpr
 /// myriad::reduction reductions[] = {{height, myriad::over_phase::maximum, highest}};`
 struct reduction {
-    int quantity;
-    over_phase kind;
-    int accessory;
-    const char* quantity_type;
-    const char* accessory_type;
+    int quantity;                ///< number of the observed quantity
+    over_phase kind;             ///< what is computed from it
+    int accessory;               ///< number of the accessory that receives it
+    const char* quantity_type;   ///< a mark of the type of the first argument, for checks
+    const char* accessory_type;  ///< a mark of the type of the last argument, for checks
 
+    /// From enumerators of `observed` and `accessory`.
     template <class Q, class A>
     constexpr reduction(Q observed, over_phase kind_, A receiver)
         : quantity(static_cast<int>(observed)), kind(kind_), accessory(static_cast<int>(receiver)),

@@ -138,27 +138,28 @@ struct with_tangents : detail::tangent_layers::after_event_layer<Model, vectors>
     static_assert(vectors >= 1 && vectors <= detail::n_state<Model>,
                   "a model of n components has from 1 to n independent tangent vectors");
 
-    using original = Model;
-    static constexpr int n_original = detail::n_state<Model>;
-    static constexpr int n_vectors = vectors;
+    using original = Model;                                    ///< the model without tangents
+    static constexpr int n_original = detail::n_state<Model>;  ///< number of its states
+    static constexpr int n_vectors = vectors;                  ///< number of tangent vectors
 
     /// Number of states, the last ones, that are not Model's own.
     static constexpr int n_tangent = vectors * n_original;
-    static constexpr int n_state = n_original + n_tangent;
+    static constexpr int n_state = n_original + n_tangent;  ///< number of all states
     /// Component c of tangent vector i, among the states.
     MYRIAD_FUNCTION static constexpr int tangent(int c, int i = 0) { return n_original + i * n_original + c; }
 
     /// The sum of ln |r_ii| over the phases, among the accessories.
     MYRIAD_FUNCTION static constexpr int growth(int i = 0) { return detail::n_accessory<Model> + i; }
-    /// The time summed, and the time at which the current phase began.
+    /// The time summed, among the accessories.
     static constexpr int time_summed = detail::n_accessory<Model> + vectors;
-    static constexpr int phase_began = time_summed + 1;
-    static constexpr int n_accessory = phase_began + 1;
+    static constexpr int phase_began = time_summed + 1;  ///< the time at which the current phase began
+    static constexpr int n_accessory = phase_began + 1;  ///< number of all accessories
 
     /// Number of phases, from the ensemble's start, left out of the sums, among the shared integers.
     static constexpr int transient_phases = detail::n_shared_integer<Model>;
-    static constexpr int n_shared_integer = transient_phases + 1;
+    static constexpr int n_shared_integer = transient_phases + 1;  ///< number of all shared integers
 
+    /// The slopes of the states and, by dual numbers, of the tangents.
     template <class R>
     MYRIAD_FUNCTION static vec<R, n_state> rhs(auto t, const vec<R, n_state>& y, const auto& p) {
         static_assert(detail::hooks_fit<Model, real_of<R>>);
@@ -166,6 +167,7 @@ struct with_tangents : detail::tangent_layers::after_event_layer<Model, vectors>
                          std::make_integer_sequence<int, vectors>{}, std::make_integer_sequence<int, n_state>{});
     }
 
+    /// The model's own hook; sets the sums to zero in phase 0.
     MYRIAD_FUNCTION static void initialise(auto& wrapped) {
         const bool at_t_begin = wrapped.t == wrapped.t_begin;
         if constexpr (detail::has_initialise<Model>) {
@@ -181,6 +183,7 @@ struct with_tangents : detail::tangent_layers::after_event_layer<Model, vectors>
         }
     }
 
+    /// The model's own hook; then orthonormalises the tangents and adds their growth to the sums.
     MYRIAD_FUNCTION static void finalise(auto& wrapped) {
         if constexpr (detail::has_finalise<Model>)
             detail::move_tangents<Model, vectors>(wrapped, [](auto& own) MYRIAD_LAMBDA { Model::finalise(own); });

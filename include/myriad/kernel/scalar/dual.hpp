@@ -88,7 +88,7 @@ template <class S>
 struct dual_part<dual<S>> {
     using type = S;
 };
-/// The S of dual<S>, the common type of A and B.
+/// The S of the `dual<S>` that is the common type of A and B.
 template <class A, class B>
 using part_of = typename dual_part<common_kind<A, B>>::type;
 

@@ -139,38 +139,58 @@ namespace myriad::inline MYRIAD_TARGET {
     MYRIAD_FUNCTION S name(const S& x) {      \
         return detail::functions<S>::name(x); \
     }
+/// Square root, correctly rounded; NaN of negative numbers.
 MYRIAD_UNARY(sqrt)
+/// Cube root.
 MYRIAD_UNARY(cbrt)
-/// Absolute value, and rounding to integers: down, and to the nearest with halves away from zero.
+/// Absolute value.
 MYRIAD_UNARY(abs)
+/// The largest integer that is not above x.
 MYRIAD_UNARY(floor)
+/// The nearest integer, halves away from zero.
 MYRIAD_UNARY(round)
-/// Angles in radians.
+/// Sine of an angle in radians.
 MYRIAD_UNARY(sin)
+/// Cosine of an angle in radians.
 MYRIAD_UNARY(cos)
+/// Tangent of an angle in radians.
 MYRIAD_UNARY(tan)
+/// Inverse of the sine, from -pi / 2 to pi / 2; NaN outside [-1, 1].
 MYRIAD_UNARY(asin)
+/// Inverse of the cosine, from 0 to pi; NaN outside [-1, 1].
 MYRIAD_UNARY(acos)
+/// Inverse of the tangent, from -pi / 2 to pi / 2.
 MYRIAD_UNARY(atan)
-/// sin(pi x) and cos(pi x): exact at multiples of 1/2, cheaper than sin and cos for large arguments.
+/// sin(pi x), exact at multiples of a half; cheaper than `sin` for large arguments.
 MYRIAD_UNARY(sinpi)
+/// cos(pi x), exact at multiples of a half.
 MYRIAD_UNARY(cospi)
+/// Hyperbolic sine.
 MYRIAD_UNARY(sinh)
+/// Hyperbolic cosine.
 MYRIAD_UNARY(cosh)
+/// Hyperbolic tangent.
 MYRIAD_UNARY(tanh)
+/// Exponential function.
 MYRIAD_UNARY(exp)
+/// 2 to the power of x.
 MYRIAD_UNARY(exp2)
+/// Natural logarithm; NaN of negative numbers, minus infinity of zero.
 MYRIAD_UNARY(log)
+/// Logarithm to base 2, with the same exceptions as `log`.
 MYRIAD_UNARY(log2)
+/// Logarithm to base 10, with the same exceptions as `log`.
 MYRIAD_UNARY(log10)
 /// 1 / x, on GPUs without the slow path of a division: within 1 ulp for normal x and result; not finite for zero. For
 /// infinity it is NaN in double precision on GPUs, and zero elsewhere.
 MYRIAD_UNARY(reciprocal)
 #undef MYRIAD_UNARY
 
+/// What `sincos` and `sincospi` return.
 template <class S>
 struct sine_and_cosine {
-    S sine, cosine;
+    S sine;    ///< of the angle
+    S cosine;  ///< of the same angle
 };
 /// Sine and cosine of the same angle for about the price of one: `const auto [sine, cosine] = sincos(x)` for x up to
 /// 2^30 (float 2^16) in radians (2^20 and 2^13 if the target has no fused multiply-add), and sincospi for pi x up to
@@ -182,6 +202,7 @@ MYRIAD_FUNCTION sine_and_cosine<S> sincos(const S& x) {
     detail::functions<S>::sincos(x, both.sine, both.cosine);
     return both;
 }
+/// Sine and cosine of pi x; see `sincos`.
 template <detail::real_kind S>
 MYRIAD_FUNCTION sine_and_cosine<S> sincospi(const S& x) {
     sine_and_cosine<S> both;
@@ -202,8 +223,9 @@ MYRIAD_FUNCTION auto is_finite(const S& x) {
         using S = detail::common_kind<A, B>;                                                                           \
         return detail::functions<S>::name(detail::to_kind<S>(a), detail::to_kind<S>(b));                               \
     }
-/// The smaller and the larger; if one is NaN, the other.
+/// The smaller of two; the number where the other argument is NaN.
 MYRIAD_BINARY(min)
+/// The larger of two; the number where the other argument is NaN.
 MYRIAD_BINARY(max)
 /// The magnitude of the first with the sign of the second.
 MYRIAD_BINARY(copysign)

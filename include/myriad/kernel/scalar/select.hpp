@@ -75,28 +75,37 @@ MYRIAD_FUNCTION constexpr S to_kind(const A& x) {
 
 namespace myriad::inline MYRIAD_TARGET {
 
+/// The real type of a kind of number: double or float.
 template <class S>
 using real_of = typename detail::scalar_traits<S>::real;
+/// The type of its comparisons: bool for a plain number, one truth value per lane for a pack.
 template <class S>
 using mask_of = typename detail::scalar_traits<S>::mask;
+/// Its integers: `int32` for a plain number, as many as lanes for a pack.
 template <class S>
 using integer_of = typename detail::scalar_traits<S>::integer;
+/// Its number of lanes: 1 for a plain number.
 template <class S>
 inline constexpr int lanes_of = detail::scalar_traits<S>::lanes;
+/// Whether it is a pack of several lanes.
 template <class S>
 concept is_pack = lanes_of<S> >
 1;
 
-/// Spacing of the numbers next to one, largest finite and smallest normal number, infinity and NaN, as constants:
-/// device code cannot call the functions for them.
+// Constants, since device code may not call the functions behind them.
+/// Spacing of the numbers next to one.
 template <class R>
 inline constexpr R epsilon_of = std::numeric_limits<R>::epsilon();
+/// The largest finite number.
 template <class R>
 inline constexpr R largest_of = std::numeric_limits<R>::max();
+/// The smallest positive normal number.
 template <class R>
 inline constexpr R smallest_normal_of = std::numeric_limits<R>::min();
+/// Infinity.
 template <class R>
 inline constexpr R infinity_of = std::numeric_limits<R>::infinity();
+/// A quiet NaN.
 template <class R>
 inline constexpr R nan_of = std::numeric_limits<R>::quiet_NaN();
 

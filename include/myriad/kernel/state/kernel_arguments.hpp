@@ -13,7 +13,13 @@ namespace myriad {
 /// Where a GPU keeps the parameters that all instances share: the constant bank is fastest if all threads read the same
 /// value at once, shared memory if they are many, the cache if they fit nowhere else. `automatic` takes the constant
 /// bank up to 1 KiB, then shared memory as long as they fit.
-enum class shared_placement : std::uint8_t { automatic, constant_bank, shared_memory, cache };
+enum class shared_placement : std::uint8_t {
+    automatic,      ///< by their size
+    constant_bank,  ///< with the arguments of the kernel, up to 1 KiB
+    shared_memory,  ///< copied there by each block
+    cache,          ///< read from device memory
+};
+/// The name of a place, as in the code.
 constexpr const char* name_of(shared_placement placement) {
     constexpr const char* names[] = {"automatic", "constant_bank", "shared_memory", "cache"};
     return names[static_cast<int>(placement)];
