@@ -64,7 +64,8 @@ class History(unittest.TestCase):
         self.commit('const char* f() { return "// 4"; }\n')
         status, printed = self.result()
         self.assertEqual(status, 1)
-        self.assertIn("report.md is 3 changes of kernel older than the sources, of at most 1: make it anew by make", printed)
+        self.assertIn("report.md is 3 changes of kernel older than the sources, of at most 1: make it anew by make",
+                      printed)
 
     def test_a_report_whose_sources_are_in_no_history_is_refused(self):
         (check_reports.ROOT / "report.md").write_text("sources: 0123abc\n", encoding="utf-8")
