@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Tabulates the registers, stack and spills of every method's kernel for 2, 4, 8 and 16 equations.
+"""Tabulates the registers, stack and spills of every method's kernel for 2, 4, 8 and 16 equations, or, with --features,
+of one model's kernel with events and hooks.
 
-Compiles benchmarks/methods/registers.cu once for each method and kind of number and writes a Markdown table, to the
-standard output or, with --into FILE, between the lines `<!-- registers -->` and `<!-- end of registers -->` of FILE.
-Needs nvcc, no GPU. Exit status 2 if something is missing or does not compile.
+Compiles benchmarks/methods/registers.cu once for each method and kind of number, or features.cu once for each set of
+features, and writes a Markdown table, to the standard output or, with --into FILE, between the lines
+`<!-- registers -->` and `<!-- end of registers -->` of FILE. Needs nvcc, no GPU. Exit status 2 if something is missing
+or does not compile.
 """
 import argparse
 import re
@@ -21,20 +23,38 @@ from check_resources import compile_command, read_report  # noqa: E402
 METHODS = ("runge_kutta_4", "cash_karp", "tsitouras_5", "dormand_prince_5", "verner_7", "dormand_prince_8",
            "rosenbrock_23", "rodas_5p")
 SIZES = (2, 4, 8, 16)
+FEATURES = {
+    "no event, no hook": ["-DEVENTS=0"],
+    "two accessories, `after_step`": ["-DEVENTS=0", "-DACCESSORIES", "-DAFTER_STEP"],
+    "two accessories, `initialise` and `finalise`": ["-DEVENTS=0", "-DACCESSORIES", "-DPHASE_ENDS"],
+    "the maximum of a quantity (`reductions`)": ["-DEVENTS=0", "-DREDUCTIONS"],
+    "one event": ["-DEVENTS=1"],
+    "two events": ["-DEVENTS=2"],
+    "four events": ["-DEVENTS=4"],
+    "two events, `after_event` that writes an accessory": ["-DEVENTS=2", "-DACCESSORIES", "-DOBSERVING_ACTION"],
+    "two events, `after_event` that changes the state": ["-DEVENTS=2", "-DACCESSORIES", "-DIMPACT"],
+    "two events, accessories, all hooks": ["-DEVENTS=2", "-DACCESSORIES", "-DOBSERVING_ACTION", "-DAFTER_STEP",
+                                           "-DPHASE_ENDS"],
+}
+FEATURE_METHODS = ("runge_kutta_4", "cash_karp", "tsitouras_5", "verner_7")
 BEGIN, END = "<!-- registers -->", "<!-- end of registers -->"
+
+
+def kernels_of(arguments, source, flags):
+    """Resources of the kernels in a source, by name."""
+    arguments.flag = flags
+    with tempfile.TemporaryDirectory() as folder:
+        command = compile_command(arguments, str(ROOT / "benchmarks" / "methods" / source), f"{folder}/kernel.o")
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        raise RuntimeError(result.stdout + result.stderr)
+    return read_report(result.stdout + result.stderr)
 
 
 def resources(arguments, method, real):
     """Resources of one method's kernels by number of equations."""
-    arguments.flag = [f"-DMETHOD={method}", f"-DREAL={real}"]
-    with tempfile.TemporaryDirectory() as folder:
-        command = compile_command(arguments, str(ROOT / "benchmarks" / "methods" / "registers.cu"),
-                                  f"{folder}/kernel.o")
-        result = subprocess.run(command, capture_output=True, text=True, check=False)
-    if result.returncode != 0:
-        raise RuntimeError(result.stdout + result.stderr)
     found = {}
-    for name, used in read_report(result.stdout + result.stderr).items():
+    for name, used in kernels_of(arguments, "registers.cu", [f"-DMETHOD={method}", f"-DREAL={real}"]).items():
         size = re.search(r"lorenz_96<(\d+)>", name)
         if size:
             found[int(size.group(1))] = used
@@ -59,6 +79,23 @@ def table(arguments, real):
     return lines
 
 
+def feature_table(arguments):
+    """Lines of the table of features."""
+    lines = ["| Duffing oscillator with | " + " | ".join(f"`{method}`" for method in FEATURE_METHODS) + " |",
+             "|---" * (1 + len(FEATURE_METHODS)) + "|"]
+    for name, flags in FEATURES.items():
+        cells = []
+        for method in FEATURE_METHODS:
+            kernels = kernels_of(arguments, "features.cu", [f"-DMETHOD={method}", "-DREAL=double", *flags])
+            used = [used for kernel, used in kernels.items() if "integrate_ensemble" in kernel]
+            if len(used) != 1:
+                raise RuntimeError(f"ptxas reports {len(used)} kernels of {method} with {name}, not one")
+            cells.append(cell(used[0]))
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+        print(name, file=sys.stderr)
+    return lines
+
+
 def replaced(text, lines):
     """The text with other lines between the marks."""
     before, begin, rest = text.partition(BEGIN + "\n")
@@ -74,6 +111,7 @@ def main():
     parser.add_argument("--arch", default="sm_90", help="real architecture (default: sm_90)")
     parser.add_argument("--eigen", default="/usr/include/eigen3", metavar="DIR",
                         help="Eigen (default: /usr/include/eigen3)")
+    parser.add_argument("--features", action="store_true", help="the table of events and hooks")
     parser.add_argument("--into", metavar="FILE", help="Markdown file to write the table into")
     arguments = parser.parse_args()
     arguments.include = [str(ROOT / "include"), str(ROOT / "backends" / "cuda")]
@@ -82,7 +120,10 @@ def main():
         version = subprocess.run([arguments.nvcc, "--version"], capture_output=True, text=True, check=True).stdout
         release = re.search(r"V([\d.]+)", version)
         lines = [f"nvcc {release.group(1) if release else '?'}, {arguments.arch}, double precision:", ""]
-        lines += table(arguments, "double") + ["", "Single precision:", ""] + table(arguments, "float")
+        if arguments.features:
+            lines += feature_table(arguments)
+        else:
+            lines += table(arguments, "double") + ["", "Single precision:", ""] + table(arguments, "float")
         if arguments.into:
             file = Path(arguments.into)
             file.write_text(replaced(file.read_text(encoding="utf-8"), lines), encoding="utf-8")
