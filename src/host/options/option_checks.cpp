@@ -8,13 +8,14 @@
 
 namespace myriad::host {
 
+void check_count(const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
+    require(value >= least && value <= most, name, " is ", value, " (must be from ", least, " to ", most, ")");
+}
+
 namespace {
 
 void check_positive(const char* name, double value, const char* advice) {
     require(value > 0 && std::isfinite(value), name, " is ", value, " (must be positive and finite): ", advice);
-}
-void check_count(const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
-    require(value >= least && value <= most, name, " is ", value, " (must be from ", least, " to ", most, ")");
 }
 void check_tolerance_count(const char* name, const per_component& t, std::size_t components) {
     require(t.size() == 1 || t.size() == components, name, " has ", t.size(), " values, but the model has ", components,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "myriad/host/backend/arrays.hpp"
+#include "myriad/host/backend/facts.hpp"
 #include "myriad/host/core/instruction_set.hpp"
 #include "myriad/host/core/weak.hpp"
 #include "myriad/host/options/options.hpp"
@@ -80,17 +81,6 @@ MYRIAD_DECLARE_KERNEL(generic)
 
 namespace cuda {
 
-/// A CUDA kernel and how it is launched.
-struct kernel_facts {
-    int block_size = 0;             ///< of the last launch; before the first, the size with the best occupancy
-    int registers = 0;              ///< per thread
-    std::int64_t local_bytes = 0;   ///< per thread: stack frame and spilled registers
-    std::int64_t shared_bytes = 0;  ///< of shared memory per block
-    myriad::shared_placement shared_placement = myriad::shared_placement::constant_bank;
-    myriad::schedule schedule = myriad::schedule::in_order;  ///< of the last call of `integrate`
-    int blocks_per_multiprocessor = 0;  ///< resident at the same time, for the size with the best occupancy
-};
-
 struct engine_options {
     int device = 0;
     std::int64_t block_size = 0;
@@ -116,25 +106,9 @@ protected:
     work& operator=(const work&) = delete;
 };
 
-/// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and
-/// uploads of host memory that is not pinned, return before the work is done; work is done in the order of submission.
-/// Downloaded data are on the host after the next `wait`, not before. Only one thread at a time may use an engine, but
-/// another may call `idle` and `affordable` meanwhile. Arguments are the host's, for the whole ensemble; `first` and
-/// `count` select the instances. Errors of the device, including those of earlier work, are thrown as `error`.
-template <class Model, class R>
-class engine : public work {
+/// What is known of an `engine` without its model.
+class any_engine : public work {
 public:
-    /// Allocates memory for chunks of `count` instances; larger chunks allocate more when they are uploaded.
-    virtual void reserve(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
-    /// Copies the chunk to the device.
-    virtual void upload(const kernel_arguments<Model, R>& host, std::int64_t first, std::int64_t count,
-                        past of_instances = past::kept) = 0;
-    /// Integrates the chunk that was uploaded last, with the options of `host`, which must have the same arrays.
-    virtual void integrate(const kernel_arguments<Model, R>& host) = 0;
-    /// Copies what kernels write back to where it was uploaded from, and the records of the last call into
-    /// `host.record`. Components for which `wanted(kind, component)` is false are left out.
-    virtual void download(const kernel_arguments<Model, R>& host,
-                          bool (*wanted)(void*, array_kind, std::int64_t) = nullptr, void* context = nullptr) = 0;
     virtual void wait() = 0;
     /// Work submitted to this engine from now on begins when all work submitted to the other before is done.
     virtual void wait_for(work& other) = 0;
@@ -156,6 +130,27 @@ public:
 
     /// Frees device memory if it is more than a small part of the device's. No work may be in progress.
     virtual void rest() = 0;
+};
+
+/// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and
+/// uploads of host memory that is not pinned, return before the work is done; work is done in the order of submission.
+/// Downloaded data are on the host after the next `wait`, not before. Only one thread at a time may use an engine, but
+/// another may call `idle` and `affordable` meanwhile. Arguments are the host's, for the whole ensemble; `first` and
+/// `count` select the instances. Errors of the device, including those of earlier work, are thrown as `error`.
+template <class Model, class R>
+class engine : public any_engine {
+public:
+    /// Allocates memory for chunks of `count` instances; larger chunks allocate more when they are uploaded.
+    virtual void reserve(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
+    /// Copies the chunk to the device.
+    virtual void upload(const kernel_arguments<Model, R>& host, std::int64_t first, std::int64_t count,
+                        past of_instances = past::kept) = 0;
+    /// Integrates the chunk that was uploaded last, with the options of `host`, which must have the same arrays.
+    virtual void integrate(const kernel_arguments<Model, R>& host) = 0;
+    /// Copies what kernels write back to where it was uploaded from, and the records of the last call into
+    /// `host.record`. Components for which `wanted(kind, component)` is false are left out.
+    virtual void download(const kernel_arguments<Model, R>& host,
+                          bool (*wanted)(void*, array_kind, std::int64_t) = nullptr, void* context = nullptr) = 0;
 };
 
 /// The engine for a model, method and real type. Throws `error` if the device does not exist or cannot run the kernel.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <string_view>
 
@@ -14,6 +15,8 @@
 
 namespace myriad {
 namespace host {
+
+void check_count(const char* name, std::int64_t value, std::int64_t least, std::int64_t most);
 
 /// The components of one kind that options may name.
 struct listed_components {

@@ -20,14 +20,7 @@ namespace myriad::host {
 /// Adds a note if a relative tolerance was below what the precision can reach and the method uses it.
 template <class Method, class Model, class R>
 void note_tolerances(report<Model, R>& r, const options& o) {
-    if (Method::embedded_order == 0) return;
-    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
-        if (static_cast<R>(o.relative_tolerance[c]) >= least_relative_tolerance<R>) continue;
-        r.notes.push_back(message("relative_tolerance ", o.relative_tolerance[c],
-                                  " is below what the precision can reach: ", least_relative_tolerance<R>,
-                                  " was used"));
-        return;
-    }
+    if (Method::embedded_order > 0) note_raised_tolerances<R>(r, o);
 }
 
 /// Adds a note if an event function was within its tolerance in all instances examined, before and after the call, and
@@ -46,16 +39,6 @@ void note_event_tolerances(report<Model, R>& r, ensemble<Model, R>& e, const opt
                     " instances looked at, and no crossing was located: a function is seen to cross zero only from "
                     "beyond its tolerance; if this one crosses, give a smaller tolerance"));
     }
-}
-
-/// Adds a note if instances that have ended were given new inputs, which `invalid_instances::mark` allows.
-template <class Model, class R>
-void note_ended(report<Model, R>& r, const ensemble<Model, R>& e, std::int64_t count) {
-    const std::int64_t anew = count_given_anew(e, count);
-    if (anew == 0) return;
-    r.notes.push_back(message(anew, anew == 1 ? " instance that" : " instances that",
-                              " ended in earlier calls took no part, though states or parameters were set anew since: "
-                              "restart() starts all instances again"));
 }
 
 /// Adds a note if stability, not accuracy, limited an explicit method's steps in half or more of the instances
