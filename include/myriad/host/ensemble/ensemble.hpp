@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "myriad/host/backend/device.hpp"
+#include "myriad/host/core/declarations.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/ensemble/component_map.hpp"
 #include "myriad/host/ensemble/ensemble_data.hpp"
@@ -75,7 +76,7 @@ struct ensemble_access {
 /// one component over all instances, contiguous and writable; nothing is copied and nothing is checked per element, but
 /// assigning more or fewer values than there are instances is refused. Values never set are NaN, so that `solve` can
 /// name them. Movable, not copyable.
-template <class Model, class R = double>
+template <class Model, class R>  // R = double
 class ensemble {
     static_assert(detail::check_model<Model>());
     static_assert(std::is_same_v<R, double> || std::is_same_v<R, float>, "an ensemble's real type is double or float");

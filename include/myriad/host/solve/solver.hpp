@@ -11,6 +11,7 @@
 
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/backend/device.hpp"
+#include "myriad/host/core/declarations.hpp"
 #include "myriad/host/core/left_behind.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/option_checks.hpp"
@@ -42,7 +43,7 @@ struct components {
 ///     sweep.integrate();
 ///     sweep.download();
 ///     std::cout << sweep.report() << sweep.instances().state(duffing::x).maxCoeff();
-template <class Model, class Method, class R = double>
+template <class Model, class Method, class R>  // R = double
 class solver {
 public:
     /// Allocates all memory, on the host and on the device. Throws `error` if there is too little, if an option is
