@@ -85,8 +85,9 @@ def main():
         without = ("-DMYRIAD_ENABLE_CUDA=ON", f"-DCMAKE_CUDA_COMPILER={arguments.nvcc}",
                    "-DCMAKE_CUDA_ARCHITECTURES=90")
         cuda = (*without, "-DFURTHER_LANGUAGES=CUDA")
-        p.refuses("CUDA in a project without that language", r"write project\(configurations LANGUAGES CXX CUDA\)",
-                  *without)
+        p.compiles("CUDA in a project without that language", ["-O3"], *without, file=r"decay_\w+\.cu")
+        p.refuses("CUDA turned on by Myriad for another directory", r"write project\(configurations LANGUAGES CXX CUDA\)",
+                  *without, "-DIN_ANOTHER_DIRECTORY=ON")
         p.compiles("nvcc's host part, no build type", ["-O3"], *cuda, file=r"decay_\w+\.cu")
         p.refuses("nvcc's fast arithmetic", "nvcc is given -?-?use_fast_math", *cuda,
                   "-DCMAKE_CUDA_FLAGS=--use_fast_math")

@@ -77,6 +77,7 @@ record_data<R>::record_data(const model_shape& shape, const record_options& o, s
                             std::int64_t of_instances)
     : size(of_instances) {
     if (o.empty()) return;
+    recorded = true;
     phases = of_phases - o.from_phase;
     from_phase = o.from_phase;
     std::int16_t columns = 0, integer_columns = 0;
@@ -99,9 +100,9 @@ double record_data<R>::bytes_for(const record_options& o, std::int64_t phases, s
 }
 template <class R>
 int record_data<R>::find(const std::vector<std::int16_t>& columns, std::int64_t c, const char* what) const {
+    require(size > 0 || !recorded, "these records were moved away: ask those that they were moved to");
     require(c >= 0 && c < static_cast<std::int64_t>(columns.size()) && columns[static_cast<std::size_t>(c)] >= 0, what,
             " ", c, " was not recorded: name it in options::record");
-    require(size > 0, "these records were moved away: ask those that they were moved to");
     return columns[static_cast<std::size_t>(c)];
 }
 template <class R>

@@ -85,6 +85,7 @@ struct record_data {
     std::int64_t from_phase = 0;
     std::vector<std::int16_t> state, accessory, integer_accessory;  // columns of each; -1: not recorded
     std::int16_t time = -1;
+    bool recorded = false;  // also of records that were moved away
     component_array<R> values;
     component_array<std::int32_t> integers;
 };
