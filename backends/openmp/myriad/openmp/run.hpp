@@ -10,7 +10,7 @@
 
 #include <omp.h>
 
-#include "myriad/host/backend/backend.hpp"
+#include "myriad/host/backend/cpu_backend.hpp"
 #if !defined(MYRIAD_WITHOUT_XSIMD)
 #include "myriad/kernel/scalar/pack.hpp"
 #endif

@@ -4,7 +4,8 @@
 
 #include <cstdint>
 
-#include "myriad/host/options/options.hpp"
+#include "myriad/host/options/schedule.hpp"
+#include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::cuda {
 
