@@ -31,7 +31,7 @@ install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/myriad" COMPONEN
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME myriad)
 set(CPACK_PACKAGE_VENDOR "The Myriad developers")
-set(CPACK_PACKAGE_CONTACT "The Myriad developers <maintainers@users.noreply.github.com>")
+set(CPACK_PACKAGE_CONTACT "The Myriad developers <myriad@example.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
