@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Configures, builds and runs the project beside this file with Myriad from one of: find_package (installed into an empty
-# folder, with a model in a shared library too), Debian (the package, unpacked), add_subdirectory, FetchContent, CUDA
+# folder, with a model in a shared library too), no_xsimd (the same without SIMD lanes), Debian (the package, unpacked), add_subdirectory, FetchContent, CUDA
 # (add_subdirectory with MYRIAD_ENABLE_CUDA in a project that has not that language).
 
 function(run_step title)
@@ -32,6 +32,10 @@ if(KIND STREQUAL "find_package")
     run_step("install" "${CMAKE_COMMAND}" --install "${MYRIAD_BINARY_DIR}" --prefix "${prefix}")
     list(APPEND further -DWITH_SHARED_LIBRARY=ON "-DMYRIAD_COMPONENTS=openmp")
     list(APPEND programs decay_shared)
+elseif(KIND STREQUAL "no_xsimd")
+    set(by find_package)
+    run_step("install" "${CMAKE_COMMAND}" --install "${MYRIAD_BINARY_DIR}" --prefix "${prefix}")
+    list(APPEND further -DMYRIAD_SIMD=OFF)
 elseif(KIND STREQUAL "Debian")
     set(by find_package)
     run_step("package" "${CMAKE_COMMAND}" -E chdir "${MYRIAD_BINARY_DIR}" cpack -G DEB -B "${WORK_DIR}/package")
