@@ -56,7 +56,8 @@ phases_left find_phases_left(const ensemble_data<R>& e, const options& o, std::i
     for (std::int64_t i = 0; i < count; ++i) {
         const bool has_begun = e.phase.data()[i] > 0;
         const R t_begin = e.t_begin_of(i), t = has_begun ? e.t.data()[i] : t_begin, t_end = e.t_end_of(i);
-        if (e.ended.data()[i] != 0 || !std::isfinite(t_begin) || std::isnan(t_end)) continue;  // left to the check of the inputs
+        if (e.ended.data()[i] != 0 || !std::isfinite(t_begin) || std::isnan(t_end))
+            continue;  // left to the check of the inputs
         if (t == t_end && (has_begun || length > 0)) {
             if (there++ == 0)
                 left.why_none = message(
@@ -179,8 +180,7 @@ void data_check<R>::run() {
                 std::isnan(data_.shared.data()[c]) ? " (never set, or set to NaN)" : "",
                 ": set it with ensemble.shared(...) before solving");
     for (int c = 0; c < shape.n_state; ++c) check(shape.state(c), data_.state.component(c));
-    for (int c = 0; c < shape.n_parameter; ++c)
-        check(shape.parameter(c), data_.parameter.component(c));
+    for (int c = 0; c < shape.n_parameter; ++c) check(shape.parameter(c), data_.parameter.component(c));
     if (data_.scales_tolerances()) check_positive_scales();
     if (data_.has_common_domain()) {
         const std::vector<R> begin(static_cast<std::size_t>(count_), data_.t_begin_of(0)),
@@ -233,8 +233,8 @@ void data_check<R>::check(const component_label& label, const R* values, limit m
             ? ": an infinite time needs a phase_length, an event with stop_after, or a hook that returns "
               "whether to end the phase"
             : ": correct the inputs, or set invalid_instances = invalid_instances::mark to run the others";
-    throw error(message(label, " is not finite in ", bad, " of ", count_, " instances, first in instance ", first,
-                        " (", values[first], ")", advice));
+    throw error(message(label, " is not finite in ", bad, " of ", count_, " instances, first in instance ", first, " (",
+                        values[first], ")", advice));
 }
 
 template <class R>
@@ -255,8 +255,9 @@ void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_
     if (own.empty()) {
         const bool common = e.has_common_domain();
         const R common_begin = e.t_begin_of(0), common_end = e.t_end_of(0);
-        const R *const begin = common ? &common_begin : e.domain.component(0), *const end =
-                                                                                common ? &common_end : e.domain.component(1);
+        const R *const begin = common ? &common_begin : e.domain.component(0), *const end = common
+                                                                                                ? &common_end
+                                                                                                : e.domain.component(1);
         const R from = times.empty() ? R(0) : times.front(), to = times.empty() ? R(0) : times.back();
         const bool evenly = times.empty();
         if (evenly && o.phase_length > 0) return;  // then phases are divided evenly, not the domain

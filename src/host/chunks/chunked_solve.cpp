@@ -182,9 +182,7 @@ private:
         if (past_ == cuda::past::kept) add_work(work_before_, 0, size_);
     }
 
-    void begin(engine& worker, std::int64_t first, std::int64_t count) {
-        source_.begin(worker, first, count, past_);
-    }
+    void begin(engine& worker, std::int64_t first, std::int64_t count) { source_.begin(worker, first, count, past_); }
 
     /// To be called in the order of chunks, when the results up to instance `end` are in the ensemble.
     void take_back(engine& worker, std::int64_t end) {
@@ -250,7 +248,7 @@ void solve_in_chunks(const options& o, chunk_source& source, ensemble_data<R>& i
 }
 template void solve_in_chunks(const options&, chunk_source&, ensemble_data<double>&, data_check<double>&,
                               progress_relay&, report_of<double>&);
-template void solve_in_chunks(const options&, chunk_source&, ensemble_data<float>&, data_check<float>&,
-                              progress_relay&, report_of<float>&);
+template void solve_in_chunks(const options&, chunk_source&, ensemble_data<float>&, data_check<float>&, progress_relay&,
+                              report_of<float>&);
 
 }  // namespace myriad::host

@@ -37,16 +37,16 @@ void memory_left::at_most(double other, const std::string& what) {
 struct memory_reader::file_names {
     const char *limit, *usage, *swap_limit, *swap_usage, *sum_limit, *sum_usage, *inactive, *active;
 };
-const memory_reader::file_names memory_reader::version_2{"memory.max", "memory.current", "memory.swap.max", "memory.swap.current", "",
-                                      "",           "inactive_file",  "active_file"};
+const memory_reader::file_names memory_reader::version_2{
+    "memory.max", "memory.current", "memory.swap.max", "memory.swap.current", "", "", "inactive_file", "active_file"};
 const memory_reader::file_names memory_reader::version_1{"memory.limit_in_bytes",
-                                      "memory.usage_in_bytes",
-                                      "",
-                                      "",
-                                      "memory.memsw.limit_in_bytes",
-                                      "memory.memsw.usage_in_bytes",
-                                      "total_inactive_file",
-                                      "total_active_file"};
+                                                         "memory.usage_in_bytes",
+                                                         "",
+                                                         "",
+                                                         "memory.memsw.limit_in_bytes",
+                                                         "memory.memsw.usage_in_bytes",
+                                                         "total_inactive_file",
+                                                         "total_active_file"};
 
 memory_left memory_reader::left() const {
     memory_left least;
@@ -79,8 +79,8 @@ std::optional<double> memory_reader::entry(const std::string& file, const std::s
     return std::nullopt;
 }
 
-void memory_reader::look_at_groups(memory_left& least, const std::string& mount, std::string path, const file_names& name,
-                    double swap) const {
+void memory_reader::look_at_groups(memory_left& least, const std::string& mount, std::string path,
+                                   const file_names& name, double swap) const {
     for (;; path.resize(path.rfind('/'))) {
         while (!path.empty() && path.back() == '/') path.pop_back();
         const std::string group = mount + path + '/', called = "the control group " + path + '/';
@@ -97,7 +97,6 @@ void memory_reader::look_at_groups(memory_left& least, const std::string& mount,
         if (path.find('/') == std::string::npos) return;
     }
 }
-
 
 memory_left available_memory() {
     memory_left least = memory_reader().left();
@@ -117,8 +116,7 @@ void memory_need::check(const std::string& who, const char* advice, memory_left 
     if (bytes() <= left.bytes) return;
     const auto [needed, there] = bytes_texts(bytes(), left.bytes);
     std::string parts;
-    for (const auto& [part, size] : parts_)
-        parts += message(parts.empty() ? "" : ", ", part, ' ', bytes_text(size));
+    for (const auto& [part, size] : parts_) parts += message(parts.empty() ? "" : ", ", part, ' ', bytes_text(size));
     throw error(message("out of memory: ", who, " would take ", needed,
                         parts_.size() > 1 ? " (" + parts + ')' : std::string(), ", and ", there, " of ", left.of,
                         " are left: ", advice));

@@ -90,16 +90,15 @@ void model_components::check(const char* what, const component_list& chosen, con
         const int c = chosen[i];
         const std::string_view of = chosen.enumeration(i);
         // If components of this kind have no enumeration, enumerators of the other kinds are wrong nevertheless.
-        const bool fits = of.empty() || of == kind.enumeration ||
-                          (kind.enumeration.empty() &&
-                           std::find(enumerations.begin(), enumerations.end(), of) == enumerations.end());
+        const bool fits =
+            of.empty() || of == kind.enumeration ||
+            (kind.enumeration.empty() && std::find(enumerations.begin(), enumerations.end(), of) == enumerations.end());
         require(fits, what, " names component ", c, " by an enumerator of ", of, ", which numbers other components",
                 kind.enumeration.empty() ? std::string() : message(" than ", kind.enumeration),
                 ": give enumerators of the components that are meant, or numbers");
         require(c >= 0 && c < kind.count, what, " names component ", c, ", but the model has ", kind.count,
                 " (numbered from 0): use the model's enumerators");
-        require(!seen[static_cast<std::size_t>(c)], what, " names component ", c,
-                " twice: name each component once");
+        require(!seen[static_cast<std::size_t>(c)], what, " names component ", c, " twice: name each component once");
         seen[static_cast<std::size_t>(c)] = true;
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The host side's exception. A message names the problem, why it is one, and what to do. Parts of messages are joined in
-// the library, since formatting each combination of types took a fifth of a program's compile time.
+// The host side's exception. A message names the problem, why it is one, and what to do. Parts of messages are joined
+// in the library, since formatting each combination of types took a fifth of a program's compile time.
 #pragma once
 
 #include <concepts>
@@ -45,9 +45,9 @@ public:
     }
     template <class T>
     requires(!std::is_arithmetic_v<T> && !std::is_convertible_v<const T&, std::string_view>)
-    message_part(const T& printed) : kind_(kind::other) {
-        value_.other = {&printed,
-                        [](std::ostream& out, const void* value) { out << *static_cast<const T*>(value); }};
+        message_part(const T& printed)
+        : kind_(kind::other) {
+        value_.other = {&printed, [](std::ostream& out, const void* value) { out << *static_cast<const T*>(value); }};
     }
     friend std::ostream& operator<<(std::ostream& out, const message_part& part);
 
@@ -83,7 +83,8 @@ std::string message(const Parts&... parts) {
 /// Throws an error of the joined parts unless the condition holds.
 template <class... Parts>
 void require(bool condition, const Parts&... parts) {
-    if (!condition) [[unlikely]] host::refuse({host::message_part(parts)...});
+    if (!condition) [[unlikely]]
+        host::refuse({host::message_part(parts)...});
 }
 
 }  // namespace myriad

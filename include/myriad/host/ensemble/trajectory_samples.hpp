@@ -29,7 +29,9 @@ public:
     /// The largest number of samples per instance.
     std::int64_t capacity() const { return data_.capacity; }
     /// Samples stored, per instance; `capacity()` if there may have been more.
-    Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const& { return {data_.stored.data(), data_.size}; }
+    Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const& {
+        return {data_.stored.data(), data_.size};
+    }
     Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const&& = delete;
     map time() const& { return map(data_.time.data(), data_.size, data_.capacity); }
     map time() const&& = delete;

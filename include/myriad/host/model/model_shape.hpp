@@ -16,16 +16,11 @@ struct model_shape {
     component_label (*shared)(int);
 };
 template <class Model>
-inline constexpr model_shape shape_of{detail::n_state<Model>,
-                                      detail::n_parameter<Model>,
-                                      detail::n_shared<Model>,
-                                      detail::n_shared_integer<Model>,
-                                      detail::n_accessory<Model>,
-                                      detail::n_integer_accessory<Model>,
-                                      detail::n_event<Model>,
-                                      detail::writes_time_domain<Model>,
-                                      &state_numbering<Model>::label,
-                                      &parameter_numbering<Model>::label,
+inline constexpr model_shape shape_of{detail::n_state<Model>,         detail::n_parameter<Model>,
+                                      detail::n_shared<Model>,        detail::n_shared_integer<Model>,
+                                      detail::n_accessory<Model>,     detail::n_integer_accessory<Model>,
+                                      detail::n_event<Model>,         detail::writes_time_domain<Model>,
+                                      &state_numbering<Model>::label, &parameter_numbering<Model>::label,
                                       &shared_numbering<Model>::label};
 
 }  // namespace myriad::host

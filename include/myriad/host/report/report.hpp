@@ -44,8 +44,9 @@ public:
     }
     template <class C>
     map<std::int32_t> integer_accessory(C c) const& {
-        return view(data_.integers, data_.find(data_.integer_accessory,
-                                               host::integer_accessory_numbering<Model>::index(c), "integer accessory"));
+        return view(data_.integers,
+                    data_.find(data_.integer_accessory, host::integer_accessory_numbering<Model>::index(c),
+                               "integer accessory"));
     }
     template <class C>
     map<R> state(C) const&& = delete;

@@ -37,12 +37,12 @@ struct report_of {
     std::int64_t rhs_evaluations = 0;
     std::int64_t lane_turns = 0;  ///< trial steps times lanes, including idle lanes
     int lanes = 1;
-    int threads = 1;              ///< that did some work; may be fewer than the device has
-    double seconds = 0;           ///< wall time of the integration, on a GPU with transfers
-    std::string device;           ///< its name, as in device::parse
-    std::string instruction_set;  ///< on the CPU, of the kernel that ran: avx512, avx2, sse2 or generic
-    cuda::kernel_facts kernel;    ///< on a GPU: the kernel's registers, block size and shared parameters
-    double kernel_seconds = 0;    ///< on a GPU: time of the kernels alone
+    int threads = 1;                 ///< that did some work; may be fewer than the device has
+    double seconds = 0;              ///< wall time of the integration, on a GPU with transfers
+    std::string device;              ///< its name, as in device::parse
+    std::string instruction_set;     ///< on the CPU, of the kernel that ran: avx512, avx2, sse2 or generic
+    cuda::kernel_facts kernel;       ///< on a GPU: the kernel's registers, block size and shared parameters
+    double kernel_seconds = 0;       ///< on a GPU: time of the kernels alone
     std::vector<std::string> notes;  ///< tolerances raised; from `solve` also that the equations are stiff, or
                                      ///< phases too long for the smallest Lyapunov exponent
 

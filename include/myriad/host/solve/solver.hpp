@@ -288,7 +288,8 @@ private:
         return o;
     }
     host::work_count counted_work() const {
-        return options_.counting == counting::on ? host::counted_work(host::ensemble_access::data(instances_), count_) : host::work_count{};
+        return options_.counting == counting::on ? host::counted_work(host::ensemble_access::data(instances_), count_)
+                                                 : host::work_count{};
     }
     static bool is_chosen(void* context, detail::array_kind kind, std::int64_t component) {
         const auto& chosen = *static_cast<const components*>(context);
