@@ -225,6 +225,16 @@ void note_raised_tolerances(report_of<R>& r, const options& o) {
     }
 }
 
+void add_note(std::vector<std::string>& notes, const stiffness& found) {
+    if (2 * found.limited < found.looked_at || found.limited == 0) return;
+    notes.push_back(message("stability, not accuracy, limits the step in ", found.limited, " of ", found.looked_at,
+                            " instances looked at (step times fastest rate is up to ", found.share,
+                            " of the method's limit, and of rodas_5p, a method for stiff equations, one ",
+                            worthwhile_stretch,
+                            " times as long meets the tolerances): if the equations are stiff all "
+                            "along, rodas_5p takes far fewer steps"));
+}
+
 template work_count counted_work(const ensemble_data<double>&, std::int64_t, std::int64_t);
 template void add_summary(const ensemble_data<double>&, report_of<double>&, std::int64_t, std::int64_t);
 template void summarise(const ensemble_data<double>&, report_of<double>&, std::int64_t);

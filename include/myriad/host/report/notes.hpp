@@ -50,14 +50,8 @@ void note_stiffness(report<Model, R>& r, ensemble<Model, R>& e, const options& o
         constexpr std::int64_t worthwhile = 200;
         if (o.advice == advice::off) return;
         if (r.accepted_steps + r.rejected_steps < worthwhile * e.size()) return;
-        const stiffness found = find_stiffness<Method>(e, o);
-        if (2 * found.limited < found.looked_at || found.limited == 0) return;
-        r.notes.push_back(
-            message("stability, not accuracy, limits the step in ", found.limited, " of ", found.looked_at,
-                    " instances looked at (step times fastest rate is up to ", found.share,
-                    " of the method's limit, and of rodas_5p, a method for stiff equations, one ", worthwhile_stretch,
-                    " times as long meets the tolerances): if the equations are stiff all "
-                    "along, rodas_5p takes far fewer steps"));
+        const stiffness found = find_stiffness(e, o, real_stability_limit<Method>());
+        add_note(r.notes, found);
     }
 }
 

@@ -111,6 +111,17 @@ void add_summary(const ensemble_data<R>& e, report_of<R>& r, std::int64_t first,
 /// How the first `count` instances ended.
 template <class R>
 void summarise(const ensemble_data<R>& e, report_of<R>& r, std::int64_t count);
+/// What was found of instances whose steps may be limited by stability.
+struct stiffness {
+    std::int64_t looked_at = 0;
+    std::int64_t limited = 0;  // by stability
+    double share = 0;          // largest h lambda over the stability limit
+};
+/// How many times longer the steps of a stiff method must be to recommend it: one of them costs as much as several of
+/// an explicit method.
+inline constexpr double worthwhile_stretch = 20;
+/// Adds a note if half of them or more are.
+void add_note(std::vector<std::string>& notes, const stiffness& found);
 /// Adds a note if instances that have ended were given new inputs, which `invalid_instances::mark` allows.
 template <class R>
 void note_ended(report_of<R>& r, const ensemble_data<R>& e, std::int64_t count);
