@@ -30,7 +30,8 @@ function(myriad_require package debian_package)
     endif()
 endfunction()
 
-# With MYRIAD_SKIP_MISSING such a part is left out instead, with a message. That is a macro's work, as it sets the option.
+# With MYRIAD_SKIP_MISSING such a part is left out instead, with a message. That is a macro's work, as it sets the
+# option.
 macro(myriad_require_for_part option package debian_package)
     myriad_require(${package} ${debian_package} ${ARGN} UNLESS ${option} SKIPPED myriad_skipped)
     if(myriad_skipped)

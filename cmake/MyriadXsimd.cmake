@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-# Defines myriad::xsimd, the include directory of xsimd 8.1 or newer, or nothing where models do without SIMD lanes. Not xsimd's own target, since the one of Debian 12
-# links xtl, which is neither a library nor needed. Sets myriad_xsimd_FOUND, and a message if it is not found.
+# Defines myriad::xsimd, the include directory of xsimd 8.1 or newer, or nothing where models do without SIMD lanes.
+# Not xsimd's own target, since the one of Debian 12 links xtl, which is neither a library nor needed. Sets
+# myriad_xsimd_FOUND, and a message if it is not found.
 
 set(MYRIAD_SIMD ON CACHE STRING
     "SIMD lanes, by xsimd: ON, OFF (one instance at a time, several times slower), AUTO (as xsimd is there or not)")

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Duffing oscillator of two wells, for models that differ in what forces it, what is a parameter and what is
-// watched.
+// The Duffing oscillator with two wells, for models that differ in forcing, parameters and observed quantities.
 #pragma once
 
 #include <myriad/model.hpp>

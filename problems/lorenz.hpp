@@ -22,7 +22,7 @@ protected:
     static constexpr auto beta = static_cast<myriad::real_of<R>>(8.0 / 3);
 };
 
-/// The same with x taken out of two terms: the form that the validation's records were made with.
+/// The same with x factored out of two terms: the form with which the validation's records were made.
 struct factored_lorenz : lorenz {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
@@ -30,7 +30,7 @@ struct factored_lorenz : lorenz {
     }
 };
 
-/// The same in six floating-point instructions, one of each line's two fused, with another beta if asked: for
+/// The same in six floating-point instructions, one of each line's two fused, with another beta on request: for
 /// benchmarks.
 template <class Constant>
 struct lorenz_with : lorenz {

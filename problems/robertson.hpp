@@ -6,7 +6,7 @@
 
 namespace problems {
 
-/// a -> b at rate k1, 2 b -> b + c at k2, b + c -> a + c at 1e4. The sum of the concentrations stays as it is.
+/// a -> b at rate k1, 2 b -> b + c at k2, b + c -> a + c at 1e4. The sum of the concentrations is conserved.
 struct robertson {
     enum state { a, b, c, n_state };
 

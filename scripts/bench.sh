@@ -12,12 +12,13 @@ usage() {
 Usage: scripts/bench.sh [--compiler NAME] [--arch LIST] [--threads LIST] [--deps DIR] [--quick | --check] [--help]
 
 Installs the packages that are missing (as root or with sudo), builds the benchmark in build/bench-NAME-ARCH, runs it,
-writes results/bench_NAME.csv and .png and prints the table. See benchmarks/README.md. CVODE takes part if SUNDIALS 6 or 7
-is installed or in DIR/sundials.
+writes results/bench_NAME.csv and .png and prints the table. See benchmarks/README.md. CVODE takes part if SUNDIALS 6 or
+7 is installed or in DIR/sundials.
 
 Options:
   --compiler NAME  compiler, g++ (default) or clang++
-  --arch LIST      instruction sets of models and peers, as in -march=, comma-separated: native (default), x86-64-v3, ...
+  --arch LIST      instruction sets of models and peers, as in -march=, comma-separated: native (default),
+                   x86-64-v3, ...
   --threads LIST   numbers of threads to show the scaling with, comma-separated, such as 1,2,4,8,16 (default: not shown)
   --deps DIR       folder with what is not installed: DIR/xsimd, DIR/CLI, DIR/sundials (default: .deps, if it is there)
   --quick          fewer instances and repetitions, no growth with the number of instances
@@ -62,8 +63,16 @@ done
 started=$SECONDS
 packages=(g++ cmake ninja-build libeigen3-dev libboost-dev)
 options=()
-if [[ -d $deps/xsimd ]]; then options+=("-DMYRIAD_XSIMD_INCLUDE_DIR=$(realpath "$deps")"); else packages+=(libxsimd-dev); fi
-if [[ -d $deps/CLI ]]; then options+=("-DMYRIAD_CLI11_INCLUDE_DIR=$(realpath "$deps")"); else packages+=(libcli11-dev); fi
+if [[ -d $deps/xsimd ]]; then
+    options+=("-DMYRIAD_XSIMD_INCLUDE_DIR=$(realpath "$deps")")
+else
+    packages+=(libxsimd-dev)
+fi
+if [[ -d $deps/CLI ]]; then
+    options+=("-DMYRIAD_CLI11_INCLUDE_DIR=$(realpath "$deps")")
+else
+    packages+=(libcli11-dev)
+fi
 if [[ -d $deps/sundials ]]; then options+=("-DSUNDIALS_ROOT=$(realpath "$deps/sundials")"); fi
 if [[ $compiler == *clang++* ]]; then packages+=(clang libomp-dev); fi
 require_packages "${packages[@]}"
@@ -81,8 +90,9 @@ build() {
     say "Building the benchmark in $folder"
     quietly "$folder/configure.log" cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
         -DCMAKE_CXX_COMPILER="$compiler" -DMYRIAD_BUILD_TESTS=OFF -DMYRIAD_BUILD_EXAMPLES=OFF \
-        -DMYRIAD_BUILD_VALIDATION=OFF -DMYRIAD_BUILD_BENCHMARKS=ON -DMYRIAD_BENCHMARK_HIGH_ORDER=ON -DMYRIAD_ARCH="$1" -DMYRIAD_FP_CONTRACT=off \
-        ${options[@]+"${options[@]}"} || fail "The configuration failed, see above."
+        -DMYRIAD_BUILD_VALIDATION=OFF -DMYRIAD_BUILD_BENCHMARKS=ON -DMYRIAD_BENCHMARK_HIGH_ORDER=ON \
+        -DMYRIAD_ARCH="$1" -DMYRIAD_FP_CONTRACT=off ${options[@]+"${options[@]}"} ||
+        fail "The configuration failed, see above."
     quietly "$folder/build.log" cmake --build "$folder" --target cpu_peers --parallel "$(nproc)" ||
         fail "The build failed, see above."
     program=$folder/benchmarks/cpu_peers/cpu_peers
@@ -128,7 +138,8 @@ if [[ $check == yes ]]; then exit "$worst"; fi
 mv "$output.part" "$output"
 
 grep '^#' "$output" | awk '!seen[$0]++' || true
-awk -F, '!/^#/ { printf "%-36s %-19s %-7s %3s %7s %7s %10s %8s %7s %7s %9s %7s %6s\n", $1, $2, $4 == "instruction_set" ? "set" : $4,
+awk -F, '!/^#/ { printf "%-36s %-19s %-7s %3s %7s %7s %10s %8s %7s %7s %9s %7s %6s\n",
+                 $1, $2, $4 == "instruction_set" ? "set" : $4,
                  $5 == "threads" ? "thr" : $5, $6 == "instances" ? "N" : $6, $7 == "tolerance" ? "tol" : $7,
                  $8 == "milliseconds" ? "ms" : $8, $10 == "nanoseconds_per_step" ? "ns/step" : $10,
                  $11 == "ratio_to_odeint" ? "odeint" : $11, $12 == "ratio_to_cvode" ? "cvode" : $12,

@@ -8,17 +8,19 @@ source scripts/lib.sh
 
 usage() {
     cat <<'END_OF_USAGE'
-Usage: scripts/case_studies.sh [--device NAME] [--small] [--only PROGRAM,...] [--deps DIR] [--output DIR] [--jobs N] [--help]
+Usage: scripts/case_studies.sh [--device NAME] [--small] [--only PROGRAM,...] [--deps DIR] [--output DIR] [--jobs N]
+                               [--help]
 
-Builds the example programs and runs each of them: DIR/PROGRAM.csv, DIR/PROGRAM.png, and what it said in DIR/PROGRAM.log. The
-last lines are a table of their times by the clock. Exit status 1 if one of them fails.
+Builds the example programs and runs each of them: DIR/PROGRAM.csv, DIR/PROGRAM.png, and what it said in
+DIR/PROGRAM.log. The last lines are a table of their times by the clock. Exit status 1 if one of them fails.
 
   --device NAME        where to compute (default: cuda if nvcc and a GPU are there, else cpu); for a GPU it builds in
-                       build/case-studies-cuda and installs nothing, else in build/case-studies-release and installs what is
-                       missing (as root or with sudo)
+                       build/case-studies-cuda and installs nothing, else in build/case-studies-release and installs
+                       what is missing (as root or with sudo)
   --small              sizes that take seconds on two cores; the full ones are for a GPU
   --only PROGRAM,...   only these
-  --deps DIR           for a GPU: folder with the headers of what is not installed, DIR/xsimd and DIR/CLI (default: .deps)
+  --deps DIR           for a GPU: folder with the headers of what is not installed, DIR/xsimd and DIR/CLI
+                       (default: .deps)
   --output DIR         (default: results/case_studies)
   --jobs N             processes at a time (default: number of cores)
 END_OF_USAGE
@@ -55,7 +57,8 @@ while (($#)); do
     esac
     shift
 done
-[[ $device =~ ^(cpu|cuda)(:[0-9]+)?$ ]] || usage_error "There is no device '$device': choose cpu, cpu:THREADS, cuda or cuda:NUMBER"
+[[ $device =~ ^(cpu|cuda)(:[0-9]+)?$ ]] ||
+    usage_error "There is no device '$device': choose cpu, cpu:THREADS, cuda or cuda:NUMBER"
 [[ $jobs =~ ^[1-9][0-9]*$ ]] || usage_error "--jobs needs a positive number"
 ((${#programs[@]})) || usage_error "--only needs programs"
 mkdir -p "$output"
@@ -87,7 +90,8 @@ for program in "${programs[@]}"; do
     say "$program"
     begin=${EPOCHREALTIME//[.,]/}
     result=""
-    "$executable" --device "$device" "${size[@]}" --output "$output/$program.csv" "${plot[@]}" >"$output/$program.log" 2>&1 || {
+    "$executable" --device "$device" "${size[@]}" --output "$output/$program.csv" "${plot[@]}" \
+        >"$output/$program.log" 2>&1 || {
         result="failed with exit status $?"
         status=1
         tail -n 5 "$output/$program.log"

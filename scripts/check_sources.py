@@ -70,8 +70,8 @@ def untested_headers():
         if test.is_file() and named:
             messages.append(f"{name} has a test: take it out of {listing.name}")
         if not test.is_file() and not named:
-            messages.append(f"{name} has no test {test.relative_to(ROOT)}: write one, or name it in {listing.name} with what shows "
-                            "that it is right")
+            messages.append(f"{name} has no test {test.relative_to(ROOT)}: write one, or name it in {listing.name} "
+                            "with what shows that it is right")
     return messages + [f"{listing.name}: there is no header {entry}" for entry in sorted(unused)]
 
 

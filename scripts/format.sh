@@ -14,9 +14,9 @@ usage() {
     cat <<END
 Usage: scripts/format.sh [--fix] [--required] [FILE...] [--help]
 
-Checks all files of C++ and CUDA, or those named, with clang-format $version: the one on the PATH if it is of that version,
-else the one in $folder, where it is installed from PyPI if it is not there yet. Then checks that no line of
-C++, CUDA, CMake, Python and shell has more than 120 columns. Exit status 1 if a file is not as it should be.
+Checks all files of C++ and CUDA, or those named, with clang-format $version: the one on the PATH if it is of that
+version, else the one in $folder, where it is installed from PyPI if it is not there yet. Then checks that
+no line of C++, CUDA, CMake, Python and shell has more than 120 columns. Exit status 1 if a file is not as it should be.
 
 Options:
   --fix       formats the files instead of checking them
@@ -80,7 +80,8 @@ done
 status=0
 if [[ $clang_format && ${#formatted[@]} -gt 0 ]]; then
     if [[ $fix == yes ]]; then
-        for _ in 1 2; do "$clang_format" -i "${formatted[@]}"; done # once is not enough where comments stand in a column
+        # Once is not enough where comments stand in a column.
+        for _ in 1 2; do "$clang_format" -i "${formatted[@]}"; done
     else
         # At most eight processes, a few files each; the first lines of their output are enough.
         wrong=$(printf '%s\0' "${formatted[@]}" | xargs -0 -n 16 -P 8 "$clang_format" --dry-run 2>&1 |

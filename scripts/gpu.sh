@@ -8,7 +8,8 @@ source scripts/lib.sh
 
 usage() {
     cat <<'END'
-Usage: scripts/gpu.sh [--tests] [--sanitize] [--bench] [--profile] [--methods] [--deps DIR] [--output DIR] [--jobs N] [--help]
+Usage: scripts/gpu.sh [--tests] [--sanitize] [--bench] [--profile] [--methods] [--deps DIR] [--output DIR] [--jobs N]
+                      [--help]
 
 Needs nvcc, cmake, ninja, g++, Eigen, Catch2, Boost and a GPU. Nothing is installed and nothing fetched.
 Without --tests, --sanitize, --bench, --profile or --methods: the first three, in this order.
@@ -44,7 +45,10 @@ done
 wants() { [[ " ${parts[*]} " == *" $1 "* ]]; }
 
 has_command nvcc || { say "nvcc is not on the PATH: install the CUDA Toolkit"; exit 2; }
-nvidia-smi --query-gpu=name,driver_version --format=csv,noheader || { say "There is no GPU, or no driver for it"; exit 2; }
+nvidia-smi --query-gpu=name,driver_version --format=csv,noheader || {
+    say "There is no GPU, or no driver for it"
+    exit 2
+}
 mkdir -p "$output"
 failed=()
 
@@ -98,14 +102,17 @@ fi
 
 if wants bench; then
     commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
-    build/cuda/benchmarks/gpu_ensembles/gpu_ensembles --commit "$commit" --output "$output/gpu_ensembles.csv" || failed+=(bench)
+    build/cuda/benchmarks/gpu_ensembles/gpu_ensembles --commit "$commit" \
+        --output "$output/gpu_ensembles.csv" || failed+=(bench)
     build/cuda/benchmarks/end_to_end/end_to_end --commit "$commit" \
         --output "$output/end_to_end.csv" || failed+=(end_to_end)
     if (($(nvidia-smi -L | grep -c '^GPU ') > 1)); then
         build/cuda/benchmarks/several_gpus/several_gpus | tee "$output/several_gpus.csv" || failed+=(several_gpus)
     fi
     cuobjdump --dump-resource-usage build/cuda/benchmarks/gpu_ensembles/gpu_ensembles 2>/dev/null | c++filt |
-        sed -nE '/Function/{s/.*Function (void )?//;s/(, )?\(.*//;h};/REG:/{s/.*(REG:[0-9]+).*(STACK:[0-9]+).*(LOCAL:[0-9]+).*/\1 \2 \3/;G;s/\n/  /p}' |
+        sed -nE '
+            /Function/ { s/.*Function (void )?//; s/(, )?\(.*//; h }
+            /REG:/ { s/.*(REG:[0-9]+).*(STACK:[0-9]+).*(LOCAL:[0-9]+).*/\1 \2 \3/; G; s/\n/  /p }' |
         tee "$output/kernels.txt" || failed+=(kernels)
 fi
 
@@ -119,7 +126,8 @@ profile() {
         smsp__thread_inst_executed_per_inst_executed.ratio) # threads that take part, of 32
     ncu --kernel-name integrate_ensemble --launch-count 1 --kill yes --csv --print-units base \
         --metrics "$(IFS=, && printf '%s' "${metrics[*]}")" \
-        build/cuda/benchmarks/gpu_ensembles/gpu_ensembles --cases "$1" --instances-scale "$2" --repetitions 1 >"$log" 2>&1 || true
+        build/cuda/benchmarks/gpu_ensembles/gpu_ensembles --cases "$1" --instances-scale "$2" --repetitions 1 \
+        >"$log" 2>&1 || true
     python3 - "$log" "$1,$2" <<'END'
 import csv, sys
 rows = [row for row in csv.reader(line for line in open(sys.argv[1]) if line.startswith('"')) if len(row) > 3]

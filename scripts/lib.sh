@@ -19,7 +19,11 @@ usage_error() {
 # A duration in seconds in human-readable form.
 duration() {
     local seconds=$1
-    if ((seconds < 60)); then printf '%d s' "$seconds"; else printf '%d min %02d s' $((seconds / 60)) $((seconds % 60)); fi
+    if ((seconds < 60)); then
+        printf '%d s' "$seconds"
+    else
+        printf '%d min %02d s' $((seconds / 60)) $((seconds % 60))
+    fi
 }
 
 # ----------------------------------------------------------------------------------------------------------------------
@@ -63,6 +67,8 @@ has_package() {
         libomp-dev) has_clang_openmp ;;
         libclang-rt-dev) has_clang_runtime ;;
         python3-matplotlib) plotting_python >/dev/null ;;
+        python3-venv) python3 -c 'import ensurepip, venv' >/dev/null 2>&1 ;;
+        doxygen) has_command doxygen ;;
         *) return 1 ;;
     esac
 }
@@ -84,7 +90,8 @@ apt_get() {
     prefix=$(root_prefix)
     log=$(mktemp)
     # env, since sudo passes no variables on.
-    $prefix env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@" </dev/null >"$log" 2>&1 || status=$?
+    $prefix env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@" </dev/null >"$log" 2>&1 ||
+        status=$?
     if ((status != 0)); then
         cat "$log" >&2
         printf 'apt-get %s failed.\n' "$*" >&2

@@ -41,7 +41,8 @@ if git rev-parse --quiet --verify "refs/tags/$tag" >/dev/null; then
 fi
 if [[ $dry_run == yes ]]; then
     python3 scripts/version.py --check || fail "The files do not agree on the version, see above."
-    python3 scripts/version.py --release >/dev/null || say "Before the release CHANGELOG.md needs a section of $version with a date."
+    python3 scripts/version.py --release >/dev/null ||
+        say "Before the release CHANGELOG.md needs a section of $version with a date."
 else
     python3 scripts/version.py --release || fail "The version is not ready, see above."
     scripts/test.sh --all || fail "Tests failed, see above: there is no release."

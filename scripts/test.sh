@@ -6,8 +6,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
 source scripts/lib.sh
 
-all_steps=(ci cuda strict clang asan tsan)
-usual_steps=(ci cuda tsan)
+all_steps=(ci docs cuda strict clang asan tsan)
+usual_steps=(ci docs cuda tsan)
 
 usage() {
     cat <<'END'
@@ -18,6 +18,8 @@ Its last line is "N passed, N failed"; the exit status is 0 if none failed.
 
 Steps, in this order, of which strict, clang and asan run only if asked for, for the sake of the usual run's time:
   ci      g++, release, warnings are errors: all tests, examples, benchmarks, validation
+  docs    the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx cannot
+          be installed)
   cuda    the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
           both backends runs without a GPU (skipped without nvcc)
   strict  no contraction of a * b + c: scalar lanes and packs agree bit for bit
@@ -47,7 +49,8 @@ while (($#)); do
             IFS=, read -r -a wanted <<<"$2"
             ((${#wanted[@]})) || usage_error "--only needs steps: ${all_steps[*]}"
             for step in "${wanted[@]}"; do
-                [[ " ${all_steps[*]} " == *" $step "* ]] || usage_error "There is no step '$step': choose from ${all_steps[*]}"
+                [[ " ${all_steps[*]} " == *" $step "* ]] ||
+                    usage_error "There is no step '$step': choose from ${all_steps[*]}"
             done
             steps=()
             for step in "${all_steps[@]}"; do
@@ -68,6 +71,8 @@ packages=(g++ cmake ninja-build python3 libeigen3-dev libxsimd-dev catch2)
 if wants ci || wants cuda || wants clang; then
     packages+=(libboost-dev libcli11-dev libsundials-dev python3-matplotlib)
 fi
+if wants ci || wants docs; then packages+=(doxygen); fi
+if wants docs; then packages+=(python3-venv); fi
 if wants clang || wants tsan; then packages+=(clang libomp-dev); fi
 if wants tsan; then packages+=(libclang-rt-dev); fi
 
@@ -89,7 +94,8 @@ build() {
 # kernels, and scripts/case_studies.sh builds the case studies).
 build_kernels() {
     local kernels
-    quietly build/cuda/configure.log cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return
+    quietly build/cuda/configure.log \
+        cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return
     mapfile -t kernels < <(ninja -C build/cuda -t targets all | sed -n 's/: CUDA_COMPILER__.*//p' |
         if [[ $every_kernel == yes ]]; then cat; else
             grep -E '^(tests|examples/(duffing|hooks|own_method|quickstart))/' | grep -vFf build/cuda/single_lanes.txt
@@ -110,9 +116,11 @@ slowest_files() {
 
 # Registers, stack and spills of every kernel that the tests compile.
 kernel_table() {
-    sed -nE 's/^(.*): ([0-9]+) registers, stack ([0-9]+), spill ([0-9]+).*/\2 \3 \4 \1/p' build/cuda/Testing/Temporary/LastTest.log |
+    local log=build/cuda/Testing/Temporary/LastTest.log
+    sed -nE 's/^(.*): ([0-9]+) registers, stack ([0-9]+), spill ([0-9]+).*/\2 \3 \4 \1/p' "$log" |
         sed -E 's/myriad:://g; s/, \(shared_placement\)1>$/>/' | sort -u -k4 |
-        awk 'BEGIN { print "   registers stack spill kernel" } { printf "   %9s %5s %5s", $1, $2, $3; $1 = $2 = $3 = ""; print substr($0, 3) }'
+        awk 'BEGIN { print "   registers stack spill kernel" }
+             { printf "   %9s %5s %5s", $1, $2, $3; $1 = $2 = $3 = ""; print substr($0, 3) }'
 }
 
 # run_tests STEP PRESET [CTEST ARGUMENT...]: sets `result` and adds to the counts.
@@ -139,6 +147,18 @@ run_step() {
     say "$step"
     mkdir -p build build/cuda
     case $step in
+        docs)
+            local status=0
+            quietly build/docs.log scripts/docs.sh || status=$?
+            if ((status == 77)); then
+                say "docs: skipped, $(tail -n 1 build/docs.log)"
+                summary+=("docs: SKIPPED, the site was not built: see build/docs.log")
+                return
+            elif ((status)); then
+                failed=$((failed + 1)) result="failed"
+            else
+                passed=$((passed + 1)) result="$(tail -n 2 build/docs.log | head -n 1)"
+            fi ;;
         cuda)
             if ! has_command nvcc; then
                 say "cuda: skipped, nvcc is not on the PATH"

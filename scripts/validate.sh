@@ -11,17 +11,17 @@ usage() {
     cat <<'END_OF_USAGE'
 Usage: scripts/validate.sh [--device cpu|cuda] [--mutations] [--quick] [--deps DIR] [--output DIR] [--jobs N] [--help]
 
-Compares every method on every problem with SUNDIALS CVODE and closed forms, and writes DIR/report.csv, DIR/report.md and
-DIR/tolerance.png, DIR/work.png (default of DIR: results/validation/DEVICE).
+Compares every method on every problem with SUNDIALS CVODE and closed forms, and writes DIR/report.csv, DIR/report.md
+and DIR/tolerance.png, DIR/work.png (default of DIR: results/validation/DEVICE).
 
-  --device cpu     installs what is missing (as root or with sudo), builds in build/release; compares with the results in
-                   validation/gpu/results.csv too, if they are there (default)
-  --device cuda    builds in build/cuda, installs nothing; compares with the CPU in the same run; DIR/recorded.csv are the
-                   results to keep as validation/gpu/results.csv
+  --device cpu     installs what is missing (as root or with sudo), builds in build/release; compares with the results
+                   in validation/gpu/results.csv too, if they are there (default)
+  --device cuda    builds in build/cuda, installs nothing; compares with the CPU in the same run; DIR/recorded.csv are
+                   the results to keep as validation/gpu/results.csv
   --mutations      then also shows that wrong coefficients and wrong loops are found
   --quick          fewer tolerances and shorter statistics
-  --deps DIR       folder with what is not installed: DIR/xsimd, DIR/CLI, DIR/sundials with include/ and lib/ (default: .deps,
-                   if it is there)
+  --deps DIR       folder with what is not installed: DIR/xsimd, DIR/CLI, DIR/sundials with include/ and lib/
+                   (default: .deps, if it is there)
   --jobs N         processes at a time (default: number of cores)
 END_OF_USAGE
 }
@@ -51,8 +51,8 @@ mkdir -p "$output"
 
 options=(-DMYRIAD_BUILD_TESTS=OFF -DMYRIAD_BUILD_EXAMPLES=OFF -DMYRIAD_BUILD_BENCHMARKS=OFF)
 if [[ $device == cpu ]]; then
-    require_packages g++ cmake ninja-build python3 libeigen3-dev libxsimd-dev libcli11-dev libboost-dev libsundials-dev \
-        python3-matplotlib
+    require_packages g++ cmake ninja-build python3 \
+        libeigen3-dev libxsimd-dev libcli11-dev libboost-dev libsundials-dev python3-matplotlib
     preset=release
 else
     has_command nvcc || fail "nvcc is not on the PATH: install the CUDA Toolkit" 2

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The list of methods of MYRIAD_INSTANTIATE may be long. Its backend is one here that counts.
+// The list of methods of MYRIAD_INSTANTIATE may be long. Its backend here only counts.
 #include <myriad/instantiate.hpp>
 
 #include "tests/catch.hpp"

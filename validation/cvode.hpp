@@ -18,7 +18,7 @@
 
 namespace validation {
 
-/// Which of CVODE's two families of methods: the second for stiff systems.
+/// CVODE's two families of methods; BDF is for stiff systems.
 enum class multistep { adams, bdf };
 
 /// One solution of dy/dt = f(t, y). Throws std::runtime_error if CVODE fails.
@@ -32,7 +32,7 @@ public:
         : n_(n), f_(std::move(f)), relative_(relative_tolerance), absolute_(absolute_tolerance) {
 #if SUNDIALS_VERSION_MAJOR >= 7
         check(SUNContext_Create(SUN_COMM_NULL, &context_), "SUNContext_Create");
-        // it writes every error to stderr, once here and once as the exception
+        // by default they print every error, which the exception reports again
         check(SUNContext_ClearErrHandlers(context_), "SUNContext_ClearErrHandlers");
 #else
         check(SUNContext_Create(nullptr, &context_), "SUNContext_Create");
@@ -60,7 +60,7 @@ public:
         g_ = std::move(g);
     }
 
-    /// Begins, or begins anew after a jump, at (t, y).
+    /// Starts, or restarts after a jump, at (t, y).
     void start(double t, const std::vector<double>& y) {
         t_ = t;
         for (std::size_t c = 0; c < n_; ++c) data()[c] = y.at(c);
@@ -81,12 +81,12 @@ public:
         check(CVodeSetNoInactiveRootWarn(memory_), "CVodeSetNoInactiveRootWarn");
     }
 
-    /// Goes on to t_end, or to the next zero of a watched function. True if it is at one.
+    /// Integrates to t_end, or to the next zero of a watched function. True if it stopped at one.
     bool advance(double t_end) { return advance(t_end, t_end); }
 
-    /// Goes on to t by interpolation, so that no step is shortened for it; but none goes beyond t_end.
+    /// Integrates to t by interpolation, so that no step is shortened for it; no step goes beyond t_end.
     bool advance(double t, double t_end) {
-        // from the side of the present point
+        // approached from the current point
         check(CVodeSetStopTime(memory_, t_end), "CVodeSetStopTime");
         const int flag = CVode(memory_, t, y_, &t_, CV_NORMAL);
         check(flag, "CVode");
@@ -96,13 +96,13 @@ public:
     double t() const { return t_; }
     double y(std::size_t c) const { return NV_DATA_S(y_)[c]; }
     std::vector<double> state() const { return {NV_DATA_S(y_), NV_DATA_S(y_) + n_}; }
-    /// Which of the watched functions are zero, after `advance` returned true.
+    /// The watched functions that are zero, after `advance` returned true.
     std::vector<int> found() const {
         std::vector<int> which(directions_.size());
         check(CVodeGetRootInfo(memory_, which.data()), "CVodeGetRootInfo");
         return which;
     }
-    /// Evaluations of f so far, those for its Jacobian included.
+    /// Evaluations of f so far, including those for its Jacobian.
     long evaluations() const {
         long in_steps = 0, in_jacobians = 0;
         check(CVodeGetNumRhsEvals(memory_, &in_steps), "CVodeGetNumRhsEvals");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Validates a backend against CVODE, closed forms and quadruple precision, and against another backend's results. Exit
-// status 0 if every bound is kept, 1 if one is missed, 2 for bad arguments and errors.
+// status 0 if all bounds are kept, 1 if one is missed, 2 for bad arguments and errors.
 #include <algorithm>
 #include <chrono>
 #include <fstream>

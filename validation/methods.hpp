@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The methods that are validated: one entry in one of these lists adds a method everywhere. Each is instantiated with
-// dense output, which without samples takes the same steps, bit for bit.
+// The validated methods: an entry in one of these lists adds a method everywhere. Each is instantiated with dense
+// output, which without samples takes the same steps, bit for bit.
 #pragma once
 
 #include <myriad/methods.hpp>
 
-#if defined(MYRIAD_VALIDATE_FEW_METHODS)  // for the sake of compile time: one kernel per problem and method
+#if defined(MYRIAD_VALIDATE_FEW_METHODS)  // to save compile time: one kernel per problem and method
 #define VALIDATED_METHODS(DO) DO(runge_kutta_4) DO(cash_karp) DO(tsitouras_5)
 #define VALIDATED_STIFF_METHODS(DO) DO(rodas_5p)
 #else
 /// Non-stiff problems are integrated with each of these.
 #define VALIDATED_METHODS(DO) \
     DO(runge_kutta_4) DO(cash_karp) DO(tsitouras_5) DO(dormand_prince_5) DO(verner_7) DO(dormand_prince_8)
-/// Stiff problems with each of these.
+/// Stiff problems are integrated with each of these.
 #define VALIDATED_STIFF_METHODS(DO) DO(rosenbrock_23) DO(rodas_5p)
 #endif
-/// Some problems in single precision too.
+/// Some problems also in single precision.
 #define VALIDATED_FLOAT_METHODS(DO) DO(tsitouras_5)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CVODE's solution of any model, hooks included, from the model's own functions; and how sensitive that solution is.
+// CVODE's solution of any model, hooks included, by the model's own functions; and the sensitivity of that solution.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace validation {
 
-/// One instance of a model, followed by CVODE: root finding for events, and a new start after each action that changes
-/// the state. Copies go on from where they are.
+/// One instance of a model, followed by CVODE: root finding for events, and a restart after each action that changes
+/// the state. A copy continues from the same point.
 template <class Model>
 class trajectory {
 public:
@@ -57,7 +57,7 @@ public:
         return values;
     }
 
-    /// Follows the solution over the given times, and calls `visit(k)` at each while it lasts. Returns evaluations of
+    /// Follows the solution over the given times, and calls `visit(k)` at each until it ends. Returns evaluations of
     /// rhs.
     template <class Visit>
     long follow(const std::vector<double>& times, double tolerance, Visit&& visit) {
@@ -151,8 +151,8 @@ solution solve_by_cvode(const problem& p, const instance& i, const accuracy& how
     return s;
 }
 
-/// Disturbs every component at several times by a small part of max(1, |y|), follows both solutions to the end, and
-/// divides. The disturbance is far above CVODE's errors and far below what is not linear any more.
+/// Perturbs every component at several times by a small part of max(1, |y|), follows both solutions to the end, and
+/// divides. The perturbation is far above CVODE's errors and small enough to be linear.
 template <class Model>
 conditioning conditions_of(const problem& p, const instance& i) {
     constexpr int moments = 6;
@@ -198,7 +198,7 @@ conditioning conditions_of(const problem& p, const instance& i) {
         for (std::size_t a = 0; a < accessory.size(); ++a)
             c.accessory[a] = std::max(c.accessory[a], accessory[a] / small);
     }
-    c.path = std::max({c.path, c.end, 1.0});  // an error is at least itself when it is made
+    c.path = std::max({c.path, c.end, 1.0});  // an error counts at least as itself
     return c;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A problem by Boost.odeint's controlled Cash-Karp stepper, from the same right-hand side.
+// A problem solved by Boost.odeint's controlled Cash-Karp stepper, with the same right-hand side.
 #pragma once
 
 #include <array>

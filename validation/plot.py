@@ -3,7 +3,7 @@
 """Draws the pictures of a validation run: error against tolerance, and against work.
 
 Usage: plot.py report.csv FOLDER
-Writes tolerance.png and work.png (where work was measured). Needs numpy and matplotlib.
+Writes tolerance.png and, if work was measured, work.png. Needs numpy and matplotlib.
 """
 import os
 import pathlib
@@ -23,6 +23,9 @@ STYLES = {"CVODE": ("#000000", "x", ":"), "odeint cash_karp": (figures.RED, "+",
 NAMES = {"lorenz": "Lorenz", "duffing": "Duffing", "van_der_pol": "van der Pol", "keller_miksis": "Keller–Miksis",
          "relief_valve": "relief valve", "heat": "heat conduction", "kepler": "Kepler", "timed_circle": "timed circle",
          "robertson": "Robertson", "oregonator": "Oregonator"}
+# Problems without a panel, each with the reason.
+LEFT_OUT = {"bouncing_ball": "No panel for the bouncing ball:\nits flights are parabolas, which\n"
+                             "every method integrates exactly,\nso that its errors do not\nfollow the tolerance."}
 LABELS = {"cash_karp": "Cash–Karp 5(4)", "tsitouras_5": "Tsitouras 5(4)", "runge_kutta_4": "Runge–Kutta 4, fixed steps",
           "odeint cash_karp": "Boost.odeint, Cash–Karp", "CVODE": "CVODE, Adams",
           "dormand_prince_5": "Dormand–Prince 5(4)",
@@ -59,8 +62,11 @@ def draw_tolerances(pyplot, rows, path):
                 drawn[method] = axis.loglog(*zip(*points), **style(method))[0]
         axis.loglog([1e-11, 1e-5], [1e-11, 1e-5], "k--", linewidth=0.6)
         axis.set_title(NAMES[problem], fontsize=9)
+    reasons = [reason for problem, reason in LEFT_OUT.items() if any(r["problem"] == problem for r in rows)]
     for axis in axes.flat[len(problems):]:
-        axis.set_visible(False)
+        axis.set_axis_off()
+        if reasons:
+            axis.text(0.0, 0.95, reasons.pop(0), transform=axis.transAxes, fontsize=8, verticalalignment="top")
     for axis in axes.flat[max(0, len(problems) - columns):len(problems)]:
         axis.tick_params(labelbottom=True)
     axes.flat[0].set_xticks([1e-11, 1e-9, 1e-7, 1e-5])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a validation problem is, and what is known and computed about it, without the types of its model: so that every
+// A validation problem with the known and computed results about it, without the types of its model: so that every
 // measure is written once, for all problems, methods and precisions.
 #pragma once
 
@@ -20,13 +20,13 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double eps_double = std::numeric_limits<double>::epsilon();
 inline constexpr double eps_float = std::numeric_limits<float>::epsilon();
 
-/// Where an instance starts, with which parameters, and how long it is followed.
+/// The start of an instance, its parameters, and the end of its integration.
 struct instance {
     std::vector<double> state, parameter;
     double t_end = 0;  // from 0
 };
 
-/// The solution of one instance: by CVODE, in closed form, or in quadruple precision. NaN: not known.
+/// The solution of one instance: by CVODE, in closed form, or in quadruple precision. NaN: unknown.
 struct solution {
     std::vector<double> end, accessory;
     std::vector<int> count;                    // integer accessories
@@ -35,14 +35,14 @@ struct solution {
     double seconds = 0;
 };
 
-/// By how much an error of one step may have grown: the largest |d output / d y_j(t)| max(1, |y_j(t)|), summed over j
-/// and over all t looked at.
+/// The factor by which an error of one step may have grown: the largest |d output / d y_j(t)| max(1, |y_j(t)|), summed
+/// over j and over all t examined.
 struct conditioning {
     double end = 0, path = 0, invariant = 0;
     std::vector<double> accessory;
 };
 
-/// Results of one run of an ensemble, in double whatever it was computed in.
+/// Results of one run of an ensemble, in double whatever the precision of the run.
 struct outcome {
     std::vector<solution> instances;
     std::vector<myriad::status> status;
@@ -67,47 +67,47 @@ struct method_entry {
     std::function<outcome(const problem&, const myriad::options&, const myriad::device&)> run;
 
     bool adaptive() const { return embedded_order > 0; }
-    /// Methods of high order reach rounding within few halvings of a step, and take steps in which a function may cross
-    /// twice.
+    /// Methods of high order reach rounding within a few halvings of a step, and take steps in which a function may
+    /// cross twice.
     bool takes_long_steps() const { return order >= 7; }
-    /// Samples of the Hermite polynomial know nothing of the tolerance. Those of order seven of dormand_prince_8 are
-    /// worse than its steps where stability limits them: as of other implementations of DOP853, up to a hundred times
-    /// the tolerance.
+    /// The error of the Hermite polynomial's samples is independent of the tolerance. The interpolant of order seven of
+    /// dormand_prince_8 is less accurate than its steps where stability limits them: as in other DOP853 codes, up to a
+    /// hundred times the tolerance.
     bool samples_keep_tolerance() const { return interpolant_order > 0 && interpolant_order < 7; }
 };
 
-/// What a CVODE run is asked for.
+/// Parameters of a CVODE run.
 struct accuracy {
     double tolerance = 1e-13;
     std::int64_t samples = 0;  // evenly over the domain, ends included
 };
 
 struct problem {
-    std::string name, what;  // what: the equations, and what is spread over the instances
+    std::string name, what;  // what: the equations, and how the instances differ
     std::vector<instance> instances;
     std::vector<double> shared;
     std::vector<myriad::event_options> events = {};
-    std::vector<int> event_times = {};  // accessories that are times of events; the others are values
-    int events_per_instance = 0;        // at most, in the bounds
+    std::vector<int> event_times = {};  // accessories that are times of events; others are values
+    int events_per_instance = 0;        // at most, for the bounds
     std::vector<int> sampled = {};      // states for dense output; empty: none
-    std::int64_t samples = 212;         // over a prime number of intervals, so that they fall inside of steps
-    /// Fixed steps for the measured orders: the longest, from which it is halved. 0: not measured (not smooth, or the
-    /// step is bound by stability).
+    std::int64_t samples = 212;         // over a prime number of intervals, so that they fall inside steps
+    /// Longest of the fixed steps for the measured orders, then halved. 0: not measured (not smooth, or stability
+    /// bounds the step).
     double longest_step = 0;
     /// Fixed steps of methods without error estimate, in the other measures.
     double fixed_step = 0.01;
-    /// Whether the error follows the tolerance: no, where stability bounds the step.
+    /// Whether the error follows the tolerance; not where stability bounds the step.
     bool error_follows_tolerance = true;
-    double error_of_a_step = 1;  // accepted, at most, in tolerances
+    double error_of_a_step = 1;  // bound on an accepted step's error, in tolerances
     bool stiff = false;
 
     std::vector<method_entry> methods;
     std::function<solution(const instance&, const accuracy&)> by_cvode;
-    /// Closed form or quadruple precision, or nothing; what is NaN in it is not known.
+    /// Closed form or quadruple precision, or nothing; unknown components are NaN.
     std::function<solution(const instance&, std::int64_t samples)> exactly = {};
-    /// What `exactly` leaves out of the equations; above 0, CVODE stays the reference and is compared with it.
+    /// The error of `exactly` for these equations; above 0, CVODE remains the reference and is compared with it.
     double closed_form_error = 0;
-    /// The state of the first instance after one step of that length, by method, from published coefficients.
+    /// The first instance's state after one step of that length, by method, from published coefficients.
     std::map<std::string, std::vector<double>> one_step = {};
     double one_step_length = 0;
     std::function<conditioning(const instance&)> conditions;
@@ -116,7 +116,7 @@ struct problem {
     /// Constants of motion, or nothing.
     std::function<std::vector<double>(const instance&, const std::vector<double>&)> invariants = {};
 
-    /// The problem's instances so many times over, to measure time with.
+    /// The problem's instances repeated, for timing.
     problem repeated(int times) const {
         problem p = *this;
         for (int k = 1; k < times; ++k) p.instances.insert(p.instances.end(), instances.begin(), instances.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rows of the report: what was measured, within which bounds it must be and why; and the verdict over all of them.
+// The rows of the report: each measured value with its bounds and their reason; and the verdict over all rows.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ struct bounds {
     bool holds(double value) const { return !judged() || (value >= low && value <= high); }
 };
 
-/// What a row is about: `setting` is a tolerance or a step, 0 where there is none.
+/// The subject of a row: `setting` is a tolerance or a step, 0 if neither.
 struct subject {
     std::string problem, method, precision, device;
     double setting = 0;
@@ -43,7 +43,7 @@ public:
 
     explicit report(std::ostream& log) : log_(log) {}
 
-    /// Bounds that are missed are told to the log at once.
+    /// Logs missed bounds at once.
     void add(const subject& about, const std::string& measure, double value, bounds allowed = bounds::none(),
              const std::string& reason = "") {
         rows_.push_back({about, measure, value, allowed, reason});

@@ -3,7 +3,7 @@
 """Writes the report of a validation run as Markdown, from the rows that the program `validate` has written.
 
 Usage: report.py report.csv MARKDOWN [--images FOLDER] [--command TEXT]
-FOLDER: of the pictures, relative to the Markdown file. Needs nothing but Python's standard library.
+FOLDER contains the pictures, relative to the Markdown file. Needs only Python's standard library.
 """
 import argparse
 import csv
@@ -38,7 +38,9 @@ def short(value):
 
 
 def table(head, lines):
-    return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)] + ["| " + " | ".join(line) + " |" for line in lines] + [""]
+    def row(cells):
+        return "| " + " | ".join(cells) + " |"
+    return [row(head), "|" + "---|" * len(head), *map(row, lines), ""]
 
 
 def worst_ratios(rows):
@@ -55,16 +57,27 @@ def worst_ratios(rows):
     return found
 
 
+def bounds_of(row):
+    """The bounds of a statistic as text; empty if it has no verdict."""
+    if not row["verdict"]:
+        return ""
+    if row["low"] > float("-inf"):
+        return f'{row["low"]:.5g} to {row["high"]:.5g}'
+    return f'at most {short(row["high"])}'
+
+
 def write(comments, rows, images, command):
     judged = [row for row in rows if row["verdict"]]
     missed = [row for row in judged if row["verdict"] != "within"]
     out = ["# Validation report", "", "<!-- Written by validation/report.py from report.csv; do not edit. -->", ""]
-    out += [f"**{len(judged)} bounds were checked; " + (f"{len(missed)} were missed.**" if missed else "all were kept.**"), ""]
+    outcome = f"{len(missed)} were missed" if missed else "all were kept"
+    out += [f"**{len(judged)} bounds were checked; {outcome}.**", ""]
     out += [f"* {line}" for line in comments if not line.startswith("problem ")]
     if command:
         out += [f"* command: `{command}`"]
-    out += ["", "Every method runs on ensembles of 64 or 65 instances of each problem. What is bounded and why is stated per "
-            "row in `report.csv`; how the references are made, below.", ""]
+    out += ["",
+            "Every method integrates ensembles of 64 or 65 instances of each problem. `report.csv` states the bounds "
+            "and their reasons row by row; the references are described below.", ""]
     out += ["## The problems", ""] + [f"* {line[8:]}." for line in comments if line.startswith("problem ")] + [""]
     if missed:
         out += ["## Missed", ""] + table(
@@ -72,15 +85,17 @@ def write(comments, rows, images, command):
             [[r["problem"], f'{r["method"]} {r["precision"]}', short(r["setting"]), r["measure"], short(r["value"]),
               f'{short(r["low"])} to {short(r["high"])}'] for r in missed])
 
-    out += ["## The references, and how far they can be trusted", "",
-            "CVODE (Adams; BDF for stiff problems) at a tolerance of 3e-14 per step, with the model's own right-hand side, root "
-            "finding and a new start after each impact. Its error is estimated, from above, by the difference to a run at ten times the tolerance, and measured "
-            "where a closed form or a value in quadruple precision is known; where one is, it takes CVODE's place. *Growth* is the "
-            "largest factor by which an error of one step grows until the end, found by disturbing the solution at six times.", ""]
+    out += ["## The references and their errors", "",
+            "CVODE (Adams; BDF for stiff problems) at a tolerance of 3e-14 per step, with the model's own right-hand "
+            "side, root finding and a restart after each impact. An upper estimate of its error is the difference "
+            "from a run at ten times the tolerance. Where a closed form or a value in quadruple precision is known, "
+            "the error is measured, and that value is the reference instead. *Growth* is the largest factor by which "
+            "an error of one step grows until the end, found by perturbing the solution at six times.", ""]
     problems = list(dict.fromkeys(r["problem"] for r in rows if r["method"] == "CVODE" and r["setting"] == 3e-14))
 
     def of_reference(problem, measure):
-        values = [r["value"] for r in rows if r["problem"] == problem and r["method"] == "CVODE" and r["measure"] == measure]
+        values = [r["value"] for r in rows
+                  if r["problem"] == problem and r["method"] == "CVODE" and r["measure"] == measure]
         return short(values[0]) if values else ""
     out += table(["problem", "growth, largest (median)", "CVODE against itself",
                   "CVODE against closed form or quadruple precision",
@@ -89,27 +104,31 @@ def write(comments, rows, images, command):
                    of_reference(p, "reference against itself at ten times the tolerance"),
                    of_reference(p, "reference against closed form or quadruple precision"),
                    of_reference(p, "event times against closed form")] for p in problems])
-    out += ["Where the second column is not far below a method's error, CVODE is the limit: its error is part of the bound there.", ""]
+    out += ["Where CVODE's difference from itself is not far below a method's error, CVODE is the limit: its error is "
+            "part of the bound there.", ""]
 
     out += ["## Errors against their bounds", "",
-            "The bound: growth x (accepted steps x (tolerance + rounding) + events x event tolerance) + error of the reference, per "
-            "instance. It holds for any way in which errors of steps may add up, so that it is not tight; the orders below are. "
-            "Shown is the largest ratio of error to bound over all instances and tolerances from 1e-5 to 1e-11 (single precision: "
-            "1e-3 to 1e-5); below 1 is kept. For fixed steps: twice the difference to steps half as long, and rounding. Samples of methods with the Hermite polynomial have no bound from the tolerance.", ""]
+            "The bound, per instance, is growth x (accepted steps x (tolerance + rounding) + events x event tolerance) "
+            "+ error of the reference. It holds however the errors of steps add up, so it is not tight; the orders "
+            "below are. The table shows the largest ratio of error to bound over all instances and tolerances from "
+            "1e-5 to 1e-11 (single precision: 1e-3 to 1e-5); a ratio below 1 keeps the bound. For fixed steps, the "
+            "bound is twice the difference from steps half as long, plus rounding. Samples from the Hermite "
+            "polynomial have no bound that follows from the tolerance.", ""]
     ratios = worst_ratios(rows)
     out += table(["problem", "method"] + list(SHOWN.values()),
                  [[key[0], key[1] + ("" if key[2] == "double" else " (float)")] +
                   [short(found[m]) if m in found else "" for m in SHOWN] for key, found in ratios.items()])
     counts = [r for r in rows if r["measure"] == "instances with other event counts"]
-    out += [f"Numbers of events: compared in {len(counts)} runs of an ensemble; instances with another number than the reference: "
-            f"{int(sum(r['value'] for r in counts))}.", ""]
+    out += [f"Numbers of events were compared in {len(counts)} runs of an ensemble; the number differs from the "
+            f"reference's in {int(sum(r['value'] for r in counts))} instances.", ""]
     if images:
         out += [f"![Error against tolerance]({images}/tolerance.png)", "",
-                "Median error of the end states against the tolerance; the dashed line is error = tolerance.", ""]
+                "Median error of the end states against the tolerance; the dashed line is error = tolerance. "
+                "The bouncing ball has no panel: every method integrates its parabolas exactly.", ""]
 
     out += ["## Orders: the tight checks", "",
-            "With fixed steps, for methods with step-size control too; medians over the instances. *One step* is compared with the "
-            "same step from published coefficients in 60 digits.", ""]
+            "With fixed steps, also for methods with step-size control; medians over the instances. *One step* is "
+            "compared with the same step computed from published coefficients in 60 digits.", ""]
     lines = []
     for key in dict.fromkeys((r["problem"], r["method"]) for r in rows if r["measure"] in ORDERS):
         cells = []
@@ -128,25 +147,28 @@ def write(comments, rows, images, command):
 
     chaos = [r for r in rows if "chaotic" in r["problem"] or "28" in r["problem"]]
     if chaos:
-        out += ["## Chaotic solutions", "", "Only statistics can be compared: four standard errors of the mean over 64 instances are "
-                "allowed.", ""]
+        out += ["## Chaotic solutions", "",
+                "Only statistics can be compared; their bounds are four standard errors of the mean over 64 instances.",
+                ""]
         out += table(["problem", "method", "statistic", "value", "bounds"],
-                     [[r["problem"], r["method"], r["measure"], f'{r["value"]:.5g}',
-                       f'{r["low"]:.5g} to {r["high"]:.5g}' if r["verdict"] and r["low"] > float("-inf") else
-                       (f'at most {short(r["high"])}' if r["verdict"] else "")] for r in chaos if r["measure"] != "failed instances"])
+                     [[r["problem"], r["method"], r["measure"], f'{r["value"]:.5g}', bounds_of(r)]
+                      for r in chaos if r["measure"] != "failed instances"])
 
     rounding = [r for r in rows if r["problem"].startswith("orbit")]
     if rounding:
-        out += ["## Rounding over long times", "", "A circular orbit from another time, where the resolution of t is coarse, against the "
-                "same from t = 0; and the mean change of energy of 1024 orbits in single precision, beside that in double precision.", ""]
+        out += ["## Rounding over long times", "",
+                "A circular orbit that starts at a late time, where the resolution of t is coarse, against the same "
+                "orbit from t = 0; and the mean change of energy of 1024 orbits in single precision, next to that in "
+                "double precision.", ""]
         out += table(["problem", "method", "t_begin or tolerance", "value", "at most"],
                      [[r["problem"], r["method"], f'{r["setting"]:g}', short(r["value"]),
                        short(r["high"])] for r in rounding])
 
     against = [r for r in rows if r["measure"].startswith("against")]
     if against:
-        out += ["## Between backends", "", "Adaptive runs on two backends differ by no more than twice the bound of the error; fixed "
-                "steps by roundings.", ""]
+        out += ["## Between backends", "",
+                "Adaptive runs on two backends may differ by at most twice the bound on the error, fixed steps by "
+                "rounding errors.", ""]
         groups = {}
         for r in against:
             groups.setdefault((r["problem"], r["method"], r["precision"]), []).append(r)
@@ -160,16 +182,19 @@ def write(comments, rows, images, command):
                        v in groups.items()])
     if images and any(r["measure"].startswith("work: time") for r in rows):
         out += ["## Error against work", "", f"![Error against evaluations and against time]({images}/work.png)", "",
-                "One core. Times are relative to CVODE's at a tolerance of 1e-6 in the same run: an ensemble of 1024 instances for Myriad, "
-                "64 one after another for CVODE (Adams with Newton's iteration, a new object for each instance, which its time includes) and "
-                "for Boost.odeint's controlled Cash-Karp stepper. All evaluate the same model's function; evaluations of CVODE include "
-                "those for its Jacobians. The repository's benchmarks, not this, compare speeds.", ""]
-    out += ["## Does it see what is wrong?", "", "`scripts/validate.sh --mutations` changes every coefficient a, b, c and e of every "
-            "explicit method by a ten-thousandth of itself, one at a time, and measures it with the functions behind the table of orders: each "
-            "must be reported (`validation/mutation/coefficients.cpp`; a coefficient of a with its node c left as it is). It then "
-            "compiles the kernels from headers with one line changed (another direction of events, an action lost, a slope kept after "
-            "a jump, a rejected step accepted, and more: `validation/mutation/logic.py`), and each must fail this validation. CI does "
-            "the first part for half of the methods, and four of the second.", ""]
+                "One core. Times are relative to CVODE's at a tolerance of 1e-6 in the same run: an ensemble of 1024 "
+                "instances for Myriad, 64 in succession for CVODE (Adams with Newton's iteration, a new object for "
+                "each instance, which its time includes) and for Boost.odeint's controlled Cash-Karp stepper. All "
+                "evaluate the same model function; CVODE's evaluations include those for its Jacobians. Speeds are "
+                "compared by the repository's benchmarks, not here.", ""]
+    out += ["## Does it detect errors?", "",
+            "`scripts/validate.sh --mutations` changes every coefficient a, b, c and e of every explicit method by a "
+            "ten-thousandth of itself, one at a time, and measures it with the functions behind the table of orders: "
+            "each must be reported (`validation/mutation/coefficients.cpp`; a coefficient of a is changed without "
+            "its node c). It then compiles the kernels from headers with one line changed (the other direction of "
+            "events, a lost action, a slope kept after a jump, a rejected step accepted, and more: "
+            "`validation/mutation/logic.py`), and each must fail this validation. CI runs the first part for half of "
+            "the methods, and four changes of the second.", ""]
     return "\n".join(out)
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs a problem with Myriad: fills an ensemble of its model, integrates, and takes everything out again.
+// Runs a problem with Myriad: fills an ensemble of its model, integrates, and extracts the results.
 #pragma once
 
 #include <algorithm>
@@ -95,7 +95,7 @@ void add_float_methods(problem& p) {
 template <class Model>
 void complete(problem& p) {
     p.methods = p.stiff ? stiff_methods_for<Model>() : methods_for<Model>();
-    // By value of the problem's data only: the copy must not hold on to these functions.
+    // Captures a copy of the problem's data only, which must not contain these functions.
     p.by_cvode = nullptr;
     const problem data = p;
     p.by_cvode = [data](const instance& i, const accuracy& how) { return solve_by_cvode<Model>(data, i, how); };

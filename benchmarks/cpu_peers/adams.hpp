@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// SUNDIALS CVODE as its user writes it for many small systems that are not stiff: Adams' methods with fixed-point
-// iteration, one object for each thread, made ready for the next instance by CVodeReInit. Not the validation's class,
-// whose function objects and dense matrix would be timed too. For SUNDIALS 6 and 7.
+// SUNDIALS CVODE as a user writes it for many small non-stiff systems: Adams methods with fixed-point iteration, one
+// object per thread, reinitialised for each instance by CVodeReInit. Not the validation's class, whose function objects
+// and dense matrix would be timed too. For SUNDIALS 6 and 7.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace cpu_peers {
 
-/// The solver of systems of n equations. `System` has `int slopes(double t, const double* y, double* dy) const`, which
-/// returns 0, or 1 where there are no slopes, and, for `roots` > 0 functions whose falls through zero stop it,
+/// The solver for systems of n equations. `System` has `int slopes(double t, const double* y, double* dy) const`, which
+/// returns 0, or 1 if there are no slopes, and, for `roots` > 0 functions that stop it where they fall through zero,
 /// `void values(const double* y, double* g) const`.
 template <int n, class System, int roots = 0>
 class adams {
@@ -63,12 +63,12 @@ public:
     double* y() { return NV_DATA_S(y_); }
     double t() const { return t_; }
 
-    /// Begins, or begins anew after a jump, at t and the state in `y()`.
+    /// Starts, or restarts after a jump, at t and the state in `y()`.
     void start(double t) {
         t_ = t;
         check(CVodeReInit(memory_, t, y_));
     }
-    /// Goes on to t_end, to a root, or, with CV_ONE_STEP, by a step. Returns CVODE's flag, not negative.
+    /// Integrates to t_end, to a root or, with CV_ONE_STEP, by one step. Returns CVODE's flag, which is not negative.
     int advance(double t_end, int task) {
         check(CVodeSetStopTime(memory_, t_end));
         const int flag = CVode(memory_, t_end, y_, &t_, task);
@@ -81,7 +81,7 @@ public:
         check(CVodeGetNumSteps(memory_, &count));
         return count;
     }
-    /// Which roots were found, after `advance` returned CV_ROOT_RETURN.
+    /// The roots found, after `advance` returned CV_ROOT_RETURN.
     void found(int* which) const { check(CVodeGetRootInfo(memory_, which)); }
 
 private:

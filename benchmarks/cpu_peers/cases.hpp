@@ -10,7 +10,7 @@
 
 namespace cpu_peers {
 
-/// One way to integrate a case. `group` is what the option --implementations names.
+/// One way to integrate a case. `group` is the name for the option --implementations.
 struct implementation {
     std::string name, group;
     implementation_function run;
@@ -18,24 +18,24 @@ struct implementation {
     double instructions_per_step = 0;
 };
 
-/// What is compared at equal achieved error: who costs least for a given median error.
+/// A comparison at equal achieved error: the lowest cost for a given median error.
 struct contest {
-    int phases = 0;  ///< horizon: few, since chaos lets errors grow until they say nothing of the method
-    /// The first is the one that others are compared with. One whose function is null was not built.
+    int phases = 0;  ///< horizon: short, since chaos lets errors grow until they tell nothing of the method
+    /// Others are compared with the first. One whose function is null was not built.
     std::vector<implementation> contenders = {};
 };
 
 struct benchmark_case {
     std::string name;
-    std::string work;        ///< what is integrated, for the header
-    std::string difference;  ///< what max_difference compares
+    std::string work;        ///< description of the work, for the header
+    std::string difference;  ///< quantities compared by max_difference
     double allowed_difference;
-    double tolerance, event_tolerance;  ///< of the table of times
+    double tolerance, event_tolerance;  ///< for the table of times
     int components, parameters;
     std::int64_t instances;
     int phases;
     int compared_phases;  ///< horizon of max_difference, short enough that no chaos amplifies rounding
-    /// Fills in the parameters and the start of `instances` instances, evenly spread over the sweep's range.
+    /// Sets the parameters and the start of `instances` instances, evenly spread over the sweep's range.
     void (*fill)(std::int64_t instances, double* parameters, double* states);
     implementation_function reference;
     std::vector<implementation> implementations;

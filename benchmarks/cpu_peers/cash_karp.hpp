@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Cash-Karp step and the controller of the MPGOS package as a careful programmer writes them for one instance: what
-// the implementation `loop` shares between cases. The algorithm is Myriad's, its kernel body is not used.
+// The Cash-Karp step and the controller of the MPGOS package as a careful programmer writes them for one instance: the
+// part of the implementation `loop` that the cases share. The algorithm is Myriad's; its kernel body is not used.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ struct trial {
     double y[n];
 };
 
-// std::fmax is a call where NaN must be told apart, which is of no use here.
+// std::fmax is a call if NaN must be handled, which is not needed here.
 CPU_PEERS_INLINE double larger(double a, double b) { return a > b ? a : b; }
 CPU_PEERS_INLINE double smaller(double a, double b) { return a < b ? a : b; }
 
@@ -37,7 +37,8 @@ CPU_PEERS_INLINE void each(Use&& use) {
 template <int n, class F>
 CPU_PEERS_INLINE double cash_karp_step(F&& f, double t, double h, const double (&y)[n], double tolerance,
                                        trial<n>& step) {
-    // h * weight is known before the slopes are, which leaves one operation between a slope and the next argument.
+    // h * weight is computed before the slopes are known, so that one operation separates a slope from the next
+    // argument.
     auto& k = step.k;
     double z[n];
     each<n>([&](int c) { z[c] = y[c] + h * (1.0 / 5) * k[0][c]; });
@@ -66,12 +67,12 @@ CPU_PEERS_INLINE double cash_karp_step(F&& f, double t, double h, const double (
                              h * (277.0 / 7084) * k[5][c];
         const double size = larger(std::fabs(y[c]), std::fabs(step.y[c]));
         const double ratio = std::fabs(error) / larger(tolerance, tolerance * size);
-        worst = ratio <= worst ? worst : ratio;  // NaN enters, and is not accepted
+        worst = ratio <= worst ? worst : ratio;  // NaN enters, so that the step is not accepted
     });
     return worst;
 }
 
-/// The step size after a step of size h. In single precision, which is enough here and twice as fast.
+/// The step size after a step of size h, in single precision, which suffices and is twice as fast.
 CPU_PEERS_INLINE double next_step(double h, double worst, bool accepted) {
     const float power = std::exp2((accepted ? -0.2f : -0.25f) * std::log2(static_cast<float>(worst)));
     const double factor = worst < 1e30 ? smaller(larger(0.9 * static_cast<double>(power), 0.1), 5.0) : 0.1;
@@ -79,7 +80,7 @@ CPU_PEERS_INLINE double next_step(double h, double worst, bool accepted) {
 }
 
 /// Integrates from t = 0 to t_end with the first step 1e-2; calls `after_step(y)` for every accepted state. Returns
-/// false where the step became too small.
+/// false if the step became too small.
 template <int n, class F, class AfterStep>
 CPU_PEERS_INLINE bool integrate_phase(F&& f, double (&y)[n], double t_end, double tolerance, std::int64_t& accepted,
                                       AfterStep&& after_step) {

@@ -21,12 +21,12 @@ std::vector<contest_result> hold_contest(const benchmark_case& what, const measu
         results.push_back({i.name, {}});
     }
     for (const double tolerance : {1e-5, 1e-7, 1e-9, 1e-11, 1e-13}) {
-        // Events as sharp as steps, down to what the rounding of velocities around ten leaves.
+        // The event tolerance follows that of steps, down to the limit set by the rounding of velocities around ten.
         const double event_tolerance = what.event_tolerance > 0 ? std::max(tolerance, 1e-13) : 0;
         data.set_tolerances(tolerance, event_tolerance);
         std::vector<std::vector<double>> cpu(built.size());
         for (std::size_t j = 0; j < built.size(); ++j) {
-            const auto difference = reference.to(built[j].run, tolerance, event_tolerance);  // warms up, too
+            const auto difference = reference.to(built[j].run, tolerance, event_tolerance);  // also warms up
             results[j].points.push_back({.tolerance = tolerance,
                                          .wall_milliseconds = HUGE_VAL,
                                          .median_difference = difference.median,

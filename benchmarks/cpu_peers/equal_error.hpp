@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compares methods at equal achieved error: times each at several tolerances and reads off the time for a given error.
+// Compares methods at equal achieved error: times each at several tolerances and derives the time for a given error.
 #pragma once
 
 #include <functional>
@@ -24,11 +24,11 @@ struct contest_result {
     std::vector<contest_point> points;  ///< from the coarsest tolerance to the finest
 };
 
-/// Times all contenders in turns, tolerance by tolerance; those that were not built are left out.
+/// Times all contenders in turn, tolerance by tolerance; those that were not built are skipped.
 std::vector<contest_result> hold_contest(const benchmark_case& what, const measure_options& options);
 
-/// The time for a median error no larger than that: of the coarsest tolerance if its error is small enough, else
-/// between two measured points, straight in the logarithms; 0 if it was not reached.
+/// The time for a median error no larger than `error`: at the coarsest tolerance if its error is small enough, else
+/// interpolated log-log between two measured points; 0 if it was not reached.
 double milliseconds_at(const contest_result& of, double error);
 
 }  // namespace cpu_peers

@@ -13,11 +13,11 @@ namespace {
 
 using batch = myriad::pack<double, 1>;
 
-// Two pipes of four cycles of latency are full with eight; three times four fit sixteen registers with the factors.
+// Eight chains fill two pipes of latency four; three times four fit sixteen registers with the factors.
 constexpr int chains = 12;
 constexpr std::int64_t rounds = 2'000'000;
 
-/// `rounds` fused multiply-adds in each chain; returns something that depends on all of them.
+/// `rounds` fused multiply-adds in each chain; returns a value that depends on all of them.
 double issue(double start) {
     batch sum[chains];
     const batch factor(0.5), term(1.0);
@@ -39,7 +39,7 @@ double fma_rate(int threads) {
 #pragma omp parallel num_threads(threads) reduction(+ : all)
         all += issue(threads);
     });
-    asm volatile("" : : "x"(all));  // a result, though nothing here reads it
+    asm volatile("" : : "x"(all));  // makes the result count as used
     return static_cast<double>(rounds) * chains * threads / o.cpu_seconds;
 }
 

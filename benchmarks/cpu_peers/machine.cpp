@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Finds out what the machine and the build are, for the header of the output.
+// Describes the machine and the build for the header of the output.
 #include "machine.hpp"
 
 #include <cstdio>
@@ -27,7 +27,7 @@ std::string commit() {
     return pclose(pipe) == 0 && !text.empty() ? text : "unknown";
 }
 
-// $<$<CONFIG:Release>:-O3> leaves a gap where the configuration is another.
+// $<$<CONFIG:Release>:-O3> leaves a gap in other configurations.
 std::string tidy(const std::string& text) {
     std::string result;
     for (const char c : text)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the header of the output says of the machine and the build: figures without it cannot be compared with anything.
+// The machine and the build in the header of the output, without which figures cannot be compared.
 #pragma once
 
 #include <string>

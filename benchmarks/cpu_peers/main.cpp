@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Command line and output of the benchmark: one CSV row per case and implementation, below a header that says what was
-// measured, how and where. Exit status 0; 1 if a promise is broken, instances failed or results differ; 2 for an error.
+// Command line and output of the benchmark: one CSV row per case and implementation, below a header with the work, the
+// method and the machine. Exit status 0; 1 if a promise is broken, instances failed or results differ; 2 for an error.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -40,7 +40,7 @@ std::string number(double value, const char* format) {
     std::snprintf(text, sizeof text, format, value);
     return text;
 }
-/// A figure that there may not be: 0 is none.
+/// A figure that may be missing: 0 is none.
 std::string optional(double value, const char* format) { return value > 0 ? number(value, format) : ""; }
 
 void write_header(const settings& chosen) {
@@ -72,7 +72,7 @@ void write_header(const settings& chosen) {
         "ratio_to_odeint,ratio_to_cvode,max_difference,median_difference,accepted_steps,idle_lanes,fma_peak_share");
 }
 
-/// Returns whether all instances of all implementations were integrated, and to the same results.
+/// Returns whether all implementations integrated all instances, with the same results.
 bool run_case(const benchmark_case& what, const measure_options& options) {
     bool all_well = true;
     double fma_per_nanosecond = 0;
@@ -168,35 +168,34 @@ bool check(double slack) {
 int main(int argc, char** argv) {
     settings chosen;
     chosen.threads = {static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u))};
-    CLI::App app("Myriad's OpenMP backend beside Boost.odeint, CVODE and hand-written code");
+    CLI::App app("Myriad's OpenMP backend compared with Boost.odeint, CVODE and hand-written code");
     app.add_option("--cases", chosen.cases, "Cases to run, all by default")
         ->delimiter(',')
         ->check(CLI::IsMember({"lorenz_rk4", "duffing_cash_karp", "keller_miksis_cash_karp", "relief_valve"}));
     app.add_option("--implementations", chosen.measure.implementations, "Implementations to run, all by default")
         ->delimiter(',')
         ->check(CLI::IsMember({"odeint", "loop", "packs", "myriad"}));
-    app.add_option("--instances", chosen.instances,
-                   "Numbers of instances, of which each gets its rows, instead of the case's")
+    app.add_option("--instances", chosen.instances, "Numbers of instances, with rows for each, instead of the case's")
         ->delimiter(',')
         ->check(CLI::Range(1, 100'000'000));
-    app.add_option("--instances-scale", chosen.measure.instances_scale, "Factor to the case's number of instances")
+    app.add_option("--instances-scale", chosen.measure.instances_scale, "Factor on the case's number of instances")
         ->check(CLI::Range(1e-3, 1e4))
         ->capture_default_str();
-    auto* const repetitions = app.add_option("--repetitions", chosen.measure.repetitions, "Times that each is timed")
+    auto* const repetitions = app.add_option("--repetitions", chosen.measure.repetitions, "How often each is timed")
                                   ->check(CLI::Range(1, 1000))
                                   ->capture_default_str();
-    app.add_option("--threads", chosen.threads, "Numbers of OpenMP threads, of which each gets its rows")
+    app.add_option("--threads", chosen.threads, "Numbers of OpenMP threads, with rows for each")
         ->delimiter(',')
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
-    app.add_flag("--quick", chosen.quick, "A quarter of the instances and, if not said otherwise, three repetitions");
+    app.add_flag("--quick", chosen.quick, "A quarter of the instances and, by default, three repetitions");
     app.add_flag(
         "--equal-error", chosen.equal_error,
         "Instead of the table, CVODE's, odeint's and Myriad's methods at several tolerances, and their times at "
         "equal achieved error");
     app.add_flag("--check", chosen.check,
-                 "Only check what is promised of Myriad's speed, on one thread; exit status 1 if broken");
-    app.add_option("--slack", chosen.slack, "Part by which --check lets promises be missed, for busy machines")
+                 "Only check the promises about Myriad's speed, on one thread; exit status 1 if broken");
+    app.add_option("--slack", chosen.slack, "Fraction by which --check lets promises be missed, for busy machines")
         ->check(CLI::Range(0.0, 0.5))
         ->capture_default_str();
     try {

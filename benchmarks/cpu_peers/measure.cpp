@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Times the implementations of a case in turns, so that a disturbance meets all of them, and compares them within each
-// turn. CPU time, since on shared cores the clock on the wall shows above all how busy the others are.
+// Times the implementations of a case in turns, so that a disturbance affects all of them, and compares them within
+// each turn. In CPU time, as on shared cores wall time mostly shows how busy the others are.
 #include "measure.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace cpu_peers {
 namespace {
 
-/// Of every repetition, for one implementation.
+/// For every repetition of one implementation.
 struct times {
     std::vector<double> cpu, wall;  // milliseconds
 };
@@ -54,7 +54,7 @@ std::vector<measurement> measure(const benchmark_case& what, const measure_optio
                 taken[j].wall.push_back(1e3 * o.wall_seconds);
                 continue;
             }
-            // The first one warms up, and says what was done.
+            // The first repetition warms up and gives the counts.
             measurement& m = results[j];
             m.implementation = chosen[j].name;
             m.instances = data.work().instances;

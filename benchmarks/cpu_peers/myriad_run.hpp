@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The implementation `myriad` of every case: fills an ensemble, times the one call a user makes, takes the results out.
+// The implementation `myriad` of every case: fills an ensemble, times a user's one call, extracts the results.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace cpu_peers {
 
-/// `run`, or null if the kernel it needs was not compiled.
+/// `run`, or null if its kernel was not compiled.
 template <class Method, class Model>
 implementation_function if_compiled(implementation_function run) {
     return myriad::host::choose_cpu_kernel<Model, Method, double>().run != nullptr ? run : nullptr;
 }
 
-/// Integrates the sweep with the given options; `prepare(ensemble)` sets what is not a state or parameter.
+/// Integrates the sweep with the given options; `prepare(ensemble)` sets everything except states and parameters.
 template <class Method, class Model, class Prepare>
 outcome run_myriad(const sweep& work, const myriad::options& options, Prepare&& prepare) {
     using column = Eigen::Map<Eigen::ArrayXd>;

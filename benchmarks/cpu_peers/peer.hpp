@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the peers go through a sweep: an OpenMP loop over instances, one at a time, handed out dynamically because their
-// costs differ.
+// The peers' loop over a sweep: an OpenMP loop over single instances, scheduled dynamically because their costs differ.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +9,7 @@
 
 namespace cpu_peers {
 
-/// Integrates every instance by `integrate(y, parameter_of, accepted)`, of which every thread makes one by `make()`: y
+/// Integrates every instance by `integrate(y, parameter_of, accepted)`, which every thread creates once by `make()`: y
 /// is the state, changed in place; `parameter_of(c)` is the instance's parameter c; `accepted` counts its steps. It
 /// returns the instance's ending.
 template <int n, class Make>
@@ -28,7 +27,7 @@ outcome run_by_threads(const sweep& work, Make&& make) {
                 ending how = ending::failed;
                 try {
                     how = integrate(y, parameter_of, accepted);
-                } catch (const std::exception&) {  // odeint's, of a step that cannot be made small enough
+                } catch (const std::exception&) {  // odeint throws if a step cannot be made small enough
                 }
                 for (int c = 0; c < n; ++c) work.states[c * work.instances + i] = y[c];
                 work.accepted[i] = accepted;
@@ -38,7 +37,7 @@ outcome run_by_threads(const sweep& work, Make&& make) {
     });
 }
 
-/// The same where threads need nothing of their own.
+/// The same for threads without data of their own.
 template <int n, class Integrate>
 outcome run_instances(const sweep& work, Integrate&& integrate) {
     return run_by_threads<n>(work, [&]() -> Integrate& { return integrate; });

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws what scripts/bench.sh measured: ratios with their goals, time against the number of instances, scaling over threads.
+"""Draws the measurements of scripts/bench.sh: ratios with their goals, time against the number of instances, scaling
+over threads.
 
 Usage: plot.py CSV PNG
 
@@ -16,14 +17,15 @@ COLUMNS = {"case", "implementation", "instruction_set", "threads", "instances", 
            "nanoseconds_per_step", "ratio_to_odeint", "ratio_to_cvode", "median_difference"}
 TITLES = {"lorenz_rk4": "Lorenz", "duffing_cash_karp": "Duffing", "keller_miksis_cash_karp": "Keller-Miksis",
           "relief_valve": "relief valve"}
-# Of Myriad's time against odeint's, with g++; and against CVODE's at equal error.
+# For Myriad's time against odeint's, with g++; and against CVODE's at equal error.
 GOALS = {("lorenz_rk4", "avx512"): 9, ("lorenz_rk4", "avx2"): 5, "duffing_cash_karp": 5, "keller_miksis_cash_karp": 5,
          "relief_valve": 4}
 GOAL_AT_EQUAL_ERROR = 15
+GOAL = "goal that the project set itself (g++)"
 
 
 def read(path):
-    """Rows of the table; figures as numbers, None where there are none."""
+    """Rows of the table; figures as numbers, None if missing."""
     rows, _ = figures.read_rows(path, "scripts/bench.sh", COLUMNS)
     for row in rows:
         for key in COLUMNS - {"case", "implementation", "instruction_set"}:
@@ -37,20 +39,20 @@ def sets_of(rows):
 
 
 def draw_bars(axis, labels, heights_by_set, goals):
-    """Groups of bars, one bar for each instruction set, and a line over each where the goal is."""
+    """Groups of bars, one bar for each instruction set, with a line at its goal."""
     width = 0.8 / len(heights_by_set)
     for s, (name, heights) in enumerate(heights_by_set.items()):
         places = [i + (s - (len(heights_by_set) - 1) / 2) * width for i in range(len(labels))]
         axis.bar(places, heights, 0.9 * width, color=figures.COLOURS[s], label=name)
         for i, place in enumerate(places):
             axis.plot([place - width / 2, place + width / 2], [goals(i, name)] * 2, color="black", linewidth=1.2,
-                      label="goal" if s == i == 0 else None)
+                      label=GOAL if s == i == 0 else None)
     axis.set_xticks(range(len(labels)), labels)
-    axis.legend(frameon=False, fontsize=8)
+    axis.legend(frameon=False, fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))  # bars fill the panel
 
 
-def ratios(rows, axis):
-    """Myriad's speed beside odeint's in the table of times."""
+def ratios(rows, axis, _pyplot):
+    """Myriad's speed relative to odeint's, from the table of times."""
     cases = [case for case in TITLES if any(row["case"] == case for row in rows)]
     heights = {}
     for name in sets_of(rows):
@@ -64,9 +66,10 @@ def ratios(rows, axis):
     axis.set_ylabel("times as fast as Boost.odeint")
 
 
-def equal_error(rows, axis):
-    """The best method's speed beside CVODE's at the finest error that both reached."""
-    cases = [case for case in TITLES if any(row["case"] == case + ":equal_error" and row["ratio_to_cvode"] for row in rows)]
+def equal_error(rows, axis, _pyplot):
+    """The best method's speed relative to CVODE's, at the finest error that both reached."""
+    cases = [case for case in TITLES
+             if any(row["case"] == case + ":equal_error" and row["ratio_to_cvode"] for row in rows)]
     heights = {}
     for name in sets_of(rows):
         heights[name] = []
@@ -80,8 +83,8 @@ def equal_error(rows, axis):
     axis.set_ylabel("times as fast as CVODE at equal error")
 
 
-def growth(rows, axis):
-    """Time of a core per step and instance against the number of instances."""
+def growth(rows, axis, pyplot):
+    """Core time per step and instance against the number of instances."""
     for s, name in enumerate(sets_of(rows)):
         for implementation, line in (("odeint", "--"), ("myriad", "-")):
             points = sorted({row["instances"]: row["nanoseconds_per_step"] for row in rows
@@ -91,11 +94,12 @@ def growth(rows, axis):
                         label=f"{implementation}, {name}")
     axis.set_xlabel("instances")
     axis.set_ylabel("Lorenz: ns of a core per step and instance")
+    figures.label_ticks(pyplot, axis.yaxis)
     axis.legend(frameon=False, fontsize=8)
 
 
-def scaling(rows, axis):
-    """Wall time with one thread over that with more; one instruction set is enough."""
+def scaling(rows, axis, _pyplot):
+    """Wall time with one thread over that with several; one instruction set is enough."""
     name = sets_of(rows)[0]
     most = 1
     for s, case in enumerate(TITLES):
@@ -116,7 +120,7 @@ def scaling(rows, axis):
 
 
 def has_scaling(rows):
-    """Whether some case was run with one thread and with more, on as many instances."""
+    """Whether a case was run with one thread and with several, on equally many instances."""
     seen = {}
     for row in rows:
         if row["implementation"] == "myriad":
@@ -135,7 +139,7 @@ def draw(source, target):
         panels.append(scaling)
     figure, axes = pyplot.subplots(1, len(panels), figsize=(4.6 * len(panels), 4), layout="constrained")
     for panel, axis in zip(panels, axes):
-        panel(rows, axis)
+        panel(rows, axis, pyplot)
     figures.save(figure, target, 160)
 
 

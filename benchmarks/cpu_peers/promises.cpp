@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Checks the promises so that a busy machine does not break them: ratios of CPU times of runs one right after the other
-// on one thread, the median of many, and another try before a promise counts as broken. Code that became slower stays
-// so.
+// Checks the promises such that a busy machine does not break them: ratios of CPU times of consecutive runs on one
+// thread, the median of many, and another try before a promise counts as broken. Code that has become slower fails
+// every try.
 #include "promises.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What every implementation of a case is given and what it returns: plain pointers, because host and implementations
-// are compiled for different instruction sets and must share no inline code.
+// The input and output of every implementation of a case: plain pointers, because host and implementations are compiled
+// for different instruction sets and must share no inline code.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace cpu_peers {
 
-/// How an instance ended. The peers tell apart only what the cases need.
+/// How an instance ended; only as detailed as the cases need.
 enum class ending : unsigned char { completed, accumulated, failed };
 inline constexpr int ending_count = 3;
 
@@ -19,19 +19,19 @@ struct sweep {
     int phases;
     int threads;
     double tolerance;        ///< of steps, relative and absolute; 0: fixed steps
-    double event_tolerance;  ///< of event functions; 0: there are none
+    double event_tolerance;  ///< of event functions; 0: no events
     const double* parameters;
     double* states;          ///< at the start on entry, at the end on return
     std::int64_t* accepted;  ///< accepted steps of each instance
     ending* endings;
 };
 
-/// What a run took: the integration alone, without the setting up of arrays.
+/// The times of a run: the integration alone, without the set-up of arrays.
 struct outcome {
     double cpu_seconds = 0;  ///< of all threads
     double wall_seconds = 0;
-    int lanes = 1;          ///< instances side by side in one thread
-    double idle_share = 0;  ///< share of lane steps in which the lane had nothing to do
+    int lanes = 1;          ///< SIMD lanes: instances per thread at a time
+    double idle_share = 0;  ///< fraction of lane steps in which the lane was idle
 };
 
 using implementation_function = outcome (*)(const sweep&);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The arrays of one sweep over a case, and how far the results of a run are from the reference's.
+// The arrays of one sweep over a case, and the differences of a run's results from the reference's.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ public:
     sweep_data(const benchmark_case& what, std::int64_t instances, int phases, int threads);
 
     outcome run(implementation_function how);
-    /// For the runs to come.
+    /// For subsequent runs.
     void set_tolerances(double tolerance, double event_tolerance);
     const sweep& work() const { return sweep_; }
     std::int64_t accepted_steps() const;
@@ -27,17 +27,17 @@ private:
     sweep sweep_;
 };
 
-/// Results of instances spread over a sweep's range, to compare those of other runs with.
+/// Results of instances spread over a sweep's range, with which other runs are compared.
 class reference_results {
 public:
     reference_results(const benchmark_case& what, int phases, int threads);
 
-    /// Over instances that completed here and there, of each the worst component's |difference| / max(1, |value|).
+    /// Over instances that completed in both runs: the worst component's |difference| / max(1, |value|).
     struct difference {
         double largest = 0, median = 0;
         std::int64_t compared = 0;
     };
-    /// Of what `how` makes of the same instances at the given tolerances.
+    /// The difference for `how` on the same instances at the given tolerances.
     difference to(implementation_function how, double tolerance, double event_tolerance);
 
 private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Time and memory of dense output against the same integration without it, as comma-separated ratios: medians of the
-// processor time of interleaved runs on one thread. Usage: dense_output [--check]; --check only fails (exit status 1)
-// if dense output that is off, or not compiled, takes memory.
+// Time and memory of dense output relative to the same integration without it, as comma-separated ratios: medians of
+// the processor time of interleaved runs on one thread. Usage: dense_output [--check]; --check only fails (exit status
+// 1) if dense output that is off, or not compiled, takes memory.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace {
 
-std::int64_t allocated = 0;  // bytes of arrays asked for since it was last set
+std::int64_t allocated = 0;  // bytes of arrays allocated since the last reset
 
 constexpr std::int64_t instances = 16384;
 constexpr double t_end = 20;
@@ -39,13 +39,13 @@ cost run(const myriad::sample_options& samples) {
     sweep.state(forced_oscillator::x) = -0.5;
     sweep.state(forced_oscillator::v) = -0.1;
     sweep.time_domain(0, t_end);
-    const std::clock_t begin = std::clock();  // not the time by the clock, in which others' work would show
+    const std::clock_t begin = std::clock();  // not wall time, which other processes would affect
     myriad::solve<Method>(myriad::device::cpu(1), sweep,
                           {.relative_tolerance = 1e-8, .absolute_tolerance = 1e-8, .step = 0.02, .samples = samples});
     return {static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, allocated};
 }
 
-/// One line for each way of sampling. True if what samples nothing takes no memory.
+/// One line for each kind of sampling. True if kinds without samples take no memory.
 template <class Method>
 bool compare(const char* name, bool check) {
     using dense = myriad::dense<Method>;
@@ -78,7 +78,7 @@ bool compare(const char* name, bool check) {
     for (int r = 0; r <= repetitions; ++r) {
         for (std::size_t i = 0; i < runs.size(); ++i) {
             const cost c = runs[i]();
-            if (r > 0) seconds[i].push_back(c.seconds);  // the first warms up
+            if (r > 0) seconds[i].push_back(c.seconds);  // the first run warms up
             bytes[i] = c.bytes;
         }
     }
@@ -92,7 +92,7 @@ bool compare(const char* name, bool check) {
 
 }  // namespace
 
-// The arrays of ensembles and samples are allocated by these, and nothing else.
+// Only the arrays of ensembles and samples are allocated by these operators.
 void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
     allocated += static_cast<std::int64_t>(size);
     const auto a = static_cast<std::size_t>(alignment);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The model of which dense output is timed: the Duffing oscillator.
+// The model for timing dense output: the Duffing oscillator.
 #pragma once
 
 #include <myriad/model.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What 1000 Runge-Kutta steps of Lorenz' equations cost on a GPU beside the kernel: set-up of a solver object, `solve`
-// with its transfers, and small ensembles. One CSV row per measurement, below a header that says what, how and where.
-// Exit status 0; 1 if `solve` and the solver object disagree in a bit; 2 for an error.
+// The cost of 1000 Runge-Kutta steps of Lorenz' equations on a GPU besides the kernel: set-up of a solver object,
+// `solve` with its transfers, and small ensembles. One CSV row per measurement, below a header with the work, the
+// method and the machine. Exit status 0; 1 if `solve` and the solver object disagree in a bit; 2 for an error.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -48,7 +48,7 @@ double milliseconds(Call&& call) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// One row; what was not measured is left empty.
+/// One row; values not measured are left empty.
 struct row {
     std::string name;
     myriad::counting counting;
@@ -56,7 +56,7 @@ struct row {
     double set = NAN, upload = NAN, kernel = NAN, download = NAN, wall = NAN, ratio = NAN;
 };
 
-/// Standard output and, if one is asked for, a file.
+/// Standard output and, if requested, a file.
 class table {
 public:
     explicit table(const std::string& path) {
@@ -83,7 +83,7 @@ private:
     std::ofstream file_;
 };
 
-/// Sets the values of an ensemble: through its maps, or by a loop of several threads, as a user may.
+/// Sets the values of an ensemble: through its maps, or by a multi-threaded loop, as a user may.
 void set_by_maps(myriad::ensemble<lorenz>& e) {
     e.restart();
     e.parameter(lorenz::rho) = Eigen::ArrayXd::LinSpaced(e.size(), 0, largest_rho);
@@ -131,7 +131,7 @@ private:
         return std::max<std::int64_t>(1, std::llround(static_cast<double>(size) * chosen_.instances_scale));
     }
 
-    /// Calls `once()`, which returns a row, after a warm-up, and gives the medians.
+    /// Calls `once()`, which returns a row, after a warm-up, and returns the medians.
     template <class Once>
     row medians(const std::string& name, std::int64_t size, Once&& once) const {
         once();
@@ -146,7 +146,7 @@ private:
         return result;
     }
 
-    /// Every stage of a solver object alone.
+    /// Every stage of a solver object, timed separately.
     static row stages(solver& s, setter set) {
         row r{};
         r.set = milliseconds([&] { set(s.instances()); });
@@ -288,7 +288,7 @@ int run(const settings& chosen) {
 
 int main(int argc, char** argv) {
     settings chosen;
-    CLI::App app("What an ensemble costs on a GPU beside its kernel");
+    CLI::App app("The cost of an ensemble on a GPU besides its kernel");
     app.add_option("--device", chosen.device, "Where to compute: auto, cpu, cpu:THREADS, cuda or cuda:NUMBER")
         ->capture_default_str();
     app.add_option("--instances-scale", chosen.instances_scale, "Factor to the large numbers of instances")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The hand-written kernel: 45 double-precision instructions per step, everything in registers, coalesced transfers, and
-// no duties but the method's. It is what the library's kernel is measured against.
+// nothing beside the method. The library's kernel is measured against it.
 #include <chrono>
 #include <fstream>
 
@@ -17,7 +17,7 @@ struct vector3 {
     double x, y, z;
 };
 
-/// The method's and the model's constants, which instructions read from the constant bank.
+/// The constants of method and model, which instructions read from the constant bank.
 struct constants {
     double h, half, third, sixth, b;
 };
@@ -34,7 +34,7 @@ __device__ __forceinline__ vector3 advance(const vector3& s, double h, const vec
 
 }  // namespace
 
-// Small blocks, so that the last ones to run leave few multiprocessors idle.
+// Small blocks, so that the last ones leave few multiprocessors idle.
 __global__ void __launch_bounds__(256) lorenz_steps(std::int64_t size, int steps, const __grid_constant__ constants c,
                                                     const double* __restrict__ parameter, double* __restrict__ state) {
     const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
@@ -43,7 +43,7 @@ __global__ void __launch_bounds__(256) lorenz_steps(std::int64_t size, int steps
     vector3 s{state[i], state[size + i], state[2 * size + i]};
 #pragma unroll 4
     for (int n = 0; n < steps; ++n) {
-        // The sum grows as slopes come in, so that only the last one's share waits for the last stage.
+        // The sum is accumulated as slopes arrive, so that only the last term waits for the last stage.
         vector3 k = slope(s, rho, c.b);
         vector3 sum = advance(s, c.sixth, k);
         k = slope(advance(s, c.half, k), rho, c.b);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lorenz' equations by a CUDA kernel written for them alone, as host code sees it, and what CUDA says of the machine.
+// Lorenz' equations by a CUDA kernel of their own, as host code sees it, and CUDA's description of the machine.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace gpu_ensembles {
 
-/// `size` instances on a GPU, with pinned host memory. Throws `myriad::error` where CUDA fails.
+/// `size` instances on a GPU, with pinned host memory. Throws `myriad::error` if CUDA fails.
 class lorenz_by_hand {
 public:
     struct times {
@@ -20,14 +20,14 @@ public:
         std::int64_t local_bytes;
     };
 
-    /// `b` is the third equation's constant.
+    /// `b` is the constant in the third equation.
     lorenz_by_hand(int device, std::int64_t size, double b);
     ~lorenz_by_hand();
 
     /// Host memory: component c of instance i is at `state()[c * size + i]`.
     double* state();
     double* parameter();
-    /// Tries block sizes on the uploaded data and keeps the fastest, which also warms up.
+    /// Tries block sizes on the uploaded data and keeps the fastest; this also warms up.
     void choose_block(int steps, double h);
     /// Uploads, takes the classic Runge-Kutta steps and downloads the state.
     times run(int steps, double h);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The case duffing_events: the sweep of examples/duffing, with two events in every period, hooks and accessories, for
-// many instances, for fewer, and for so few that a GPU waits for each step.
+// The case duffing_events: the sweep of examples/duffing, with two events per period, hooks and accessories, for many
+// instances, for fewer, and for so few that a GPU waits for each step.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -37,8 +37,8 @@ problem<duffing> phases(std::int64_t count) {
             &start};
 }
 
-/// What hooks saw at the events of the fourth period (the first has none): the differences from the CPU with tolerances
-/// of 1e-13 and, of events, 1e-12.
+/// Accessories that hooks set at the events of the fourth period (the first has none): the differences from the CPU
+/// with tolerances of 1e-13 and, for events, 1e-12.
 std::vector<double> errors_at_events(const problem<duffing>& what, std::int64_t size, const myriad::device& device) {
     const auto four_periods = [&](const myriad::device& where, double tolerance, double event_tolerance) {
         auto few = spread_instances(what, size);

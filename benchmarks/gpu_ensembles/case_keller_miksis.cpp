@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The case keller_miksis: a bubble in water at one frequency, whose instances differ 50-fold in cost.
+// The case keller_miksis: a bubble in water at one frequency; its instances' costs differ 50-fold.
 #include "cases.hpp"
 #include "reference.hpp"
 #include "sweeps.hpp"

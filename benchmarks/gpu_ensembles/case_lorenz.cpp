@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The cases of Lorenz' equations: classic Runge-Kutta steps beside the hand-written kernel, and Tsitouras' method.
+// The cases of Lorenz' equations: classic Runge-Kutta steps against the hand-written kernel, and Tsitouras' method.
 #include <cmath>
 #include <cstdio>
 
@@ -47,14 +47,14 @@ double worst_component(const exact_state& found, const exact_state& exact) {
     }
     return worst;
 }
-/// The length of the difference over that of the value: single components cross zero.
+/// The norm of the difference over that of the value, as single components cross zero.
 double relative_length(const exact_state& found, const exact_state& exact) {
     const auto length = [](const exact_state& s) { return std::hypot(s[0], s[1], s[2]); };
     const exact_state difference{found[0] - exact[0], found[1] - exact[1], found[2] - exact[2]};
     return static_cast<double>(length(difference) / length(exact));
 }
 
-/// The error of every compared instance whose results `state(component, instance)` gives, against `count` reference
+/// The error of every compared instance, with results from `state(component, instance)`, against `count` reference
 /// steps.
 template <class State, class Error>
 std::vector<double> errors_of(std::int64_t size, State&& state, const exact_state& start, std::int64_t count,
@@ -133,7 +133,7 @@ measurement measure_method(const char* name, double tolerance, std::int64_t size
     return m;
 }
 
-/// Other ways to errors below those of Tsitouras' method at 1e-3, 1e-6 and 1e-8.
+/// Alternatives with errors below those of Tsitouras' method at 1e-3, 1e-6 and 1e-8.
 std::vector<measurement> measure_methods(std::int64_t size, const measure_options& how) {
     return {measure_method<myriad::tsitouras_5>("tsitouras_5 1.35e-3 first step 0.04", 1.35e-3, size, how, 0.04),
             measure_method<myriad::verner_7>("verner_7 6e-6", 6e-6, size, how),
@@ -160,7 +160,7 @@ std::vector<benchmark_case> lorenz_cases() {
     for (const double tolerance : {1e-3, 1e-6, 1e-8}) {
         char text[16];
         std::snprintf(text, sizeof text, "%.0e", tolerance);
-        // 1e-03, as the C library writes it, is 1e-3 here
+        // the C library's 1e-03 becomes 1e-3
         std::string exponent(text);
         exponent.erase(3, 1);
         all.push_back({.name = "lorenz_tsit5_" + exponent,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The cases keller_miksis_methods and relief_valve_methods: the same work by methods of higher order, and how far each
-// is from the truth, so that times can be compared at equal error.
+// The cases keller_miksis_methods and relief_valve_methods: the same work by methods of higher order, with their
+// errors, so that times can be compared at equal error.
 #include <utility>
 
 #include "cases.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The cases of the benchmark: what each integrates, at which sizes, and how its results are judged.
+// The cases of the benchmark: their equations, sizes, and checks of results.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ namespace gpu_ensembles {
 
 struct benchmark_case {
     std::string name;
-    std::string work;   ///< what is integrated, for the header
-    std::string error;  ///< what max_error is
+    std::string work;   ///< description of the work, for the header
+    std::string error;  ///< meaning of max_error
     double allowed_error;
     std::vector<std::int64_t> sizes;
     /// Measures all implementations at one size.
@@ -30,7 +30,7 @@ benchmark_case duffing_events_case();
 std::vector<benchmark_case> method_cases();
 benchmark_case schedule_case();
 
-/// A value that the package of the paper gives, for the same work.
+/// A value published with the paper's package, for the same work.
 struct check_value {
     std::string name;
     double value, expected, allowed;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Command line and output of the benchmark: one CSV row per case, size and implementation, below a header that says
-// what was measured, how and where. Exit status 0; 1 if results or check values are wrong; 2 for an error.
+// Command line and output of the benchmark: one CSV row per case, size and implementation, below a header with the
+// work, the method and the machine. Exit status 0; 1 if results or check values are wrong; 2 for an error.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -30,7 +30,7 @@ struct settings {
     bool check = false;
 };
 
-/// Standard output and, if one is asked for, a file.
+/// Standard output and, if requested, a file.
 class table {
 public:
     explicit table(const std::string& path) {

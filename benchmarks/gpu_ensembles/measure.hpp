@@ -23,7 +23,7 @@ struct measure_options {
 struct measurement {
     std::string implementation;
     std::int64_t instances = 0;
-    double kernel_ms = 0, end_to_end_ms = 0;  ///< medians, work not counted
+    double kernel_ms = 0, end_to_end_ms = 0;  ///< medians, without counting work
     double counting_kernel_ms = 0;            ///< of the run that counted the work
     std::int64_t accepted_steps = 0, located_steps = 0, rhs_evaluations = 0, failed = 0;
     double max_error = 0, median_error = 0;
@@ -37,7 +37,7 @@ inline double median(std::vector<double> values) {
     return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// What is integrated: `fill` sets what kernels do not write, `start` what they do.
+/// A problem: `fill` sets the values that kernels do not write, `start` those that they do.
 template <class Model>
 struct problem {
     myriad::options options;
@@ -45,7 +45,7 @@ struct problem {
     void (*start)(myriad::ensemble<Model>&);
 };
 
-/// Milliseconds of the kernel alone, and of upload, kernel and download together, of one run from the start.
+/// Milliseconds of the kernel alone, and of upload, kernel and download together, for one run from the start.
 template <class Model, class Method>
 std::pair<double, double> run_once(myriad::solver<Model, Method>& solver, const problem<Model>& what) {
     auto& instances = solver.instances();
@@ -60,7 +60,7 @@ std::pair<double, double> run_once(myriad::solver<Model, Method>& solver, const 
     return {1e3 * solver.report().seconds, all.count()};
 }
 
-/// Runs until a GPU that has rested has its clock rate again.
+/// Runs until a GPU that was idle is back at its clock rate.
 template <class Once>
 void warm_up(Once&& once) {
     const auto begin = std::chrono::steady_clock::now();
@@ -68,8 +68,7 @@ void warm_up(Once&& once) {
     while (std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(200));
 }
 
-/// Times the problem, then counts its work in a run of its own. `inspect(instances)` sees the results of the timed
-/// runs.
+/// Times the problem, then counts its work in a separate run. `inspect(instances)` sees the results of the timed runs.
 template <class Method, class Model, class Inspect>
 measurement measure_myriad(const problem<Model>& what, std::int64_t size, const measure_options& how,
                            Inspect&& inspect) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiles the bubble's kernels of high order, for GPUs alone.
+// Compiles the bubble's kernels of high order, only for GPUs.
 #include <myriad/instantiate.hpp>
 
 #include "models.hpp"

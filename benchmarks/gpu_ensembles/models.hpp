@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The models that the benchmark integrates: Lorenz, the Keller-Miksis bubble and the pressure relief valve.
+// The models of the benchmark: Lorenz, the Keller-Miksis bubble and the pressure relief valve.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -12,19 +12,19 @@ namespace gpu_ensembles {
 
 using problems::eight_thirds, problems::lorenz_with;
 
-/// What the paper's tutorial writes for 8/3.
+/// The value for 8/3 in the paper's tutorial.
 struct rounded_down {
     static constexpr double b = 2.666;
 };
 using lorenz = problems::fused_lorenz;
 using tutorial_lorenz = lorenz_with<rounded_down>;
 
-/// The bubble from functions without a branch; keeps each phase's largest radius.
+/// The bubble with branch-free functions; stores each phase's largest radius.
 struct keller_miksis : problems::keller_miksis_with_peak {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& u, const auto& p) {
         using myriad::powr, myriad::reciprocal, myriad::sincospi;
-        // None of these has a branch, so that they overlap; the angles wait for nothing but the time.
+        // None of these has a branch, so that they overlap; the angles depend only on the time.
         const auto first = sincospi(R(2.0 * t)), second = sincospi(R(2.0 * p[C11] * t + p[C12]));
         const R inverse = reciprocal(u[y]);
         const R power = powr(u[y], -p[C10]);
@@ -39,7 +39,7 @@ struct keller_miksis : problems::keller_miksis_with_peak {
 
 using dormand_prince_8_pi = myriad::controlled<myriad::dormand_prince_8, myriad::pi_control>;
 
-/// The valve of the benchmark on CPUs.
+/// The valve of the CPU benchmark.
 using relief_valve = cpu_peers::relief_valve_model;
 
 }  // namespace gpu_ensembles

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws what gpu_ensembles measured: time of the kernels against the number of instances, with the limits and with what
-other packages take.
+"""Draws the measurements of gpu_ensembles: kernel time against the number of instances, with the limits and the times
+of other packages.
 
 Usage: plot.py CSV PNG
 
@@ -42,7 +42,7 @@ def draw(axis, times, label, colour, line="-"):
 
 
 def lorenz_fixed(times, axis):
-    """Classic Runge-Kutta steps beside the hand-written kernel."""
+    """Classic Runge-Kutta steps compared with the hand-written kernel."""
     case = times["lorenz_rk4"]
     sizes = sorted(case["myriad"])
     draw(axis, case["myriad"], "Myriad", figures.COLOURS[0])
@@ -53,12 +53,12 @@ def lorenz_fixed(times, axis):
     axis.set_title("Lorenz, 1000 Runge-Kutta steps", fontsize=10)
 
 
-# What reaches a smaller error than Tsitouras' method at a tolerance, in less time.
+# Methods with a smaller error than Tsitouras' at a tolerance, in less time.
 AS_EXACT = {"1e-3": "tsitouras_5 1.35e-3 first step 0.04", "1e-6": "verner_7 6e-6", "1e-8": "verner_7 5e-8"}
 
 
 def lorenz_adaptive(times, axis):
-    """Tsitouras' method at three tolerances, and what reaches its errors sooner."""
+    """Tsitouras' method at three tolerances, and methods that reach its errors faster."""
     for i, (tolerance, other) in enumerate(AS_EXACT.items()):
         draw(axis, times[f"lorenz_tsit5_{tolerance}"]["myriad"], f"Myriad, {tolerance}", figures.COLOURS[i])
         draw(axis, times["lorenz_methods"][other], "first step 0.04" if i == 0 else other, figures.COLOURS[i], "--")
@@ -95,7 +95,10 @@ def draw_all(source, target):
         try:
             panel(times, axis)
         except KeyError as error:
-            raise figures.PlotError(f"{source} has no times of {error}: run gpu_ensembles without a choice of cases") from error
+            raise figures.PlotError(f"{source} has no times of {error}: "
+                                    "run gpu_ensembles without a choice of cases") from error
+        figures.label_ticks(pyplot, axis.xaxis)
+        figures.label_ticks(pyplot, axis.yaxis)
         axis.set_xlabel("instances")
         axis.set_ylabel("kernel, ms")
         axis.legend(frameon=False, fontsize=8)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What results are compared with: classic Runge-Kutta steps of Lorenz' equations in long double, and the differences.
+// The references for results: classic Runge-Kutta steps of Lorenz' equations in long double, and the differences.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace gpu_ensembles {
 
-/// Instances that are compared, spread evenly over the ensemble, both ends included.
+/// Number of compared instances, spread evenly over the ensemble, both ends included.
 inline constexpr std::int64_t compared = 64;
 inline std::int64_t compared_instance(std::int64_t number, std::int64_t size, std::int64_t count = compared) {
     return number * (size - 1) / std::max<std::int64_t>(count - 1, 1);
@@ -26,7 +26,7 @@ template <class Model>
 myriad::ensemble<Model> spread_instances(const problem<Model>& what, std::int64_t size, std::int64_t count = compared) {
     myriad::ensemble<Model> all(size), few(count);
     what.fill(all);
-    what.fill(few);  // what all instances share
+    what.fill(few);  // values common to all instances
     for (int c = 0; c < myriad::detail::n_parameter<Model>; ++c)
         for (std::int64_t k = 0; k < count; ++k)
             few.parameter(c)[k] = all.parameter(c)[compared_instance(k, size, count)];
@@ -60,7 +60,7 @@ inline exact_state lorenz_reference(double rho, const exact_state& start, std::i
 /// The larger of two errors; NaN if one is.
 inline double larger_or_nan(double a, double b) { return a != a || b <= a ? a : b; }
 
-/// Keeps the errors' maximum, which is NaN if one of them is, and their median.
+/// Sets the maximum of the errors, which is NaN if one of them is, and their median.
 inline void set_errors(measurement& m, std::vector<double> errors) {
     m.max_error = 0;
     for (double& e : errors) {

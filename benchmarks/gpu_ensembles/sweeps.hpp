@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sweeps of the bubble and of the valve: parameters, starts and rules of events. Host code.
+// The sweeps of the bubble and of the valve: parameters, starts and event options. Host code.
 #pragma once
 
 #include <cmath>
@@ -63,7 +63,7 @@ inline myriad::options valve_options(std::int64_t phases, double tolerance, doub
             .max_steps = 1'000'000,
             .events = {{.direction = myriad::direction::falling, .tolerance = event_tolerance, .stop_after = 1},
                        {.direction = myriad::direction::falling, .tolerance = event_tolerance}},
-            .accumulation_limit = 25};  // fewer than the steps after which a valve is at rest
+            .accumulation_limit = 25};  // fewer than the number of steps after which a valve is at rest
 }
 
 /// Periods of bubbles.

@@ -26,7 +26,7 @@ bool run_explicit(const study<Model>& of, const settings& chosen, const output& 
         named<dormand_prince_8_pi>{"dormand_prince_8 pi"}, named<dormand_prince_8_rms>{"dormand_prince_8 rms"});
 }
 
-// The steps of order two grow as the cube root of the tolerance.
+// The number of steps of order two grows with the cube root of the tolerance's reciprocal.
 bool run_robertson(const settings& chosen, const output& out) {
     return run<myriad::rodas_5p>(robertson_study(), chosen, out, named<myriad::rosenbrock_23>{"rosenbrock_23", 1e-8},
                                  named<myriad::rodas_5p>{"rodas_5p"}, named<rodas_5p_pi>{"rodas_5p pi"});
@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--device", device, examples::device_help())->type_name("NAME")->capture_default_str();
     app.add_option("--output", path, "File to write the same table to, as comma-separated values")->type_name("FILE");
-    std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is then an error of the writer
+    std::signal(SIGXFSZ, SIG_IGN);  // so that a limit on file size is an error of the writer
     try {
         app.parse(argc, argv);
         chosen.device = myriad::device::parse(device);

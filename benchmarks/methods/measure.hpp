@@ -26,18 +26,18 @@ struct row {
     std::string study, method;
     std::int64_t instances;
     double tolerance;
-    double milliseconds;  ///< shortest run; on a GPU of the kernel, on the CPU of processor time
+    double milliseconds;  ///< shortest run: kernel time on a GPU, processor time on the CPU
     std::int64_t accepted, rejected, evaluations, failed;
     errors error;
 };
 
-/// Takes lines for people, and rows.
+/// Receives comments for readers, and rows.
 struct output {
     std::function<void(const std::string&)> comment;
     std::function<void(const row&)> result;
 };
 
-/// A method, its name, and the finest tolerance that it is worth its time at.
+/// A method, its name, and the finest tolerance at which it is worth measuring.
 template <class Method>
 struct named {
     const char* name;
@@ -73,18 +73,18 @@ row measure(const study<Model>& of, const named<Method>& method, double toleranc
         const bool on_gpu = chosen.device.which() == myriad::device::kind::cuda;
         times.push_back(on_gpu ? kernel_ms : 1e3 * (cpu_peers::cpu_clock() - begin));
     }
-    r.milliseconds = *std::min_element(times.begin(), times.end());  // others can only make it longer
+    r.milliseconds = *std::min_element(times.begin(), times.end());  // other processes can only increase it
     return r;
 }
 
-/// All methods at all tolerances. Returns whether there was nothing to complain about.
+/// All methods at all tolerances. Returns whether there were no complaints.
 template <class Reference, class Model, class... Methods>
 bool run(const study<Model>& of, const settings& chosen, const output& out, const named<Methods>&... methods) {
     const bool on_gpu = chosen.device.which() == myriad::device::kind::cuda;
     const std::int64_t size = chosen.instances > 0 ? chosen.instances : on_gpu ? of.on_gpu : of.on_cpu;
     const std::int64_t count = std::min(compared, size);
     const auto reference = integrated<Reference>(of, size, count, of.reference_tolerance);
-    // Errors below this say nothing.
+    // Errors below this tell nothing.
     const double coarser = 10 * of.reference_tolerance;
     const errors doubt = compare(of, integrated<Reference>(of, size, count, coarser), reference, coarser);
     std::ostringstream about;

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws what the program `methods` measured, and writes its tables into a Markdown file.
+"""Draws the measurements of the program `methods`, and writes its tables into a Markdown file.
 
 Usage: plot.py [CSV [CSV of another device]] [--images DIR] [--into FILE]
 
-Without CSV: the files beside this one. One picture per case, DIR/CASE.png: median error against evaluations of f, and against time on each device. Tables go between
-the lines `<!-- measured: NAME -->` and `<!-- end of measured -->` of FILE. Needs matplotlib (Debian: python3-matplotlib).
-Exit status 2 if something is missing or wrong.
+Without CSV: the files next to this one. One picture per case, DIR/CASE.png: median error against evaluations of f, and
+against time on each device. Tables go between the lines `<!-- measured: NAME -->` and `<!-- end of measured -->` of
+FILE. Needs matplotlib (Debian: python3-matplotlib). Exit status 2 if something is missing or wrong.
 """
 import argparse
 import math
@@ -23,7 +23,7 @@ COLUMNS = ("case", "method", "device", "instances", "tolerance", "milliseconds",
            "median_error", "largest_error", "failed", "astray")
 TITLES = {"keller_miksis": "Keller-Miksis bubble", "relief_valve": "Relief valve with impacts",
           "relief_valve_watched": "Relief valve with impacts, 8 looks a step", "robertson": "Robertson's reaction"}
-# Markers and dashes say again what the colours do.
+# Markers and dashes repeat the distinction by colours.
 STYLES = {"cash_karp": (figures.ORANGE, "s"), "dormand_prince_5": (figures.SKY, "v"),
           "tsitouras_5": (figures.GREEN, "^"),
           "verner_7": (figures.PINK, "D"), "dormand_prince_8": (figures.BLUE, "o"),
@@ -63,8 +63,8 @@ def kind_of(table):
 
 
 def cost_at(rows, error, cost):
-    """The cost of a median error or a smaller one: that of the loosest tolerance if it is small enough, else between two
-    measured points straight in the logarithms; None if it was not reached."""
+    """The cost of a median error no larger than the given one: that of the loosest tolerance if its error is small
+    enough, else interpolated log-log between two measured points; None if it was not reached."""
     if rows[0]["median_error"] <= error:
         return cost(rows[0])
     for one, other in zip(rows, rows[1:]):
@@ -92,7 +92,7 @@ def draw(tables, case):
     panels = [("evaluations of $f$ per instance", tables[0], evaluations)]
     for table in tables:
         rows = [row for (name, _), measured in table.items() if name == case for row in measured]
-        if kind_of(table) == "CPU":  # times of one run are comparable with each other only
+        if kind_of(table) == "CPU":  # only times of the same run are comparable
             shortest = min(milliseconds(row) for row in rows)
             panels.append(("time on the CPU over the shortest", table, lambda row, s=shortest: milliseconds(row) / s))
         else:
@@ -111,7 +111,7 @@ def draw(tables, case):
         axis.set_xlabel(label)
         axis.grid(True, which="major", linewidth=0.3, color="0.8")
         low, high = axis.get_xlim()
-        if high / low < 100:  # one power of ten tells nothing
+        if high / low < 100:  # a single power of ten tells nothing
             axis.xaxis.set_minor_locator(LogLocator(subs=(2, 5)))
             for each in (axis.xaxis.set_major_formatter, axis.xaxis.set_minor_formatter):
                 each(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -122,7 +122,7 @@ def draw(tables, case):
 
 
 def equal_error(tables, case):
-    """Lines of the table of times at equal median error, over that of the fastest: of errors that some method had."""
+    """Lines of the table of times at equal median error, relative to the fastest, for errors that some method had."""
     measured = [rows for (name, _), rows in tables[0].items() if name == case]
     wanted = [e for e in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
               if any(rows[-1]["median_error"] <= e <= rows[0]["median_error"] for rows in measured)]
@@ -175,7 +175,7 @@ def write_tables(path, tables):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("tables", nargs="*", metavar="CSV", default=sorted(Path(__file__).parent.glob("*.csv")),
-                        help="what the program wrote, one file for each device (default: the files beside this one)")
+                        help="tables of the program, one file per device (default: the files next to this one)")
     parser.add_argument("--images", metavar="DIR", help="folder for the pictures")
     parser.add_argument("--into", metavar="FILE", help="Markdown file to write the tables into")
     arguments = parser.parse_args()

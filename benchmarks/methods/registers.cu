@@ -6,7 +6,7 @@
 #include <myriad/model.hpp>
 
 /// Lorenz' model of 1996 (Predictability: a problem partly solved, ECMWF 1996, eq. (1)): every equation reads four
-/// components, and its slope is a handful of instructions, so that what a kernel holds is the method's.
+/// components, and its slope takes a handful of instructions, so that a kernel's registers are mainly the method's.
 template <int n>
 struct lorenz_96 {
     enum state { first, n_state = n };

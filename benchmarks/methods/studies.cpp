@@ -26,11 +26,11 @@ std::string unexpected_failures(const myriad::ensemble<Model>& e, myriad::status
     return failed == 0 ? "" : std::to_string(failed) + " instances failed";
 }
 
-// Few periods and phases, since some bubbles and valves are chaotic: an error would grow until it says nothing of the
+// Few periods and phases, as some bubbles and valves are chaotic: an error would grow until it tells nothing of the
 // method.
 constexpr int periods = 2, sections = 4;
 
-// The tolerance of events follows that of steps, down to what the rounding of velocities around ten leaves.
+// The event tolerance follows that of steps, down to the limit set by the rounding of velocities around ten.
 problem<relief_valve> valves(double tolerance) {
     return {gpu_ensembles::valve_options(sections, tolerance, std::max(tolerance, 1e-13)), &gpu_ensembles::fill_valves,
             &gpu_ensembles::start_valves};
@@ -40,11 +40,11 @@ problem<relief_valve> valves(double tolerance) {
 // Robertson
 // ---------------------------------------------------------------------------------------------------------------------
 
-// Where a and b end, with the usual constants and t = 1e11; c is of the order of one.
+// Final values of a and b with the usual constants at t = 1e11; c is of order one.
 const std::vector<double> concentrations{1e-8, 1e-14, 1};
 constexpr double t_end = 1e5;
 
-/// Rate constants between a third of the usual ones and three times, as even as can be in the logarithms: multiples of
+/// Rate constants between a third and three times the usual ones, distributed evenly in the logarithms: multiples of
 /// the powers of 1/g, g^4 = g + 1 (Roberts' sequence), modulo one.
 void fill_reactions(myriad::ensemble<robertson>& instances) {
     constexpr std::array<double, 3> usual{0.04, 3e7, 1e4};
@@ -73,9 +73,9 @@ problem<robertson> reactions(double tolerance) {
             &start_reactions};
 }
 
-/// The columns of the Jacobian sum up to zero, and then so do the stages, but for rounding: that of each addition to
-/// the state, half an ulp of at most one in three components, and those of the stages, which the coefficients magnify a
-/// hundred times, proportional to the changes of the state, three in all.
+/// The columns of the Jacobian sum to zero, and so do the stages, except for rounding: that of each addition to the
+/// state, half an ulp of at most one in three components, and that of the stages, magnified a hundred times by the
+/// coefficients and proportional to the changes of the state, three in all.
 std::string wrong_reactions(const myriad::ensemble<robertson>& e, double tolerance) {
     std::ostringstream what;
     what << unexpected_failures(e, myriad::status::success);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A study: what is integrated at which tolerances, the reference it is compared with, and the errors.
+// A study: a problem with its tolerances, the reference for comparison, and the errors.
 #pragma once
 
 #include <algorithm>
@@ -20,25 +20,25 @@ namespace methods {
 template <class Model>
 struct study {
     std::string name;
-    std::string work;             ///< what is integrated, for people
-    std::int64_t on_cpu, on_gpu;  ///< instances unless asked for others
+    std::string work;             ///< description of the work
+    std::int64_t on_cpu, on_gpu;  ///< default numbers of instances
     std::vector<double> tolerances;
     const char* reference;  ///< name of the method of the reference
     double reference_tolerance;
     std::vector<double>
-        scale;  ///< per component: errors are relative to max(scale, |y|), the error test's and those shown
+        scale;  ///< per component: both the error test and the reported errors are relative to max(scale, |y|)
     gpu_ensembles::problem<Model> (*at)(double tolerance);
-    /// What is wrong with results at that tolerance, counted from new; empty if nothing is.
+    /// Describes what is wrong with results at that tolerance, of a run from a new ensemble; empty if nothing is.
     std::string (*complaint)(const myriad::ensemble<Model>&, double tolerance);
 };
 
 study<keller_miksis> keller_miksis_study();
 study<relief_valve> relief_valve_study();
-/// The same with event functions looked at eight times within each step.
+/// The same with event functions checked eight times within each step.
 study<relief_valve> closely_watched_valve_study();
 study<robertson> robertson_study();
 
-/// Points per step at which event functions are looked at where none may be missed.
+/// Points per step at which event functions are checked where none may be missed.
 inline constexpr std::int64_t often = 8;
 
 /// `count` instances spread over the `size` of the study, integrated by Method on the CPU at the given tolerance.
@@ -57,7 +57,7 @@ struct errors {
 };
 
 /// Errors of results against those of the spread instances of a reference, each in its worst component. Instances that
-/// failed in the reference are left out; one that only failed here, or ended in another way, has an infinite error.
+/// failed in the reference are left out; one that failed only here, or ended differently, has an infinite error.
 template <class Model>
 errors compare(const study<Model>& of, const myriad::ensemble<Model>& results, const myriad::ensemble<Model>& reference,
                double tolerance) {

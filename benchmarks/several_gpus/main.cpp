@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A sweep over the damping of the Duffing oscillator, with events and accessories, on one solver object and in equal
-// parts on one per GPU: time from before the first upload to after the last download, medians of interleaved runs,
-// memory taken before. Usage: several_gpus [INSTANCES [PHASES]] [--check]; --check times nothing, and takes two solvers
-// on the CPU if there is no GPU. Exit status 1 if the parts do not have the bits of the whole.
+// parts on one per GPU: time from before the first upload to after the last download, medians of interleaved runs, with
+// memory allocated beforehand. Usage: several_gpus [INSTANCES [PHASES]] [--check]; --check times nothing, and uses two
+// solvers on the CPU if there is no GPU. Exit status 1 if the parts do not have the bits of the whole.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -73,7 +73,7 @@ public:
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
 
-    /// Of the last run.
+    /// Results of the last run.
     std::vector<double> x() {
         std::vector<double> all;
         for (solver& s : solvers_) {
@@ -91,7 +91,7 @@ public:
 private:
     std::int64_t instances_;
     std::vector<std::int64_t> begins_;
-    std::deque<solver> solvers_;  // they can be neither copied nor moved
+    std::deque<solver> solvers_;  // solvers can be neither copied nor moved
 };
 
 double median(std::vector<double> values) {
@@ -119,7 +119,7 @@ int run(const settings& chosen) {
         together.push_back(several.seconds());
     }
     if (!chosen.check) {
-        alone.erase(alone.begin());  // the first warms up
+        alone.erase(alone.begin());  // the first run warms up
         together.erase(together.begin());
     }
     const bool same = one.x() == several.x();

@@ -9,7 +9,8 @@ source "$(dirname "$(realpath "$0")")/../common/check.sh"
 check_arguments
 "$program" --small --to-the-end --output table.csv 2>stderr >found || fail "a pendulum has left its magnet: $(<found)"
 check_table table.csv $((160 * 160)) x,y,magnet,t
-grep -q '^Of 25600 captured instances 0 are over another magnet at the end' found || fail "not all were captured: $(<found)"
+grep -q '^Of 25600 captured instances 0 are over another magnet at the end' found ||
+    fail "not all were captured: $(<found)"
 saved=$(sed -n 's/^Steps: .* without, \([0-9]*\).*% saved/\1/p' found)
 # 78 % at full size.
 ((saved >= 70)) || fail "the criterion saved no more than '$saved' % of the steps"
@@ -21,7 +22,9 @@ rows table.csv | awk -F, '
         side = int(sqrt(n) + 0.5)
         for (i = 0; i < n; i++) {
             row = int(i / side); column = i % side; mirrored = (side - 1 - row) * side + column
-            if (of[mirrored] != (of[i] == 1 ? 1 : 5 - of[i]) || t[mirrored] != t[i]) { print "no mirror image: " i; bad = 1 }
+            if (of[mirrored] != (of[i] == 1 ? 1 : 5 - of[i]) || t[mirrored] != t[i]) {
+                print "no mirror image: " i; bad = 1
+            }
             if (r2[i] > 2.25) continue
             disc++; share[of[i]]++
             if (column + 1 < side && of[i + 1] != of[i] || row + 1 < side && of[i + side] != of[i]) boundary++

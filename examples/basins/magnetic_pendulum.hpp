@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The magnetic pendulum, after Motter, Gruiz, Karolyi and Tel, Phys. Rev. Lett. 111 (2013) 194101: a bob that hangs
-// over three magnets at the corners of a triangle. Lengths are in sides of the triangle, times such that a magnet has
-// strength one.
+// over three magnets at the corners of a triangle. The unit of length is the triangle's side; that of time gives a
+// magnet strength one.
 #pragma once
 
 #include <myriad/model.hpp>
 
 // snippet: model
-/// x'' = -omega^2 x - damping x' + sum over the magnets of (x_i - x) / D_i^3, D_i^2 = |x_i - x|^2 + height^2, in the
-/// plane.
+/// In the plane, x'' = -omega^2 x - damping x' + sum over the magnets of (x_i - x) / D_i^3, D_i^2 = |x_i - x|^2 +
+/// height^2.
 struct magnetic_pendulum {
     enum state { x, y, u, v, n_state };
     enum shared { omega, damping, height, barrier, n_shared };
@@ -39,7 +39,7 @@ struct magnetic_pendulum {
         const myriad::vec<R, 3> n = inverse_distances<R>(at_x, at_y, height);
         return R(0.5) * omega * omega * (at_x * at_x + at_y * at_y) - (n[0] + (n[1] + n[2]));
     }
-    /// Friction only takes energy away: below the barrier between the wells, the bob stays in the one where it is.
+    /// Friction only removes energy: below the barrier between the wells, the bob stays in its well.
     template <class R>
     MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane) {
         const auto& s = lane.y;

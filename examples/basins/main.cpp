@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Basins of attraction of the magnetic pendulum: over which of three magnets does it come to rest? An instance ends as
-// soon as its energy is below the barrier between them, by the model's `after_step`.
+// Basins of attraction of the magnetic pendulum: over which of three magnets does it come to rest? The model's
+// `after_step` ends an instance as soon as its energy is below the barrier between the wells.
 #include <algorithm>
 #include <cstdint>
 #include <iostream>
@@ -16,14 +16,14 @@ namespace {
 using namespace basins;
 
 // snippet: magnet
-/// The magnet of an instance, or 0 if it still had the energy to leave when its time was over.
+/// The magnet of an instance, or 0 if at the end of its time it still had the energy to leave.
 int magnet(const myriad::ensemble<pendulum>& sweep, std::int64_t i) {
     if (sweep.status(i) != myriad::status::stopped_by_user) return 0;
     return nearest_magnet(sweep.state(pendulum::x)[i], sweep.state(pendulum::y)[i]);
 }
 // end of snippet
 
-// Nothing here tells when, where or on how many threads the file was made: equal results are equal files.
+// Nothing here depends on the time, machine or number of threads: equal results give equal files.
 void write(examples::csv_file& file, const examples::sweep_options& chosen, const myriad::ensemble<pendulum>& sweep) {
     using myriad::message;
     file.comment(
@@ -45,7 +45,7 @@ void write(examples::csv_file& file, const examples::sweep_options& chosen, cons
     file.commit();
 }
 
-/// Integrates all once more, to the end. 1 if one that was captured is over another magnet then.
+/// Integrates all instances once more, to the end. Returns 1 if a captured one then ends over another magnet.
 int compare(const examples::sweep_options& chosen, const myriad::device& device,
             const myriad::ensemble<pendulum>& stopped, std::int64_t steps) {
     auto sweep = grid(chosen.instances, never, static_cast<double>(chosen.phases) * natural_period);

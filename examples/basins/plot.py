@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the basins of attraction that the program `basins` computed: colours for magnets, shades for the time to capture.
+"""Draws the basins of attraction that the program `basins` computed: colours for magnets, shades for the time to
+capture.
 
 Usage: plot.py CSV PNG
 
@@ -15,7 +16,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "common"
 import figure as figures  # pylint: disable=wrong-import-position
 
 COLUMNS = ("x", "y", "magnet", "t")
-# None, then magnets 1 to 3: of the same lightness, and different for the colour-blind.
+# None, then magnets 1 to 3: equally light, and distinct to the colour-blind.
 HUES = ((0.5, 0.5, 0.5), (0.95, 0.72, 0.30), (0.30, 0.70, 0.90), (0.85, 0.45, 0.62))
 MAGNETS = ((0.5773502691896258, 0), (-0.2886751345948129, 0.5), (-0.2886751345948129, -0.5))
 SHADES = 12
@@ -28,12 +29,12 @@ def shade(numpy, hue, depth):
 
 
 def draw(pyplot, numpy, table, _comments):
-    """Returns the figure: the plane of initial places, and three bars for the time."""
+    """Returns the figure: the plane of initial positions, and three bars for the time."""
     side, ends = figures.square_grid(table, "x", "y", "basins")
     magnet = table["magnet"].reshape(side, side).astype(int)
     t = table["t"].reshape(side, side)
     longest = float(numpy.ceil(t.max()))
-    # Whole steps are seen as contours, and keep the file small.
+    # Whole steps show as contours, and keep the file small.
     depth = numpy.floor(numpy.clip(t / longest, 0, 1 - 1e-9) * SHADES) / (SHADES - 1)
     picture = numpy.zeros(t.shape + (3,))
     for number, hue in enumerate(HUES):

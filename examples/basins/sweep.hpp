@@ -19,9 +19,8 @@ inline constexpr double omega = 0.5, damping = 0.2, height = 0.3, extent = 1.5;
 inline constexpr double tolerance = 1e-8, natural_period = 2 * std::numbers::pi / omega;
 
 // snippet: barrier
-/// The lowest potential on the three rays from the centre away from the magnets, which part the wells from each other:
-/// that of the saddle between two magnets. On the ray the potential falls from a maximum at the centre and rises after
-/// the saddle.
+/// The lowest potential on the three rays from the centre away from the magnets, which separate the wells: that of the
+/// saddle between two magnets. Along a ray the potential falls from a maximum at the centre and rises after the saddle.
 inline double barrier() {
     const auto potential = [](double r) { return pendulum::potential(-r, 0.0, omega, height); };
     double inside = 0, outside = 0.5;
@@ -33,15 +32,15 @@ inline double barrier() {
     return potential(inside);
 }
 // end of snippet
-inline constexpr double never = std::numeric_limits<double>::lowest();  // a barrier that no energy is below
+inline constexpr double never = std::numeric_limits<double>::lowest();  // a barrier below any energy
 
-/// The middles of so many cells along an axis, to the bit as far on one side as on the other.
+/// The midpoints of the cells along an axis, symmetric about zero to the bit.
 inline Eigen::ArrayXd places(std::int64_t cells) {
     const auto n = static_cast<double>(cells);
     return extent * (2 * examples::linspace(0, n - 1, cells) + 1 - n) / n;
 }
 
-/// Pendulums at rest in the middles of side x side cells, row by row.
+/// Pendulums at rest at the midpoints of side x side cells, row by row.
 inline myriad::ensemble<pendulum> grid(std::int64_t side, double barrier, double duration) {
     myriad::ensemble<pendulum> sweep(side * side);
     const Eigen::ArrayXd axis = places(side);
@@ -56,7 +55,7 @@ inline myriad::ensemble<pendulum> grid(std::int64_t side, double barrier, double
     return sweep;
 }
 
-/// The nearest magnet, 1 to 3, in whose third of the plane the bob is.
+/// The nearest magnet, 1 to 3, by the third of the plane in which the bob is.
 inline int nearest_magnet(double x, double y) {
     const double along_1 = pendulum::x_1 * x, along_2 = pendulum::x_23 * x + pendulum::half * y,
                  along_3 = pendulum::x_23 * x - pendulum::half * y;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The options that every sweep has, and the exit statuses of every example: 0 all is well, 1 some instances failed,
-// 2 an error, with its reason on stderr, and no file was written, 3 an error after a file was written: its picture,
-// another file or standard output was not.
+// The options of every sweep, and the exit statuses of every example: 0 success, 1 some instances failed, 2 an error,
+// with its reason on stderr, and no file was written, 3 an error after a file was written: its picture, another file or
+// standard output failed.
 #pragma once
 
 #include <csignal>
@@ -25,14 +25,14 @@
 
 namespace examples {
 
-/// How much to compute.
+/// The size of the computation.
 struct sweep_size {
     std::int64_t instances = 0;
-    std::int64_t transient = 0;  // phases to let pass
+    std::int64_t transient = 0;  // phases to discard
     std::int64_t phases = 1;     // phases to keep after them
 };
 
-/// What the command line has chosen.
+/// The choices made on the command line.
 struct sweep_options : sweep_size {
     std::string device = "auto";
     std::string output;
@@ -40,19 +40,19 @@ struct sweep_options : sweep_size {
     bool quiet = false;
 };
 
-/// What a program offers.
+/// What a program computes and offers on the command line.
 struct study {
     std::string description;
-    sweep_size full;     // as in the paper, or what a GPU does in seconds
-    sweep_size small;    // what two cores do in seconds
+    sweep_size full;     // as in the paper, or a few seconds on a GPU
+    sweep_size small;    // a few seconds on two cores
     std::string output;  // file to write if none is named
     std::string instances_help = "Number of instances";
     std::string phases_help = "Phases to record after the transient ones";
     bool has_transient = true;
-    std::function<void(CLI::App&)> add_options = {};  // further options of the program
+    std::function<void(CLI::App&)> add_options = {};  // further options of this program
 };
 
-/// A count that the command line may give; else it is that of the study's size.
+/// A count that the command line may give; otherwise that of the study's size.
 class chosen_count {
 public:
     chosen_count(CLI::App& app, const std::string& names, std::int64_t least, const std::string& meaning,
@@ -69,11 +69,10 @@ private:
     std::int64_t full_, small_;
 };
 
-/// That of an error, which depends on what was done before it.
+/// Exit status of an error, which depends on what was written before it.
 inline int error_status() { return csv_file::any_is_there() ? 3 : 2; }
 
-/// Parses the command line and calls `sweep(options, device)`, which returns the exit status. Draws the picture after
-/// it.
+/// Parses the command line and calls `sweep(options, device)`, which returns the exit status; then draws the picture.
 template <class Sweep>
 int run_sweep(int argc, const char* const* argv, const study& offered, Sweep&& sweep) {
     CLI::App app(offered.description);
@@ -98,7 +97,7 @@ int run_sweep(int argc, const char* const* argv, const study& offered, Sweep&& s
     app.add_flag("--quiet", options.quiet, "Print nothing but errors");
     if (offered.add_options) offered.add_options(app);
 
-    // So that a limit on the size of files is an error that the writer reports, like a full disk, and no sudden death.
+    // So that a limit on file size is an error that the writer reports, like a full disk, and kills no program.
     std::signal(SIGXFSZ, SIG_IGN);
     try {
         app.parse(argc, argv);

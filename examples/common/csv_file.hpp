@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A table of results in comma-separated values: fast enough for millions of rows, and either complete or not there.
+// A table of results in comma-separated values: fast enough for millions of rows, and either complete or absent.
 #pragma once
 
 #include <atomic>
@@ -26,13 +26,13 @@ namespace examples {
 template <class T>
 concept number = std::integral<T> || std::floating_point<T>;
 
-/// Writes to a temporary file beside the target and renames it when all is there, so that a full disk or a crash never
-/// leaves half a table, nor harms one of an earlier run. Numbers are written with the fewest digits that give the same
-/// bits again. All members throw std::runtime_error with the reason of the system.
+/// Writes to a temporary file next to the target and renames it when complete, so that a full disk or a crash never
+/// leaves half a table, nor damages one of an earlier run. Numbers are written with the fewest digits that reproduce
+/// their bits. All members throw std::runtime_error with the system's reason.
 class csv_file {
 public:
-    /// Checks that the target can be written, before the work whose results it is to hold: creates its folder (one
-    /// level) if there is none, and tries to create a file in it. `least_bytes`: less free space than that is an error.
+    /// Checks before the work starts that the target can be written: creates its folder (one level) if there is none,
+    /// and tries to create a file in it. Less than `least_bytes` of free space is an error.
     explicit csv_file(std::filesystem::path target, std::uintmax_t least_bytes = 0) : target_(std::move(target)) {
         namespace fs = std::filesystem;
         std::error_code failure;
@@ -60,7 +60,7 @@ public:
     csv_file& operator=(const csv_file&) = delete;
     ~csv_file() { remove(); }
 
-    /// The file as named by its user, with links followed.
+    /// The file as its user named it, with links followed.
     const std::filesystem::path& path() const { return target_; }
 
     /// A line that readers skip.
@@ -70,7 +70,7 @@ public:
         append(text);
         append('\n');
     }
-    /// A line of numbers and names.
+    /// A row of numbers and names.
     template <class First, class... More>
     void row(const First& first, const More&... more) {
         begin_line();
@@ -79,7 +79,7 @@ public:
         append('\n');
     }
 
-    /// Puts the complete file in its place.
+    /// Puts the complete file in place.
     void commit() {
         begin_line();
         flush();
@@ -92,11 +92,11 @@ public:
         created_ = false;
         any_is_there_ = true;
     }
-    /// Whether the program has put any file in its place.
+    /// Whether the program has put any file in place.
     static bool any_is_there() { return any_is_there_; }
 
 private:
-    // Longest text of a number is 24 characters; a line is a few dozen of them at most.
+    // A number's text has at most 24 characters; a line is a few dozen of them at most.
     static constexpr std::size_t capacity = 1 << 20, longest_number = 32;
 
     void begin_line() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The option `--device`: what it may be, and what came of it.
+// The option `--device`: its values, and the device chosen.
 #pragma once
 
 #include <iostream>
@@ -10,14 +10,14 @@
 
 namespace examples {
 
-/// What `--device` may be, in this program.
+/// The values that `--device` accepts in this program.
 inline std::string device_help() {
     const bool with_cuda = myriad::host::if_defined(&myriad::cuda::list_devices) != nullptr;
     return with_cuda ? "Where to compute: auto (a GPU if there is one), cpu, cpu:THREADS, cuda or cuda:NUMBER"
                      : "Where to compute: auto, cpu or cpu:THREADS (built without the CUDA backend)";
 }
 
-/// Says where the sweep is computed and, if a GPU would have been taken, why there is none.
+/// Prints where the sweep is computed and, if a GPU was wanted, why there is none.
 inline void announce(const std::string& wanted, const myriad::device& device) {
     std::cerr << "Computing on " << device.name();
     if (device.which() == myriad::device::kind::cuda) {

@@ -1,31 +1,31 @@
 # SPDX-License-Identifier: MIT
-"""What the scripts that draw have in common: reading the table, the style, writing the picture, and messages.
+"""Common parts of the drawing scripts: reading the table, the style, writing the picture, and messages.
 
 An example's plot.py defines `draw(pyplot, numpy, table, comments)`, which returns the figure, and ends with
 
     figure.main(__doc__, "program", COLUMNS, draw)
 
-COLUMNS is the header of the table that the program writes; `table` maps the names of its columns, but for `status`, to
+COLUMNS is the header of the table that the program writes; `table` maps the names of its columns, except `status`, to
 arrays; `comments` is the text of its first lines. Exit status 2, and no picture, if something is missing or wrong.
-Others, whose tables have text too, use read_rows, import_libraries, save and exit_with.
+Scripts whose tables also contain text use read_rows, import_libraries, save and exit_with.
 """
 
 import csv
 import os
 import sys
 
-# Of all pictures, and of those with ticks all around.
+# For all pictures, and for those with ticks on all sides.
 PLAIN = {"font.family": "serif", "font.serif": ["STIXGeneral", "DejaVu Serif"], "mathtext.fontset": "stix",
          "axes.linewidth": 0.6, "xtick.direction": "in", "ytick.direction": "in"}
 FRAMED = {**PLAIN, "font.size": 9, "axes.titlesize": 11, "xtick.top": True, "ytick.right": True,
           "xtick.minor.visible": True, "ytick.minor.visible": True}
 # Okabe and Ito's colours, which the colour-blind can tell apart.
-BLUE, ORANGE, GREEN, PINK, RED, SKY, YELLOW = "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442"
-COLOURS = (BLUE, ORANGE, GREEN, PINK, RED, SKY, YELLOW)
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
+BLUE, ORANGE, GREEN, PINK, RED, SKY, YELLOW = COLOURS
 
 
 class PlotError(Exception):
-    """What stands in the way of a picture, for people."""
+    """An error message: why there is no picture."""
 
 
 def import_libraries(style=None):
@@ -42,8 +42,21 @@ def import_libraries(style=None):
     return pyplot, numpy
 
 
+def label_ticks(pyplot, axis):
+    """Labels the ticks of a logarithmic axis at 1, 2 and 5 of each decade, if it has less than two decades and so
+    perhaps a single label, from which a scale cannot be read."""
+    least, most = axis.get_view_interval()
+    if most / least < 100:
+        axis.set_major_locator(pyplot.matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(pyplot.matplotlib.ticker.StrMethodFormatter("{x:.10g}"))
+        axis.set_minor_formatter(pyplot.matplotlib.ticker.NullFormatter())
+
+
 def read_rows(path, program, columns):
-    """Returns the rows of a table as dictionaries of text, and the comments at the top of the file. Other columns are allowed."""
+    """Returns the rows of a table as dictionaries of text, and the comments at the top of the file.
+
+    Other columns are allowed.
+    """
     try:
         with open(path, encoding="utf-8") as file:
             lines = file.readlines()
@@ -56,7 +69,7 @@ def read_rows(path, program, columns):
 
 
 def read_table(numpy, path, program, columns):
-    """Returns all columns but `status` as a dictionary of arrays, and the comments at the top of the file as one text."""
+    """Returns all columns except `status` as a dictionary of arrays, and the comments at the top as text."""
     wanted = [name for name in columns if name != "status"]
     comments = []
     again = f"run the program `{program}` again"
@@ -79,7 +92,8 @@ def read_table(numpy, path, program, columns):
             table = numpy.loadtxt(file, comments="#", delimiter=",", usecols=[columns.index(name) for name in wanted],
                                   ndmin=2)
     except OSError as error:
-        raise PlotError(f"{path} cannot be read: {error.strerror or error}; run the program `{program}` first") from error
+        raise PlotError(f"{path} cannot be read: {error.strerror or error}; "
+                        f"run the program `{program}` first") from error
     except (ValueError, IndexError) as error:
         raise PlotError(f"{path} cannot be read as a table: {error}") from error
     missing = int((~numpy.isfinite(table)).any(axis=1).sum())
@@ -91,7 +105,7 @@ def read_table(numpy, path, program, columns):
 
 
 def limits(numpy, values):
-    """Ends of an axis that hold all finite values with a small margin."""
+    """Limits of an axis that contain all finite values with a small margin."""
     finite = values[numpy.isfinite(values)]
     if finite.size == 0:
         raise PlotError("The file has no finite values to draw: every instance failed")
@@ -101,9 +115,9 @@ def limits(numpy, values):
 
 
 def square_grid(table, across, up, program):
-    """Cells along each side of a square grid that the table holds row by row, and its ends (left, right, bottom, top).
+    """Cells along each side of a square grid stored row by row in the table, and its limits (left, right, bottom, top).
 
-    across, up: the columns with the middles of the cells, equidistant.
+    across, up: the columns with the midpoints of the cells, equidistant.
     """
     side = round(len(table[across]) ** 0.5)
     if side * side != len(table[across]) or side < 2:
@@ -116,7 +130,7 @@ def square_grid(table, across, up, program):
 
 
 def edges(numpy, middles):
-    """Borders of cells around these middles, halfway from one to the next."""
+    """Borders of the cells with these midpoints, halfway between neighbours."""
     if middles.size == 1:
         return middles + numpy.array([-0.1, 0.1])
     inner = (middles[1:] + middles[:-1]) / 2
@@ -129,9 +143,9 @@ def edges_of_ratios(numpy, middles):
 
 
 def save(figure, path, dpi, colours=None):
-    """Writes the picture beside its place and renames it, so that there is a whole one or none.
+    """Writes the picture under another name and renames it, so that it is complete or absent.
 
-    colours: of a PNG, the number to reduce it to, 256 at most. A plane of noisy values takes a third of the space then.
+    colours: for a PNG, the number of colours to reduce it to, at most 256. A noisy map then takes a third of the space.
     """
     kind = os.path.splitext(path)[1].lstrip(".").lower() or "png"
     temporary = f"{path}.{os.getpid()}.part"

@@ -11,16 +11,16 @@ namespace examples {
 
 /// n values from `first` to `last`, both included; a single one is `first`.
 inline Eigen::ArrayXd linspace(double first, double last, std::int64_t n) {
-    if (n == 1) return Eigen::ArrayXd::Constant(1, first);  // LinSpaced would give the last value
+    if (n == 1) return Eigen::ArrayXd::Constant(1, first);  // LinSpaced would return the last value
     return Eigen::ArrayXd::LinSpaced(n, first, last);
 }
 
-/// n values from `first` to `last`, both included and positive, with a constant ratio from one to the next.
+/// n values from `first` to `last`, both included and positive, with a constant ratio between neighbours.
 inline Eigen::ArrayXd logspace(double first, double last, std::int64_t n) {
     return Eigen::exp(linspace(std::log(first), std::log(last), n));
 }
 
-/// Sets two components of a plane of across.size() x up.size() instances, row by row: one varies along each row, the
+/// Sets two components on a plane of across.size() x up.size() instances, row by row: one varies along each row, the
 /// other from row to row.
 inline void fill_plane(Eigen::Ref<Eigen::ArrayXd> along_rows, const Eigen::ArrayXd& across,
                        Eigen::Ref<Eigen::ArrayXd> from_row_to_row, const Eigen::ArrayXd& up) {

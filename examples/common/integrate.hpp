@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every sweep does around its call of `solve`: progress, the report, and the exit status.
+// What every sweep does around `solve`: progress, the report, and the exit status.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace examples {
 
-/// `myriad::solve`, with its progress shown on stderr and its report on stdout, unless all is to be quiet.
+/// `myriad::solve`, with progress on stderr and the report on stdout, unless quiet.
 template <class Method, class Model, class R>
 myriad::report<Model, R> integrate(const sweep_options& chosen, const myriad::device& device,
                                    myriad::ensemble<Model, R>& sweep, myriad::options options) {
@@ -29,7 +29,7 @@ myriad::report<Model, R> integrate(const sweep_options& chosen, const myriad::de
     return report;
 }
 
-/// Says where the results are and which instances failed. The exit status: 0, or 1 if some did; what ends as
+/// Prints where the results are and which instances failed. Returns the exit status: 0, or 1 if some failed. The status
 /// `expected`, a finding of the study, is no failure.
 template <class Model, class R>
 int conclude(const sweep_options& chosen, const myriad::report<Model, R>& report,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How phases without events are integrated.
+// Options for phases without events.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace examples {
 
-/// Phases of a smooth motion: each begins with the step that the one before it would have tried next.
+/// Phases of a smooth motion: each begins with the step size that the previous one would have tried next.
 inline myriad::options smooth_phases(std::int64_t phases, double tolerance) {
     return {.phases = phases,
             .relative_tolerance = tolerance,

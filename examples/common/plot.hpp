@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws a picture of a table with the example's plot.py.
+// Draws a picture from a table with the example's plot.py.
 #pragma once
 
 #include <cerrno>
@@ -13,11 +13,11 @@
 
 namespace examples {
 
-/// A Python that has matplotlib. The first one on the PATH may be another than the one that the system's packages
-/// serve.
+/// A Python that has matplotlib. The first on the PATH may not be the one for which the system's packages are
+/// installed.
 class plotter {
 public:
-    /// Throws std::runtime_error if there is none: before the work whose results are to be drawn.
+    /// Throws std::runtime_error if there is none; constructed before the work whose results are to be drawn.
     plotter() {
         for (const char* python : {"python3", "/usr/bin/python3"}) {
             if (run({python, "-c", "import matplotlib"}, output::dropped) != 0) continue;
@@ -29,7 +29,7 @@ public:
             "python3-matplotlib), or leave --plot out");
     }
 
-    /// Runs `script table picture`; throws std::runtime_error if it fails, which says on stderr why.
+    /// Runs `script table picture`; throws std::runtime_error if it fails. The script reports the reason on stderr.
     void draw(const std::string& script, const std::string& table, const std::string& picture) const {
         if (run({python_, script, table, picture}, output::shown) != 0)
             throw std::runtime_error(picture + " was not drawn; the table is in " + table);
@@ -38,7 +38,7 @@ public:
 private:
     enum class output { shown, dropped };
 
-    /// The exit status, or 127 if there is no such program.
+    /// Returns the exit status, or 127 if there is no such program.
     static int run(const std::vector<std::string>& words, output what) {
         std::vector<char*> arguments;
         for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));

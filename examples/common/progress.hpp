@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shows how far a long integration is: a bar on a terminal, plain lines in a log, nothing when asked to be quiet.
+// Shows the progress of a long integration: a bar on a terminal, plain lines in a log, nothing if quiet.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace examples {
 
-/// To be called by `myriad::options::progress`. Writes to stderr, so that results on stdout stay clean.
+/// To be called from `myriad::options::progress`. Writes to stderr, so that stdout contains only results.
 class progress {
 public:
     enum class style { automatic, none };
@@ -31,7 +31,7 @@ public:
         const double share = static_cast<double>(done) / static_cast<double>(total);
         const double elapsed = std::chrono::duration<double>(now - start_).count();
         const int percent = static_cast<int>(100 * share);
-        // Instances that are done are counted, so the first moments, when all lanes are at work, promise too little.
+        // Counts finished instances, so that the estimate is too low at first, when all lanes are still busy.
         const std::string left = elapsed < 1 ? "" : ", " + duration(elapsed * (1 - share) / share) + " left";
         if (!bar_) {
             std::fprintf(stderr, "%3d %%%s\n", percent, left.c_str());
@@ -44,7 +44,7 @@ public:
         drawn_ = true;
     }
 
-    /// Takes the bar away, for other output to follow.
+    /// Removes the bar before other output.
     void finish() {
         if (drawn_) std::fputs("\r\033[K", stderr);
         std::fflush(stderr);

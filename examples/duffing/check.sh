@@ -17,7 +17,8 @@ expect 0 '' "$program" "${small[@]}" --output one.csv --device cpu:1 --quiet
 cmp one.csv new/table.csv || fail 'the result depends on the number of threads'
 
 if ! nvidia-smi -L >/dev/null 2>&1; then
-    expect 2 'device "cuda" is not available: .*use "cpu" or "auto"' "$program" "${small[@]}" --device cuda --output no.csv
+    expect 2 'device "cuda" is not available: .*use "cpu" or "auto"' \
+        "$program" "${small[@]}" --device cuda --output no.csv
     [[ ! -e no.csv ]] || fail 'a file without a result'
     expect 0 'Computing on cpu.*; no GPU: ' "$program" "${small[@]}" --output auto.csv
     cmp one.csv auto.csv || fail 'the result without a GPU is not that of the CPU'
@@ -27,9 +28,11 @@ check_arguments
 expect 2 'phases' "$program" --phases many
 expect 2 'no file name' "$program" --output ''
 expect 2 'folder cannot be created' "$program" --output no/such/folder/table.csv
-expect 2 'at least 800000000 GB are needed, and [0-9.]+ [kMG]B are free' "$program" --instances 100000000 --phases 100000000
+expect 2 'at least 800000000 GB are needed, and [0-9.]+ [kMG]B are free' \
+    "$program" --instances 100000000 --phases 100000000
 echo old >old.csv
-expect 2 'File too large' bash -c "ulimit -f 2; exec '$program' --instances 400 --transient 1 --phases 2 --output old.csv"
+expect 2 'File too large' \
+    bash -c "ulimit -f 2; exec '$program' --instances 400 --transient 1 --phases 2 --output old.csv"
 [[ $(<old.csv) == old ]] || fail 'a file of an earlier run was harmed'
 
 expect 0 'Integrating 1000 instances over 128 . 16 phases' "$program" --small --output small.csv
@@ -45,9 +48,11 @@ if python=$(plotting_python); then
     [[ -s drawn.png ]] || fail '--plot draws nothing'
     expect 0 '' "$program" "${small[@]}" --quiet --output drawn.csv --plot named.png
     [[ -s named.png ]] || fail '--plot does not draw what it was told'
-    expect 3 'was not drawn; the table is in undrawn.csv' "$program" "${small[@]}" --quiet --output undrawn.csv --plot /dev/null/no.png
+    expect 3 'was not drawn; the table is in undrawn.csv' \
+        "$program" "${small[@]}" --quiet --output undrawn.csv --plot /dev/null/no.png
     [[ -s undrawn.csv ]] || fail 'no table of a picture that was not drawn'
 fi
-expect 2 'plot needs a Python 3 with matplotlib' env PATH=/nowhere PYTHONHOME=/nowhere "$program" "${small[@]}" --plot --output not.csv
+expect 2 'plot needs a Python 3 with matplotlib' \
+    env PATH=/nowhere PYTHONHOME=/nowhere "$program" "${small[@]}" --plot --output not.csv
 [[ ! -e not.csv ]] || fail 'worked before it looked for matplotlib'
 echo 'All checks passed.'

@@ -10,7 +10,8 @@ check_arguments
 expect 2 'trajectories are known of 3 instances' "$program" --instances 4
 expect 0 'Integrating 3 instances over 1024 . 8 phases' "$program" --small --device cpu --output small.csv
 # Long enough for any transient, whose length depends on rounding.
-expect 0 'Integrating 3 instances over 4096 . 8 phases' "$program" --transient 4096 --phases 8 --device cpu --output table.csv
+expect 0 'Integrating 3 instances over 4096 . 8 phases' \
+    "$program" --transient 4096 --phases 8 --device cpu --output table.csv
 check_table table.csv $((3 * 8 * 200)) instance,phase,k,t,x,v,status
 rows table.csv | awk -F, '
     function abs(a) { return a < 0 ? -a : a }
@@ -19,7 +20,9 @@ rows table.csv | awk -F, '
         # Near its period doubling the orbit is approached by a factor of -0.958 in three periods: 4e-26 after 4096,
         # less a chaotic transient.
         key = $2 % 3 "," NR % 200
-        if (key in x && (abs($5 - x[key]) > 1e-5 || abs($6 - v[key]) > 1e-5)) { print "not of period three: " $0; bad = 1 }
+        if (key in x && (abs($5 - x[key]) > 1e-5 || abs($6 - v[key]) > 1e-5)) {
+            print "not of period three: " $0; bad = 1
+        }
         x[key] = $5; v[key] = $6; k = $3
         # The sums over three periods are exact for all harmonics that 199 intervals resolve.
         if (count < 3 * 200 && $4 < 6.283) { lost += k * $6 ^ 2; gained += 0.3 * cos($4) * $6 }

@@ -33,7 +33,7 @@ myriad::options integration(const examples::sweep_options& chosen) {
                        .integer_accessories = {duffing::zeros}}};
 }
 
-// Nothing here tells when, where or on how many threads the file was made: equal results are equal files.
+// Nothing here depends on the time, machine or number of threads: equal results give equal files.
 void write(examples::csv_file& file, const myriad::ensemble<duffing>& sweep, const records& recorded,
            std::int64_t transient) {
     using myriad::message;

@@ -17,7 +17,7 @@ import figure as figures  # pylint: disable=wrong-import-position
 
 COLUMNS = ("instance", "phase", "k", "B", "x", "v", "x_local_max", "v_second_zero", "x_global_max", "zeros", "status")
 
-# Column and label of the axis: the main panel, then the small ones below it.
+# Columns and axis labels: the main panel, then the small ones below it.
 PANELS = (
     ("x", r"displacement $x$ at $t = 2\pi n$ (–)"),
     ("v", r"velocity $\dot{x}$ at $t = 2\pi n$ (–)"),
@@ -30,7 +30,7 @@ INK = "#10305a"
 
 
 def describe(table, comments):
-    """The line of parameters under the title; what the file does not tell is left out."""
+    """The line of parameters under the title, without those that the file does not state."""
     parts = [rf"$B = {table['B'][0]:.6g}$"]
     start = re.search(r"x\(0\) = ([-\d.e+]+), v\(0\) = ([-\d.e+]+)", comments)
     if start:
@@ -52,13 +52,13 @@ def draw(pyplot, numpy, table, comments):
                                hspace=0.3, wspace=0.24)
     axes = [figure.add_subplot(grid[0, :])] + [figure.add_subplot(grid[1 + i // 2, i % 2]) for i in range(4)]
 
-    # Rounded, since 0.2 in single precision is a little more, and would have no tick.
+    # Rounded, since 0.2 in single precision is slightly more than 0.2, and would get no tick.
     k_limits = [round(float(end), 6) for end in (table["k"].min(), table["k"].max())]
     if k_limits[0] == k_limits[1]:
         k_limits = figures.limits(numpy, table["k"])
     size = float(numpy.clip(0.35 * (1.5e6 / table["k"].size) ** 0.25, 0.35, 2))
     for number, ((name, label), axis) in enumerate(zip(PANELS, axes)):
-        # Dots add up where points crowd: the more of them share a pixel, the fainter they are.
+        # Dots add up where points crowd: the more share a pixel, the fainter each is.
         alpha = float(numpy.clip((4.5e5 if number == 0 else 6e4) / table["k"].size, 0.03, 0.8))
         axis.plot(table["k"], table[name], linestyle="none", marker="o", markersize=size, markeredgewidth=0,
                   color=INK, alpha=alpha, rasterized=True)

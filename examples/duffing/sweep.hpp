@@ -18,7 +18,7 @@ inline constexpr double tolerance = 1e-9, event_tolerance = 1e-6;
 
 inline Eigen::ArrayXd k_grid(std::int64_t instances) { return examples::linspace(k_first, k_last, instances); }
 
-/// One instance for each damping; a phase is one period of the forcing.
+/// One instance per damping; a phase is one period of the forcing.
 inline myriad::ensemble<duffing> prepare(const Eigen::ArrayXd& k) {
     myriad::ensemble<duffing> sweep(k.size());
     sweep.parameter(duffing::k) = k;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Trajectories of single instances of the Duffing sweep, by dense output.
+// Trajectories of selected instances of the Duffing sweep, by dense output.
 #include <array>
 #include <cstdint>
 #include <stdexcept>

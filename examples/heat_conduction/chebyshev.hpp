@@ -26,7 +26,7 @@ inline Eigen::ArrayXd weights(Eigen::Index n) {
 }
 
 // snippet: matrix
-/// Takes values at the points r to the slopes there of the polynomial through them.
+/// Maps values at the points r to the slopes there of the polynomial through them.
 inline Eigen::MatrixXd differentiation_matrix(const Eigen::ArrayXd& r) {
     const Eigen::Index n = r.size();
     const Eigen::ArrayXd w = weights(n);
@@ -34,12 +34,12 @@ inline Eigen::MatrixXd differentiation_matrix(const Eigen::ArrayXd& r) {
     for (Eigen::Index i = 0; i < n; ++i)
         for (Eigen::Index j = 0; j < n; ++j)
             if (j != i) D(i, j) = w[j] / w[i] / (r[i] - r[j]);
-    D.diagonal() = -D.rowwise().sum();  // of a constant, the slope is zero
+    D.diagonal() = -D.rowwise().sum();  // the slope of a constant is zero
     return D;
 }
 // end of snippet
 
-/// Takes values at the points r to those of the polynomial at x.
+/// Maps values at the points r to those of their polynomial at x.
 inline Eigen::MatrixXd interpolation_matrix(const Eigen::ArrayXd& r, const Eigen::ArrayXd& x) {
     const Eigen::ArrayXd w = weights(r.size());
     Eigen::MatrixXd P(x.size(), r.size());

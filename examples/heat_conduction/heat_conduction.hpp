@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Heat conduction in the liquid around a bubble, through whose wall liquid flows in and out, by collocation.
+// Heat conduction in the liquid around a bubble, with flow of liquid through the bubble's wall, by collocation.
 #pragma once
 
 #include <numbers>
@@ -8,13 +8,14 @@
 
 // snippet: model
 /// dT/dt + u dT/dr = diffusivity / r^2 d/dr(r^2 dT/dr) between the bubble's wall at r = 1, where T is `wall`, and a
-/// sphere where T is zero. Liquid enters and leaves at the wall, where it evaporates or vapour condenses: u = (through
-/// + pulse cos 2 pi t) / r^2, since it is incompressible. Unit of length: the bubble's radius; of time: the period.
+/// sphere where T is zero. Liquid enters and leaves at the wall, where vapour condenses and liquid evaporates: u =
+/// (through + pulse cos 2 pi t) / r^2, since it is incompressible. Unit of length: the bubble's radius; of time: the
+/// period.
 template <int points>
 struct heat_conduction {
     static constexpr bool writes_time_domain = true;
-    static constexpr bool scalar_only = points > 64;  // on the CPU, to be compiled in a third of the time
-    static constexpr int inner = points - 2;          // those whose temperature is not given
+    static constexpr bool scalar_only = points > 64;  // on the CPU; compiles in a third of the time
+    static constexpr int inner = points - 2;          // points whose temperature is not prescribed
     static constexpr int phases_per_period = 16;
     enum state { temperature, heat = inner, n_state };
     enum parameter { diffusivity, through, pulse, n_parameter };
@@ -46,7 +47,7 @@ struct heat_conduction {
         return slope;
     }
     MYRIAD_FUNCTION static void initialise(auto& lane) { lane.y[heat] = 0; }
-    MYRIAD_FUNCTION static void finalise(auto& lane) {  // the next phase
+    MYRIAD_FUNCTION static void finalise(auto& lane) {  // sets the next phase
         lane.t_begin = lane.t_end;
         lane.t_end += 1.0 / phases_per_period;
     }

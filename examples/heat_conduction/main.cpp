@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Heat conduction around a bubble whose wall liquid crosses, steadily or to and fro, over the liquid's diffusivity.
+// Heat conduction around a bubble, with steady or oscillating flow of liquid through its wall, over the diffusivity.
 #include <array>
 #include <cstdint>
 #include <map>

@@ -22,7 +22,7 @@ COLOURS = ("#10305a", "#c05020", "#307040", "#7a3b8f")
 
 
 def flow_name(through, pulse):
-    """What the liquid does, in mathematics."""
+    """The flow of the liquid as a formula."""
     if pulse == 0:
         return rf"$u\,r^2 = {through:+g}$"
     return r"$u\,r^2 = " + (f"{pulse:g}\\," if pulse != 1 else "") + r"\cos 2\pi t$"
@@ -46,7 +46,7 @@ def draw_heat_flow(numpy, axis, last):
 
 
 def draw_gain(axis, last):
-    """What the flow to and fro gains."""
+    """The gain in heat flow due to the oscillating flow."""
     for pulse, colour in zip(sorted(set(last["pulse"]) - {0}), COLOURS[2:]):
         of_flow = last["pulse"] == pulse
         axis.plot(last["diffusivity"][of_flow], 100 * (last["mean_heat_flow"][of_flow] / STILL - 1), color=colour,
@@ -63,7 +63,7 @@ def draw_map(numpy, axis, table, instance):
     """Temperature over time and radius of one instance, in its last recorded period of sixteen phases."""
     rows = numpy.flatnonzero(table["instance"] == instance)[-16:]
     t = numpy.linspace(0, 1, len(rows) + 1)
-    rows = numpy.append(rows[-1], rows)  # it begins as it ends
+    rows = numpy.append(rows[-1], rows)  # the period closes
     depth = numpy.linspace(0, 1, DEPTHS)
     r = 1 + (OUTER - 1) * depth**2
     temperature = numpy.array([table[f"T_{k}"][rows] for k in range(DEPTHS)])

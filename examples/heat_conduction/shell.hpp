@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shell of liquid of the study: what its models share, and its solutions in closed form.
+// The shell of liquid: the parts common to its models, and its solutions in closed form.
 #pragma once
 
 #include <cmath>
@@ -12,11 +12,11 @@
 
 namespace shell {
 
-constexpr double outer = 3;  // radius at which the temperature is zero; that of the bubble is one
-constexpr int flows = 4;     // of liquid, with each diffusivity
+constexpr double outer = 3;  // radius at which the temperature is zero; the bubble's is one
+constexpr int flows = 4;     // of liquid, for each diffusivity
 
 // snippet: shared
-/// The values that all instances share: D, row by row, and r r and 1 / (r r) at the points.
+/// The values common to all instances: D, row by row, then r r and 1 / (r r) at the points.
 template <int points>
 Eigen::ArrayXd shared_values(double wall) {
     using model = heat_conduction<points>;
@@ -31,10 +31,10 @@ Eigen::ArrayXd shared_values(double wall) {
 }
 // end of snippet
 
-/// Heat flow without flow of liquid, in the unit of `heat` per time.
+/// Heat flow in still liquid, in the unit of `heat` per time.
 constexpr double still = outer / (outer - 1);
 
-/// Temperature of a wall at one without flow of liquid, where all instances start.
+/// Temperature in still liquid with the wall at one; all instances start with it.
 inline Eigen::ArrayXd still_temperature(const Eigen::ArrayXd& r) { return (outer / r - 1) / (outer - 1); }
 
 /// sin(k (r - 1)) / r with k = pi / (outer - 1): decays by exp(-diffusivity k^2 t) when wall and sphere are at zero.

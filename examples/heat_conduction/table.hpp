@@ -12,9 +12,9 @@
 
 namespace shell {
 
-constexpr int depths = 33;  // at which temperatures are written
+constexpr int depths = 33;  // number of depths in the table
 
-/// One row per instance for the end of its last phase, and one per recorded phase of the instances with the first,
+/// One row per instance at the end of its last phase, and one per recorded phase for the instances with the first,
 /// middle and last diffusivity.
 template <class Model>
 void write_table(examples::csv_file& file, const myriad::ensemble<Model>& sweep,

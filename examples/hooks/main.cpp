@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Runs the small models of docs/writing_a_model.md and the solvers of docs/gpu.md, and compares them with what is known
-// of them; exit status 1 if one is wrong.
+// Runs the small models of docs/hooks_and_events.md and the solvers of docs/gpu.md, and compares them with known
+// results; exit status 1 if one is wrong.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <deque>
 #include <iostream>
@@ -19,7 +20,7 @@ namespace {
 constexpr double endless = std::numeric_limits<double>::infinity();
 bool all_right = true;
 
-// Written so that NaN is wrong.
+// Written so that NaN counts as wrong.
 void compare(const char* what, double value, double exact, double tolerance) {
     const bool right = std::abs(value - exact) <= tolerance;
     all_right = all_right && right;
@@ -46,10 +47,10 @@ void bounce(double tolerance) {
 }
 
 // snippet: solvers
-/// The time of the fifth impact for each restitution, batch by batch: two solvers on every GPU take turns.
+/// The time of the fifth impact for each restitution, batch by batch: two solvers per GPU take turns.
 Eigen::ArrayXd fifth_impacts(const Eigen::ArrayXd& restitution, Eigen::Index batch, const myriad::options& options) {
     using solver = myriad::solver<bouncing_ball, myriad::cash_karp>;
-    std::deque<solver> solvers;  // they can be neither copied nor moved
+    std::deque<solver> solvers;  // solvers can be neither copied nor moved
     for (const myriad::device& where : myriad::devices()) {
         if (where.which() == myriad::device::kind::cpu && !solvers.empty()) continue;  // the CPU if there is no GPU
         for (int i = 0; i < 2; ++i) solvers.emplace_back(where, batch, options);
@@ -66,7 +67,7 @@ Eigen::ArrayXd fifth_impacts(const Eigen::ArrayXd& restitution, Eigen::Index bat
         }
         if (first >= t.size()) continue;
         const Eigen::Index n = std::min(batch, t.size() - first);
-        balls.restart();  // a new batch, and not further phases of the one before
+        balls.restart();  // a new batch, not further phases of the last one
         balls.parameter(bouncing_ball::r).head(n) = restitution.segment(first, n);
         balls.shared(bouncing_ball::g) = 9.81;
         balls.state(bouncing_ball::x) = 1;
@@ -107,7 +108,7 @@ void lyapunov() {
         myriad::solve<myriad::tsitouras_5>(myriad::device::best(), sweep, {.phases = phases});
     };
     run(300);
-    sweep.accessory(tangent_duffing::growth) = 0;  // the transient does not count
+    sweep.accessory(tangent_duffing::growth) = 0;  // discards the transient
     run(1000);
     const Eigen::ArrayXd exponent = sweep.accessory(tangent_duffing::growth) / (1000 * 2 * std::numbers::pi);
     std::cout << "largest Lyapunov exponents " << exponent.transpose()
@@ -156,7 +157,7 @@ void follow() {
     compare("equilibrium", paths.state(continuation::x)[1], std::cbrt(1.9), 1e-6);
 }
 
-// Exact: 2 cos t while it does not reach the stop.
+// The exact solution is 2 cos t as long as the mass does not reach the stop.
 void sample() {
     myriad::ensemble<stop_by_select> masses(3);
     masses.parameter(stop_by_select::gap) = 10;
@@ -171,6 +172,40 @@ void sample() {
     const auto x = masses.samples().state(stop_by_select::x);
     // end of snippet
     compare("samples differ from 2 cos t by", (x - 2 * t.cos()).abs().maxCoeff(), 0, 1e-6);
+}
+
+// Each mass swings for its own time: until a quarter of the amplitude is left.
+void swing_down() {
+    // snippet: inputs
+    myriad::ensemble<damped> masses(100);
+    masses.parameter(damped::zeta).setLinSpaced(0.05, 0.5);
+    masses.state(damped::x) = 1;
+    masses.state(damped::v) = 0;
+    masses.t_begin() = 0;
+    masses.t_end() = std::log(4.0) / masses.parameter(damped::zeta);  // every instance its own
+    // end of snippet
+    // snippet: call
+    const auto report = myriad::solve<myriad::tsitouras_5>(myriad::device::best(), masses,
+                                                           {.relative_tolerance = 1e-10,
+                                                            .absolute_tolerance = 1e-10,
+                                                            .record = {.states = {damped::x}, .time = true},
+                                                            .progress = [](std::int64_t done, std::int64_t total) {
+                                                                if (done == total)
+                                                                    std::cerr << total << " instances are done\n";
+                                                            }});
+    // end of snippet
+    // snippet: results
+    if (report.failed() > 0) std::cerr << report;  // which one was first, and with what inputs
+    for (Eigen::Index i = 0; i < masses.size(); i += 25)
+        std::cout << "instance " << i << ": " << myriad::name_of(masses.status(i)) << " at t = " << masses.t()[i]
+                  << " after " << masses.phases_done()[i] << " phase, " << masses.accepted_steps()[i] << " steps\n";
+    const double mean_steps = masses.accepted_steps().cast<double>().mean();
+    const auto x = report.records.state(damped::x);  // one row per instance, one column per phase
+    // end of snippet
+    compare("masses that reached their own t_end", static_cast<double>(report.count(myriad::status::success)), 100, 0);
+    compare("end of the first", masses.t()[0], std::log(4.0) / 0.05, 1e-12);
+    compare("the record is the state at the end, but for", (x.col(0) - masses.state(damped::x)).abs().maxCoeff(), 0, 0);
+    compare("steps in all", mean_steps * 100, static_cast<double>(report.accepted_steps), 1e-6);
 }
 
 template <class Model>
@@ -199,6 +234,7 @@ int main() {
     settle<myriad::runge_kutta_4, float>({.step = 0.01}, 1e-4);
     follow();
     sample();
+    swing_down();
     // A last bit may decide whether a step over the kink is accepted, so the results agree to its error only.
     compare("difference of select and branch", (swing<stop_by_select>() - swing<stop_by_branch>()).abs().maxCoeff(), 0,
             1e-4);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiles the small models; one file may hold several, and in double and single precision.
+// Compiles the small models; one file may contain several, in double and single precision.
 // snippet: instantiation
 #include "models.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small models, one for each thing a model can do beside its right-hand side; docs/writing_a_model.md shows them.
+// Small models, one for each thing a model can do beside its right-hand side; docs/hooks_and_events.md shows most.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -31,7 +31,7 @@ struct bouncing_ball {
 // end of snippet
 
 // snippet: observe
-/// A damped mass, x'' = -x - 2 zeta x': how far it overshoots, when, and what the damper has taken.
+/// A damped mass, x'' = -x - 2 zeta x': how far it overshoots, when, and how much energy the damper has taken.
 struct damped {
     static constexpr bool accessories_are_outputs = true;
     enum state { x, v, n_state };
@@ -78,7 +78,7 @@ struct tangent_duffing {
 // end of snippet
 
 // snippet: after_step
-/// x' = -k x, its integral by the trapezoidal rule, and an end where x has fallen below a limit.
+/// x' = -k x, with its integral by the trapezoidal rule; a phase ends where x has fallen below a limit.
 struct settling {
     static constexpr bool accessories_are_outputs = true;  // rhs does not read them
     enum state { x, n_state };
@@ -104,7 +104,7 @@ struct settling {
 // end of snippet
 
 // snippet: continuation
-/// Follows an equilibrium of x' = mu - x^3 while mu grows from phase to phase and the phases get longer.
+/// Follows an equilibrium of x' = mu - x^3 as mu grows from phase to phase and the phases get longer.
 struct continuation {
     static constexpr bool writes_parameters = true;
     static constexpr bool writes_time_domain = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A hybrid system: the stick-slip oscillation of a block on a belt over the belt's speed. A phase goes from one slip to
-// the next; its period has a closed form, with which the example's test compares it.
+// A hybrid system: the stick-slip oscillation of a block on a belt, over the belt's speed. A phase lasts from one slip
+// to the next; the example's test compares its period with a closed form.
 #include <cstdint>
 #include <limits>
 

@@ -15,7 +15,7 @@ COLUMNS = ("instance", "phase", "belt", "x_slip", "x_stick", "period", "status")
 
 
 def draw(pyplot, numpy, table, _comments):
-    """Returns the figure: where the block slips and sticks, and how long it takes from slip to slip."""
+    """Returns the figure: where the block slips and sticks, and the time from slip to slip."""
     figure, (places, periods) = pyplot.subplots(1, 2, figsize=(7.2, 3.2), layout="constrained")
     places.plot(table["belt"], table["x_slip"], linewidth=1, color="#10305a", label="slips")
     places.plot(table["belt"], table["x_stick"], linewidth=1, color="#c05020", label="sticks")

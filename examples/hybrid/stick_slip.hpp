@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A block on a moving belt, held by a spring: the textbook hybrid system. Its mode, sticking or sliding, is an integer
-// accessory that the right-hand side reads and that events switch.
+// accessory that the right-hand side reads and events switch.
 #pragma once
 
 #include <myriad/model.hpp>
 
 // snippet: model
-/// x'' = -x + friction. While it slides, friction is `kinetic`, towards the belt of speed `belt`; while it sticks,
-/// friction is what keeps the block at the belt's speed, as long as that is not more than `breakaway`.
+/// x'' = -x + friction. While the block slides, friction is `kinetic`, directed towards the belt's speed `belt`; while
+/// it sticks, friction is the force that keeps it at the belt's speed, up to `breakaway`.
 struct stick_slip {
     enum state { x, v, n_state };
     enum parameter { belt, n_parameter };
@@ -21,7 +21,7 @@ struct stick_slip {
         const auto sticking = p.integer_accessory[sticks] == 1;
         return {myriad::select(sticking, p[belt], y[v]), myriad::select(sticking, R(0), p.shared[kinetic] - y[x])};
     }
-    /// What ends the other mode has no zero.
+    /// In each mode, the event that ends the other mode has no zero.
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto& p) {
         const auto sticking = p.integer_accessory[sticks] == 1;

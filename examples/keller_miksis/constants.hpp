@@ -19,7 +19,7 @@ inline constexpr double polytropic_exponent = 1.4;            // of the gas, adi
 inline constexpr double ambient_pressure = 1e5;               // Pa
 inline constexpr double radius = 10e-6;                       // m, at rest
 
-/// Units of the tables and of the command line, and the frequencies of the sweeps.
+/// Units of the tables and the command line, and the frequency range of the sweeps.
 inline constexpr double kHz = 1e3, bar = 1e5, us = 1e-6;
 inline constexpr double f_first = 20 * kHz, f_last = 1000 * kHz;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bubbles under two waves: the ensemble and how it is integrated. Host code.
+// Bubbles under two waves: the ensemble and its integration. Host code.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace dual_frequency {
 
 using model = bubble_dual_frequency;
 
-/// Of all: for the radius at maxima an error of 1e-12 / (2 y''), for that at minima, where y'' is large, of 1e-6 / (2
-/// y'').
+/// Error of the radius due to the event tolerances: 1e-12 / (2 y'') at maxima, 1e-6 / (2 y'') at minima, where y'' is
+/// large.
 inline constexpr double tolerance = 1e-10, maximum_tolerance = 1e-6, minimum_tolerance = 1e-3;
 
 /// The sound of one instance.

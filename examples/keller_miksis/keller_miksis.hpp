@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The Keller-Miksis bubble: the radius of a gas bubble in water under sound of one or two frequencies, and what the two
-// programs here keep of it. constants.hpp has the sources.
+// The Keller-Miksis bubble: the radius of a gas bubble in water under sound of one or two frequencies, and the results
+// that the two programs here keep. constants.hpp has the sources.
 #pragma once
 
 #include <myriad/model.hpp>
 
 // snippet: model
-/// The radius y over that at rest and its slope v, over the time in periods of the first wave.
+/// The radius y, relative to that at rest, and its slope v, over time in periods of the first wave.
 struct keller_miksis {
     enum state { y, v, n_state };
     enum parameter { C0, C1, C2, C3, C4, C5, C6, C7, C8, C9, C10, C11, C12, n_parameter };
@@ -48,7 +48,7 @@ struct bubble_response : keller_miksis {
 
 // snippet: dual
 /// Phases from one maximum of the radius to the next, with `stop_after = 1` for the event `maximum`. From phase
-/// `transient_phases` on: the largest radius, the strongest collapse and how long it took, and maxima per unit of time.
+/// `transient_phases` on: the largest radius, the strongest collapse with its duration, and maxima per unit of time.
 struct bubble_dual_frequency : keller_miksis {
     enum shared_integer { transient_phases, n_shared_integer };
     enum accessory { y_max, t_max, y_min, t_min, largest, compression, collapse_time, t_first, winding, n_accessory };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A bubble in water under sound of two frequencies: how far it grows, how hard and fast it collapses, and how often.
+// A bubble in water under sound of two frequencies: how far it expands, how hard and fast it collapses, and how often.
 #include <cstdint>
 #include <limits>
 #include <vector>

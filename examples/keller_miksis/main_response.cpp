@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a bubble in water answers a sound wave: its largest radius over the frequency, as in the MPGOS paper.
+// The response of a bubble in water to a sound wave: its largest radius over the frequency, as in the MPGOS paper.
 #include <cstdint>
 
 #include <myriad/myriad.hpp>

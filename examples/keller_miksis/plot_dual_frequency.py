@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the planes that the program `bubble_dual_frequency` computed: growth, collapse and winding over both frequencies.
+"""Draws the planes that the program `bubble_dual_frequency` computed: growth, collapse and winding over both
+frequencies.
 
 Usage: plot_dual_frequency.py CSV PNG
 
@@ -17,7 +18,7 @@ import figure as figures  # pylint: disable=wrong-import-position
 COLUMNS = ("instance", "pa1_bar", "pa2_bar", "f1_kHz", "f2_kHz", "expansion", "compression", "collapse_us", "winding",
            "status")
 
-# Column, label of the colours, their map and scale: a row of planes each.
+# Column, label of the colours, colour map and scale: one row of planes each.
 ROWS = (
     ("expansion", r"$(R_\mathrm{max} - R_E)/R_E$ (–)", "viridis", "root"),
     ("compression", r"$R_\mathrm{max}/R_\mathrm{min}$ (–)", "inferno", "log"),
@@ -25,11 +26,11 @@ ROWS = (
     ("winding", "winding number (–)", "plasma", "log"),
 )
 TICKS = (20, 100, 1000)
-COLOURS = 24  # of each map: as many as can be told apart, and a small file
+COLOURS = 24  # per map: as many as can be told apart, for a small file
 
 
 def scale_of(pyplot, numpy, values, scale):
-    """The scale of colours that all planes of a row share, without the outermost thousandth of the values."""
+    """The colour scale shared by all planes of a row, without the outermost thousandth of the values."""
     finite = values[numpy.isfinite(values)]
     if finite.size == 0:
         raise figures.PlotError("The file has no finite values to draw: every instance failed")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws what the program `bubble_response` computed: largest radii and winding numbers over the frequency.
+"""Draws the results of the program `bubble_response`: largest radii and winding numbers over the frequency.
 
 Usage: plot_response.py CSV PNG
 

@@ -28,7 +28,7 @@ myriad::ensemble<lorenz_spectrum> prepare(std::int64_t instances, std::int64_t t
     return sweep;
 }
 
-// Nothing here tells when, where or on how many threads the file was made: equal results are equal files.
+// Nothing here depends on the time, machine or number of threads: equal results give equal files.
 void write(examples::csv_file& file, const myriad::ensemble<lorenz_spectrum>& sweep, std::int64_t transient,
            std::int64_t summed) {
     using myriad::message;

@@ -36,7 +36,8 @@ rows table.csv | awk -F, '
     }
     END {
         mean = sum / chaotic; error = sqrt((squares / chaotic - mean ^ 2) / (chaotic - 1))
-        print known " known, " regular " regular, of which " same " are the same, " chaotic " chaotic, mean difference " mean " +- " error
+        printf "%s known, %s regular, of which %s are the same, ", known, regular, same
+        print chaotic " chaotic, mean difference " mean " +- " error
         # Chaotic solutions part, and are two samples of one mean then: four standard errors.
         if (known != 2 || chaotic < 100 || same < 0.9 * regular || mean ^ 2 > (4 * error) ^ 2) bad = 1
         exit bad

@@ -23,8 +23,8 @@ using library_tangent = myriad::with_tangents<forced_duffing, 1>;
 // end of snippet
 
 // snippet: hand
-/// The same with its linearisation, a'' + k a' - a + 3 x^2 a = 0: at the end of each period (a, b) is made one long,
-/// and what it had grown is added up, from phase `transient` on.
+/// The same with its linearisation, a'' + k a' - a + 3 x^2 a = 0: at the end of each period (a, b) is normalised, and
+/// the logarithm of its growth is summed from phase `transient` on.
 struct hand_tangent {
     enum state { x, v, a, b, n_state };
     enum parameter { k, B, n_parameter };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The largest Lyapunov exponent of the forced Duffing oscillator over its damping k and forcing B, with the tangent
-// linearised by hand and with the library's. A row of the table is a point of the plane.
+// linearised by hand and by the library. A row of the table is a point of the plane.
 #include <algorithm>
 #include <cstdint>
 
@@ -25,7 +25,7 @@ myriad::ensemble<library_tangent> plane(std::int64_t side, std::int64_t transien
     return sweep;
 }
 
-// Nothing here tells when, where or on how many threads the file was made: equal results are equal files.
+// Nothing here depends on the time, machine or number of threads: equal results give equal files.
 void write(examples::csv_file& file, const examples::sweep_options& chosen, const myriad::ensemble<hand_tangent>& hand,
            const myriad::ensemble<library_tangent>& library) {
     using myriad::message;

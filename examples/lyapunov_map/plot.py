@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the map of Lyapunov exponents that the program `lyapunov_map` computed, and how far its two ways agree.
+"""Draws the map of Lyapunov exponents that the program `lyapunov_map` computed, and how well its two methods agree.
 
 Usage: plot.py CSV PNG
 
@@ -15,11 +15,11 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "common"
 import figure as figures  # pylint: disable=wrong-import-position
 
 COLUMNS = ("k", "B", "lambda_hand", "lambda_library", "status")
-SHOWN = 0.25  # exponents beyond have the colours of the ends
+SHOWN = 0.25  # larger exponents get the colours of the ends
 
 
 def draw(pyplot, numpy, table, _comments):
-    """Returns the figure: the map, and beside it the difference of both exponents, over the plane and over the exponent."""
+    """Returns the figure: the map, and beside it the difference of both exponents, over the plane and the exponent."""
     from matplotlib import colors  # pylint: disable=import-outside-toplevel
     figure = pyplot.figure(figsize=(7.2, 4.4), layout="constrained")
     left, right = figure.subfigures(1, 2, width_ratios=(1.75, 1))

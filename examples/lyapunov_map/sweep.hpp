@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The plane of damping and forcing: its ends, the start and the tolerance. Host code.
+// The plane of damping and forcing: its bounds, the start and the tolerance. Host code.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ inline constexpr double k_first = 0.1, k_last = 0.5, B_first = 0, B_last = 0.8;
 inline constexpr double x_start = 1, v_start = 0.1;
 inline constexpr double tolerance = 1e-9, period = 2 * std::numbers::pi;
 
-/// Forcing and state of all, one period per phase; parameters are the caller's to set.
+/// Forcing and initial state of all instances, one period per phase; the caller sets the parameters.
 template <class Model>
 myriad::ensemble<Model> start(std::int64_t instances) {
     myriad::ensemble<Model> sweep(instances);
@@ -25,7 +25,7 @@ myriad::ensemble<Model> start(std::int64_t instances) {
     return sweep;
 }
 
-/// Linearised by hand, with the tangents that the library begins with.
+/// Linearised by hand, with the initial tangents of the library.
 inline myriad::ensemble<hand_tangent> by_hand(const myriad::ensemble<library_tangent>& same, std::int64_t transient) {
     auto sweep = start<hand_tangent>(same.size());
     sweep.parameter(hand_tangent::k) = same.parameter(forced_duffing::k);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // An epidemic with uncertain parameters as a Myriad model: the SIR equations of Kermack and McKendrick, Proc. R. Soc. A
-// 115 (1927) 700-721, in shares of the population. Each instance draws its own parameters.
+// 115 (1927) 700-721, in fractions of the population. Each instance draws its own parameters.
 #pragma once
 
 #include <myriad/model.hpp>
 #include <myriad/random.hpp>
 
-/// s are susceptible, i infectious, each for `duration` days on average and infecting R0 others in a population that is
-/// all susceptible. The infectious are most where R0 s falls through 1.
+/// s are susceptible, i infectious, each for `duration` days on average, infecting R0 others if all are susceptible.
+/// The number of infectious peaks where R0 s falls through 1.
 struct epidemic {
     static constexpr bool writes_parameters = true;
     enum state { s, i, n_state };

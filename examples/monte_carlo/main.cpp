@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A Monte Carlo study: how many are infectious at the peak of an epidemic whose parameters are uncertain, and when.
+// A Monte Carlo study: how many are infectious at the peak of an epidemic with uncertain parameters, and when.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -31,7 +31,7 @@ myriad::ensemble<epidemic> prepare(std::int64_t instances, std::int32_t seed) {
     return sweep;
 }
 
-/// Instances whose parameters are not, bit for bit, those that the host draws.
+/// Number of instances whose parameters differ in any bit from those that the host draws.
 std::int64_t drawn_differently(const myriad::ensemble<epidemic>& sweep, std::int32_t seed) {
     std::int64_t different = 0;
     // snippet: host
@@ -44,7 +44,7 @@ std::int64_t drawn_differently(const myriad::ensemble<epidemic>& sweep, std::int
     return different;
 }
 
-/// What the sample says of the distribution, and what is known.
+/// Estimates from the sample, and the exact values.
 std::vector<std::string> findings(const myriad::ensemble<epidemic>& sweep, std::int32_t seed) {
     const Eigen::ArrayXd peaks = sweep.accessory(epidemic::peak);
     const peak_distribution exact{R0_mean, R0_deviation, s_start, i_start};

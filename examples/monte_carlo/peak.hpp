@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is known of the epidemic's peak in closed form, and how a sample is compared with it. Host code.
+// The epidemic's peak in closed form, and the comparison of a sample with it. Host code.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <Eigen/Core>
 #include <myriad/random.hpp>
 
-/// s + i - log(s) / R0 is constant, so the peak, where s = 1 / R0, follows from the start alone; it grows with R0.
-/// Without growth, R0 s <= 1, the most are infectious at the start.
+/// s + i - log(s) / R0 is constant, so that the peak, where s = 1 / R0, follows from the initial values; it grows with
+/// R0. Without growth, R0 s <= 1, the peak is at the start.
 inline double exact_peak(double R0, double s, double i) { return R0 * s > 1 ? s + i - (1 + std::log(R0 * s)) / R0 : i; }
 
 /// The distribution of the peak for a normal R0.
@@ -19,8 +19,8 @@ struct peak_distribution {
     double at(double z) const { return exact_peak(R0_mean + R0_deviation * z, s, i); }
     double quantile(double p) const { return at(myriad::normal_quantile(p)); }
 
-    /// The mean of (peak - centre)^power, by the trapezoidal rule over eight standard deviations: beyond them is a
-    /// probability of 1e-15.
+    /// The mean of (peak - centre)^power, by the trapezoidal rule over eight standard deviations; the probability
+    /// beyond is 1e-15.
     double moment(int power, double centre) const {
         constexpr int parts = 16'000;
         constexpr double reach = 8, h = 2 * reach / parts;
@@ -33,7 +33,7 @@ struct peak_distribution {
     }
 };
 
-/// A number found, its expectation, and the standard deviation that it has in samples of this size.
+/// An estimate, its expectation, and its standard deviation in samples of this size.
 struct estimate {
     double found, expected, error;
     double deviation() const { return (found - expected) / error; }
@@ -48,7 +48,7 @@ inline estimate variance_of(const Eigen::ArrayXd& peaks, const peak_distribution
     return {(peaks - mean).square().mean(), variance,
             std::sqrt((exact.moment(4, mean) - variance * variance) / static_cast<double>(peaks.size()))};
 }
-/// The share of peaks below the exact quantile, which is binomial.
+/// The fraction of peaks below the exact quantile, which is binomial.
 inline estimate share_below(const Eigen::ArrayXd& peaks, const peak_distribution& exact, double p) {
     const auto n = static_cast<double>(peaks.size());
     return {static_cast<double>((peaks < exact.quantile(p)).count()) / n, p, std::sqrt(p * (1 - p) / n)};

@@ -17,14 +17,15 @@ BLUE, RED = "#10305a", "#c05020"
 
 
 def constants(comments):
-    """Mean and standard deviation of R0, the initial share of infectious people, and the exact mean and variance."""
+    """Mean and standard deviation of R0, the initial fraction of infectious people, and the exact mean and variance."""
     number = r"([-+.e\d]+)"
     found = [re.search(pattern, comments) for pattern in (
         rf"mean {number}, standard deviation {number};", rf"i\(0\) = {number},",
         rf"mean of the peak: found {number}, expected {number},",
         rf"variance of the peak: found {number}, expected {number},")]
     if not all(found):
-        raise figures.PlotError("The comments at the top of the file lack constants: run the program `monte_carlo` again")
+        raise figures.PlotError("The comments at the top of the file lack constants: "
+                                "run the program `monte_carlo` again")
     return (*map(float, found[0].groups()), float(found[1][1]), float(found[2][2]), float(found[3][2]))
 
 
@@ -36,7 +37,8 @@ def density(numpy, R0, mean, deviation, start):
 
 
 def convergence(numpy, errors):
-    """Sizes n of which there are ten disjoint samples or more; root mean square of their means' errors; number of samples."""
+    """Sizes n with at least ten disjoint samples; for each, the root mean square error of the samples' means,
+    and the number of samples."""
     sizes = 2 ** numpy.arange(max(1, int(numpy.log2(max(errors.size / 10, 1))) + 1))
     means = [errors[:errors.size // n * n].reshape(-1, n).mean(axis=1) for n in sizes]
     return sizes, numpy.array([numpy.sqrt((m ** 2).mean()) for m in means]), errors.size // sizes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sweep in chunks over solver objects, each driven by a thread of its own.
+// A sweep in chunks on several solver objects, each driven by a thread of its own.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +22,8 @@
 #include "timeline.hpp"
 #include "turns.hpp"
 
-/// The sweep in `chunks` parts. Each of the solver objects, `solvers` for each device, takes the next when it is done
-/// with its last.
+/// The sweep in `chunks` parts. Each solver object (`solvers` per device) takes the next chunk when it has finished its
+/// last.
 class chunked_sweep {
     using solver = myriad::solver<duffing, myriad::cash_karp>;
 
@@ -41,7 +41,7 @@ public:
         }
     }
 
-    /// When each step was done, in the order of their beginning.
+    /// The intervals of all steps, in the order of their beginning.
     std::vector<interval> run() {
         timeline times;
         std::vector<std::exception_ptr> failures(solvers_.size());
@@ -53,7 +53,7 @@ public:
                         work(solvers_[n], static_cast<int>(n), times);
                     } catch (...) {
                         failures[n] = std::current_exception();
-                        next_ = chunks_;  // nobody begins another
+                        next_ = chunks_;  // no thread begins another chunk
                     }
                 });
         }
@@ -68,7 +68,7 @@ public:
 
 private:
     // snippet: work
-    /// A thread for each solver object: chunk by chunk, step by step. What overlaps is the work of different solvers.
+    /// A thread per solver object: chunk by chunk, step by step. The work of different solvers overlaps.
     void work(solver& mine, int number, timeline& times) {
         for (std::int64_t chunk = next_++; chunk < chunks_; chunk = next_++) {
             const std::int64_t first = instances_ * chunk / chunks_, count = instances_ * (chunk + 1) / chunks_ - first;
@@ -109,7 +109,7 @@ private:
     std::int64_t instances_, chunks_;
     duffing_sweep::results all_;
     std::string tables_;
-    std::deque<solver> solvers_;  // they can be neither copied nor moved
+    std::deque<solver> solvers_;  // solvers can be neither copied nor moved
     std::map<std::string, turns> turns_;
     std::atomic<std::int64_t> next_{0}, failed_{0};
     std::mutex showing_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Solver objects that take turns: while one integrates, others are downloaded, written to a file and filled anew, on
-// one device or on several; and the timeline of what overlapped.
+// Solver objects that take turns: while one integrates, others are downloaded, written to a file and refilled, on one
+// device or several; with a timeline of the overlap.
 #include <cstdint>
 #include <iostream>
 #include <string>
@@ -21,7 +21,7 @@ struct {
     bool check = false;
 } own;
 
-/// Those of --devices, else that of --device.
+/// The devices of --devices, else that of --device.
 std::vector<myriad::device> chosen_devices(const myriad::device& one) {
     std::vector<myriad::device> devices;
     if (own.devices == std::vector<std::string>{"all"}) {

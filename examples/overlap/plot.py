@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the timeline that the program `overlap` recorded: what each solver object did when.
+"""Draws the timeline that the program `overlap` recorded: the steps of each solver object.
 
 Usage: plot.py CSV PNG
 
@@ -19,10 +19,11 @@ COLUMNS = ("solver", "device", "chunk", "step", "begin", "end", "kernel_seconds"
 STEPS = (("fill", "#88ccee"), ("upload", "#44aa99"), ("integrate", "#10305a"), ("download", "#ddaa33"),
          ("write", "#cc6677"))
 INTEGRATE = 2
+LEAST_VISIBLE = 0.002  # of the whole time: three pixels
 
 
 def under_way(numpy, table):
-    """Times at which something begins or ends, and how many steps are under way from then on."""
+    """Times at which a step begins or ends, and how many steps are in progress from then on."""
     t = numpy.concatenate((table["begin"], table["end"]))
     change = numpy.concatenate((numpy.ones(len(table["begin"])), -numpy.ones(len(table["end"]))))
     order = numpy.lexsort((change, t))
@@ -30,7 +31,7 @@ def under_way(numpy, table):
 
 
 def draw(pyplot, numpy, table, comments):
-    """Returns the figure: a lane for each solver object, and below how many steps are under way."""
+    """Returns the figure: a lane for each solver object, and below them the number of steps in progress."""
     solvers = sorted(set(table["solver"]))
     end = table["end"].max()
     scale, unit = (1, "s") if end >= 1 else (1e3, "ms")
@@ -53,7 +54,12 @@ def draw(pyplot, numpy, table, comments):
     lanes.tick_params(axis="y", which="both", left=False, right=False)
     lanes.invert_yaxis()
     handles = [pyplot.Rectangle((0, 0), 1, 1, color=colour) for _name, colour in STEPS]
-    lanes.legend(handles, [name for name, _colour in STEPS], ncols=len(STEPS), loc="lower center", frameon=False,
+    labels = []
+    for number, (name, _colour) in enumerate(STEPS):
+        rows = table["step"] == number
+        longest = (table["end"] - table["begin"])[rows].max(initial=0)
+        labels.append(name if longest > LEAST_VISIBLE * end else f"{name} (too short to be seen)")
+    lanes.legend(handles, labels, ncols=len(STEPS), loc="lower center", frameon=False,
                  bbox_to_anchor=(0.5, 1), fontsize=8, handlelength=1)
 
     t, running = under_way(numpy, table)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Duffing sweep in chunks: what they are filled with, what is kept of them, and the table of one.
+// The Duffing sweep in chunks: their parameters, their results, and the table of one.
 #pragma once
 
 #include <algorithm>
@@ -24,15 +24,15 @@ inline myriad::options integration(std::int64_t phases) {
             .advice = myriad::advice::off};
 }
 
-/// Damping of instance i of `instances`: the same number whatever the chunks.
+/// Damping of instance i of `instances`, independent of the chunks.
 inline double damping(std::int64_t i, std::int64_t instances) {
     return k_first +
            (k_last - k_first) * static_cast<double>(i) / static_cast<double>(std::max<std::int64_t>(instances - 1, 1));
 }
 
-/// Sets `count` instances of `part` to the instances first, first + 1, ... of the sweep.
+/// Sets the first `count` instances of `part` to the sweep's instances first, first + 1, ...
 inline void fill(myriad::ensemble<duffing>& part, std::int64_t first, std::int64_t count, std::int64_t instances) {
-    part.restart();  // a new chunk, and not further phases of the one before
+    part.restart();  // a new chunk, not further phases of the last one
     for (std::int64_t i = 0; i < count; ++i) part.parameter(duffing::k)[i] = damping(first + i, instances);
     part.shared(duffing::B) = forcing;
     part.state(duffing::x).head(count) = x_start;
@@ -40,7 +40,7 @@ inline void fill(myriad::ensemble<duffing>& part, std::int64_t first, std::int64
     part.time_domain(0, 2 * std::numbers::pi);
 }
 
-/// What is kept of every instance.
+/// The results kept for every instance.
 struct results {
     Eigen::ArrayXd x, v, x_global_max;
     Eigen::ArrayXi zeros;
@@ -58,7 +58,7 @@ struct results {
     }
 };
 
-/// The table of the instances first, first + 1, ... of the sweep.
+/// The table of the sweep's instances first, first + 1, ...
 inline void write(const std::string& name, const results& all, std::int64_t first, std::int64_t count) {
     examples::csv_file file(name);
     file.row("instance", "k", "x", "v", "x_global_max", "zeros");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When each solver object did what, on the host's clock, and how much of it happened at the same time.
+// The steps of each solver object on the host's clock, and how much of them overlapped.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-/// What is done with a chunk, in this order.
+/// The steps of a chunk, in this order.
 enum class step { fill, upload, integrate, download, write };
 
 /// Times in seconds since the timeline's start.
@@ -21,11 +21,11 @@ struct interval {
     double kernel_seconds = 0;  // the device's own, for `integrate`
 };
 
-/// May be used by several threads at once.
+/// Thread-safe.
 class timeline {
 public:
     // snippet: during
-    /// Runs `task`, which returns when it is done, and notes when.
+    /// Runs `task` and records when it began and returned.
     template <class Task>
     void during(step what, int solver, std::int64_t chunk, Task&& task) {
         const double begin = now();
@@ -35,14 +35,14 @@ public:
         intervals_.push_back({solver, chunk, what, begin, end});
     }
     // end of snippet
-    /// Adds what the device says about the solver's last integration.
+    /// Adds the device's own time for the solver's last integration.
     void set_kernel_seconds(int solver, std::int64_t chunk, double seconds) {
         const std::lock_guard lock(mutex_);
         for (interval& i : intervals_)
             if (i.solver == solver && i.chunk == chunk && i.what == step::integrate) i.kernel_seconds = seconds;
     }
 
-    /// In the order of their beginning. When no thread is at work.
+    /// In the order of their beginning. Call it when no thread is at work.
     std::vector<interval> sorted() const {
         auto all = intervals_;
         std::sort(all.begin(), all.end(), [](const interval& a, const interval& b) {
@@ -60,9 +60,9 @@ private:
     std::vector<interval> intervals_;
 };
 
-/// Seconds in which at least `least` of the intervals were under way.
+/// Seconds during which at least `least` of the intervals were in progress.
 inline double seconds_with(const std::vector<interval>& all, int least) {
-    std::vector<std::pair<double, int>> changes;  // ends before beginnings at the same time
+    std::vector<std::pair<double, int>> changes;  // at equal times, ends come before beginnings
     for (const interval& i : all) {
         changes.emplace_back(i.begin, 1);
         changes.emplace_back(i.end, -1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The timeline as a table, and in a few words.
+// The timeline as a table and as a summary.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ inline void write_timeline(examples::csv_file& file, const std::vector<interval>
     file.commit();
 }
 
-/// Says how much ran at the same time.
+/// Prints how much overlapped.
 inline void print_shares(const std::vector<interval>& all, const std::vector<myriad::device>& devices,
                          std::int64_t solvers) {
     double last = 0, sum = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Threads that take turns in the order in which they come, as a mutex does not promise.
+// Threads that take turns in the order of their arrival, which a mutex does not guarantee.
 #pragma once
 
 #include <condition_variable>
@@ -8,14 +8,14 @@
 
 class turns {
 public:
-    /// Runs `task` when all that came before are done with theirs.
+    /// Runs `task` when all earlier ones have finished.
     template <class Task>
     void take(Task&& task) {
         std::unique_lock lock(mutex_);
         const std::int64_t mine = next_++;
         changed_.wait(lock, [&] { return served_ == mine; });
         lock.unlock();
-        const end_of_turn end{*this};  // of one that failed too
+        const end_of_turn end{*this};  // ends the turn of a failed task too
         task();
     }
 

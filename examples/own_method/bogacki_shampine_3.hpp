@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A method that the library does not have, from its tableau.
+// A method that is not in the library, given by its tableau.
 #pragma once
 
 #include <myriad/tableau.hpp>
 
 // snippet: method
 /// Bogacki and Shampine's pair of orders three and two, Appl. Math. Lett. 2 (1989) 321: four stages, the last of which
-/// is the first of the next step. Without an interpolant of its own it gets the cubic Hermite polynomial, which is of
-/// its order.
+/// is the first of the next step. Without an interpolant of its own it uses the cubic Hermite polynomial, which has the
+/// same order.
 struct bogacki_shampine_3 {
     static constexpr int stages = 4;
     static constexpr int order = 3;

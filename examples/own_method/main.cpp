@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Integrates pendulums with a method of one's own, and says how its work and error compare with those of the library's:
-// the periods of pendulums dropped from rest are known in closed form.
+// Integrates pendulums with a user-defined method and compares its work and error with those of the library's: the
+// periods of pendulums dropped from rest are known in closed form.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -46,7 +46,7 @@ bool integrate(const char* name, double tolerance) {
     }
     std::printf("%-20s tolerance %.0e: error %.1e, %6.1f evaluations per instance\n", name, tolerance, worst,
                 static_cast<double>(report.rhs_evaluations) / static_cast<double>(swings.size()));
-    // a few hundred steps, each wrong by less than the tolerance, and errors of the period that grow no faster than
+    // a few hundred steps, each with an error below the tolerance, and errors of the period that grow no faster than
     // time
     return report.count(myriad::status::stopped_by_event) == swings.size() && worst <= 1000 * tolerance;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiles the kernels of the pendulum: with a method of the library and with the example's own.
+// Compiles the pendulum's kernels: with a method of the library and with the example's own.
 #include "models.hpp"
 
 #include <myriad/instantiate.hpp>

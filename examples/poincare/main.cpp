@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Poincare sections of an autonomous system: where and when orbits of Roessler's equations come back to a half plane,
-// over c.
+// Poincare sections of an autonomous system: where and when orbits of Roessler's equations return to a half plane, over
+// c.
 #include <cstdint>
 
 #include <myriad/myriad.hpp>

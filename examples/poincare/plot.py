@@ -13,16 +13,16 @@ import figure as figures  # pylint: disable=wrong-import-position
 
 COLUMNS = ("instance", "phase", "c", "x", "z", "return_time", "status")
 MAPS = ((9.0, "#c05020"), (11.0, "#3a7a4a"), (18.0, "#10305a"))  # values of c whose return maps are drawn
-MAP_WIDTH = 0.02  # of the values of c that are taken together there
+MAP_WIDTH = 0.02  # of the interval of c whose points are plotted together
 
 
 def density(axis, numpy, c, values, columns, rows):
-    """Draws how many points there are in each cell, darker where there are more; the axis covers all of them."""
+    """Draws the number of points in each cell, darker for more points; the axis covers all points."""
     low, high = figures.limits(numpy, values)
     counts, c_edges, value_edges = numpy.histogram2d(c, values, bins=(columns, rows),
                                                      range=((c.min(), c.max()), (low, high)))
     share = counts.T / max(counts.sum(axis=1).max(), 1)
-    shade = numpy.round(numpy.clip(share * rows / 6, 0, 1) ** 0.35 * 7) / 7  # few shades: a small file
+    shade = numpy.round(numpy.clip(share * rows / 6, 0, 1) ** 0.35 * 7) / 7  # few shades, for a small file
     axis.imshow(shade, origin="lower", aspect="auto", extent=(c_edges[0], c_edges[-1], value_edges[0], value_edges[-1]),
                 cmap="Greys", vmin=0, vmax=1, interpolation="none")
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Roessler's equations as a Myriad model, with the section on which his attractor is looked at. O. E. Roessler, Phys.
-// Lett. A 57 (1976) 397-398; without units.
+// Roessler's equations as a Myriad model, with a Poincare section of his attractor. O. E. Roessler, Phys. Lett. A 57
+// (1976) 397-398; without units.
 #pragma once
 
 #include <myriad/model.hpp>
 
 // snippet: model
 /// x' = -y - z, y' = x + a y, z' = b + z (x - c). With `direction::falling` and `stop_after = 1` a phase ends where the
-/// orbit comes back to the half plane y = 0, x < 0.
+/// orbit returns to the half plane y = 0, x < 0.
 struct roessler {
     enum state { x, y, z, n_state };
     enum parameter { c, n_parameter };

@@ -30,7 +30,7 @@ inline myriad::ensemble<roessler> prepare(std::int64_t instances, double first =
 // end of snippet
 
 // snippet: options
-/// Every phase begins at t = 0, so that the time at its end, which is recorded, is the time of the return.
+/// Every phase begins at t = 0, so that its recorded end time is the return time.
 inline myriad::options integration(std::int64_t transient, std::int64_t returns) {
     return {.phases = transient + returns,
             .relative_tolerance = tolerance,

@@ -26,6 +26,6 @@ int main() {
     for (int i = 0; i < x.rows(); ++i)
         for (int phase = 0; phase < x.cols(); ++phase)
             std::cout << sweep.parameter(duffing::k)[i] << ',' << x(i, phase) << '\n';
-    return std::cout.flush() ? 0 : 1;  // as where the disk is full
+    return std::cout.flush() ? 0 : 1;  // fails on a full disk, for example
 }
 // end of snippet

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The model of the README: the least that a model needs.
+// The model of the README: the minimum that a model needs.
 #pragma once
 
 // snippet: model
@@ -10,7 +10,7 @@ struct duffing {  // x'' + k x' - x + x^3 = B cos t
     enum parameter { k, n_parameter };  // every instance has its own
     enum shared { B, n_shared };        // the same for all
 
-    template <class R>  // R is a number, or a pack of numbers side by side
+    template <class R>  // R is a number, or a pack of numbers in SIMD lanes
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
         return {y[v], y[x] - y[x] * y[x] * y[x] - p[k] * y[v] + p.shared[B] * myriad::cos(t)};
     }

@@ -27,7 +27,11 @@ rows table.csv | awk -F, '
     $7 == "event_accumulation" && $3 < 0.28 { next }
     $7 != "stopped_by_event" && $7 != "stopped_by_user" { print "failed: " $0; bad = 1 }
     $1 != instance { instance = $1; first = $6; low = $4; high = $5; next }
-    { if ($4 < low) low = $4; if ($5 > high) high = $5; q = int($3 * 100 + 0.5); impacts[q] = $6 - first; swing[q] = high - low }
+    {
+        if ($4 < low) low = $4
+        if ($5 > high) high = $5
+        q = int($3 * 100 + 0.5); impacts[q] = $6 - first; swing[q] = high - low
+    }
     END {
         for (q in impacts) if (impacts[q] > 0) { if (q / 100 > last) last = q / 100 } else if (q + 0 < 755) silent++
         printf "impacts up to q = %g\n", last
@@ -41,7 +45,9 @@ rows table.csv | awk -F, '
         zero = 8.44 - 0.05 * (-slope + sqrt(slope ^ 2 - 4 * half * s0)) / (2 * half)
         printf "the equilibrium is stable from q = %.6f on, oscillations vanish at %.4f\n", limit, zero
         if (!(zero - limit < 0.015 && limit - zero < 0.015)) bad = 1
-        for (q in swing) if (q + 0 > 100 * (limit + 0.2) && swing[q] > 1e-5) { print "oscillates at q = " q / 100; bad = 1 }
+        for (q in swing) {
+            if (q + 0 > 100 * (limit + 0.2) && swing[q] > 1e-5) { print "oscillates at q = " q / 100; bad = 1 }
+        }
         exit bad
     }' || fail 'not the valve of the linearisation'
 check_small $((512 * 16)) "$header"

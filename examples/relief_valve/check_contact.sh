@@ -14,7 +14,11 @@ check_table table.csv $((240 * 64)) "$header"
 # (validation/case_studies).
 rows table.csv | awk -F, '
     $8 != "stopped_by_event" || $4 < -1e-12 { print "wrong: " $0; bad = 1 }
-    $7 > 0 { wrong = $7 - (10 - $6) / (20 * $3); if (wrong > 1e-8 || wrong < -1e-8) { print "wrong time: " $0; bad = 1 } rest[$1]++ }
+    $7 > 0 {
+        wrong = $7 - (10 - $6) / (20 * $3)
+        if (wrong > 1e-8 || wrong < -1e-8) { print "wrong time: " $0; bad = 1 }
+        rest[$1]++
+    }
     { q[$1] = $3 }
     END { for (i in q) if (q[i] < 0.0200 && !rest[i]) { print "no rest at q = " q[i]; bad = 1 } exit bad }' ||
     fail 'not the rests of the closed form'
@@ -23,6 +27,9 @@ check_plot table.csv plot_contact.py
 
 # What ends as event_accumulation without resting contact (check.sh) rests once and goes on.
 "$program" --first 0.2 --last 0.27 --instances 8 --transient 0 --phases 80 --quiet --output start.csv
-rows start.csv | awk -F, '$8 != "stopped_by_event" { bad = 1 } $7 > 0 { rests[$1] = 1 } END { for (i in rests) ++n; exit bad || n != 8 }' ||
+rows start.csv | awk -F, '
+    $8 != "stopped_by_event" { bad = 1 }
+    $7 > 0 { rests[$1] = 1 }
+    END { for (i in rests) ++n; exit bad || n != 8 }' ||
     fail 'valves with small flows do not rest'
 echo 'All checks passed.'

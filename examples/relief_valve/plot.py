@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the smallest and largest displacements of the relief valve that the program `relief_valve` computed, over the flow.
+"""Draws the smallest and largest displacements of the relief valve that the program `relief_valve` computed, over the
+flow.
 
 Usage: plot.py CSV PNG
 """
@@ -12,8 +13,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "common"
 import figure as figures  # pylint: disable=wrong-import-position
 
 COLUMNS = ("instance", "phase", "q", "y_min", "y_max", "impacts", "status")
-SEAT = 1e-6  # to which the seat is located
-STABLE_FROM = 8.491118  # the equilibrium's stability limit, which check.sh computes
+SEAT = 1e-6  # accuracy of the seat's location
+STABLE_FROM = 8.491118  # the equilibrium's stability limit, computed by check.sh
 
 
 def draw(pyplot, numpy, table, _comments):
@@ -27,7 +28,7 @@ def draw(pyplot, numpy, table, _comments):
     axis.plot(q[~impact], y_min[~impact], color="#10305a", label="smallest, in flight", **style)
     axis.plot(q[impact], y_min[impact], color="#2a8a5a", label="smallest, an impact",
               **{**style, "markersize": size + 1})
-    # the equilibrium is unstable below the stability limit: u = y + delta, q = y sqrt(u)
+    # below the stability limit the equilibrium is unstable: u = y + delta, q = y sqrt(u)
     y = numpy.linspace(0, 2.41031, 200)
     axis.plot(y * numpy.sqrt(y + 10), y, color="0.4", linewidth=0.8, linestyle=(0, (4, 3)),
               label="unstable equilibrium")

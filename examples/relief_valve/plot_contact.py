@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the maxima of the relief valve that the program `relief_valve_contact` computed, and its times at rest, over the flow.
+"""Draws the maxima of the relief valve that the program `relief_valve_contact` computed, and its times at rest, over
+the flow.
 
 Usage: plot_contact.py CSV PNG
 """

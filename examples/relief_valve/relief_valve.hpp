@@ -5,9 +5,8 @@
 
 #include <myriad/model.hpp>
 
-/// Displacement y, velocity v, pressure u; the flow q differs from instance to instance. A phase ends at a local
-/// maximum of y (event `section`, with `stop_after = 1`) or where the valve is at rest. At the seat y = 0 the velocity
-/// is reversed.
+/// Displacement y, velocity v, pressure u; the flow q differs between instances. A phase ends at a local maximum of y
+/// (event `section`, with `stop_after = 1`) or where the valve is at rest. At the seat y = 0 the velocity is reversed.
 struct relief_valve {
     static constexpr bool accessories_are_outputs = true;
     enum state { y, v, u, n_state };
@@ -29,7 +28,7 @@ struct relief_valve {
         return {s[v], s[y]};
     }
 
-    /// y_min and y_max are those of the phase, y_lowest and `impacts` count on from phase to phase.
+    /// y_min and y_max are those of the phase; y_lowest and `impacts` continue from phase to phase.
     MYRIAD_FUNCTION static void initialise(auto& lane) {
         if (lane.phase == 0) {
             lane.accessory[y_lowest] = lane.y[y];

@@ -6,12 +6,12 @@
 #include "relief_valve.hpp"
 
 // snippet: model
-/// In flight as `relief_valve`. At rest y = v = 0, so that u' = beta q; the valve opens when the net force on it, u -
-/// delta, turns positive. An impact that the valve leaves more slowly than `slowest` is its last, if the net force
-/// holds it closed for longer than the bounces to come can take.
+/// In flight like `relief_valve`. At rest y = v = 0, so that u' = beta q; the valve opens when the net force on it, u -
+/// delta, becomes positive. An impact after which it rebounds slower than `slowest` is its last, if the net force keeps
+/// it closed for longer than the remaining bounces can take.
 struct relief_valve_contact : relief_valve {
     static constexpr bool accessories_are_outputs = false;  // rhs and events read the mode
-    // those of `relief_valve`, and more behind them
+    // those of `relief_valve`, followed by further ones
     enum shared { kappa, delta, beta, restitution, rest_band, slowest, n_shared };
     enum accessory { y_min, y_max, y_lowest, rest_at, u_contact, t_contact, time_at_rest, n_accessory };
     enum integer_accessory { steps_at_rest, impacts, rests, n_integer_accessory };
@@ -25,7 +25,7 @@ struct relief_valve_contact : relief_valve {
         return {select(resting, R(0), flight[y]), select(resting, R(0), flight[v]), flight[u]};
     }
 
-    /// What does not matter in a mode has no zero in it.
+    /// Events irrelevant to a mode have no zero in it.
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto& p) {
         using myriad::select;
@@ -44,10 +44,10 @@ struct relief_valve_contact : relief_valve {
         if (event == seat) {
             relief_valve::after_event(event, lane);
             lane.y[y] = 0;                              // exactly
-            lane.integer_accessory[steps_at_rest] = 0;  // low bounces are no equilibrium
+            lane.integer_accessory[steps_at_rest] = 0;  // low bounces are not an equilibrium
             const auto closing = lane.shared[delta] - lane.y[u];
             const auto opens_in = closing / (lane.shared[beta] * lane.parameter[q]);
-            const auto bounces = 4 * lane.y[v] / ((1 - lane.shared[restitution]) * closing);  // twice what they last
+            const auto bounces = 4 * lane.y[v] / ((1 - lane.shared[restitution]) * closing);  // twice their duration
             if (!(lane.y[v] < lane.shared[slowest] && closing > 0 && 20 * bounces < opens_in)) return;
             lane.integer_accessory[rests] = 1;
             lane.y[v] = 0;

@@ -17,11 +17,10 @@ namespace relief_valve_sweep {
 inline constexpr double kappa = 1.25, delta = 10, beta = 20, restitution = 0.8, rest_band = 1e-6;
 inline constexpr double q_first = 0.2, q_last = 10;
 inline constexpr double tolerance = 1e-10, event_tolerance = 1e-6;
-// With resting contact: speed after the last impact, and the tolerance of where the seat is and of the force that opens
-// it.
+// With resting contact: speed after the last impact, and the tolerance of the seat's location and of the opening force.
 inline constexpr double slowest = 1e-4, contact_tolerance = 1e-12;
 
-/// The constants, for the head of a table.
+/// The constants, for a table's header.
 inline std::string constants() {
     return myriad::message("dimensionless; kappa = ", kappa, ", delta = ", delta, ", beta = ", beta, ", restitution ",
                            restitution, ", start (0.2, 0, 0)");
@@ -50,7 +49,7 @@ inline myriad::ensemble<relief_valve_contact> prepare_contact(std::int64_t insta
     return sweep;
 }
 
-// Impacts on the spot are counted to fewer than the 50 steps after which a valve counts as resting, so that one whose
+// The limit on impacts on the spot is below the 50 steps after which a valve counts as resting, so that one whose
 // impacts accumulate ends as event_accumulation and not as resting on its seat.
 inline myriad::options integration(std::int64_t phases) {
     return {.phases = phases,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The maximum response diagram of a forced oscillator, from accessories, and once more from dense output.
+// The maximum response diagram of a forced oscillator, from accessories, and again from dense output.
 #include <chrono>
 #include <cstdint>
 #include <iostream>
@@ -18,7 +18,7 @@ double seconds_since(clock::time_point begin) { return std::chrono::duration<dou
 int run(const examples::sweep_options& chosen, const myriad::device& device) {
     examples::csv_file file(chosen.output, 100 * static_cast<std::uintmax_t>(resonance::curves * chosen.instances));
     auto options = examples::smooth_phases(1, resonance::tolerance);
-    examples::sweep_options call = chosen;  // each call has phases of one kind
+    examples::sweep_options call = chosen;  // each call takes phases of one kind
     call.transient = 0;
 
     auto hooked = resonance::prepare<response>(chosen.instances);

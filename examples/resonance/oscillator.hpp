@@ -19,8 +19,8 @@ struct oscillator {
 };
 
 // snippet: response
-/// The same with the largest and smallest x and the integral of x^2 over all steps since the host has set them. The
-/// event, v = 0, needs no action: it makes every extremum the end of a step, and so the maximum as good as the steps.
+/// The same with the largest and smallest x and the integral of x^2 over all steps since the host last reset them. The
+/// event, v = 0, needs no action: it ends a step at every extremum, so that the maximum is as accurate as the steps.
 struct response : oscillator {
     static constexpr bool accessories_are_outputs = true;
     enum accessory { maximum, minimum, integral, x_before, v_before, n_accessory };

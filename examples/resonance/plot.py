@@ -21,7 +21,7 @@ COLOURS = ("#10305a", "#307040", "#c05020")
 
 
 def draw(pyplot, numpy, table, comments):
-    """Returns the figure: the curves above, the difference between both ways below."""
+    """Returns the figure: the curves above, the difference between the two methods below."""
     found = re.search(r"zeta = ([-\d.e+]+)", comments)
     if not found:
         raise figures.PlotError("The file does not tell zeta: run the program `resonance` again")

@@ -21,7 +21,7 @@ inline constexpr std::int64_t curves = starts * static_cast<std::int64_t>(betas.
 inline constexpr double tolerance = 1e-10, event_tolerance = 1e-8;
 inline constexpr std::int64_t samples_per_phase = 200;
 
-/// The velocity at x = 0 of a free oscillation of that frequency, by harmonic balance: omega^2 = 1 + 3/4 beta A^2.
+/// The velocity at x = 0 of a free oscillation with that frequency, by harmonic balance: omega^2 = 1 + 3/4 beta A^2.
 inline double backbone_velocity(double omega, double beta) {
     return beta > 0 && omega > 1 ? omega * std::sqrt((omega * omega - 1) / (0.75 * beta)) : 0;
 }
@@ -44,7 +44,7 @@ myriad::ensemble<Model> prepare(std::int64_t n) {
     return sweep;
 }
 
-/// Lets the maximum, the minimum and the integral begin at the present state.
+/// Resets the maximum, the minimum and the integral to the current state.
 inline void begin_response(myriad::ensemble<response>& sweep) {
     // snippet: begin
     sweep.accessory(response::maximum) = sweep.state(response::x);
@@ -64,7 +64,7 @@ inline Eigen::Array<double, Eigen::Dynamic, 3> evaluate(const myriad::ensemble<o
     found.col(1) = x.rowwise().minCoeff();
     found.col(2) = 0;
     for (Eigen::Index s = 1; s < x.cols(); ++s) {
-        // Time begins anew in every phase, whose first sample has no interval before it.
+        // Time restarts in every phase, so that its first sample has no interval before it.
         const auto interval = (t.col(s) - t.col(s - 1)).max(0);
         found.col(2) += 0.5 * interval * (x.col(s - 1).square() + x.col(s).square());
     }

@@ -43,7 +43,8 @@ rows table.csv | awk -F, '
         exit bad
     }' || fail 'wrong oscillations'
 for schedule in in_order by_cost; do
-    expect 0 '' "$program" --instances 2000 --transient 31 --device cpu:1 --schedule "$schedule" --quiet --output other.csv
+    expect 0 '' \
+        "$program" --instances 2000 --transient 31 --device cpu:1 --schedule "$schedule" --quiet --output other.csv
     cmp table.csv other.csv || fail "other results with the schedule $schedule"
 done
 check_small $((32 * 32)) "$header"

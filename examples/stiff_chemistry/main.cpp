@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the Belousov-Zhabotinsky reaction oscillates, and with which period: the Oregonator over f and epsilon.
+// Where the Belousov-Zhabotinsky reaction oscillates, and with what period: the Oregonator over f and epsilon.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace {
 namespace plane = oregonator_sweep;
 using myriad::message;
 
-/// The share of turns in which lanes would be idle if groups of neighbours went on together to the end of the slowest.
+/// The fraction of iterations in which lanes would idle if groups of neighbours waited for their slowest member.
 double idle_in_groups(const Eigen::ArrayXd& steps, Eigen::Index width) {
     double turns = 0;
     for (Eigen::Index first = 0; first < steps.size(); first += width) {

@@ -7,7 +7,7 @@
 
 // snippet: model
 /// Bromous acid x, bromide y and the oxidised catalyst z of the Belousov-Zhabotinsky reaction, all scaled; time in
-/// units of the decay of z. A phase ends where z is largest (event `maximum`, with `stop_after = 1`).
+/// units of the decay of z. A phase ends where z has its maximum (event `maximum`, with `stop_after = 1`).
 struct oregonator {
     enum state { x, y, z, n_state };
     enum parameter { f, epsilon, n_parameter };  // stoichiometric factor; slowness of x

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the periods of the Oregonator that the program `stiff_chemistry` computed, and what they cost, over f and epsilon.
+"""Draws the periods of the Oregonator that the program `stiff_chemistry` computed, and their cost, over f and epsilon.
 
 Usage: plot.py CSV PNG
 """
@@ -16,13 +16,14 @@ COLUMNS = ("instance", "f", "epsilon", "period", "z_least", "z_largest", "growth
 
 
 def draw(pyplot, numpy, table, comments):
-    """Returns the figure: the period where there is an oscillation, and the steps of every instance."""
+    """Returns the figure: the period where the system oscillates, and the steps of every instance."""
     said = re.search(r"of cycle (\d+)", comments)
     cycles = f" in {said[1]} cycles" if said else ""
     f, epsilon = numpy.unique(table["f"]), numpy.unique(table["epsilon"])
     shape = (epsilon.size, f.size)
     if table["f"].size != epsilon.size * f.size:
-        raise figures.PlotError("The rows are no complete plane of f and epsilon: run the program `stiff_chemistry` again")
+        raise figures.PlotError("The rows are no complete plane of f and epsilon: "
+                                "run the program `stiff_chemistry` again")
     oscillates = (table["period"] > 0) & (table["z_largest"] - table["z_least"] > 0.05 * table["z_largest"])
     period = numpy.where(oscillates, table["period"], numpy.nan)
     f_edges, epsilon_edges = figures.edges(numpy, f), figures.edges_of_ratios(numpy, epsilon)
@@ -33,7 +34,7 @@ def draw(pyplot, numpy, table, comments):
             (axes[0], period, "period, in decay times of the catalyst", "viridis", "Period of the oscillation"),
             (axes[1], table["steps"], f"trial steps{cycles}", "cividis", "Cost")):
         mesh = axis.pcolormesh(f_edges, epsilon_edges, values.reshape(shape), cmap=colours, rasterized=True,
-                               # a few that are not done have other periods
+                               # a few that did not finish have other periods
                                norm=LogNorm(*numpy.nanquantile(values,
                                                                (0.002, 1))) if numpy.isfinite(values).any() else None)
         if min(shape) > 1:

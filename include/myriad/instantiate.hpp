@@ -24,9 +24,10 @@ constexpr bool is_number(const char* text) { return *text >= '0' && *text <= '9'
         "depends on the flags of model files, so that the program would end in a double free: keep what needs "      \
         "Eigen in other files");
 
-/// Compiles the kernels of a model for the given methods in double precision (`_FLOAT`: in single precision):
-/// `MYRIAD_INSTANTIATE(duffing, myriad::cash_karp, myriad::tsitouras_5)`.
+/// Compiles the kernels of a model for the given methods in double precision: `MYRIAD_INSTANTIATE(duffing,
+/// myriad::cash_karp, myriad::tsitouras_5)`. It stands at namespace scope, in one source file of the program.
 #define MYRIAD_INSTANTIATE(Model, ...) MYRIAD_INSTANTIATE_EACH(Model, double, __VA_ARGS__)
+/// The same in single precision, for `ensemble<model, float>`.
 #define MYRIAD_INSTANTIATE_FLOAT(Model, ...) MYRIAD_INSTANTIATE_EACH(Model, float, __VA_ARGS__)
 
 #define MYRIAD_INSTANTIATE_EACH(Model, R, ...) \

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Configures, builds and runs the project beside this file with Myriad from one of: find_package (installed into an empty
-# folder, with a model in a shared library too), no_xsimd (the same without SIMD lanes), Debian (the package, unpacked), add_subdirectory, FetchContent, CUDA
-# (add_subdirectory with MYRIAD_ENABLE_CUDA in a project that has not that language).
+# Configures, builds and runs the project beside this file with Myriad from one of: find_package (installed into an
+# empty folder, with a model in a shared library too), no_xsimd (the same without SIMD lanes), Debian (the package,
+# unpacked), add_subdirectory, FetchContent, CUDA (add_subdirectory with MYRIAD_ENABLE_CUDA in a project that has not
+# that language).
 
 function(run_step title)
     message("== ${title}")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The kernels of the benchmarks, with budgets of what the compiler reports: one that grows past its own lets fewer
-// threads run at the same time (65536 registers per multiprocessor, in steps of eight per thread) or begins to spill.
+// The kernels of the benchmarks, with budgets for the resources that the compiler reports: one that exceeds its budget
+// lets fewer threads run at once (65536 registers per multiprocessor, in steps of eight per thread) or begins to spill.
+//
 //
 // limit: integrate_ensemble<lorenz_with<eight_thirds>, runge_kutta_4> registers 56 stack 0 spill 0
 // limit: integrate_ensemble<lorenz_with<eight_thirds>, tsitouras_5> registers 64 stack 0 spill 0

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Compiles a CUDA file and checks what ptxas reports of each kernel against limits written in the file's comments.
+"""Compiles a CUDA file and checks ptxas' report on each kernel against limits written in the file's comments.
 
 A limit is a comment line
 
@@ -28,7 +28,7 @@ from pathlib import Path
 
 @dataclass
 class Resources:
-    """What ptxas reports of one kernel."""
+    """ptxas' report on one kernel."""
 
     stack: int = 0
     spill: int = 0
@@ -45,7 +45,7 @@ class Limit:
 
 
 class WrongLimit(Exception):
-    """A limit line that cannot be understood."""
+    """A malformed limit line."""
 
 
 def read_limits(source):
@@ -160,7 +160,7 @@ def read_report(report, names=None):
         elif properties:
             current = properties.group(1)
         elif memory and kernel:
-            # A function that was not inlined is charged to the kernel above it.
+            # A function that was not inlined counts towards the kernel above it.
             target = found[current] if current in found else found[kernel]
             target.stack += int(memory.group(1))
             target.spill += int(memory.group(2)) + int(memory.group(3))
@@ -176,7 +176,8 @@ def plain(name):
 
 
 def matching(kernels, name):
-    """Names of the kernels that `name` means: itself, or all instances of the template that begin with its arguments."""
+    """Names of the kernels that match `name`: itself, or all instances of the template that begin with its
+    arguments."""
     return [kernel for kernel in kernels
             if plain(kernel) == plain(name) or ("<" not in name and kernel.split("<")[0] == name)
             or (name.endswith(">") and plain(kernel).startswith(plain(name)[:-1] + ","))]

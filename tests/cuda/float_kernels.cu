@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Single precision stays single: no double arithmetic in the kernels of float models, adaptive, with events, hooks and
-// dense output too. (Trigonometric functions are left out: CUDA's own reduction of large arguments is in double.)
+// Single precision stays single: no double arithmetic in the kernels of float models, including adaptive ones, events,
+// hooks and dense output. (Trigonometric functions are excluded: CUDA's own reduction of large arguments is in double.)
+//
 //
 // forbid: f64 in integrate_ensemble
 // limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers 48
 // limit: integrate_ensemble<bouncer, cash_karp> stack 40 spill 0
-// With 90 registers this one would spill nothing; the compiler prefers 80, with which three blocks of 256 run at a
+// With 90 registers this kernel would spill nothing; the compiler prefers 80, with which three blocks of 256 run at a
 // time.
 // limit: integrate_ensemble<bouncer, dense<tsitouras_5>> stack 64 spill 192
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The kernel body as CUDA kernels, beside kernels written by hand that do the same duties: a time domain per instance,
-// a status, counters, a step limit, and no state that is not finite.
+// The kernel body as CUDA kernels, next to hand-written kernels with the same duties: a time domain per instance, a
+// status, counters, a step limit, and no state that is not finite.
+//
 //
 // limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers_within 1.10 of lorenz_by_hand
 // limit: integrate_ensemble<duffing_plain, cash_karp> stack 0 spill 0 registers_within 1.10 of duffing_by_hand
-// limit: integrate_ensemble<duffing, cash_karp> registers 96 stack 120 spill 72
+// limit: integrate_ensemble<duffing, cash_karp> registers 104 stack 120 spill 72
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
@@ -16,7 +17,7 @@
 
 using problems::lorenz;
 
-/// Duffing with a polynomial forcing in place of the cosine, whose slow path would need a stack frame in any kernel.
+/// Duffing with a polynomial forcing instead of the cosine, whose slow path needs a stack frame in any kernel.
 struct duffing_plain : problems::duffing {
     enum parameter { k, n_parameter };
     enum shared { B, n_shared };

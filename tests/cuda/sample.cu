@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A kernel through a template and the same by hand: shows how limits are written, and that the check itself works.
+// A kernel through a template and the same by hand: shows how limits are written, and that the check works.
+//
 //
 // limit: axpy stack 0 spill 0 registers_within 1.10 of axpy_by_hand
 // limit: scale<float> stack 0 spill 0 registers 32

@@ -38,7 +38,8 @@ grep -q 'MYRIAD_INSTRUCTION_SET is "mmx"' "$work/stderr" || fail "no reason: $(c
 # A function that two objects define, and the linker keeps one of, must carry its instruction set in its name: else code
 # for AVX-512 may run on any CPU. (That of clang++ only ends the program.)
 for object in "$@"; do
-    nm -C --defined-only "$object" | awk '$2 == "W"' | grep -v 'openmp_\|instruction_set)\|__clang_call_terminate' >"$work/shared" || true
+    nm -C --defined-only "$object" | awk '$2 == "W"' |
+        grep -v 'openmp_\|instruction_set)\|__clang_call_terminate' >"$work/shared" || true
     [[ ! -s $work/shared || $object == *main.cpp* ]] || fail "$object shares functions: $(cat "$work/shared")"
 done
 echo 'All checks passed.'

@@ -16,7 +16,8 @@ case $1 in
     --without-cases) without_cases=yes && shift ;;
 esac
 file=${!#}
-command=(env LC_ALL=C "${@:1:$#-1}" -fno-diagnostics-color) # in the C locale the compiler's quotes are the same everywhere
+# In the C locale the compiler's quotes are the same everywhere.
+command=(env LC_ALL=C "${@:1:$#-1}" -fno-diagnostics-color)
 
 if [[ $without_cases ]]; then
     if ! output=$("${command[@]}" -fsyntax-only "$file" 2>&1); then

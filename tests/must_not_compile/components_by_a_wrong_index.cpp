@@ -21,8 +21,8 @@
 // case: accessory_read_by_events_that_declare_them_outputs
 // expect: no member named.*accessory
 // SPDX-License-Identifier: MIT
-// What a model may not read: beyond the last component lies another number; an enumerator of another kind would read
-// the wrong one; and accessories that are outputs are not seen.
+// Components that a model may not read: beyond the last one lies another number; an enumerator of another kind would
+// read the wrong one; and accessories that are outputs are hidden.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 

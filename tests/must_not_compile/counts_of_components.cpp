@@ -23,12 +23,12 @@
 // case: misspelt_count_of_an_unnamed_enumeration_of_accessories
 // expect: the model has no components of this kind: end their enumeration with the enumerator that counts them
 // SPDX-License-Identifier: MIT
-// A misspelt or hidden count of components would be none.
+// A misspelt or hidden count of components would count as none.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 
 #ifdef CASE_private_enumerations
-class model {  // what a class begins with is private
+class model {  // members of a class are private by default
 #else
 struct model {
 #endif
@@ -55,7 +55,7 @@ struct model {
 #ifdef CASE_misspelt_count_of_events
     enum event { c, n_events };
 #endif
-#ifdef CASE_enumeration_class_of_parameters  // whose enumerators are not members of the model
+#ifdef CASE_enumeration_class_of_parameters  // its enumerators are not members of the model
     enum class parameter { k, n_parameter };
 #endif
 

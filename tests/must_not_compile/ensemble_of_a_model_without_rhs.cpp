@@ -1,6 +1,6 @@
 // expect: the model has no right-hand side: give it
 // SPDX-License-Identifier: MIT
-// The ensemble says so too, where no kernel is compiled.
+// The ensemble reports this too, where no kernel is compiled.
 #include "myriad/myriad.hpp"
 
 struct decay {

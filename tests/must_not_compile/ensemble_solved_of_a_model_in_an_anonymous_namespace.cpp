@@ -1,6 +1,6 @@
 // expect: the model is in an anonymous namespace.*move it out
 // SPDX-License-Identifier: MIT
-// The file that solves says so too.
+// The file that calls solve reports this too.
 #include "myriad/myriad.hpp"
 
 namespace {

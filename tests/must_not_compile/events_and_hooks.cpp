@@ -32,7 +32,7 @@
 // case: time_written_by_a_hook
 // expect: read-only|returns a const value|const-qualified
 // SPDX-License-Identifier: MIT
-// Events and hooks that the loop cannot call, and what a hook may not write.
+// Events and hooks that the loop cannot call, and writes that hooks may not make.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 
@@ -65,13 +65,13 @@ struct decay {
     }
 #endif
 
-#ifdef CASE_after_event_with_a_wrong_signature  // it is not told which event it was
+#ifdef CASE_after_event_with_a_wrong_signature  // it does not receive the event's number
     MYRIAD_FUNCTION static void after_event(auto&) {}
 #endif
 #ifdef CASE_after_event_without_events  // nothing would ever call it
     MYRIAD_FUNCTION static void after_event(int, auto&) {}
 #endif
-#ifdef CASE_initialise_with_a_wrong_signature  // a phase cannot be ended where it begins
+#ifdef CASE_initialise_with_a_wrong_signature  // a phase cannot end in initialise
     MYRIAD_FUNCTION static myriad::action initialise(auto&) { return myriad::action::end_phase; }
 #endif
 #ifdef CASE_finalise_with_a_wrong_signature
@@ -83,7 +83,7 @@ struct decay {
 #ifdef CASE_after_step_with_a_wrong_signature
     MYRIAD_FUNCTION static void after_step(double, auto&) {}
 #endif
-#ifdef CASE_generic_after_step_that_returns_an_action  // which is for one instance; a pack's hook returns a mask
+#ifdef CASE_generic_after_step_that_returns_an_action  // an action is for one instance; a pack's hook returns a mask
     template <class R>
     MYRIAD_FUNCTION static myriad::action after_step(auto&) {
         return myriad::action::proceed;
@@ -96,7 +96,7 @@ struct decay {
     }
 #endif
 
-// What is not declared as written is not stored, and the time is the integrator's.
+// Members not declared as written are not stored, and the time belongs to the integrator.
 #ifdef CASE_parameter_written_without_declaring_it
     MYRIAD_FUNCTION static void finalise(auto& lane) { lane.parameter[k] = 2; }
 #endif

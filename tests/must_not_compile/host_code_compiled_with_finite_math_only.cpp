@@ -1,7 +1,7 @@
 // expect: Myriad is compiled with -ffast-math
 // flags: -ffinite-math-only
 // SPDX-License-Identifier: MIT
-// What was never set is NaN, and would not be found.
+// Values never set are NaN, and would not be found.
 #include "myriad/myriad.hpp"
 
 int main() {}

@@ -31,7 +31,7 @@
 // case: method_in_an_anonymous_namespace
 // expect: the method is in an anonymous namespace.*move it out
 // SPDX-License-Identifier: MIT
-// Methods whose tableau is not what they say of it.
+// Methods whose tableau contradicts their claims.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 
@@ -52,7 +52,7 @@ struct wrong {
 struct wrong : myriad::cash_karp {
     static constexpr int stages = 5;
 };
-#elif defined CASE_method_without_error_weights                // a method that is to choose its steps needs an estimate
+#elif defined CASE_method_without_error_weights                // a method that chooses its steps needs an estimate
 struct wrong : myriad::runge_kutta_4 {
     static constexpr int embedded_order = 3;
 };
@@ -72,7 +72,7 @@ struct wrong : myriad::cash_karp {
         return t;
     }
 };
-#elif defined CASE_method_of_order_five_that_claims_six        // orders above five are looked at, too
+#elif defined CASE_method_of_order_five_that_claims_six        // orders above five are checked too
 struct wrong : myriad::tsitouras_5 {
     static constexpr int order = 6;
 };
@@ -81,7 +81,8 @@ struct wrong : myriad::cash_karp {
     static constexpr int embedded_order = 5;
 };
 #elif defined CASE_method_that_wrongly_claims_first_same_as_last
-// The new state would be the argument of the last stage, at seven eighths of the step: 0.057 off where 3e-8 is right.
+// The new state would be the argument of the last stage, at seven eighths of the step: an error of 0.057 instead of
+// 3e-8.
 struct wrong : myriad::cash_karp {
     static constexpr bool first_same_as_last = true;
 };
@@ -102,7 +103,7 @@ struct wrong : myriad::dormand_prince_5 {
         return myriad::dormand_prince_5::interpolant_weight(stage, power) + (stage == 3 && power == 2 ? 0.001 : 0.0);
     }
 };
-#elif defined CASE_method_in_an_anonymous_namespace  // every file has a method of that name of its own
+#elif defined CASE_method_in_an_anonymous_namespace  // each file would have a method of its own with that name
 namespace {
 struct wrong : myriad::runge_kutta_4 {};
 }  // namespace

@@ -1,7 +1,7 @@
 // expect: Myriad is compiled with -ffast-math
 // flags: -ffast-math
 // SPDX-License-Identifier: MIT
-// Steps that end in NaN would be taken for good ones.
+// Steps that end in NaN would count as good.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 

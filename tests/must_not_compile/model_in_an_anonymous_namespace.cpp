@@ -1,6 +1,6 @@
 // expect: the model is in an anonymous namespace.*move it out
 // SPDX-License-Identifier: MIT
-// Every file has a model of that name of its own.
+// Each file would have a model of its own with that name.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 

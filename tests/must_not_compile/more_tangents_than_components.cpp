@@ -1,6 +1,6 @@
 // expect: a model of n components has from 1 to n independent tangent vectors
 // SPDX-License-Identifier: MIT
-// A third vector in a plane is none of its own.
+// A third vector in a plane is not independent.
 #include "myriad/instantiate.hpp"
 #include "myriad/kernel/model/tangent.hpp"
 #include "myriad/model.hpp"

@@ -17,7 +17,7 @@
 // case: reductions_without_observe
 // expect: a model that observes has all three of
 // SPDX-License-Identifier: MIT
-// What cannot be observed or reduced.
+// Quantities that cannot be observed or reduced.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 
@@ -34,12 +34,12 @@ struct decay {
     static constexpr myriad::reduction reductions[] = {{n_observed, over::maximum, largest}};
 #elif defined CASE_reduction_with_accessory_and_quantity_exchanged
     static constexpr myriad::reduction reductions[] = {{largest, over::maximum, height}};
-#elif defined CASE_time_of_a_maximum_without_the_maximum  // the largest value so far is kept in its accessory
+#elif defined CASE_time_of_a_maximum_without_the_maximum  // its accessory stores the largest value so far
     static constexpr myriad::reduction reductions[] = {{height, over::time_of_maximum, at}};
 #elif defined CASE_two_reductions_into_one_accessory      // one would overwrite the other
     static constexpr myriad::reduction reductions[] = {{height, over::maximum, largest},
                                                        {height, over::minimum, largest}};
-#elif !defined CASE_observe_without_reductions            // what is observed would go nowhere
+#elif !defined CASE_observe_without_reductions            // the observed quantities would go nowhere
     static constexpr myriad::reduction reductions[] = {{height, over::maximum, largest}};
 #endif
 

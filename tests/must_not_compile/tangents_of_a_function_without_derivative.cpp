@@ -1,6 +1,6 @@
 // expect: no matching function for call to .sin
 // SPDX-License-Identifier: MIT
-// Functions that take plain numbers have no derivative: no tangent can do without it.
+// Functions that take plain numbers have no derivative, which tangents need.
 #include <cmath>
 
 #include "myriad/instantiate.hpp"

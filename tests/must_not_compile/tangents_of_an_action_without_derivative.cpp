@@ -1,6 +1,6 @@
 // expect: cannot convert .*dual<double>.* to .const double|no viable conversion from .*dual<double>
 // SPDX-License-Identifier: MIT
-// An action that takes the state for a plain number loses the derivative with which it moves the tangents.
+// An action that converts the state to a plain number loses the derivative that moves the tangents.
 #include "myriad/instantiate.hpp"
 #include "myriad/kernel/model/tangent.hpp"
 #include "myriad/model.hpp"

@@ -45,7 +45,7 @@ struct decay {
 };
 using ensemble = myriad::ensemble<decay>;
 
-// An enumerator of another kind is a mix-up, even where its number fits.
+// An enumerator of another kind is a mistake, even if its number fits.
 #ifdef CASE_state_asked_for_by_another_enumerator
 auto look(ensemble& sweep) { return sweep.state(decay::k); }
 #endif
@@ -71,7 +71,7 @@ auto look(const ensemble& sweep) { return sweep.samples().state(decay::k); }
 auto look(const myriad::report<decay, double>& report) { return report.records.state(decay::k); }
 #endif
 
-// Which enumerations a model has inherited cannot be told; those that it has are its own.
+// A model's inherited enumerations cannot be detected; the declared ones are its own.
 #ifdef CASE_shared_inherited_beside_an_enumeration_declared_anew
 struct limited : decay {
     enum shared { limit = decay::n_shared, n_shared };
@@ -79,7 +79,7 @@ struct limited : decay {
 auto look(myriad::ensemble<limited>& sweep) { return sweep.shared(limited::force); }
 #endif
 
-// A map of numbers does not outlive what holds them.
+// A map of numbers must not outlive their owner.
 ensemble made() { return ensemble(10); }
 #ifdef CASE_state_of_an_ensemble_that_is_gone
 double largest() {

@@ -11,7 +11,7 @@
 // case: jacobian_of_the_wrong_shape
 // expect: jacobian has a wrong signature: it must be
 // SPDX-License-Identifier: MIT
-// A value that is missing would be zero, and one too many has no component.
+// A missing value would be zero, and an extra one has no component.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A program that knows a third model of that name, with MYRIAD_TEST_STATES states.
+// A program that declares a third model with that name, with MYRIAD_TEST_STATES states.
 #include <iostream>
 
 #include <myriad/myriad.hpp>

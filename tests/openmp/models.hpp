@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Models for the tests of teams of threads: one of many states, one whose hooks throw, one that divides and takes
+// Models for the tests of teams of threads: one with many states, one whose hooks throw, one that divides and takes
 // roots.
 #pragma once
 

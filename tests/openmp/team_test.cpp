@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Teams of threads: no more than there is work for and than the system has, in a child process too, on stacks that
-// suffice and in a floating-point environment of their own; and what a model's function throws.
+// Teams of threads: no more than there is work for or than the system allows, in a child process too, on sufficient
+// stacks and in a floating-point environment of their own; and exceptions from a model's function.
 #include <atomic>
 #include <cfenv>
 #include <cstdint>
@@ -102,7 +102,7 @@ TEST_CASE("threads that the system does not have are done without") {
     auto e = rings(10'000), expected = rings(10'000);
     myriad::solve<runge_kutta_4>(device::cpu(1), expected, by_tenths);
     int threads = 0;
-    std::thread caller([&] {  // for which OpenMP has no threads yet
+    std::thread caller([&] {  // a thread for which OpenMP has no threads yet
         rlimit before{};
         getrlimit(RLIMIT_AS, &before);
         std::ifstream file("/proc/self/statm");
@@ -137,7 +137,7 @@ TEST_CASE(
             ++(std::this_thread::get_id() == me ? told_here : told_elsewhere);
         };
         const auto report = myriad::solve<runge_kutta_4>(device::cpu(4), e, o);
-        auto large = roots(100'000);  // which is checked and counted by several threads
+        auto large = roots(100'000);  // several threads check and count it
         large.time_domain(0, 1e-6);
         const bool all = myriad::solve<cash_karp>(device::cpu(2), large).count(status::success) == large.size();
         const bool told = told_here > 0 && told_elsewhere == 0;

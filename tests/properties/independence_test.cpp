@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The result of an instance depends on nothing but the instance: not on the pack size, the lane, the neighbours, the
-// order and size of the ensemble, the threads, or how its phases are split into calls. All comparisons are of bits.
+// The result of an instance depends only on the instance: not on the pack size, the lane, the neighbours, the order and
+// size of the ensemble, the threads, or the division of its phases into calls. All comparisons are of bits.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -128,7 +128,7 @@ void check_pack_sizes(int first_batches) {
 
 }  // namespace
 
-// From 0 where the model has + - * / and sqrt only; elementary functions are the C library's in a scalar lane.
+// From 0 if the model has only + - * / and sqrt; a scalar lane takes elementary functions from the C library.
 TEST_CASE("an impact model gives the same bits in a scalar lane and in packs of every size") {
     check_pack_sizes<bouncer, myriad::cash_karp, double>(0);
 }
@@ -143,7 +143,7 @@ TEST_CASE("a model with elementary functions gives the same bits in packs of eve
 }
 
 TEST_CASE("an instance whose steps end at events has the same bits beside any others") {
-    // cash_karp computes the first slope of every step anew, which one lane alone may round otherwise than a pack.
+    // cash_karp recomputes the first slope of every step, which a single lane may round differently from a pack.
     const auto together = numbers(0, 203);
     auto all = make<mixed, double>(together);
     myriad::solve<myriad::cash_karp>(tests::test_device(1), all, settings(3));
@@ -193,7 +193,7 @@ TEST_CASE("splitting phases into calls changes no bit of any result") {
             options o = settings(6);
             o.phase_time = time;
             o.phase_step = step;
-            // A section ends each phase, so that there is something left of a carried-on domain.
+            // A section ends each phase, so that part of a carried-on domain remains.
             o.events = {{myriad::direction::falling, 1e-8, 2}, {}};
             auto whole = make<bouncer, double>(numbers(0, 100));
             myriad::solve<myriad::cash_karp>(tests::test_device(2), whole, o);
@@ -225,7 +225,7 @@ TEST_CASE("neighbours that are not finite or huge change no bit of any result") 
     for (std::int64_t i = 0; i < 96; ++i) {
         if (i % 3 != 1) REQUIRE(bits_of(mixed_in, i) == bits_of(clean, i));
         for (int c = 0; c < 2; ++c) {
-            // what went in as not finite stays as it was; nothing else may become so
+            // non-finite inputs stay as they were; nothing else may become non-finite
             if (mixed_in.status(i) != myriad::status::invalid_input) REQUIRE(std::isfinite(mixed_in.state(c)(i)));
         }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiles the kernels of the models whose results must depend on nothing but the instance.
+// Compiles the kernels of the models whose results must depend only on the instance.
 #include "tests/properties/models.hpp"
 
 #include <myriad/instantiate.hpp>

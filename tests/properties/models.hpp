@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The models whose results must not depend on anything but the instance: one with events, reductions and an impact law
-// of + - * / and sqrt only, one with events, hooks and elementary functions, and one without any hook.
+// The models whose results must depend only on the instance: one with events, reductions and an impact law with only +
+// - * / and sqrt, one with events, hooks and elementary functions, and one without any hook.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -52,7 +52,7 @@ struct bouncer {
     }
 };
 
-/// A forced pendulum with a stop, and functions of all kinds; also shaped like a bubble: a power of the state.
+/// A forced pendulum with a stop and functions of all kinds; also bubble-like, with a power of the state.
 struct mixed {
     enum state { q, w, n_state };
     enum parameter { f, n_parameter };
@@ -73,7 +73,7 @@ struct mixed {
     }
     template <class R>
     MYRIAD_FUNCTION static void after_step(auto& lane) {
-        using myriad::exp, myriad::pow;  // not in rhs, which is compiled once for each stage
+        using myriad::exp, myriad::pow;  // not in rhs, which is compiled once per stage
         const R value =
             lane.y[q] + R(0.01) * pow(R(2) + lane.y[q] * lane.y[q], R(-1.7)) - R(0.01) * exp(-lane.y[w] * lane.y[w]);
         lane.accessory[q_max] = myriad::max(lane.accessory[q_max], value);

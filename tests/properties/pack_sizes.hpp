@@ -7,7 +7,7 @@
 
 namespace properties {
 
-/// Whether packs of three and four batches are compiled too. With events that takes minutes, so nightly.
+/// Whether packs of three and four batches are compiled too. With events that takes minutes, so only nightly.
 #if defined(MYRIAD_NIGHTLY)
 template <class Model>
 inline constexpr bool compiles_large_packs = true;
@@ -16,7 +16,7 @@ template <class Model>
 inline constexpr bool compiles_large_packs = !myriad::detail::has_events<Model>;
 #endif
 
-/// As the backend does it, but with `batches` batches per pack; 0: one instance at a time.
+/// Like the backend, but with `batches` batches per pack; 0: one instance at a time.
 template <class Model, class Method, class R>
 myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail::kernel_arguments<Model, R>& arguments,
                                               const myriad::detail::run_options& options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The body of run_with_packs, for the files that instantiate it, one per model so that they compile side by side.
+// The body of run_with_packs, for the files that instantiate it: one per model, so that they compile in parallel.
 #pragma once
 
 #include <myriad/instantiate.hpp>
@@ -9,7 +9,7 @@
 
 namespace properties {
 
-/// The size that the backend takes by itself is its own kernel, compiled elsewhere.
+/// The backend's default size has its own kernel, compiled elsewhere.
 template <class Model, class Method, class R, int batches>
 myriad::detail::run_statistics run_with(const myriad::detail::kernel_arguments<Model, R>& arguments,
                                         const myriad::detail::run_options& options) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// End values computed in quadruple precision or known in closed form, for every method: errors within what the
-// tolerance implies, and falling with it.
+// End values computed in quadruple precision or known in closed form, for every method: errors within the bound that
+// the tolerance implies, decreasing with it.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -31,9 +31,9 @@ struct reference {
     std::vector<double> start;
     double t_end;
     std::vector<double> end;
-    /// How much an error of one step may have grown by the end: the largest norm of dy(t_end)/dy(t) times the scale
-    /// max(1, |y(t)|) of the tolerance, from the variational equation (0.1 % accurate) or, for A1 to A4, in closed
-    /// form.
+    /// The factor by which an error of one step may have grown by the end: the largest norm of dy(t_end)/dy(t) times
+    /// the scale max(1, |y(t)|) of the tolerance, from the variational equation (0.1 % accurate) or, for A1 to A4, in
+    /// closed form.
     double growth;
     std::vector<double> parameters = {};
 };
@@ -60,8 +60,8 @@ struct result {
     }
 };
 
-/// Adaptive methods. Every step adds an error below the tolerance, since the solution that goes on is better than the
-/// one that is estimated; rounding adds half an ulp a step. In the end the error is proportional to the tolerance.
+/// Adaptive methods. Every step adds an error below the tolerance, since the solution is more accurate than the one
+/// whose error is estimated; rounding adds half an ulp a step. In the end the error is proportional to the tolerance.
 template <class Model>
 void check_tolerances(const reference<Model>& r) {
     each_adaptive_method([&]<class Method> {
@@ -70,14 +70,14 @@ void check_tolerances(const reference<Model>& r) {
             const result<Method, Model> run(r, compare::with_tolerance(tolerance, 0.01));
             CAPTURE(tolerance, run.steps, run.error);
             CHECK(run.error <= r.growth * run.steps * (tolerance + eps));
-            // In proportion, give or take: errors of one sign may meet errors of the other.
+            // Roughly in proportion: errors of one sign may meet errors of the other.
             if (first == 0) first = run.error;
             CHECK(run.error <= 10 * (tolerance / 1e-5) * first + r.growth * run.steps * eps);
         }
     });
 }
 
-/// Fixed steps. The difference of two step sizes tells the error of the finer one, 1/15 of it for order four, up to a
+/// Fixed steps. The difference of two step sizes gives the error of the finer one, 1/15 of it for order four, up to a
 /// term in h; and halving the step divides the error by 16.
 template <class Model>
 void check_fixed_steps(const reference<Model>& r, double h) {
@@ -90,16 +90,16 @@ void check_fixed_steps(const reference<Model>& r, double h) {
     for (std::size_t c = 0; c < r.end.size(); ++c)
         difference = std::max(difference, std::abs(coarse.end[c] - fine.end[c]));
     CAPTURE(h, coarse.error, fine.error, difference);
-    REQUIRE(fine.error > 100 * eps);  // clear of rounding, or it tells nothing
+    REQUIRE(fine.error > 100 * eps);  // clear of rounding, or it proves nothing
     CHECK(std::abs(fine.error / (difference / 15) - 1) < 0.1);
     CHECK(std::abs(std::log2(coarse.error / fine.error) - 4) < 0.15);
     CHECK(std::abs(fine.steps - std::ceil(r.t_end / o.step - 1e-6)) < 0.5);
 }
 
-/// The device under test against the CPU. With fixed steps both do the same work, and differ by rounding: that of fused
-/// or separate products in the some ten operations behind a component's step, each within half an ulp. Step sizes that
-/// differ in the fifth digit are as good as each other: results differ by no more than twice their error, and a step is
-/// gained or lost here and there.
+/// The device under test against the CPU. With fixed steps both do the same work and differ by rounding: that of fused
+/// or separate products in some ten operations per component and step, each within half an ulp. Step sizes that differ
+/// in the fifth digit are equally good: results differ by at most twice their error, and the step count may change
+/// slightly.
 template <class Model>
 void check_backends(const reference<Model>& r, double h) {
     const auto difference = [](const std::vector<double>& a, const std::vector<double>& b) {
@@ -166,8 +166,8 @@ void check_turning_time(direction wanted, std::int64_t count, double expected) {
         const double error =
             std::abs(turning_time<Method>(wanted, count, compare::with_tolerance(tolerance, 1e-3), steps) - expected);
         CAPTURE(tolerance, steps, error);
-        // An error of the state grows by 3.3 at most (as above), and is an error in time where divided by the
-        // acceleration 9.8 sin 0.05 = 0.49 at the turning point, as is the tolerance of the event.
+        // An error of the state grows by at most 3.3 (as above), and becomes an error in time when divided by the
+        // acceleration 9.8 sin 0.05 = 0.49 at the turning point, as does the event tolerance.
         CHECK(error <= (3.3 * steps * (tolerance + eps) + 1e-13) / 0.489);
         if (before > 0) CHECK(error < 0.1 * before + (3.3 * steps * eps + 1e-13) / 0.489);
         before = error;
@@ -247,8 +247,7 @@ TEST_CASE("runge_kutta_4 finds the pendulum's period with order four") {
     const double coarse = turning_time<runge_kutta_4>(direction::falling, 1, o, steps);
     o.step = 0.02;
     const double fine = turning_time<runge_kutta_4>(direction::falling, 1, o, steps);
-    // The last step is cut to the event, which disturbs the order by the part of the error that it is: one step in
-    // fifty.
+    // The last step is shortened to the event, which disturbs the order by its share of the error: one step in fifty.
     CHECK(std::abs(std::log2(std::abs(coarse - period) / std::abs(fine - period)) - 4) < 0.3);
     o.step = 0.001;
     // error 20^4 times smaller than that of the fine one

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stiff problems with end values computed in quadruple precision: errors within what the tolerance implies, and falling
-// with it; Robertson's sum is kept.
+// Stiff problems with end values computed in quadruple precision: errors within the bound that the tolerance implies,
+// decreasing with it; Robertson's sum is conserved.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,9 +26,9 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 struct reference {
     double t_end;
     std::vector<double> end;
-    /// How much an error of one step may have grown by the end, in each component, in units of the tolerance:
-    /// max over t of sum_j |dy_c(t_end)/dy_j(t)| s_j(t), with s = max(atol / tolerance, |y(t)|). By differences of
-    /// solutions from perturbed states along the trajectory (1 % accurate), rounded up.
+    /// The factor by which an error of one step may have grown by the end, per component, in units of the tolerance:
+    /// max over t of sum_j |dy_c(t_end)/dy_j(t)| s_j(t), with s = max(atol / tolerance, |y(t)|). From differences of
+    /// solutions with states perturbed along the trajectory (1 % accurate), rounded up.
     std::vector<double> growth;
 };
 
@@ -60,8 +60,8 @@ ensemble<Model> run(const reference& r, double tolerance, const std::vector<doub
     return e;
 }
 
-/// Every step adds an error below the tolerance, as the solution that goes on is better than the one that is estimated.
-/// Less of it at a finer tolerance: ten times at least, for one that is a hundred times finer.
+/// Every step adds an error below the tolerance, as the solution is more accurate than the one whose error is
+/// estimated. The error decreases with the tolerance: at least tenfold for a tolerance a hundred times finer.
 template <class Method, class Model>
 void check(const reference& r, const std::vector<double>& tolerances, const std::vector<double>& start,
            const std::vector<double>& scale) {
@@ -88,9 +88,9 @@ void check_robertson(const reference& r, const std::vector<double>& tolerances) 
     check<Method, stiff::robertson>(r, tolerances, {1, 0, 0}, robertson_scale);
 }
 
-/// The columns of J sum up to zero, and then so do the stages, but for rounding: that of each addition to the state,
-/// half an ulp of at most one in three components, and those of the stages, which the coefficients magnify a hundred
-/// times, proportional to the changes of the state, three in all.
+/// The columns of J sum to zero, and so do the stages, except for rounding: that of each addition to the state, half an
+/// ulp of at most one in three components, and that of the stages, magnified a hundred times by the coefficients and
+/// proportional to the changes of the state, three in all.
 template <class Method>
 void check_sum(const reference& r, double tolerance) {
     const auto e = run<Method, stiff::robertson>(r, tolerance, {1, 0, 0}, robertson_scale);

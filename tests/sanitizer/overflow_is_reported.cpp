@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads behind the end of an array: the address sanitizer must say so.
+// Reads past the end of an array: the address sanitizer must report it.
 #include <cstdio>
 #include <vector>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Threads add to one number without synchronisation: the thread sanitizer must say so.
+// Threads add to one number without synchronisation: the thread sanitizer must report it.
 #include <cstdio>
 
 int main() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the OpenMP backend may use, free of races: atomic counter, critical section, reduction, omp atomic, and data
-// that one parallel region writes and the next reads. The thread sanitizer must stay silent.
+// Constructs that the OpenMP backend may use, free of races: atomic counter, critical section, reduction, omp atomic,
+// and data written in one parallel region and read in the next. The thread sanitizer must stay silent.
 #include <atomic>
 #include <cstdio>
 #include <vector>

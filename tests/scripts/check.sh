@@ -13,7 +13,8 @@ expect() {
     shift 3
     output=$("$@" 2>&1) || actual=$?
     if ((actual != status)) || ! grep -qE -- "$pattern" <<<"$output"; then
-        printf 'FAILED %s: exit status %d (expected %d), output (expected %s):\n%s\n' "$name" "$actual" "$status" "$pattern" "$output"
+        printf 'FAILED %s: exit status %d (expected %d), output (expected %s):\n%s\n' \
+            "$name" "$actual" "$status" "$pattern" "$output"
         failures=$((failures + 1))
     else
         printf 'ok     %s\n' "$name"
@@ -24,7 +25,7 @@ expect() {
 # shellcheck disable=SC2317 # called through expect
 in_lib() { bash -c "set -euo pipefail; source scripts/lib.sh; $1"; }
 
-scripts=(scripts/*.sh .ci/run tests/scripts/check.sh tests/must_not_compile/check.sh)
+scripts=(scripts/*.sh .ci/run tests/scripts/check.sh tests/must_not_compile/check.sh tests/start_page/run.sh)
 for script in "${scripts[@]}"; do
     expect "$script is valid bash" 0 '' bash -n "$script"
 done
@@ -44,7 +45,8 @@ if git rev-parse --verify --quiet HEAD >/dev/null 2>&1; then
     copied=$work/copy
     git clone --quiet --no-hardlinks . "$copied"
     git ls-files -co --exclude-standard | while read -r file; do
-        if [[ -f $file ]]; then install -D --mode="$(stat -c %a "$file")" "$file" "$copied/$file"; else rm -f "$copied/$file"; fi
+        rm -f "$copied/$file"
+        if [[ -f $file ]]; then install -D --mode="$(stat -c %a "$file")" "$file" "$copied/$file"; fi
     done
     copy_git() { git -C "$copied" -c user.name=tester -c user.email=tester@example.invalid "$@"; }
     copy_git add --all
@@ -52,7 +54,8 @@ if git rev-parse --verify --quiet HEAD >/dev/null 2>&1; then
     expect "release.sh --dry-run checks and packs" 0 'myriad-[0-9.]+\.tar\.gz' "$copied/scripts/release.sh" --dry-run
     expect "release.sh makes no tag then" 0 '^$' copy_git tag --list 'v*'
     sed -i 's/^version: .*/version: 99.0.0/' "$copied/CITATION.cff"
-    expect "release.sh refuses what is not committed" 1 'not committed:.*|CITATION.cff' "$copied/scripts/release.sh" --dry-run
+    expect "release.sh refuses what is not committed" 1 'not committed:.*|CITATION.cff' \
+        "$copied/scripts/release.sh" --dry-run
     copy_git commit --quiet --all --message "Another version"
     expect "release.sh refuses versions that differ" 1 'CITATION.cff says 99.0.0' "$copied/scripts/release.sh" --dry-run
 fi
@@ -60,7 +63,8 @@ expect "all files agree on the version" 0 'agree on version' scripts/version.py 
 expect "format.sh --help" 0 'Usage: scripts/format.sh' scripts/format.sh --help
 expect "format.sh refuses an unknown option" 2 "Unknown option '--now'" scripts/format.sh --now
 printf 'int  wrong ( );\n' >"$work/wrong.cpp"
-expect "format.sh finds a file that is not formatted" 1 'wrong.cpp|Formatting not checked' scripts/format.sh --required "$work/wrong.cpp"
+expect "format.sh finds a file that is not formatted" 1 'wrong.cpp|Formatting not checked' \
+    scripts/format.sh --required "$work/wrong.cpp"
 printf '# %0200d\n' 0 >"$work/long.py"
 expect "format.sh finds a line that is too long" 1 'long.py:1: 202 columns' scripts/format.sh "$work/long.py"
 expect "validate.sh --help" 0 'Usage: scripts/validate.sh' scripts/validate.sh --help
@@ -68,12 +72,24 @@ expect "validate.sh refuses an unknown device" 2 "no device 'abacus'" scripts/va
 expect "case_studies.sh --help" 0 'Usage: scripts/case_studies.sh' scripts/case_studies.sh --help
 expect "case_studies.sh refuses an unknown program" 2 "no case study 'abacus'" scripts/case_studies.sh --only abacus
 expect "case_studies.sh refuses an unknown device" 2 "no device 'abacus'" scripts/case_studies.sh --device abacus
+expect "docs.sh --help" 0 'Usage: scripts/docs.sh' scripts/docs.sh --help
+expect "docs.sh refuses an unknown option" 2 "Unknown option '--quick'" scripts/docs.sh --quick
+mkdir "$work/site"
+printf '<a href="#here">x</a><a href="b.html#gone">y</a><img src="c.png"><p id="here">' >"$work/site/a.html"
+printf '<p id="there">' >"$work/site/b.html"
+expect "check_site.py finds an anchor that is not there" 1 'b.html#gone has no such anchor' \
+    scripts/check_site.py "$work/site"
+expect "check_site.py finds an image that is not there" 1 'c.png is not there' scripts/check_site.py "$work/site"
+expect "check_site.py counts what is broken" 1 '2 pages, 3 links within the site, 2 of them broken' \
+    scripts/check_site.py "$work/site"
+expect "check_site.py refuses an empty folder" 1 '0 pages' scripts/check_site.py "$work/none"
 expect "quickstart.sh --help" 0 'Usage: scripts/quickstart.sh' scripts/quickstart.sh --help
 expect "quickstart.sh refuses an unknown option" 2 "Unknown option 'now'" scripts/quickstart.sh now
 
-printf '%s\n' '1/3 Test #1: a .......   Passed    0.01 sec' '100% tests passed, 0 tests failed out of 3' >"$work/good.log"
+none_failed='100% tests passed, 0 tests failed out of 3'
+printf '%s\n' '1/3 Test #1: a .......   Passed    0.01 sec' "$none_failed" >"$work/good.log"
 printf '%s\n' '67% tests passed, 1 tests failed out of 3' >"$work/bad.log"
-printf '%s\n' '2/3 Test #2: b .......***Skipped   0.01 sec' '100% tests passed, 0 tests failed out of 3' >"$work/skipped.log"
+printf '%s\n' '2/3 Test #2: b .......***Skipped   0.01 sec' "$none_failed" >"$work/skipped.log"
 printf '%s\n' 'No tests were found!!!' >"$work/none.log"
 expect "tests that passed are counted" 0 '^3 0 0$' in_lib "count_tests '$work/good.log' 0"
 expect "tests that failed are counted" 0 '^2 1 0$' in_lib "count_tests '$work/bad.log' 8"
@@ -82,21 +98,29 @@ expect "a run without tests is a failure" 0 '^0 1 0$' in_lib "count_tests '$work
 
 missing='has_package() { return 1; }'
 expect "without root and sudo, packages and command are named" 1 'apt-get install libxsimd-dev catch2' \
-    in_lib "$missing; id() { echo 1000; }; has_command() { [[ \$1 == apt-get ]]; }; require_packages libxsimd-dev catch2"
+    in_lib "$missing; id() { echo 1000; }; has_command() { [[ \$1 == apt-get ]]; }
+            require_packages libxsimd-dev catch2"
 expect "without apt-get, packages are named" 1 'Debian.s packages: libxsimd-dev catch2' \
     in_lib "$missing; has_command() { return 1; }; require_packages libxsimd-dev catch2"
 expect "nothing is installed if nothing is missing" 0 'All packages needed' \
     in_lib "has_package() { return 0; }; apt_get() { exit 9; }; require_packages libxsimd-dev"
-expect "with sudo, apt-get runs through it" 0 'called with env DEBIAN_FRONTEND=noninteractive apt-get .*install --yes --no-install-recommends catch2' \
+installs='apt-get .*install --yes --no-install-recommends catch2'
+expect "with sudo, apt-get runs through it" 0 "called with env DEBIAN_FRONTEND=noninteractive $installs" \
     in_lib "has_package() { [[ -e '$work/done' ]]; }; id() { echo 1000; }; has_command() { return 0; }
-            sudo() { [[ \$1 == -n ]] && return; echo called with \"\$@\" >>'$work/sudo.log'; [[ \$* == *install* ]] && touch '$work/done'; return 0; }
+            sudo() {
+                [[ \$1 == -n ]] && return
+                echo called with \"\$@\" >>'$work/sudo.log'
+                [[ \$* == *install* ]] && touch '$work/done'
+                return 0
+            }
             require_packages catch2; cat '$work/sudo.log'"
 expect "output of apt-get is shown if it fails" 1 'no such thing' \
     in_lib "$missing; root_prefix() { return 0; }; env() { echo no such thing; return 100; }; require_packages catch2"
 
 # Every file with code says its licence, and none knows where it was written.
 unlicensed=$(find . \( -name '.?*' -o -name build -o -name results -o -name __pycache__ \) -prune -o -type f \
-    \( -name '*.hpp' -o -name '*.cuh' -o -name '*.cpp' -o -name '*.cu' -o -name '*.sh' -o -name '*.py' -o -name '*.cmake' -o -name CMakeLists.txt \) \
+    \( -name '*.hpp' -o -name '*.cuh' -o -name '*.cpp' -o -name '*.cu' \
+    -o -name '*.sh' -o -name '*.py' -o -name '*.cmake' -o -name CMakeLists.txt \) \
     -exec grep -L 'SPDX-License-Identifier: MIT' {} +)
 expect "every file with code has its SPDX line" 0 '^$' echo "$unlicensed"
 

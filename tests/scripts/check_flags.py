@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks, in a finished Ninja build, that no file compiled for an instruction set includes Eigen, and that none shares functions.
+"""Checks, in a finished Ninja build, that no file compiled for an instruction set includes Eigen, and that none shares
+functions.
 
-The alignment of Eigen's objects depends on the instruction set, so such a file and main would disagree about it, which
-ends in a "double free". A function that a model calls without MYRIAD_FUNCTION, if it is not inlined, is shared by all files that
-have it, and the linker keeps one of them, whatever its flags. Exit status: 0 all is well, 1 at least one file is wrong.
+The alignment of Eigen's objects depends on the instruction set, so such a file and main would disagree about it, with
+a "double free" as the result. A function that a model calls without MYRIAD_FUNCTION, if it is not inlined, is shared
+by all files that have it, and the linker keeps one of them, whatever its flags. Exit status: 0 all is well, 1 at
+least one file is wrong.
 """
 import json
 import re
@@ -24,7 +26,7 @@ def shared_functions(build, nm, entries):
             continue
         target = build / words[words.index("-o") + 1]
         text = source.read_text(encoding="utf-8")
-        # A file with test cases has what Catch2 brings, and is compiled for one instruction set.
+        # A file with test cases contains Catch2's functions, and is compiled for one instruction set.
         if not target.exists() or "catch.hpp" in text or not re.search(r"^MYRIAD_INSTANTIATE", text, re.MULTILINE):
             continue
         seen += 1
@@ -32,7 +34,7 @@ def shared_functions(build, nm, entries):
                                  check=True).stdout
         for line in symbols.splitlines():
             name = re.match(r"[0-9a-f]+ W (.*)", line)
-            # Those of the kernels carry their instruction set; that of clang++ only ends the program.
+            # The kernels' names carry their instruction set; clang++'s own only ends the program.
             if name and not re.search(r"openmp_|instruction_set\)|__clang_call_terminate", name.group(1)):
                 wrong.append(f"{source} shares {name.group(1)}: put MYRIAD_FUNCTION before it")
     return seen, wrong

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks that the layers of the library only point down: folders of headers include each other without a cycle, and the
-kernel body, which both compilers see, includes nothing of the host side, no Eigen and no library that only a host has."""
+"""Checks that the layers of the library only point down: folders of headers include each other without a cycle, and
+the kernel body, which both compilers see, includes nothing of the host side, no Eigen and no library that only a host
+has."""
 import argparse
 import re
 import sys
@@ -9,7 +10,8 @@ from pathlib import Path
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+(["<])([^">]+)[">]', re.MULTILINE)
 
-# What device code can do without, but for its constants and types, stays out of the kernel body. xsimd is the packs' own.
+# Headers that device code does not need, except for their constants and types, stay out of the kernel body. xsimd
+# belongs to the packs.
 KERNEL_LIBRARY = {
     "array", "bit", "cmath", "concepts", "cstddef", "cstdint", "cstring", "iterator", "limits", "string_view",
     "type_traits", "utility", "xsimd/xsimd.hpp",
@@ -17,7 +19,7 @@ KERNEL_LIBRARY = {
 
 
 def read_headers(roots):
-    """The headers of all include roots by the path that includes name them with, each with what it includes."""
+    """The headers of all include roots, by the path used in includes, each with its own includes."""
     headers = {}
     for root in roots:
         for path in sorted(root.rglob("*")):
@@ -32,7 +34,7 @@ def layer(header):
     return folder[0] if folder and folder[0] in ("kernel", "host", "openmp", "cuda") else "public"
 
 
-# Which layers a header of each may include.
+# The layers that a header of each layer may include.
 BELOW = {
     "kernel": {"kernel"},
     "host": {"host", "kernel"},
@@ -43,7 +45,7 @@ BELOW = {
 
 
 def misplaced_includes(headers):
-    """What a header includes that its layer must not."""
+    """The includes of a header that its layer forbids."""
     for header, includes in headers.items():
         own = layer(header)
         for _, name in includes:
@@ -59,7 +61,7 @@ def misplaced_includes(headers):
 
 
 def folder_graph(headers):
-    """For each folder the folders that it includes, each with one include that shows it."""
+    """For each folder, the folders that it includes, each with one such include as an example."""
     graph = {}
     for header, includes in headers.items():
         folder = header.rpartition("/")[0]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Shows on small trees of headers that check_include_graph.py finds what it is to find, and nothing else."""
+"""Shows on small trees of headers that check_include_graph.py finds each violation, and nothing else."""
 import tempfile
 import unittest
 from pathlib import Path

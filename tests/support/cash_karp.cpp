@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Compiles, with cash_karp, the kernels of the models whose other kernels are in packs: one instance at a time for the
-// sake of compile time, as the loop differs by whether steps are adaptive and whether a step's last slope is the next
-// one's first.
+// Compiles, with cash_karp, the kernels of the models whose other kernels are in packs: one instance at a time, to save
+// compile time, as the loop depends on whether steps are adaptive and on whether a step's last slope is the next one's
+// first.
 #include <myriad/instantiate.hpp>
 
 #include "tests/support/faulty.hpp"

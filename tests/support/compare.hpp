@@ -23,7 +23,7 @@ bool same_bits(T a, T b) {
     }
 }
 
-/// Everything of instance i in one ensemble against instance j in another: says what differs, or nothing.
+/// Compares all results of instance i in one ensemble with instance j in another: the difference as text, or nothing.
 template <class Model, class R>
 std::string difference(const myriad::ensemble<Model, R>& a, std::int64_t i, const myriad::ensemble<Model, R>& b,
                        std::int64_t j) {
@@ -97,7 +97,7 @@ void each_adaptive_method(Test test) {
     }
 }
 
-/// Steps of length h and no other, for every method: tolerances that no error exceeds.
+/// Steps of length h only, for every method: tolerances that no error exceeds.
 inline myriad::options fixed_step(double h) {
     myriad::options o;
     o.step = o.minimum_step = o.maximum_step = h;

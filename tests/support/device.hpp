@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the tests integrate: on the CPU, or wherever the environment variable MYRIAD_TEST_DEVICE says, so that the same
+// The device of the tests: the CPU, or the one that the environment variable MYRIAD_TEST_DEVICE names, so that the same
 // programs test each backend.
 #pragma once
 
@@ -15,7 +15,7 @@ inline myriad::device test_device(int threads = 1) {
     return name == nullptr ? myriad::device::cpu(threads) : myriad::device::parse(name);
 }
 
-/// False where a test of threads, lanes or progress has no meaning.
+/// False if tests of threads, lanes or progress have no meaning.
 inline bool tests_cpu() { return test_device().which() == myriad::device::kind::cpu; }
 
 }  // namespace tests

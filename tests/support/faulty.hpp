@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Models that go wrong: right-hand sides and hooks that give no number, solutions that blow up, slopes that jump.
+// Models that fail: right-hand sides and hooks that return NaN, solutions that blow up, slopes that jump.
 #pragma once
 
 #include <limits>
@@ -28,7 +28,7 @@ struct clock_fault {
     }
 };
 
-/// y' = 1, and no number where y > limit: the domain of a square root.
+/// y' = 1, and NaN where y > limit: the domain of a square root.
 struct domain_fault {
     enum state { y0, n_state };
     enum parameter { limit, n_parameter };
@@ -40,19 +40,19 @@ struct domain_fault {
     }
 };
 
-/// y' = speed, and no number above (side > 0) or below (side < 0) the limit.
+/// y' = speed, and NaN above (side > 0) or below (side < 0) the limit.
 struct cliff {
     enum state { y0, n_state };
     enum parameter { limit, speed, side, n_parameter };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>& y, const auto& p) {
-        // A state that is not a number is not within the limit either.
+        // A NaN state is not within the limit either.
         return myriad::vec<R, 1>{myriad::select((y[y0] - p[limit]) * p[side] <= R(0), p[speed], R(not_a_number<R>))};
     }
 };
 
-/// y' = 1, and no number above 1, written so that a state which is not a number has a slope that is one.
+/// y' = 1, and NaN above 1, written so that a NaN state has a finite slope.
 struct open_cliff {
     enum state { y0, n_state };
 
@@ -62,7 +62,7 @@ struct open_cliff {
     }
 };
 
-/// Runge's midpoint rule, whose first stage has no part in its solution.
+/// Runge's midpoint rule, whose first stage does not enter its solution.
 struct midpoint_rule {
     static constexpr int stages = 2;
     static constexpr int order = 2;
@@ -78,8 +78,8 @@ struct midpoint_rule {
     }
 };
 
-/// x' = v, v' = -x with the unit circle as its limit cycle, and no number beyond |x| = limit, a little outside of it:
-/// the stages of long steps leave the domain twice in every turn. Ends where t has passed `stop`.
+/// x' = v, v' = -x with the unit circle as its limit cycle, and NaN beyond |x| = limit, slightly outside it: the stages
+/// of long steps leave the domain twice per turn. Ends when t has passed `stop`.
 struct guarded {
     enum state { x, v, n_state };
     enum parameter { limit, stop, n_parameter };
@@ -113,7 +113,7 @@ struct slope_jump {
     }
 };
 
-/// y' = 1, with hooks that write NaN into the state: which one is the integer accessory's choice.
+/// y' = 1, with hooks that write NaN into the state; the integer accessory selects the hook.
 struct hook_fault : problems::uniform {
     enum parameter { time, n_parameter };
     enum integer_accessory { which, finished, n_integer_accessory };

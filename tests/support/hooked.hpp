@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Models with hooks, each for one thing that the loop promises about hooks, phases and what models may read.
+// Models with hooks, each for one promise of the loop about hooks, phases and inputs of models.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -25,7 +25,7 @@ struct watched : problems::oscillator {
     MYRIAD_FUNCTION static void finalise(auto& lane) { recorder::log<2>(recorder::hook::finalise, lane); }
 };
 
-/// A forced oscillator x'' = -x + B cos(w t) that keeps books in every kind of storage.
+/// A forced oscillator x'' = -x + B cos(w t) that stores records in every kind of storage.
 struct phased {
     enum state { x, v, n_state };
     enum parameter { w, n_parameter };
@@ -52,7 +52,7 @@ struct phased {
     MYRIAD_FUNCTION static void finalise(auto& lane) { lane.accessory[sum_of_max] += lane.accessory[x_max]; }
 };
 
-/// The same with events: the second local maximum ends the phase, if the options say so.
+/// The same with events: the second local maximum ends the phase, if the options request it.
 struct phased_by_events : phased {
     enum event { maximum, zero, n_event };
     enum integer_accessory { steps, phases_begun, zeros, n_integer_accessory };
@@ -66,7 +66,7 @@ struct phased_by_events : phased {
     }
 };
 
-/// A bouncing oscillator that keeps books after every step and impact, which nothing but its hooks reads.
+/// A bouncing oscillator that records every step and impact in accessories that only its hooks read.
 struct bookkeeper {
     enum state { x, v, n_state };
     enum parameter { w, n_parameter };
@@ -95,12 +95,12 @@ struct bookkeeper {
         lane.integer_accessory[impacts] += 1;
     }
 };
-/// The same, and says so.
+/// The same, with the declaration.
 struct declared_bookkeeper : bookkeeper {
     static constexpr bool accessories_are_outputs = true;
 };
 
-/// Writes down what `lane.h`, `lane.h_next` and `lane.t` are at the start of a phase.
+/// Records `lane.h`, `lane.h_next` and `lane.t` at the start of a phase.
 struct early_reader : problems::oscillator {
     enum accessory { t_seen, h_seen, h_next_seen, n_accessory };
     enum integer_accessory { phase_seen, index_seen, n_integer_accessory };
@@ -114,8 +114,8 @@ struct early_reader : problems::oscillator {
     }
 };
 
-/// The oscillator with the integral of x, its maximum and a count of steps; ends the phase once x falls below a
-/// parameter. The two forms of after_step, which must not differ.
+/// The oscillator with the integral of x, its maximum and a step count; ends the phase once x falls below a parameter.
+/// The two forms of after_step, which must agree.
 struct running_base : problems::oscillator {
     enum parameter { lowest, n_parameter };
     enum accessory { integral, maximum, n_accessory };
@@ -189,7 +189,7 @@ struct domain_writer : problems::uniform {
     }
 };
 
-/// x' = rate, a sum of everything a right-hand side may read.
+/// x' = rate, a sum of all values that a right-hand side may read.
 struct reader {
     enum state { x, n_state };
     enum parameter { a, n_parameter };
@@ -208,8 +208,8 @@ struct reader {
     }
 };
 
-/// x'' = -x + push, kicked at one time: what after_step changes must reach the next slope. With `in_push` zero the
-/// speed changes at once, otherwise the push does, which only the right-hand side sees.
+/// x'' = -x + push, kicked once: changes by after_step must reach the next slope. With `in_push` zero the speed changes
+/// at once, otherwise the push does, which only the right-hand side sees.
 struct kicked_base {
     enum state { x, v, n_state };
     enum parameter { time, size, in_push, n_parameter };
@@ -275,7 +275,7 @@ struct renormalised {
     }
 };
 
-/// y' = t: what a restarted phase integrates is known.
+/// y' = t, so that the integral of a restarted phase is known.
 struct ramp {
     enum state { y0, n_state };
     template <class R>
@@ -284,7 +284,7 @@ struct ramp {
     }
 };
 
-/// y' = 1 with an event at y = 1, and an after_step that breaks something in the step that arrives there.
+/// y' = 1 with an event at y = 1, and an after_step that causes a failure in the step that arrives there.
 struct breaker : problems::uniform {
     enum integer_accessory { mode, events_seen, n_integer_accessory };
     enum mode { none, state_not_finite, end_not_finite };
@@ -304,8 +304,8 @@ struct breaker : problems::uniform {
     MYRIAD_FUNCTION static void after_event(int, auto& lane) { lane.integer_accessory[events_seen] += 1; }
 };
 
-/// y' = 1 with an event at y = 1/2, and hooks that set the step to try next to the root of `wanted` (NaN where that is
-/// negative): which one is the integer accessory's choice, after_step once y is past 3/16.
+/// y' = 1 with an event at y = 1/2, and hooks that set the next step to the root of `wanted` (NaN if that is negative);
+/// the integer accessory selects the hook, after_step once y is past 3/16.
 struct step_spoiler_base {
     enum state { y0, n_state };
     enum parameter { wanted, n_parameter };
@@ -342,7 +342,7 @@ struct step_spoiler_generic : step_spoiler_base {
     }
 };
 
-/// y' = 1, with an after_step that sets the step to try next.
+/// y' = 1, with an after_step that sets the next step.
 struct step_setter : problems::uniform {
     enum parameter { wanted, n_parameter };
     MYRIAD_FUNCTION static void after_step(auto& lane) {

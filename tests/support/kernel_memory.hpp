@@ -9,8 +9,8 @@
 
 namespace tests {
 
-/// The variables of type T that kernels write to. Nothing is read of them unless the tests run on a GPU: without a
-/// driver they have no memory.
+/// The variables of type T that kernels write to. They are only read if the tests run on a GPU: without a driver they
+/// have no memory.
 template <class T>
 std::vector<T& (*)()>& kernel_variables() {
     static std::vector<T& (*)()> list;

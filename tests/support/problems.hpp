@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Test problems that carry their exact solution, for the tests of steppers, of the controller and of the loop, and
-// models with reference values. Each is a model; `exact(t)` is its solution through `exact(t_begin)`.
+// Test problems with exact solutions, for the tests of steppers, of the controller and of the loop, and models with
+// reference values. Each is a model; `exact(t)` is its solution through `exact(t_begin)`.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -62,8 +62,8 @@ struct logistic {
     }
 };
 
-/// The circle in logarithmic coordinates: autonomous, nonlinear, coupled, and no elementary differential of low order
-/// is zero, so that every order condition counts.
+/// The circle in logarithmic coordinates: autonomous, nonlinear, coupled, and with no zero elementary differential of
+/// low order, so that every order condition matters.
 struct log_circle {
     enum state { u, w, n_state };
     template <class R>
@@ -76,7 +76,7 @@ struct log_circle {
     }
 };
 
-/// The same run through at a speed that grows with time: the nodes c count too.
+/// The same, traversed at a speed that grows with time: the nodes c matter too.
 struct timed_circle {
     enum state { u, w, n_state };
     template <class R>
@@ -104,7 +104,7 @@ struct monomial {
     }
 };
 
-/// x'' = -x, without a product, so that no compiler can round it in two ways.
+/// x'' = -x, without a product, so that all compilers round it in the same way.
 struct oscillator {
     enum state { x, v, n_state };
     template <class R>
@@ -117,7 +117,7 @@ struct oscillator {
     }
 };
 
-/// y' = 1: the error estimate is zero but for rounding.
+/// y' = 1: the error estimate is zero except for rounding.
 struct uniform {
     enum state { y0, n_state };
     template <class R>
@@ -130,7 +130,7 @@ struct uniform {
     }
 };
 
-/// Two oscillators of angular frequencies 20 and 1 that do not know of each other.
+/// Two uncoupled oscillators with angular frequencies 20 and 1.
 struct two_speeds {
     enum state { fast, fast_v, slow, slow_v, n_state };
     template <class R>
@@ -163,7 +163,7 @@ struct van_der_pol {
     }
 };
 
-/// Roessler's equations (0.2, 0.2, 5.7): chaotic and not stiff, though z decays at a rate of up to 15 much of the time.
+/// Roessler's equations (0.2, 0.2, 5.7): chaotic and not stiff, though z often decays at a rate of up to 15.
 struct roessler {
     enum state { x, y, z, n_state };
     template <class R>

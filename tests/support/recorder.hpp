@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A log of hook calls: what each saw, in the order of the calls of an instance. For runs on one thread or on a GPU. The
-// hooks are in files compiled for an instruction set, the log is not: only plain numbers go from one to the other.
+// A log of hook calls: what each call saw, in the order of an instance's calls. For runs on one thread or on a GPU. The
+// hooks are in files compiled for an instruction set, the log is not: only plain numbers are exchanged.
 #pragma once
 
 #include <cstdint>
@@ -36,10 +36,10 @@ MYRIAD_TEST_KERNEL_VARIABLE(kernel_log, kernel_calls)
 
 /// Adds a call to the log.
 void add(const call& c);
-/// The log; it is empty afterwards. Throws if it was too small.
+/// Returns and clears the log. Throws if it was too small.
 std::vector<call> take();
 
-/// Logs what a scalar hook sees. `n`: components of the state.
+/// Logs the view of a scalar hook. `n`: components of the state.
 template <int n>
 MYRIAD_FUNCTION void log(hook which, const auto& lane, int event = -1) {
     call c;
@@ -63,7 +63,7 @@ MYRIAD_FUNCTION void log(hook which, const auto& lane, int event = -1) {
 #endif
 }
 
-/// Any model, with its accepted steps logged.
+/// Any model, with a log of its accepted steps.
 template <class Model>
 struct recorded : Model {
     MYRIAD_FUNCTION static void after_step(auto& lane) { recorder::log<Model::n_state>(hook::after_step, lane); }

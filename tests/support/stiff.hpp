@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stiff test problems, and what goes wrong in implicit methods: a singular matrix, a Jacobian that does not exist.
+// Stiff test problems, and failures of implicit methods: a singular matrix, a Jacobian that does not exist.
 #pragma once
 
 #include <myriad/kernel/model/tangent.hpp>
@@ -27,7 +27,7 @@ struct robertson_with_jacobian : robertson {
     }
 };
 
-/// van der Pol's oscillator in the form of Hairer and Wanner, eps y'' = (1 - y^2) y' - y; an accessory keeps the
+/// van der Pol's oscillator in the form of Hairer and Wanner, eps y'' = (1 - y^2) y' - y; an accessory stores the
 /// largest slope. + - * / only.
 struct van_der_pol {
     enum state { x, v, n_state };
@@ -57,7 +57,7 @@ using prothero_robinson_with_tangent = myriad::with_tangents<prothero_robinson>;
 
 using problems::roessler;
 
-/// The relay: y' = -1e4 (y - cos t - raised) - sin t follows cos t + raised; whenever it has fallen to 1/2, it and its
+/// The relay: y' = -1e4 (y - cos t - raised) - sin t follows cos t + raised; when it has fallen to 1/2, it and its
 /// target are raised by one: at pi/3 and 2 pi/3, and not again before t = 4.
 struct relay {
     enum state { y0, n_state };
@@ -118,8 +118,7 @@ struct growth {
     }
 };
 
-/// A ball that is dropped onto a floor at zero, put back onto it exactly at every impact and thrown up at a part of its
-/// speed.
+/// A ball dropped onto a floor at zero, put back exactly onto it at every impact and thrown up with part of its speed.
 struct ball {
     enum state { x, v, n_state };
     enum parameter { restitution, n_parameter };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiles the kernels of stiff problems whose solutions show orders and errors, one instance at a time for the sake of
+// Compiles the kernels of stiff problems whose solutions show orders and errors, one instance at a time, to save
 // compile time; stiff.cpp has those in packs.
 #include <myriad/instantiate.hpp>
 

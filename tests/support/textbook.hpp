@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Butcher's formulas, written out once more from a tableau and summed in long double: one step of a test problem
+// Butcher's formulas, written independently from a tableau and summed in long double: one step of a test problem
 // without parameters, for comparison with the library's.
 #pragma once
 
@@ -16,7 +16,7 @@ struct step {
     static constexpr int n = Model::n_state, stages = Method::stages;
     double y[n];         // new state
     double estimate[n];  // error estimate
-    double size[n];      // sum of the sizes of all terms, which rounding errors are proportional to
+    double size[n];      // sum of the magnitudes of all terms, to which rounding errors are proportional
 
     step(double t, double h, const myriad::vec<double, n>& start) {
         constexpr auto tableau = Method::tableau();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The validation's arithmetic: a NaN in a result is not lost on its way to the verdict.
+// The validation's arithmetic: a NaN in a result reaches the verdict.
 #include "validation/measures/arithmetic.hpp"
 
 #include "tests/catch.hpp"

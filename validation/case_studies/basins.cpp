@@ -22,8 +22,8 @@ struct constants {
     } shared;
 };
 
-/// Where a pendulum released at rest is after a time in which its oscillation has died out by exp(-damping t / 2) =
-/// 0.0025.
+/// The magnet of a pendulum released at rest, after a time in which its oscillation has decayed by exp(-damping t / 2)
+/// = 0.0025.
 int by_cvode(double x, double y) {
     validation::cvode bob(
         4,
@@ -44,8 +44,8 @@ int main() {
     const Eigen::ArrayXd axis = places(side);
     auto sweep = grid(side, barrier(), 4 * natural_period);
     myriad::solve<myriad::dormand_prince_8>(myriad::device::parse("cpu"), sweep, integration());
-    // Errors grow by less than a factor of 1e3 before a pendulum is captured, except on the basins' boundary: there a
-    // start that is 1e-5 away, 1000 times the tolerance, has another end too.
+    // Errors grow by less than a factor of 1e3 before a pendulum is captured, except at the basins' boundary: there a
+    // start 1e-5 away, 1000 times the tolerance, ends elsewhere too.
     constexpr double shift = 1e-5;
     std::int64_t compared = 0, wrong = 0;
     for (std::int64_t i = 0; i < sweep.size(); i += every) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Keller-Miksis bubbles under one and two waves, from rest over some collapses, against CVODE with root finding and the
-// equation in SI units: largest radius, strongest collapse and its duration, and maxima per period. Exit status 0 if
-// all agree, 1 if not.
+// equation in SI units: largest radius, strongest collapse with its duration, and maxima per period. Exit status 0 if
+// all agree, else 1.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,20 +23,19 @@ namespace {
 using dual_frequency::model, dual_frequency::waves;
 
 constexpr std::int64_t transient = 2, recorded = 6;
-/// A change of the start that moves the solution as far as the errors of Cash-Karp may: a thousand steps or two, each
-/// with an error of up to 1e-10.
+/// A shift of the start that moves the solution as far as Cash-Karp's errors may: one or two thousand steps, each with
+/// an error of up to 1e-10.
 constexpr double displacement = 2e-7;
 
 struct history {
     double largest = 0, compression = 0, collapse_time = 0, winding = 0;
-    double earlier = 0;  // time by which the tolerance of the events may move the minimum or the maximum before it
+    double earlier = 0;  // by this time the events' tolerance may move the minimum, or the maximum before it
 };
 
-/// The Keller-Miksis equation as it is written in textbooks, in SI units and none of the model's constants: with
-/// M = R'/c, liquid pressure p at the wall and far away P(t),
-/// (1 - M) R R'' + 3/2 (1 - M/3) R'^2 = (1 + M + R/c d/dt) (p - P) / rho,
-/// p = pG (RE/R)^(3 gamma) + pV - 2 sigma/R - 4 mu R'/R.
-/// Given and returned in units of the radius at rest and the period of the first wave.
+/// The Keller-Miksis equation as in textbooks, in SI units and without the model's constants: with M = R'/c, liquid
+/// pressure p at the wall and P(t) far away, (1 - M) R R'' + 3/2 (1 - M/3) R'^2 = (1 + M + R/c d/dt) (p - P) / rho, p =
+/// pG (RE/R)^(3 gamma) + pV - 2 sigma/R - 4 mu R'/R. Input and output in units of the radius at rest and the period of
+/// the first wave.
 double acceleration(const waves& w, double tau, const double* u) {
     using namespace bubble;
     const double rate = w.first.frequency, t = tau / rate;
@@ -50,7 +49,7 @@ double acceleration(const waves& w, double tau, const double* u) {
     const double gas = (ambient_pressure - vapour_pressure + 2 * surface_tension / radius) *
                        std::pow(radius / R, 3 * polytropic_exponent);
     const double wall = gas + vapour_pressure - 2 * surface_tension / R - 4 * viscosity * V / R;
-    // but for its part with R''
+    // without its term in R''
     const double wall_rate =
         -3 * polytropic_exponent * gas * V / R + 2 * surface_tension * V / (R * R) + 4 * viscosity * V * V / (R * R);
     const double pressure = (1 + M) * (wall - far) + R / sound_speed * (wall_rate - far_rate);
@@ -122,7 +121,7 @@ int compare() {
         const auto n = static_cast<std::int64_t>(i);
         const history exact = follow(chosen[i], 1), moved = follow(chosen[i], 1 + displacement);
         const auto differs = [&](const char* what, double is, double expected, double elsewhere, double unsharp) {
-            // Both ways, as the maximum over collapses may pick another one on one side only.
+            // In both directions, as the maximum over collapses may switch to another one on one side only.
             const double allowed = 2 * std::abs(elsewhere - expected) + displacement * std::abs(expected) + unsharp;
             worst = std::max(worst, std::abs(is - expected) / allowed);
             if (std::abs(is - expected) <= allowed) return false;
@@ -148,7 +147,7 @@ int compare() {
     std::cout << chosen.size() << " bubbles, strongest compression " << strongest << ", " << sensitive
               << " too sensitive to compare, " << wrong << " differ; largest difference " << worst
               << " of what is allowed\n";
-    // a comparison of gentle oscillations, or of few, would show little
+    // a comparison of gentle or of few oscillations would prove little
     const bool meaningful = strongest > 20 && 4 * sensitive <= static_cast<std::int64_t>(chosen.size());
     return wrong == 0 && report.failed() == 0 && meaningful ? 0 : 1;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Periodic orbits of the Duffing sweep and its period doublings against CVODE: orbits by Newton's method on the
-// Poincare map, doublings where a Floquet multiplier, an eigenvalue of that map's derivative, is -1. Exit status 0 if
-// all agree, 1 if not.
+// Periodic orbits and period doublings of the Duffing sweep against CVODE: orbits by Newton's method on the Poincare
+// map, doublings where a Floquet multiplier, an eigenvalue of that map's derivative, is -1. Exit status 0 if all agree,
+// else 1.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,7 +25,7 @@ struct orbit {
     double doubling() const { return 1 + trace + determinant; }
 };
 
-/// The point after n periods, and the derivative of that map by the variational equations.
+/// The point after n periods, and the map's derivative by the variational equations.
 std::array<double, 6> map(const orbit& from, double k, int n) {
     validation::cvode solution(
         6,
@@ -60,7 +60,7 @@ orbit periodic(orbit o, double k, int n) {
     return o;
 }
 
-/// Where the orbit of n periods that attracts the start at k has the multiplier -1: the secant method.
+/// The k at which the attracting orbit of n periods has the multiplier -1, by the secant method.
 double find_doubling(double k, int n, orbit& o) {
     validation::cvode transient(
         2,
@@ -101,13 +101,13 @@ myriad::ensemble<duffing> integrate(const Eigen::ArrayXd& k, const orbit& start,
     return sweep;
 }
 
-/// Where the sweep's orbits of n periods split in two: the square of the distance between the halves grows like the
-/// distance from the bifurcation, so k over that square is extrapolated to zero, through three points.
+/// The k at which the sweep's orbits of n periods split in two: the squared distance between the halves grows like the
+/// distance from the bifurcation, so that k over that square is extrapolated to zero through three points.
 double splitting(double near, int n, orbit start) {
     constexpr std::int64_t phases =
-        6000;  // multiples of all 2 n here, so that all instances are seen at the same place
+        6000;  // multiples of all 2 n here, so that all instances are recorded at the same place
     const Eigen::ArrayXd k = near - 1e-5 * Eigen::ArrayXd::LinSpaced(3, 1, 3);
-    start.x += 1e-3;  // a splitting out of rounding would take long
+    start.x += 1e-3;  // a splitting that starts from rounding would take long
     myriad::phase_records<duffing, double> records;
     integrate(k, start, phases, 2 * n, records);
     const auto x = records.state(duffing::x), v = records.state(duffing::v);
@@ -123,8 +123,8 @@ double splitting(double near, int n, orbit start) {
 }
 
 bool check_orbits(double k_begin, double k_end, int n) {
-    // Errors of a step, 1e-9 at some 100 steps in a period, add up over the periods that a perturbation lives, of which
-    // there are up to ten; their signs differ.
+    // Errors of a step, 1e-9 at some 100 steps per period, add up over the lifetime of a perturbation, up to ten
+    // periods; their signs differ.
     constexpr double allowed = 1e-6;
     myriad::phase_records<duffing, double> records;
     const auto sweep = integrate(Eigen::ArrayXd::LinSpaced(8, k_begin, k_end), {}, 1200, n, records);

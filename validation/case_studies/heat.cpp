@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Heat conduction around a bubble: without flow of liquid against the slowest mode in closed form; with it, heat flows
-// and temperatures against CVODE on twice the points. Exit status 1 if something is farther away than it may be.
+// Heat conduction around a bubble: without flow of liquid against the slowest mode in closed form; with flow, heat
+// flows and temperatures against CVODE on twice the points. Exit status 1 if a difference exceeds its bound.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -20,7 +20,7 @@ constexpr double tolerance = 1e-9, outer = shell::outer;
 bool all_well = true;
 
 void expect_below(const char* what, double diffusivity, double error, double bound) {
-    const bool well = error <= bound;  // false for nan
+    const bool well = error <= bound;  // false for NaN
     all_well = all_well && well;
     std::cout << what << ", diffusivity " << diffusivity << ": " << error << " (at most " << bound << ")"
               << (well ? "\n" : " FAILED\n");
@@ -53,7 +53,7 @@ solution by_myriad(const Eigen::ArrayXd& start, double wall, double diffusivity,
     return s;
 }
 
-/// The same by CVODE, from the model's own right-hand side on `points` points.
+/// The same by CVODE, with the model's own right-hand side on `points` points.
 template <int points>
 solution by_cvode(double diffusivity, double pulse, int periods) {
     using model = heat_conduction<points>;
@@ -85,9 +85,9 @@ solution by_cvode(double diffusivity, double pulse, int periods) {
     return s;
 }
 
-/// What 24 points may miss. Next to the wall a layer falls off like exp(-(r - 1) z) with z = pulse / diffusivity for a
+/// The error of 24 points. Next to the wall a layer decays like exp(-(r - 1) z) with z = pulse / diffusivity for a
 /// pulse of one; its Chebyshev coefficient k is of size exp(-k^2 / (2 z)) / sqrt(2 pi z) on a shell of thickness two,
-/// and its slope at the wall k^2 times that. Four of them, and what the steps may add.
+/// and its slope at the wall k^2 times that. Four of them, plus the steps' errors.
 double missed(double diffusivity) {
     const double z = 1 / diffusivity, k = 24;
     return 4 * k * k * std::exp(-k * k / (2 * z)) / std::sqrt(2 * std::numbers::pi * z) + 100 * tolerance;
@@ -98,8 +98,8 @@ double missed(double diffusivity) {
 int main() {
     const Eigen::ArrayXd r = chebyshev::points(1, outer, 24);
     for (const double diffusivity : {0.05, 0.3, 2.0}) {
-        // Without flow of liquid, and with walls at zero. Stability makes steps so short that 24 points and rounding
-        // are what is left: a sine is a polynomial of degree 23 to 1e-15.
+        // Without flow of liquid, and with walls at zero. Stability makes steps so short that only the errors of 24
+        // points and of rounding remain: a sine is a polynomial of degree 23 to 1e-15.
         const Eigen::ArrayXd mode = shell::slowest_mode(r);
         const double k = std::numbers::pi / (outer - 1), t = 1;
         const Eigen::ArrayXd exact = mode * std::exp(-diffusivity * k * k * t);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Lyapunov exponents of the forced Duffing oscillator against CVODE: one by one where the motion is regular, in the
-// mean where it is chaotic; and the sum of both against the damping. Exit status 0 if all is well, else 1.
+// The Lyapunov exponents of the forced Duffing oscillator against CVODE: one by one where the motion is regular, on
+// average where it is chaotic; and the sum of both against the damping. Exit status 0 if all is well, else 1.
 #include <cmath>
 #include <cstdint>
 #include <iostream>
@@ -36,7 +36,7 @@ myriad::ensemble<library_tangent> by_myriad(const std::vector<point>& points) {
     return sweep;
 }
 
-/// Begins with the same tangent, and makes it one long after each period.
+/// Begins with the same tangent, and normalises it after each period.
 double by_cvode(const point& p, double tolerance) {
     validation::cvode oscillator(
         4,
@@ -66,8 +66,8 @@ bool told(bool right, const char* what) {
     return right;
 }
 
-/// A decaying tangent forgets what was before. Per unit of time some ten steps err by 1e-9 each, CVODE's by less, in
-/// the tangent and, through 6 x a, in its rate: 1e-7 with a margin of five.
+/// A decaying tangent forgets its past. Per unit of time some ten steps err by 1e-9 each, CVODE's by less, in the
+/// tangent and, through 6 x a, in its rate: 1e-7 with a margin of five.
 bool regular() {
     const std::vector<point> points{{0.2, 0}, {0.4, 0}, {0.25, 0.1}, {0.45, 0.2}, {0.2, 0.6}, {0.3, 0.7}, {0.35, 0.75}};
     const auto lambda = myriad::exponents(by_myriad(points));
@@ -92,8 +92,8 @@ struct estimate {
     }
 };
 
-/// Chaotic solutions are each method's own, but have the same mean. Four standard errors: once in 16 000 by chance, and
-/// nothing here is random.
+/// Chaotic solutions differ between methods but have the same mean. Four standard errors: exceeded by chance once in 16
+/// 000, and nothing here is random.
 bool chaotic() {
     const auto starts = [](int n) {
         std::vector<point> points;
@@ -112,7 +112,7 @@ bool chaotic() {
                 "their mean exponent is that of CVODE");
 }
 
-/// The divergence is -k everywhere, so that the exponents add up to it, whatever the motion.
+/// The divergence is -k everywhere, so that the exponents add up to -k, whatever the motion.
 bool sums() {
     constexpr std::int64_t n = 64;
     myriad::ensemble<duffing_spectrum> sweep(n);
@@ -129,7 +129,7 @@ bool sums() {
     const double worst = (lambda.rowwise().sum() + sweep.parameter(forced_duffing::k)).abs().maxCoeff();
     std::cout << "largest exponents from " << lambda.col(0).minCoeff() << " to " << lambda.col(0).maxCoeff()
               << "; sums wrong by up to " << worst << '\n';
-    // Twenty steps per unit of time, each of which errs by 1e-9 in both tangents, which in chaos lean to each other.
+    // Twenty steps per unit of time, each with an error of 1e-9 in both tangents, which in chaos align with each other.
     return told(worst < 2e-7, "the sum of both exponents is minus the damping") &
            told(lambda.col(0).minCoeff() < 0 && lambda.col(0).maxCoeff() > 0.1, "of regular and of chaotic solutions");
 }

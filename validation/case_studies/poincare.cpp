@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Returns of Roessler's equations by CVODE, with the variational equations: section points and times of the orbit of
-// period one, and where orbits of period one, two and four double their period, which is where a Floquet multiplier is
-// -1. Exit status 0 if the library agrees, 1 if not.
+// period one; and where orbits of period one, two and four double their period, as a Floquet multiplier is -1. Exit
+// status 0 if the library agrees, else 1.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,14 +21,14 @@ namespace {
 
 using Eigen::Matrix2d, Eigen::Vector2d;
 
-/// What the model's functions read beside the state.
+/// Inputs of the model's functions beside the state.
 struct inputs {
     double c;
     std::array<double, 2> shared{roessler_sweep::a, roessler_sweep::b};
     double operator[](int) const { return c; }
 };
 
-/// A sweep over c, and what it recorded.
+/// A sweep over c with its records.
 auto integrate(std::int64_t instances, double first, double last, std::int64_t transient, std::int64_t returns) {
     auto sweep = roessler_sweep::prepare(instances, first, last);
     auto report = myriad::solve<myriad::tsitouras_5>(myriad::device::cpu(), sweep,
@@ -36,7 +36,7 @@ auto integrate(std::int64_t instances, double first, double last, std::int64_t t
     return std::pair(std::move(sweep), std::move(report));
 }
 
-/// A point (x, z) of the section after some returns, the time that they took, and the derivative by the first point.
+/// A point (x, z) of the section after some returns, the time taken, and the derivative by the first point.
 struct image {
     Vector2d point;
     double time;
@@ -46,7 +46,7 @@ struct image {
 image follow(double c, const Vector2d& start, int returns) {
     using dual = myriad::dual<double>;
     const inputs p{c};
-    // the state, and two tangents of it
+    // the state and two tangents of it
     validation::cvode orbit(
         9,
         [&p](double t, const double* s, double* ds) {
@@ -68,7 +68,7 @@ image follow(double c, const Vector2d& start, int returns) {
         if (!orbit.advance(100)) throw std::runtime_error("the orbit does not come back");
         const auto s = orbit.state();
         const auto f = roessler::rhs<double>(0.0, {s[0], s[1], s[2]}, p);
-        // neighbours arrive sooner or later
+        // neighbours arrive earlier or later
         Matrix2d map;
         for (int k = 0; k < 2; ++k) {
             const double* v = &s[static_cast<std::size_t>(3 + 3 * k)];
@@ -79,7 +79,7 @@ image follow(double c, const Vector2d& start, int returns) {
     return at;
 }
 
-/// The orbit of this period near `guess`, by Newton's method: what `follow` gives from its point.
+/// The orbit of this period near `guess`, by Newton's method: `follow` from its point.
 image periodic(double c, Vector2d& guess, int period) {
     for (int tries = 0; tries < 20; ++tries) {
         const image end = follow(c, guess, period);
@@ -90,7 +90,7 @@ image periodic(double c, Vector2d& guess, int period) {
     throw std::runtime_error("no periodic orbit was found");
 }
 
-/// Where the orbit of this period that `near` attracts has the multiplier -1, by secants on det(M + I).
+/// The c at which the attracting orbit of this period near `near` has the multiplier -1, by secants on det(M + I).
 double period_doubling(double near, int period) {
     const auto [sweep, report] = integrate(1, near, near, 1000, 1);
     Vector2d point(report.records.state(roessler::x)(0, 0), report.records.state(roessler::z)(0, 0));
@@ -107,9 +107,9 @@ double period_doubling(double near, int period) {
     return now;
 }
 
-/// Section points and return times of the orbit of period one against those of a sweep. A return is followed in some
-/// 150 steps to 1e-9 each, of states of up to 20, and is stable; its time has the section's tolerance of 1e-9 over the
-/// speed |x| = 6.
+/// Section points and return times of the orbit of period one against those of a sweep. A return takes some 150 steps
+/// with errors of 1e-9 each, of states of up to 20, and is stable; the error of its time is the section's tolerance of
+/// 1e-9 over the speed |x| = 6.
 bool check_orbit() {
     const auto [sweep, report] = integrate(16, 4, 5, 400, 1);
     double worst_point = 0, worst_time = 0;
@@ -125,14 +125,14 @@ bool check_orbit() {
     return worst_point < 1e-6 && worst_time < 1e-6;
 }
 
-/// Beyond a period doubling at c0 the square of what it splits grows linearly with c, at first: followed back to zero
-/// by a parabola, it must be c0, to the cube of what the width is to the distances between doublings.
+/// Beyond a period doubling at c0 the square of the splitting at first grows linearly with c: a parabola extrapolated
+/// to zero must give c0, to the cube of the ratio of `width` to the distances between doublings.
 bool check_doubling(double c0, int period, double width) {
     const auto [sweep, report] = integrate(9, c0 + 0.3 * width, c0 + width, 12000, 2 * period);
     const auto x = report.records.state(roessler::x);
     Eigen::MatrixXd powers(sweep.size(), 3);
     for (std::int64_t i = 0; i < sweep.size(); ++i) {
-        // of the points that split, the one that does most
+        // of the points that split, the one that splits most
         const double split = (x.row(i).rightCols(period) - x.row(i).leftCols(period)).abs().maxCoeff();
         powers.row(i) << 1, std::pow(split, 2), std::pow(split, 4);
     }
@@ -149,7 +149,7 @@ int main() {
         std::cout.precision(8);
         bool right = check_orbit();
         const double doublings[] = {period_doubling(5.2, 1), period_doubling(7.7, 2), period_doubling(8.5, 4)};
-        // distances to the next doubling fall like Feigenbaum's 4.67
+        // distances to the next doubling decrease by Feigenbaum's 4.67
         right = check_doubling(doublings[0], 1, 0.08) && right;
         right = check_doubling(doublings[1], 2, 0.03) && right;
         right = check_doubling(doublings[2], 4, 0.008) && right;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The relief valve by CVODE: the flow at which its oscillation grazes the seat, and the cycle of a valve that bounces,
-// rests and opens, by the criterion of the example and by one that lets it bounce on for longer. Exit status 0 if the
-// library agrees, 1 if not.
+// rests and opens, by the example's criterion for rest and by one that lets it bounce for longer. Exit status 0 if the
+// library agrees, else 1.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace {
 namespace valves = relief_valve_sweep;
 using valves::beta, valves::delta, valves::restitution;
 
-/// What the model's functions read beside the state.
+/// Inputs of the model's functions beside the state.
 struct inputs {
     double q;
     std::vector<double> shared{valves::kappa, delta, beta, restitution, valves::rest_band};
@@ -34,7 +34,7 @@ validation::cvode::function slope_of(const inputs& p) {
     };
 }
 
-/// The smallest displacement in the oscillation that the valve would have without a seat.
+/// The smallest displacement in the oscillation of a valve without a seat.
 double smallest_displacement(double q) {
     validation::cvode valve(3, slope_of({q}), 1e-12, 1e-12);
     valve.watch({1}, [](double, const double* s, double* g) { g[0] = s[relief_valve::v]; });
@@ -50,8 +50,8 @@ struct cycle {
     int impacts = 0;
 };
 
-/// None if the pressure lifts the valve before it has come to rest. `slowest`: as in the model; `share`: of the time
-/// until the valve opens that the bounces which are left out may take, 1/20 in the model.
+/// None if the pressure lifts the valve before it has come to rest. `slowest`: as in the model; `share`: the fraction
+/// of the time until opening that the omitted bounces may take, 1/20 in the model.
 std::optional<cycle> follow(double q, double slowest, double share) {
     validation::cvode valve(3, slope_of({q}), 1e-13, 1e-15);
     valve.watch({-1, -1}, [](double, const double* s, double* g) {
@@ -64,7 +64,7 @@ std::optional<cycle> follow(double q, double slowest, double share) {
     for (;;) {
         if (!valve.advance(valve.t() + 100)) throw std::runtime_error("the valve neither rises nor falls");
         if (valve.found()[1] == 0) {
-            if (found.impacts > 0 && valve.y(0) > highest) return {};  // bounces that accumulate become ever lower
+            if (found.impacts > 0 && valve.y(0) > highest) return {};  // bounces that accumulate get ever lower
             highest = valve.y(0);
             if (found.impacts == 0) found.y_max = highest;
             continue;
@@ -82,15 +82,15 @@ std::optional<cycle> follow(double q, double slowest, double share) {
     }
 }
 
-/// The last place, to `width`, at which the condition holds.
+/// The last point, to within `width`, at which the condition holds.
 template <class Condition>
 double last_true(double low, double high, double width, Condition&& condition) {
     while (high - low > width) (condition((low + high) / 2) ? low : high) = (low + high) / 2;
     return (low + high) / 2;
 }
 
-/// Valves near the grazing flow: those below by 2e-3 or more have impacts, those above have none. Transients of 1000
-/// oscillations have died out.
+/// Valves near the grazing flow: those below by 2e-3 or more have impacts, those above have none. Transients have
+/// decayed after 1000 oscillations.
 bool check_grazing() {
     const double grazing = last_true(7.5, 7.6, 1e-7, [](double q) { return smallest_displacement(q) < 0; });
     auto sweep = valves::prepare(24, grazing - 0.0235, grazing + 0.0225);
@@ -106,9 +106,9 @@ bool check_grazing() {
     return wrong == 0;
 }
 
-/// Cycles of valves that rest, and how much the bounces that are left out change them. u, of ten, has steps with errors
-/// of 1e-10, and is waited for at the rate beta q from 0.04 on: 1e-8 in time. The bounce that is the last one comes
-/// later by 100 times as much, as its closing force is small.
+/// Cycles of valves that rest, and the effect of the omitted bounces. u, about ten, has steps with errors of 1e-10 and
+/// is awaited at the rate beta q, at least 0.04: 1e-8 in time. The last bounce shifts by 100 times as much, as its
+/// closing force is small.
 bool check_cycles() {
     using model = relief_valve_contact;
     auto sweep = valves::prepare_contact(6, 0.002, 0.017);
@@ -125,7 +125,7 @@ bool check_cycles() {
         const auto expected = follow(q, valves::slowest, 1.0 / 20),
                    longer = follow(q, valves::slowest / 100, 1.0 / 2000);
         if (!expected || !longer) throw std::runtime_error("a valve does not come to rest");
-        // the last two phases with a rest, and when it ended
+        // the last two phases with a rest, and the time at which it ended
         std::vector<std::int64_t> phases;
         std::vector<double> opened;
         double t = 0;
@@ -155,7 +155,7 @@ bool check_cycles() {
     return right && worst < 1e-8 && worst_u < 1e-6;
 }
 
-/// Up to where the valve rests in every cycle.
+/// The largest flow at which the valve rests in every cycle.
 bool check_end_of_rests() {
     using model = relief_valve_contact;
     const double end = last_true(0.0195, 0.021, 1e-7, [](double q) { return follow(q, 1e-4, 1.0 / 20).has_value(); });
@@ -169,7 +169,7 @@ bool check_end_of_rests() {
         last = sweep.parameter(model::q)[i];
     }
     std::cout << "valves rest in every cycle up to q = " << end << ", in the sweep up to " << last << '\n';
-    return std::abs(last - end) < 3e-5;  // a step and a half
+    return std::abs(last - end) < 3e-5;  // one and a half steps
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Both branches of the nonlinear resonance curve against CVODE, which stops at the extrema by root finding. Exit status
-// 0 if all agree, 1 if not.
+// 0 if all agree, else 1.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -47,8 +47,8 @@ int main() {
     options.phases = 1;
     myriad::solve<myriad::tsitouras_5>(device, sweep, options);
 
-    // Errors of a step, 1e-10 of the amplitude at some 100 steps in a period, live for some periods. 1e-7 leaves for
-    // the folds, where they live longer; the transient, exp(-zeta t), is 9e-18 at most.
+    // Errors of a step, 1e-10 of the amplitude at some 100 steps per period, live for some periods. 1e-7 leaves room
+    // for the folds, where they live longer; the transient, exp(-zeta t), is at most 9e-18.
     constexpr double allowed = 1e-7;
     double worst = 0;
     int two_branches = 0;

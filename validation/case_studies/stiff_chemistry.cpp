@@ -23,12 +23,12 @@ struct inputs {
     double operator[](int c) const { return parameter[c]; }
 };
 
-/// One cycle, from one maximum of z to the next; a period of zero where there is no next one.
+/// One cycle, from one maximum of z to the next; a period of zero if there is no next one.
 struct cycle {
     double period = 0, z_largest = 0;
 };
 
-/// The cycle after so many others, from the start of the sweep.
+/// The cycle that follows `before` others, from the start of the sweep.
 cycle by_cvode(double f, double epsilon, int before) {
     const inputs p{{f, epsilon}, {}};
     validation::cvode reaction(
@@ -55,9 +55,8 @@ cycle by_cvode(double f, double epsilon, int before) {
 
 int main() {
     constexpr std::int64_t side = 9, cycles = 24;
-    // A step's error estimate is below 1e-6 of each concentration. It is that of order 4 while the solution is of order
-    // 5, and a
-    // limit cycle forgets what is not along it: the errors of a whole cycle stay below the tolerance of one step.
+    // A step's error estimate is below 1e-6 of each concentration. It has order 4 and the solution order 5, and a limit
+    // cycle forgets errors across it: the errors of a whole cycle stay below the tolerance of one step.
     constexpr double bound = plane::tolerance;
     auto sweep = plane::prepare(side);
     auto options = plane::integration(cycles);
@@ -70,7 +69,7 @@ int main() {
         const auto at_rest = plane::growth_at(f, epsilon);
         const bool turns = sweep.status(i) == myriad::status::stopped_by_event;
         const double z = sweep.state(oregonator::z)[i];
-        // By how many powers of e deviations grow or decay in all cycles; fewer leave some of the start.
+        // The exponent by which deviations grow or decay over all cycles; fewer than 20 leave a trace of the start.
         const double turn = at_rest.frequency > 0 ? 2 * std::acos(-1.0) / at_rest.frequency : 1;
         if (std::abs(at_rest.rate) * turn * cycles < 20) continue;
         bool right = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Samples at evenly spaced times, for steps h, h/2, h/4, against CVODE at the same times: the error must fall with the
-// order of the interpolant. And with step-size control, the error must be within what the tolerance implies.
+// Samples at evenly spaced times, for steps h, h/2, h/4, against CVODE at the same times: the error must decrease with
+// the order of the interpolant. With step-size control, the error must be within the limit that the tolerance implies.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -64,7 +64,7 @@ double rms_error(const std::vector<double>& start, const myriad::options& how) {
     return std::sqrt(squares / (2 * samples));
 }
 
-/// What CVODE itself is wrong by, or more: the difference to a solution at ten times the tolerance.
+/// A bound on CVODE's own error: the difference to a solution at ten times the tolerance.
 template <class Model>
 double error_of_reference(const std::vector<double>& start) {
     const Eigen::ArrayXd times = Eigen::ArrayXd::LinSpaced(samples, 0, t_end);
@@ -75,7 +75,7 @@ double error_of_reference(const std::vector<double>& start) {
     return std::sqrt(squares / (2 * samples));
 }
 
-/// Steps of length h and no other.
+/// Steps of length h only.
 myriad::options fixed_steps(double h) {
     myriad::options o;
     o.step = o.minimum_step = o.maximum_step = h;
@@ -83,9 +83,9 @@ myriad::options fixed_steps(double h) {
     return o;
 }
 
-/// The error at steps of h/2 and h/4. That of the interpolant has the order given, that of the steps order four or
-/// five; samples fall at other fractions of the steps for every h. `growth`: how much an error of one step may have
-/// grown by the end.
+/// The error at steps of h/2 and h/4. The interpolant's has the given order, the steps' has order four or five; samples
+/// are at other fractions of the steps for every h. `growth`: the factor by which an error of one step may have grown
+/// by the end.
 template <class Model, class Method>
 void compare(const char* model, const char* method, const std::vector<double>& start, double order, double h,
              double growth) {
@@ -93,17 +93,17 @@ void compare(const char* model, const char* method, const std::vector<double>& s
     const double fine = rms_error<Model, Method>(start, fixed_steps(h / 4));
     const double seen = std::log2(coarse / fine);
     const double of_reference = error_of_reference<Model>(start);
-    say(model, method, "error", fine, fine > 10 * of_reference);  // else it tells of CVODE
+    say(model, method, "error", fine, fine > 10 * of_reference);  // else CVODE's error dominates
     say(model, method, "order", seen, seen > order - 0.3 && seen < std::max(order, 1.0 * Method::order) + 0.3);
     if constexpr (requires { Method::interpolant_order; }) {
-        // Some hundred steps with errors below the tolerance, and its own interpolant is as good as they are. (The
-        // Hermite polynomial is not: it knows nothing of the tolerance.)
+        // Some hundred steps with errors below the tolerance; the method's own interpolant is as accurate as they are.
+        // (The Hermite polynomial is not: its error is independent of the tolerance.)
         const double error = rms_error<Model, Method>(start, {.relative_tolerance = 1e-9, .absolute_tolerance = 1e-9});
         say(model, method, "error at tolerances of 1e-9", error, error <= growth * 500 * 1e-9);
     }
 }
 
-/// `first_step`: of tsitouras_5, so that it is both in the range of its order and clear of CVODE's errors.
+/// `first_step`: for tsitouras_5, in the range of its order and clear of CVODE's errors.
 template <class Model>
 void compare_all(const char* name, const std::vector<double>& start, double first_step, double growth) {
     compare<Model, myriad::runge_kutta_4>(name, "runge_kutta_4", start, 4, 1.0 / 16, growth);

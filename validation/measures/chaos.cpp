@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Chaotic solutions, of which only statistics can be compared: the largest Lyapunov exponent of Lorenz' equations with
-// its published value, and the maxima of the Duffing oscillator with those that CVODE finds. What is allowed is four
-// standard errors of the mean over the instances.
+// its published value, and the maxima of the Duffing oscillator with those that CVODE finds. The bound is four standard
+// errors of the mean over the instances.
 #include <cmath>
 #include <numbers>
 
@@ -28,7 +28,7 @@ struct statistic {
 
 void measure_lyapunov(session& s) {
     constexpr int instances = 64, transient = 50;
-    const int phases = s.quick() ? 400 : 2000;  // of one unit of time
+    const int phases = s.quick() ? 400 : 2000;  // each one unit of time long
     myriad::ensemble<lorenz_tangent> e(instances);
     for (int i = 0; i < instances; ++i) {
         const double start[] = {1 + 0.1 * i, 2, 20, 1, 0, 0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Order of the error estimate, read off the step size that the controller proposes after one step of given length. It
-// is what catches a wrong weight of the embedded solution, which no solution shows.
+// Order of the error estimate, from the step size that the controller proposes after one step of given length. This
+// detects a wrong weight of the embedded solution, which no solution shows.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace validation {
 void measure_estimate(session& s, const problem& p, const method_entry& m) {
     if (p.longest_step == 0 || !m.adaptive() || m.precision != "double") return;
     problem one_step = without_events(p);
-    // The estimate over the tolerance, 1, is (0.9 h / h_next)^(q+1), to the 1e-4 that the controller's power allows.
+    // With tolerance 1 the estimate is (0.9 h / h_next)^(q+1), to the 1e-4 of the controller's power.
     const auto estimate = [&](double h) {
         for (auto& i : one_step.instances) i.t_end = h;
         myriad::options o;
@@ -31,7 +31,7 @@ void measure_estimate(session& s, const problem& p, const method_entry& m) {
         const double fine = estimate(h / 2);
         s.rows.add(s.about(p, m, h / 2), "error estimate, root mean square", fine);
         if (!(fine > (m.takes_long_steps() ? 1e3 : 1e4) * eps_double * h))
-            break;  // roundings of h f, which cancel in the estimate
+            break;  // only roundings of h f, which cancel in the estimate
         order = std::log2(coarse / fine);
         coarse = fine;
         h /= 2;

@@ -17,12 +17,12 @@ namespace validation {
 
 enum class extent { whole, quick };
 
-/// What all measures share.
+/// The data common to all measures.
 struct session {
     myriad::device device;
     extent how_much;
     report& rows;
-    recorder* record = nullptr;         // results to keep
+    recorder* record = nullptr;         // results to store
     const recorded* compare = nullptr;  // results of another backend to compare with
 
     bool quick() const { return how_much == extent::quick; }
@@ -32,18 +32,18 @@ struct session {
     }
 };
 
-/// The best known solution of every instance, by how much it may be wrong, and its conditioning.
+/// The best known solution of every instance, its error and its conditioning.
 struct references {
     std::vector<solution> known;
-    std::vector<double> error;  // of the end state, by the difference of two CVODE runs, or 0 for closed forms
+    std::vector<double> error;  // of the end state: the difference of two CVODE runs, or 0 for closed forms
     std::vector<conditioning> conditions;
 };
 
-/// CVODE at two tolerances, and closed forms; compares them with each other.
+/// CVODE at two tolerances, and closed forms, compared with each other.
 references measure_references(session&, const problem&);
-/// Errors of the end, of events, samples, accessories and invariants, and work, over a range of tolerances.
+/// Work, and errors of end states, events, samples, accessories and invariants, over a range of tolerances.
 void measure_tolerances(session&, const problem&, const method_entry&, const references&);
-/// One step against the same step from published coefficients.
+/// One step against the same step computed from published coefficients.
 void measure_step(session&, const problem&, const method_entry&);
 /// Order and error constant with fixed steps.
 void measure_order(session&, const problem&, const method_entry&, const references&);
@@ -53,12 +53,12 @@ void measure_estimate(session&, const problem&, const method_entry&);
 void measure_work(session&, const problem&, const references&);
 /// Lyapunov exponents and statistics of chaotic solutions.
 void measure_chaos(session&);
-/// What rounding adds up to over long times, far from t = 0, and in single precision.
+/// Accumulated rounding errors: over long times, far from t = 0, and in single precision.
 void measure_rounding(session&);
 
 // What several measures use ------------------------------------------------------------------------------------------
 
-/// Calls f(i) for every i below count, on all cores; rethrows what it throws.
+/// Calls f(i) for every i below count, on all cores; rethrows exceptions of f.
 template <class F>
 void for_each_in_parallel(std::size_t count, F&& f) {
     std::exception_ptr failure;
@@ -74,13 +74,13 @@ void for_each_in_parallel(std::size_t count, F&& f) {
     if (failure) std::rethrow_exception(failure);
 }
 
-/// The problem with event functions that never leave their tolerance, so that no step is cut.
+/// The problem with event functions that never leave their tolerance, so that no step is shortened.
 inline problem without_events(problem p) {
     for (auto& e : p.events) e.tolerance = 1e300;
     return p;
 }
 
-/// Steps of length h and no other, for every method: tolerances that no error exceeds.
+/// Steps of length h only, for every method: tolerances that no error exceeds.
 inline myriad::options fixed_steps(const problem& p, double h) {
     myriad::options o;
     o.step = o.minimum_step = o.maximum_step = h;

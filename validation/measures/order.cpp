@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Order and error constant with fixed steps, on all instances, for methods with step-size control too. These are the
-// tight checks: a coefficient that is wrong in its fourth digit breaks a low order condition, so that the error falls
-// with the first or second power of the step, or not at all, from where it is a ten-thousandth of what it should be.
-// Some coefficients have no part in low orders (a[1][0] of Cash-Karp's method); one step shows those.
+// tight checks: a coefficient wrong in its fourth digit breaks a low order condition, so that the error decreases with
+// the first or second power of the step, or not at all, once it is at a ten-thousandth of its proper size. Some
+// coefficients do not enter low orders (a[1][0] of Cash-Karp's method); one step shows those.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 namespace validation {
 namespace {
 
-/// Per instance: the Euclidean length of the difference of two end states, and that of all their samples.
+/// Per instance: the Euclidean norm of the difference of two end states, and that of all their samples.
 struct differences {
     std::vector<double> end, samples;
 
@@ -44,7 +44,7 @@ void measure_step(session& s, const problem& p, const method_entry& m) {
 
 void measure_order(session& s, const problem& p, const method_entry& m, const references& r) {
     if (p.longest_step == 0 || m.precision != "double") return;
-    const problem smooth = without_events(p);  // they would cut steps
+    const problem smooth = without_events(p);  // events would shorten steps
     std::vector<double> growths;
     for (const conditioning& c : r.conditions) growths.push_back(c.end);
     const double growth = median(growths), error_of_reference = median(r.error);
@@ -63,8 +63,8 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
         const level now{h, run.instances, {run.instances, r.known}};
         const double error = median(now.error.end);
         s.rows.add(s.about(p, m, h), "end state with fixed steps, median", error);
-        // Roundings of n steps add up to about sqrt(n) eps and grow; near that the error tells nothing of the method.
-        // The error of the reference is that of the run at ten times its tolerance, so well above its own.
+        // Roundings of n steps add up to about sqrt(n) eps and grow; close to that, the error tells nothing of the
+        // method. The reference's error is taken from the run at ten times its tolerance, and so is well above its own.
         const double steps = p.instances[0].t_end / h;
         const double floor = std::max(30 * std::sqrt(steps) * eps_double * growth, 3 * error_of_reference);
         if (!levels.empty() && !(error > floor)) break;
@@ -78,15 +78,15 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
     const level &fine = levels.back(), &coarse = levels[levels.size() - 2];
     const subject about = s.about(p, m, fine.h);
     const double order = std::log2(median_ratio(coarse.error.end, fine.error.end));
-    // Seen with high orders: 6.1 for seven on Duffing's oscillator (8.4 at twice the step) and 7.4 for eight on van der
-    // Pol's; where every instance has a closed form, half an order at most.
+    // Observed with high orders: 6.1 for seven on Duffing's oscillator (8.4 at twice the step) and 7.4 for eight on van
+    // der Pol's; where every instance has a closed form, at most half an order.
     const double below = error_of_reference == 0 ? 0.5 : 1.2;
     s.rows.add(
         about, "order", order,
         m.takes_long_steps() ? bounds::within(m.order - below, m.order + 2.5)
                              : bounds::within(m.order - 0.2, m.order + 1.2),
         "error = C h^order (1 + O(h)); above it where C is small against the next terms, h larger for high orders");
-    // The difference of two step sizes tells the error of the finer one, up to a term in h.
+    // The difference of two step sizes gives the error of the finer one, up to a term in h.
     const differences halving(coarse.instances, fine.instances);
     s.rows.add(about, "error over its prediction by halved steps",
                median_ratio(fine.error.end, halving.end) * (std::exp2(order) - 1), bounds::within(0.8, 1.25),

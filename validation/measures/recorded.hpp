@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Results kept as compact reference data: some instances of each run, to be compared with those of another backend.
+// Results stored as compact reference data: some instances of each run, for comparison with another backend.
 #pragma once
 
 #include <fstream>
@@ -14,7 +14,7 @@
 
 namespace validation {
 
-/// Of how many instances one is kept.
+/// One of so many instances is stored.
 inline constexpr std::size_t kept_one_of = 9;
 
 inline std::string run_name(const problem& p, const method_entry& m, const char* kind, double setting) {
@@ -29,7 +29,7 @@ struct recorded_result {
     std::vector<int> count;
 };
 
-/// Collects results, and writes them: run, instance, steps, then end state, accessories and integer accessories.
+/// Collects results and writes them: run, instance, steps, then end state, accessories and integer accessories.
 class recorder {
 public:
     void add(const std::string& run, const outcome& o) {
@@ -63,7 +63,7 @@ private:
     std::vector<std::string> lines_;
 };
 
-/// Reads them.
+/// Reads such results.
 class recorded {
 public:
     explicit recorded(const std::string& path) {
@@ -101,7 +101,7 @@ public:
         return found == results_.end() ? nullptr : &found->second;
     }
 
-    /// How many runs have been found.
+    /// Number of runs found.
     int found() const { return found_; }
 
 private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The references: CVODE at two tolerances, which tell its own error, beside closed forms and quadruple precision.
+// The references: CVODE at two tolerances, whose difference gives its error, next to closed forms and quadruple
+// precision.
 #include <algorithm>
 #include <cmath>
 
@@ -53,7 +54,7 @@ references measure_references(session& s, const problem& p) {
     s.rows.add(about, "growth of errors, median", median(growth));
     s.rows.add(about, "reference against itself at ten times the tolerance", largest(by_itself));
     if (!p.exactly) return r;
-    // CVODE is wrong by its own estimate, and some more, as errors of steps add up in another way at each tolerance
+    // CVODE's error is its own estimate and somewhat more, as errors of steps add up differently at each tolerance
     double growth_there = 0;
     for (std::size_t i = 0; i < size; ++i)
         if (to_exact[i] > 0) growth_there = larger(growth_there, growth[i]);
@@ -62,7 +63,7 @@ references measure_references(session& s, const problem& p) {
     s.rows.add(about, "reference against closed form or quadruple precision", largest(to_exact),
                bounds::at_most(allowed),
                p.closed_form_error > 0 ? "error of the collocation"
-                                       : "ten times what CVODE differs by from itself, or ten thousand steps");
+                                       : "ten times CVODE's difference from itself, or ten thousand steps");
     if (!p.event_times.empty() && largest(events) > 0)
         s.rows.add(about, "event times against closed form", largest(events), bounds::at_most(allowed),
                    "as for the end state");

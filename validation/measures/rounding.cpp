@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What rounding adds up to over long times: far from t = 0, where the resolution of t is coarse, and in single
-// precision, where rounded coefficients must not make an error of their own in every step.
+// Accumulated rounding errors: far from t = 0, where the resolution of t is coarse, and in single precision, where
+// rounded coefficients must not add an error in every step.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,8 @@
 namespace validation {
 namespace {
 
-/// Orbits of half-axis 1 from the perihelion, with eccentricities from `least` to `most`, over a length of time.
+/// Orbits with semi-major axis 1 from the perihelion, with eccentricities from `least` to `most`, over a length of
+/// time.
 template <class Method, class R>
 myriad::ensemble<orbit, R> follow(session& s, int count, double least, double most, double t_begin, double length,
                                   const myriad::options& o) {
@@ -33,7 +34,7 @@ myriad::ensemble<orbit, R> follow(session& s, int count, double least, double mo
     return e;
 }
 
-/// The same circle from different times: steps of a thousandth that the resolution of t does not divide.
+/// The same circle from different times: steps of a thousandth that is not a multiple of t's resolution.
 template <class Method>
 void measure_late_start(session& s, const char* name) {
     const double length = s.quick() ? 64 : 1024;
@@ -56,7 +57,7 @@ void measure_late_start(session& s, const char* name) {
     }
 }
 
-/// Mean change of the energy in single precision, beside that in double precision of the same tolerance.
+/// Mean change of the energy in single precision, next to that in double precision at the same tolerance.
 template <class Method>
 void measure_drift(session& s, const char* name) {
     if constexpr (Method::embedded_order > 0) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Errors over a range of tolerances. What bounds them: every accepted step adds an error below the tolerance, since the
-// solution that goes on is better than the one that is estimated (or a few tolerances, where stability and not accuracy
-// bounds the steps), and a rounding; each event adds what it was located to; and each of these may have grown until it
-// is looked at by the problem's conditioning.
+// Errors over a range of tolerances, and their bounds: every accepted step adds an error below the tolerance, since the
+// solution is more accurate than the one whose error is estimated (or a few tolerances, where stability and not
+// accuracy bounds the steps), and a rounding; each event adds its location error; and each of these may have grown by
+// the problem's conditioning when it is measured.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -26,9 +26,9 @@ struct worst {
 constexpr const char* of_tolerance =
     "growth of errors x (steps x (tolerance + rounding) + events x their tolerance) + error of the reference";
 constexpr const char* of_halving =
-    "twice the difference to half the step + growth of errors x roundings + error of the reference";
+    "twice the difference from half the step + growth of errors x roundings + error of the reference";
 
-/// The other backend's results, or those it had.
+/// The other backend's results, or its recorded ones.
 void compare_backends(session& s, const problem& p, const method_entry& m, double setting, const char* other,
                       const std::vector<double>& allowed, const outcome& here,
                       const std::map<std::size_t, recorded_result>& there) {
@@ -43,9 +43,9 @@ void compare_backends(session& s, const problem& p, const method_entry& m, doubl
     }
     const std::string name = std::string("against ") + other;
     s.rows.add(s.about(p, m, setting), name + ": end state", end.value, bounds::at_most(end.bound),
-               "both are within the bound of the error, so their difference is within twice that");
+               "both are within the bound on the error, so their difference is within twice that");
     s.rows.add(s.about(p, m, setting), name + ": instances with other event counts", other_counts, bounds::at_most(0),
-               "no event is near to being missed");
+               "no event is close to being missed");
     s.rows.add(s.about(p, m, setting), name + ": steps", steps_here / steps_there, bounds::within(0.97, 1.03),
                "step sizes that differ in the fifth digit gain or lose a step here and there");
 }
@@ -57,8 +57,8 @@ std::map<std::size_t, recorded_result> as_recorded(const outcome& o) {
     return results;
 }
 
-/// One run; returns the median error of the end states. `finer`: for fixed steps, the same with steps half as long,
-/// whose difference tells the error: 15/16 of it for order four, and half of it at least.
+/// One run; returns the median error of the end states. `finer`: for fixed steps, the same run with steps half as long,
+/// whose difference gives the error: 15/16 of it for order four, and at least half of it.
 double measure_run(session& s, const problem& p, const method_entry& m, const references& r, const char* kind,
                    double setting, double tolerance, myriad::options o, const outcome* finer = nullptr) {
     const subject about = s.about(p, m, setting);
@@ -84,7 +84,7 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
         for (std::size_t a = 0; a < known.accessory.size(); ++a) {
             const bool time =
                 std::find(p.event_times.begin(), p.event_times.end(), static_cast<int>(a)) != p.event_times.end();
-            // a time is also rounded itself
+            // a time is itself rounded too
             (time ? event : accessory)
                 .add(std::abs(is.accessory[a] - known.accessory[a]),
                      std::max(1.0, c.accessory[a]) * made + m.eps * std::abs(known.accessory[a]) +
@@ -107,7 +107,7 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
         s.rows.add(about, "accessories", accessory.value, bounds::at_most(accessory.bound), reason);
     if (!r.known[0].count.empty())
         s.rows.add(about, "instances with other event counts", other_counts, bounds::at_most(0),
-                   "no event is near to being missed");
+                   "no event is close to being missed");
     if (p.invariants) s.rows.add(about, "invariants", invariant.value, bounds::at_most(invariant.bound), reason);
     s.rows.add(about, "accepted steps", plain.sum(plain.accepted));
     s.rows.add(about, "rejected steps", plain.sum(plain.rejected));
@@ -133,10 +133,10 @@ double measure_run(session& s, const problem& p, const method_entry& m, const re
             error = larger(error, distance(sampled.instances[i].samples[k], r.known[i].samples[k]));
         samples.add(error, bound);
     }
-    // Of others, the order is measured with fixed steps.
+    // For others, the order is measured with fixed steps.
     s.rows.add(about, "samples", samples.value,
                m.adaptive() && m.samples_keep_tolerance() ? bounds::at_most(samples.bound) : bounds::none(),
-               "as for the end state, as the interpolant is as good as the steps");
+               "as for the end state, as the interpolant is as accurate as the steps");
     s.rows.add(about, "change of the end state by samples", moved.value, bounds::at_most(moved.bound),
                "samples change no bit of the steps");
     return median(errors);

@@ -29,7 +29,7 @@ outcome by_cvode(const problem& p, double tolerance) {
 }  // namespace
 
 void measure_work(session& s, const problem& p, const references& r) {
-    // a GPU's time for so few instances says nothing
+    // a GPU's time for so few instances means nothing
     if (!p.by_odeint || s.device.which() != myriad::device::kind::cpu) return;
     const std::size_t size = p.instances.size();
     double unit = 0;

@@ -28,7 +28,7 @@ struct parameters_of {
     std::vector<double> values;
 };
 
-/// The state at t of the given instance by CVODE, with the model's own right-hand side.
+/// The state of the given instance at t by CVODE, with the model's own right-hand side.
 template <class Model>
 std::vector<double> by_cvode(const myriad::ensemble<Model>& e, std::int64_t instance, const std::vector<double>& start,
                              double t, multistep family, double tolerance, double absolute_tolerance) {
@@ -46,7 +46,7 @@ std::vector<double> by_cvode(const myriad::ensemble<Model>& e, std::int64_t inst
     return solution.state();
 }
 
-/// How far apart two states are, as the study measures errors.
+/// The distance of two states, as the study measures errors.
 double distance(const std::vector<double>& scale, const std::vector<double>& a, const std::vector<double>& b) {
     double worst = 0;
     for (std::size_t c = 0; c < scale.size(); ++c)
@@ -68,7 +68,7 @@ bool judge(const std::string& name, std::int64_t instances, double difference, d
     return right;
 }
 
-/// CVODE runs twice, at ten times its tolerance too. As long as that at least doubles its error, the finer solution is
+/// CVODE runs twice, at its tolerance and at ten times that. If this at least doubles its error, the finer solution is
 /// nearer to the truth than to the coarser one, and so must the reference be.
 template <class Reference, class Model>
 bool check(const study<Model>& of, std::int64_t count, const std::vector<double>& start, double t, multistep family,
@@ -84,8 +84,8 @@ bool check(const study<Model>& of, std::int64_t count, const std::vector<double>
     return judge(of.name, count, difference, allowed);
 }
 
-/// Impacts make an error grow: by as much as a shift of the seat by 1e-6 does. A thousand steps of CVODE at 1e-12 then
-/// err by 1e-9 and as much of that growth. An instance in which the shift adds or removes an impact says nothing.
+/// Impacts make an error grow, by the same factor as a shift of the seat by 1e-6. A thousand steps of CVODE at 1e-12
+/// then err by 1e-9 times that growth. An instance in which the shift adds or removes an impact tells nothing.
 bool check_valves(std::int64_t count) {
     constexpr double shift = 1e-6, error = 1000 * 1e-12;
     const auto of = closely_watched_valve_study();

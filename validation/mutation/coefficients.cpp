@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Shows that the measures of order see a wrong coefficient: every one of every method, changed in its fourth digit,
-// must be reported by the very functions that validate the methods, and the methods as they are must not. Kernels on
-// single lanes, compiled here. Exit status 1 if a mutant passes, or a method fails.
+// Shows that the measures of order detect a wrong coefficient: every coefficient of every method, changed in its fourth
+// digit, must be reported by the very functions that validate the methods, and the unchanged methods must not. Kernels
+// on single lanes, compiled here. Exit status 1 if a mutant passes, or a method fails.
 #include <cstdlib>
 #include <iostream>
 #include <sstream>
@@ -21,8 +21,7 @@ namespace validation {
 
 constexpr double change = 1e-4;
 
-/// Which coefficient: of the stages (their nodes c are left as they are), of the solution, of the error estimate, a
-/// node.
+/// Kind of coefficient: of the stages (their nodes c stay unchanged), of the solution, of the error estimate, a node.
 enum class part { a, b, e, c };
 
 template <class Method, part which, std::size_t i, std::size_t j>
@@ -34,7 +33,7 @@ struct mutated : Method {
         if (which == part::c) t.c[j] *= 1 + change;
         if (which == part::b) {
             t.b[j] *= 1 + change;
-            // there the solution is the argument of the last stage, and stays it
+            // the solution must remain the argument of the last stage
             if (Method::first_same_as_last) t.a[Method::stages - 1][j] = t.b[j];
         }
         return t;
@@ -49,17 +48,17 @@ references in_closed_form(const problem& p) {
         r.known.push_back(p.exactly(i, p.samples));
         r.error.push_back(0);
         conditioning c;
-        c.end = 10;  // e^2 from the smallest to the largest value of exp(sin s), and some more
+        c.end = 10;  // e^2 from the smallest to the largest value of exp(sin s), plus a margin
         r.conditions.push_back(c);
     }
     return r;
 }
 
-/// Kernels without dense output are enough here, and compile sooner.
+/// Kernels without dense output suffice here, and compile faster.
 problem not_sampled() {
     problem p = timed_circle_problem();
     p.sampled.clear();
-    std::vector<instance> some;  // all around, the one that takes the single step first
+    std::vector<instance> some;  // all around the circle; the first one takes the single step
     for (std::size_t i = 0; i < p.instances.size(); i += 4) some.push_back(p.instances[i]);
     p.instances = some;
     return p;
@@ -67,7 +66,7 @@ problem not_sampled() {
 
 class judge {
 public:
-    /// Measures a method, and says if the verdict is not what it should be.
+    /// Measures a method, and reports if the verdict is wrong.
     template <class Method>
     void add(const std::string& method, const std::string& change, bool is_mutant) {
         std::ostringstream log;
@@ -101,7 +100,7 @@ private:
     void add_coefficient(const std::string& method) {
         constexpr auto t = Method::tableau();
         const std::string column = '[' + std::to_string(j) + ']';
-        // the last row of a is b there
+        // there the last row of a is b
         constexpr bool is_b = Method::first_same_as_last && i + 1 == static_cast<std::size_t>(Method::stages);
         if constexpr (t.a[i][j] != 0 && !is_b)
             add<mutated<Method, part::a, i, j>>(method, " with another a[" + std::to_string(i) + ']' + column, true);
@@ -109,7 +108,7 @@ private:
             add<mutated<Method, part::b, i, j>>(method, " with another b" + column, true);
         if constexpr (i == 0 && t.e[j] != 0)
             add<mutated<Method, part::e, i, j>>(method, " with another e" + column, true);
-        // a last stage that is the next first one is taken where the step ends, whatever its node
+        // a last stage that is the first of the next step is evaluated at the end of the step, whatever its node
         constexpr bool is_end = Method::first_same_as_last && j + 1 == static_cast<std::size_t>(Method::stages);
         if constexpr (i == 0 && t.c[j] != 0 && !is_end)
             add<mutated<Method, part::c, i, j>>(method, " with another c" + column, true);

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Shows that the validation sees a wrong loop: copies the headers, changes one line in each copy, compiles the kernels of
-one problem with it and runs the validation on them, which must fail; with the headers as they are it must pass on all these
-problems.
+"""Shows that the validation detects a wrong loop: copies the headers, changes one line in each copy, compiles the
+kernels of one problem with it and runs the validation on them, which must fail; with unchanged headers it must pass on
+all these problems.
 
-Usage: logic.py --source DIR --kernels DIR --work DIR --host LIBRARY --compile "COMMAND" --link "ARGUMENTS" [--only NAME,...]
+Usage: logic.py --source DIR --kernels DIR --work DIR --host LIBRARY --compile "COMMAND" --link "ARGUMENTS"
+                [--only NAME,...]
 Exit status 1 if a changed loop passes, or the unchanged one fails.
 """
 import argparse
@@ -17,38 +18,52 @@ import subprocess
 import sys
 import time
 
-# name: (header, text, what it becomes, the problem that shows it). The text must be there, once.
+# name: (header, text, replacement, the problem that shows it). The text must occur exactly once.
 MUTATIONS = {
-    "swapped_direction": ("kernel/event/locator.hpp",
-                          "(side > R(0) && args.event[j].falling) || (side < R(0) && args.event[j].rising)",
-                          "(side < R(0) && args.event[j].falling) || (side > R(0) && args.event[j].rising)",
+    "swapped_direction": ("kernel/event/side_follower.hpp",
+                          "side > R(0) ? args.falling[j / 32] : side < R(0) ? args.rising[j / 32]",
+                          "side > R(0) ? args.rising[j / 32] : side < R(0) ? args.falling[j / 32]",
                           "bouncing_ball"),
+    "unseen_direction": ("kernel/event/locator.hpp", "(e.above & masks::from_bits(args.falling))",
+                         "(e.above & masks::from_bits(args.rising))", "bouncing_ball"),
     "lost_action": ("kernel/integrator/hook_driver.hpp",
                     "run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_event(j, lane); });",
                     "static_cast<void>(j);", "bouncing_ball"),
     "stale_slope": ("kernel/integrator/hook_driver.hpp",
-                    "s.slope_valid = s.slope_valid & !changed;\n                check_finite",
+                    "s.slopes.invalidate(changed);\n                check_finite",
                     "check_finite", "bouncing_ball"),
     "rejected_step_accepted": ("kernel/controller/adaptive.hpp", "mask accepted = s.running() & within;",
                                "mask accepted = s.running() & valid;", "timed_circle"),
-    "error_taken_for_less": ("kernel/controller/norm.hpp", "return abs(error) / scale;", "return abs(error) / scale * S(0.01);", "kepler"),
-    "first_slope_for_the_last": ("kernel/integrator/integrate.hpp", "select(accepted, trial.slope_end()[c], s.slope[c])",
-                                 "select(accepted, trial.k[0][c], s.slope[c])", "kepler"),
-    "stages_at_the_end_of_the_step": ("kernel/stepper/explicit_rk.hpp", "fma(S(node<Method, stage, R>), h, t)", "(t + h)",
-                                      "timed_circle"),
+    "error_taken_for_less": ("kernel/controller/norm.hpp", "return abs(error) / scale;",
+                             "return abs(error) / scale * S(0.01);", "kepler"),
+    "first_slope_for_the_last": ("kernel/state/slope_cache.hpp",
+                                 "select(accepted, trial.slope_end()[c], start_[c])",
+                                 "select(accepted, trial.k[0][c], start_[c])", "kepler"),
+    "stages_at_the_end_of_the_step": ("kernel/stepper/explicit_rk.hpp",
+                                      "fma(S(node<Method, stage, R>), h, t)",
+                                      "(t + h)", "timed_circle"),
     "short_last_step": ("kernel/controller/adaptive.hpp", "s.h = select(s.final_step, remaining,",
                         "s.h = select(s.final_step, remaining * S(R(0.999)),", "kepler"),
     "event_not_redone": ("kernel/event/locator.hpp",
-                         "low, high, events, p);\n                set_lane(accepted, i, false);", "low, high, events, p);",
-                         "bouncing_ball"),
+                         "low, high, events);\n            return trial_outcome::is_redone;",
+                         "low, high, events);", "bouncing_ball"),
     "event_counted_twice": ("kernel/integrator/hook_driver.hpp", "get_lane(s.data.event_count[j], i)) + 1;",
                             "get_lane(s.data.event_count[j], i)) + 2;", "bouncing_ball"),
-    "step_other_than_that_of_t": ("kernel/controller/adaptive.hpp", "h = (s.data.t + h) - s.data.t;", "h = h + R(0) * s.data.t;", "orbit"),
-    "weights_rounded_one_by_one": ("kernel/methods/weights.hpp", "sizeof(R) >= sizeof(double)) return rounded;", "true) return rounded;",
-                                   "orbit"),
+    "step_other_than_that_of_t": ("kernel/controller/adaptive.hpp", "h = (s.data.t + h) - s.data.t;",
+                                  "h = h + R(0) * s.data.t;", "orbit"),
+    "weights_rounded_one_by_one": ("kernel/methods/weights.hpp", "sizeof(R) >= sizeof(double)) return rounded;",
+                                   "true) return rounded;", "orbit"),
 }
 DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_accepted"]
-SECONDS = 120  # an endless loop is found too
+SECONDS = 120  # so that an endless loop is detected too
+
+
+def stale_mutations(source):
+    """Messages about mutations whose text is not in the sources exactly once."""
+    found = {name: (source / "include/myriad" / header).read_text().count(text)
+             for name, (header, text, _, _) in MUTATIONS.items()}
+    return [f"{name}: {MUTATIONS[name][0]} has the text {count} times, not once: {MUTATIONS[name][1]}"
+            for name, count in found.items() if count != 1]
 
 
 def prepare(options, name):
@@ -61,22 +76,22 @@ def prepare(options, name):
     shutil.copytree(options.source / "include", folder)
     path = folder / "myriad" / header
     content = path.read_text()
-    if content.count(text) != 1:
-        raise SystemExit(f"{name}: {header} has the text {content.count(text)} times, not once; mend the mutation: {text}")
     path.write_text(content.replace(text, becomes))
     return folder
 
 
 def examine(options, name, problems):
-    """Builds and runs; returns (is the verdict right, what to say)."""
+    """Builds and runs; returns (is the verdict right, message)."""
     include = prepare(options, name)
     build = options.work / (name or "unchanged")
     build.mkdir(parents=True, exist_ok=True)
     objects = []
     for problem in problems:
         objects.append(str(build / f"{problem}.o"))
-        folders = (options.kernels, options.source / "validation/problems")  # made from the template, or written by hand
-        kernels = next(folder / f"{problem}_kernels.cpp" for folder in folders if (folder / f"{problem}_kernels.cpp").exists())
+        # Made from the template, or written by hand.
+        candidates = [folder / f"{problem}_kernels.cpp"
+                      for folder in (options.kernels, options.source / "validation/problems")]
+        kernels = next(path for path in candidates if path.exists())
         command = shlex.split(options.compile) + [
             f"-I{include}", f"-I{options.source}/backends/openmp", f"-I{options.source}",
             "-DMYRIAD_SCALAR_LANES", "-O0", "-c", str(kernels), "-o", objects[-1]]
@@ -98,7 +113,8 @@ def examine(options, name, problems):
     missed = [line for line in done.stdout.splitlines() if line.startswith("MISSED")]
     seconds = time.monotonic() - started
     if name is None:
-        return done.returncode == 0, f"unchanged: exit status {done.returncode} after {seconds:.0f} s\n{done.stdout[-2000:] if done.returncode else ''}"
+        output = done.stdout[-2000:] if done.returncode else ""
+        return done.returncode == 0, f"unchanged: exit status {done.returncode} after {seconds:.0f} s\n{output}"
     first = missed[0][:150] if missed else done.stderr[-300:]
     return done.returncode == 1, f"{name}: exit status {done.returncode}, {len(missed)} bounds missed: {first}"
 
@@ -116,6 +132,9 @@ def main():
     unknown = [name for name in names if name not in MUTATIONS]
     if unknown:
         parser.error(f"there is no mutation {unknown[0]}: choose from {', '.join(MUTATIONS)}")
+    stale = stale_mutations(options.source)
+    if stale:
+        parser.exit(1, "\n".join(["Mend these mutations:"] + stale) + "\n")
     wrong = 0
     examined = {name: [MUTATIONS[name][-1]] for name in names}
     examined[None] = sorted({problem for problems in examined.values() for problem in problems})

@@ -8,8 +8,8 @@
 
 namespace validation {
 
-/// x'' + k x' - x + x^3 = B cos(omega t); keeps the last maximum of x with its time, the time and the speed of the last
-/// rise of x through zero, and how many there were.
+/// x'' + k x' - x + x^3 = B cos(omega t); stores the last maximum of x with its time, the time and speed of the last
+/// rise of x through zero, and the numbers of both.
 struct duffing : problems::duffing {
     enum parameter { k, n_parameter };
     enum shared { B, omega, n_shared };

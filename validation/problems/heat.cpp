@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Heat conduction in shells of different diffusivity, with one differentiation matrix for all; in closed form but for
-// the error of the collocation.
+// Heat conduction in shells of different diffusivity, with one differentiation matrix for all; in closed form except
+// for the collocation error.
 #include "heat.hpp"
 
 #include <cmath>
@@ -60,10 +60,10 @@ problem heat_problem() {
     p.shared = matrix_and_radii();
     p.sampled = {0, 4, 9};
     p.fixed_step = 5e-4;
-    p.error_follows_tolerance = false;  // bound by stability
-    // Steps that stability bounds are long for the fastest modes, and the estimate of such a step may happen to vanish:
+    p.error_follows_tolerance = false;  // stability bounds the step
+    // Steps bound by stability are long for the fastest modes, and the estimate of such a step may happen to vanish:
     // with one tolerance for each step, dormand_prince_8 at 1e-11 was above the bound in 11 of 400 runs whose
-    // tolerances were within 4e-4 of each other, at most 1.5 times.
+    // tolerances were within 4e-4 of each other, by a factor of at most 1.5.
     p.error_of_a_step = 4;
     p.closed_form_error = 1e-8;
     p.exactly = [](const instance& i, std::int64_t) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Heat conduction in a spherical shell by collocation: a differentiation matrix that all instances share.
+// Heat conduction in a spherical shell by collocation: one differentiation matrix for all instances.
 #pragma once
 
 #include <myriad/model.hpp>
 
 namespace validation {
 
-/// T_t = kappa / r^2 (r^2 T_r)_r on 1 < r < 2 with T = 0 at both ends, at the inner Chebyshev points; the matrix D
-/// takes values at all points, of which the first and the last are zero, to slopes at all points.
+/// T_t = kappa / r^2 (r^2 T_r)_r on 1 < r < 2 with T = 0 at both ends, at the inner Chebyshev points; the matrix D maps
+/// values at all points, zero at the first and the last, to slopes at all points.
 struct heat {
     static constexpr int inner = 10, points = inner + 2;
     enum state { first, n_state = inner };

@@ -8,7 +8,7 @@
 
 namespace validation {
 
-/// Keeps the last maximum and minimum of the radius and their times.
+/// Stores the last maximum and minimum of the radius and their times.
 struct keller_miksis : problems::keller_miksis {
     enum accessory { t_maximum, t_minimum, maximum, minimum, n_accessory };
     enum integer_accessory { maxima, minima, n_integer_accessory };

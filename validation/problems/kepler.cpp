@@ -11,8 +11,8 @@
 namespace validation {
 namespace {
 
-/// Position and velocity at time t of the orbit with half-axis 1 and eccentricity e: Kepler's equation by Newton's
-/// method.
+/// Position and velocity at time t on the orbit with semi-major axis 1 and eccentricity e: Kepler's equation by
+/// Newton's method.
 std::vector<double> place_on_orbit(double e, double t) {
     using real = long double;
     const real mean = std::remainder(static_cast<real>(t), 2 * std::numbers::pi_v<real>);

@@ -15,7 +15,7 @@ problem lorenz_problem() {
     for (const double rho : spread(0, 21, 64)) p.instances.push_back({{1, 0, 0}, {rho}, 10});
     p.sampled = {lorenz::x, lorenz::y, lorenz::z};
     // No measured orders: the fast swings make errors of opposite sign, whose sum passes through zero as the step
-    // falls.
+    // decreases.
     p.fixed_step = 0.005;
     // quadruple precision
     p.exactly = [](const instance& i, std::int64_t) {

@@ -3,8 +3,8 @@
 """Writes one_step.hpp: one step of each method on the timed circle, from published coefficients in 60 decimal digits.
 
 Usage: one_step.py FOLDER > one_step.hpp
-FOLDER holds the coefficients, NAME.toml with A_exact, b_exact and c_exact as rationals or long decimals. Nothing of
-Myriad takes part, so that a coefficient of the library that differs from the published one shows.
+FOLDER holds the coefficients, NAME.toml with A_exact, b_exact and c_exact as rationals or long decimals. Uses
+nothing of Myriad, so that a coefficient of the library that differs from the published one is detected.
 """
 import decimal
 import fractions
@@ -14,7 +14,7 @@ import tomllib
 
 METHODS = {"runge_kutta_4": "RK4", "cash_karp": "CashKarp54", "tsitouras_5": "Tsit5", "dormand_prince_5": "DP54",
            "verner_7": "Vern7", "dormand_prince_8": "DOP853"}
-H, ANGLE = "0.5", "0.75"  # length of the step, and ln u / sin = ln w / cos of it at the start
+H, ANGLE = "0.5", "0.75"  # step length; at the start ln u and ln w are sine and cosine of ANGLE
 
 
 def number(text):
@@ -41,7 +41,7 @@ def one_step(tableau, y, h):
     b = [number(x) for x in tableau["b_exact"]]
     c = [number(x) for x in tableau["c_exact"]]
     a = [[number(x) for x in row] for row in tableau["A_exact"]]
-    while b[-1] == 0:  # an extra stage, of the error estimate or the interpolant
+    while b[-1] == 0:  # extra stages, of the error estimate or the interpolant
         b.pop()
     k = []
     for i in range(len(b)):
@@ -55,7 +55,8 @@ def main(folder):
     sine, cosine = sine_and_cosine(decimal.Decimal(ANGLE))
     start = [sine.exp(), cosine.exp()]
     print("// SPDX-License-Identifier: MIT")
-    print("// One step of each method on the timed circle, from published coefficients in 60 decimal digits. Written by one_step.py.")
+    print("// One step of each method on the timed circle, from published coefficients in 60 decimal digits. "
+          "Written by one_step.py.")
     print("#pragma once\n\n#include <map>\n#include <string>\n#include <vector>\n\nnamespace validation {\n")
     print(f"inline constexpr double one_step_length = {H}, one_step_angle = {ANGLE};\n")
     print("inline const std::map<std::string, std::vector<double>> one_step = {")

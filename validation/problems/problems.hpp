@@ -26,7 +26,7 @@ inline std::vector<problem> all_problems() {
             timed_circle_problem(), robertson_problem(),     oregonator_problem()};
 }
 
-/// A solution of which only the end is known, for one instance, and nothing of the others.
+/// A solution known only at the end and only for one instance.
 inline solution known_end(bool is_that_one, std::vector<double> end) {
     solution s;
     if (!is_that_one)

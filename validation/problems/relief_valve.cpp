@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pressure relief valves with impacts, for a time in which none accumulates.
+// Pressure relief valves with impacts, for a time in which no impacts accumulate.
 #include "relief_valve.hpp"
 
 #include "../runner.hpp"

@@ -7,8 +7,8 @@
 
 namespace validation {
 
-/// Displacement y, velocity v, pressure u. At the seat y = 0 the velocity is reversed; keeps the last impact's time and
-/// speed, and the last maximum of y with its time.
+/// Displacement y, velocity v, pressure u. At the seat y = 0 the velocity is reversed; stores the last impact's time
+/// and speed, and the last maximum of y with its time.
 struct relief_valve {
     enum state { y, v, u, n_state };
     enum parameter { q, n_parameter };

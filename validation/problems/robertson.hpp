@@ -8,7 +8,7 @@
 
 namespace validation {
 
-/// Its first two rates differ from instance to instance.
+/// Its first two rates differ between instances.
 struct robertson : problems::robertson {
     enum parameter { k1, k2, n_parameter };
 

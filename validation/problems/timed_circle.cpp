@@ -19,7 +19,7 @@ problem timed_circle_problem() {
     problem p;
     p.name = "timed_circle";
     p.what = "A circle in logarithmic coordinates, run through at the speed 1 + t, from 64 angles to t = 2";
-    // the first one takes the single step
+    // the first instance takes the single step
     for (const double s : spread(one_step_angle, 6.75, 64)) p.instances.push_back({at_angle(s), {}, 2});
     p.sampled = {timed_circle::u, timed_circle::w};
     p.longest_step = 1.0 / 8;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A problem in closed form on which no coefficient of a method is without effect.
+// A problem in closed form to which every coefficient of a method matters.
 #pragma once
 
 #include <myriad/model.hpp>
 
 namespace validation {
 
-/// The circle in logarithmic coordinates, run through at the speed 1 + t: nonlinear, coupled, and time counts, so that
-/// every node, weight and order condition does. Solution: exp(sin s), exp(cos s) with s = s(0) + t + t^2 / 2.
+/// The circle in logarithmic coordinates, traversed at the speed 1 + t: nonlinear, coupled and time-dependent, so that
+/// every node, weight and order condition matters. Solution: exp(sin s), exp(cos s) with s = s(0) + t + t^2 / 2.
 struct timed_circle {
     enum state { u, w, n_state };
     template <class R>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Integrates relief valves over many phases and checks that none goes through its seat by more than ten event
-// tolerances, and that those whose impacts do not accumulate have as many of them as CVODE finds. Exit status 0 if all
-// is well, 1 if a check fails, 2 for bad arguments.
+// Integrates relief valves over many phases and checks that none passes its seat by more than ten event tolerances, and
+// that those whose impacts do not accumulate have as many as CVODE finds. Exit status 0 if all is well, 1 if a check
+// fails, 2 for bad arguments.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -30,7 +30,7 @@ bool check_seat(const arguments& chosen, const myriad::device& device) {
     const auto report = myriad::solve<myriad::cash_karp>(device, sweep, valves::integration(chosen.phases));
     std::cout << report;
     const auto lowest = sweep.accessory(relief_valve::y_lowest);
-    // min() passes NaN over, so compare in the sense in which NaN is wrong
+    // min() skips NaN, so compare such that NaN counts as wrong
     const auto through = chosen.instances - (lowest >= -10 * valves::event_tolerance).count();
     const auto unexpected = report.failed() - report.count(status::event_accumulation);
     std::cout << "lowest displacement " << lowest.minCoeff() << ", " << through
@@ -41,9 +41,9 @@ bool check_seat(const arguments& chosen, const myriad::device& device) {
     return through == 0 && unexpected == 0;
 }
 
-/// Impacts by CVODE, phase by phase, of instances spread over q. Impacts that come often are followed by others that
-/// depend on every bit; so CVODE runs twice, the second time with the seat raised by the tolerance of the event, which
-/// is what the tolerance allows, and phases count as long as it makes little difference.
+/// Impacts by CVODE, phase by phase, for instances spread over q. Frequent impacts are followed by others that depend
+/// on every bit; so CVODE runs twice, the second time with the seat raised by the event tolerance, which the tolerance
+/// permits, and phases count as long as this makes little difference.
 bool check_impacts(const arguments& chosen, const myriad::device& device) {
     auto sweep = valves::prepare(chosen.compared);
     auto options = valves::integration(chosen.phases);
@@ -64,7 +64,7 @@ bool check_impacts(const arguments& chosen, const myriad::device& device) {
         bool right = true;
         for (; k < known && right; ++k) {
             const auto phase = static_cast<Eigen::Index>(k);
-            if (at_rest(i, phase) >= 50) break;  // maxima below the event tolerance, which CVODE still sees
+            if (at_rest(i, phase) >= 50) break;  // maxima below the event tolerance, which CVODE still resolves
             if (expected.impacts[k] != shifted.impacts[k]) break;
             if (!(std::abs(expected.state[k][0] - shifted.state[k][0]) < 1e-3)) break;
             ++phases;
@@ -81,7 +81,7 @@ bool check_impacts(const arguments& chosen, const myriad::device& device) {
     std::cout << followed << " of " << chosen.compared << " instances do not accumulate; " << whole
               << " of them were compared with CVODE to the end, the others while they are well-conditioned: " << phases
               << " phases, " << counted << " impacts, " << wrong << " instances with another number\n";
-    // a comparison of a few phases would show nothing
+    // a comparison of a few phases would prove nothing
     return wrong == 0 && phases >= 4 * followed && counted >= followed;
 }
 

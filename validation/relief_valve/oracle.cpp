@@ -10,8 +10,8 @@
 
 valve_history follow_valve(double q, int phases, double seat) {
     using namespace relief_valve_sweep;
-    constexpr double longest_phase = 100;    // dozens of oscillations: there is no further maximum
-    constexpr double slowest_impact = 1e-5;  // flights of 2e-6 and heights of 1e-11 at the deceleration of ten
+    constexpr double longest_phase = 100;    // dozens of oscillations: no further maximum follows
+    constexpr double slowest_impact = 1e-5;  // flights of 2e-6 and heights of 1e-11 at a deceleration of ten
     validation::cvode valve(
         3,
         [q](double, const double* s, double* ds) {

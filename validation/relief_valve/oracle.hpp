@@ -8,9 +8,9 @@
 struct valve_history {
     std::vector<int> impacts;
     std::vector<std::vector<double>> state;
-    bool accumulated = false;  // impacts became too slow to follow; the phases before are there
+    bool accumulated = false;  // impacts became too slow to follow; earlier phases are complete
 };
 
 /// Follows the valve over so many phases, or until its maxima stop or its impacts accumulate. `seat`: displacement at
-/// which it is reflected, to see what a shift of it would do.
+/// which it is reflected, to see the effect of a shift.
 valve_history follow_valve(double q, int phases, double seat);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The case duffing_cash_karp: what it integrates, and Myriad's call.
+// The case duffing_cash_karp: its sweep, and Myriad's call.
 #include "../cases.hpp"
 #include "../myriad_run.hpp"
 #include "equations.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Duffing oscillator by CVODE, which goes through the periods of the forcing without a new start.
+// The Duffing oscillator by CVODE, which passes the ends of forcing periods without a restart.
 #include "../adams.hpp"
 #include "../peer.hpp"
 #include "equations.hpp"

@@ -22,6 +22,6 @@ CPU_PEERS_INLINE void slopes(T t, T x, T v, T k, T& dx, T& dv) {
 outcome run_odeint(const sweep&);
 outcome run_loop(const sweep&);
 outcome run_reference(const sweep&);
-__attribute__((weak)) outcome run_cvode(const sweep&);  // null where SUNDIALS was not found
+__attribute__((weak)) outcome run_cvode(const sweep&);  // null if SUNDIALS was not found
 
 }  // namespace cpu_peers::duffing

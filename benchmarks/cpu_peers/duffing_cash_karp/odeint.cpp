@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Duffing oscillator by Boost.odeint: its controlled Cash-Karp stepper, and as the reference its Fehlberg 7(8) in
+// The Duffing oscillator by Boost.odeint: its controlled Cash-Karp stepper and, for the reference, its Fehlberg 7(8) in
 // long double at a tolerance near rounding.
 #include <array>
 

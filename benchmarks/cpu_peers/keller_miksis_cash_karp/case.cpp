@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The case keller_miksis_cash_karp: what it integrates, and Myriad's call.
+// The case keller_miksis_cash_karp: its sweep, and Myriad's call.
 #include <cmath>
 
 #include "../cases.hpp"
@@ -27,7 +27,7 @@ outcome run(const sweep& work) {
                                      [](auto& instances) { instances.time_domain(0, 1); });
 }
 
-// Driven at f1 with 1.5 bar and not driven at f2.
+// Driven with 1.5 bar at f1 and not driven at f2.
 void fill(std::int64_t instances, double* parameters, double* states) {
     const Eigen::ArrayXd logarithm =
         Eigen::ArrayXd::LinSpaced(instances, std::log10(20e3), std::log10(1000e3));  // of f1 in Hz

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Keller-Miksis bubble by CVODE, which goes through the periods of the first forcing without a new start: the
-// second one, whose phase would jump between them, has no amplitude.
+// The Keller-Miksis bubble by CVODE, which passes the ends of the first forcing's periods without a restart: the second
+// forcing, whose phase would jump there, has no amplitude.
 #include "../adams.hpp"
 #include "../peer.hpp"
 #include "equations.hpp"
@@ -27,7 +27,7 @@ struct thread {
         solver.start(0);
         double y_max = y[0];
         while (solver.advance(phases, CV_ONE_STEP) != CV_TSTOP_RETURN) y_max = std::max(y_max, solver.y()[0]);
-        asm volatile("" : : "x"(y_max));  // a result, though nothing here reads it
+        asm volatile("" : : "x"(y_max));  // makes the result count as used
         for (int c = 0; c < n; ++c) y[c] = solver.y()[c];
         accepted = solver.steps();
         return ending::completed;

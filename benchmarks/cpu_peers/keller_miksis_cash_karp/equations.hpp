@@ -13,8 +13,8 @@ namespace cpu_peers::keller_miksis {
 inline constexpr int n = 2, constants = 13;
 inline constexpr double first_step = 1e-2;
 
-/// The dimensionless radius y and its slope v over the time tau in periods of the first forcing; C[12] is the phase of
-/// the second forcing in half turns.
+/// The dimensionless radius y and its slope v over time tau in periods of the first forcing; C[12] is the phase of the
+/// second forcing in half turns.
 template <class T>
 CPU_PEERS_INLINE void slopes(T tau, T y, T v, const T* C, T& dy, T& dv) {
     const T pi = T(3.14159265358979323846264338327950288L);
@@ -32,6 +32,6 @@ CPU_PEERS_INLINE void slopes(T tau, T y, T v, const T* C, T& dy, T& dv) {
 outcome run_odeint(const sweep&);
 outcome run_loop(const sweep&);
 outcome run_reference(const sweep&);
-__attribute__((weak)) outcome run_cvode(const sweep&);  // null where SUNDIALS was not found
+__attribute__((weak)) outcome run_cvode(const sweep&);  // null if SUNDIALS was not found
 
 }  // namespace cpu_peers::keller_miksis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The case lorenz_rk4: what it integrates, and Myriad's call.
+// The case lorenz_rk4: its sweep, and Myriad's call.
 #include "../cases.hpp"
 #include "../myriad_run.hpp"
 #include "equations.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Lorenz system as the peers integrate it, for one number of any kind.
+// The Lorenz system as the peers integrate it, for any kind of number.
 #pragma once
 
 #include "../cash_karp.hpp"
@@ -10,7 +10,7 @@ namespace cpu_peers::lorenz {
 inline constexpr int n = 3, steps = 1000;
 inline constexpr double h = 1e-3;
 
-/// What a step takes with packs: four evaluations of six, nine for the arguments of the stages, twelve for their sum.
+/// A step's instructions with packs: four evaluations of six, nine for the stages' arguments, twelve for their sum.
 inline constexpr double instructions_per_step = 4 * 6 + 9 + 12;
 
 /// x' = 10 (y - x), y' = p x - y - x z, z' = x y - 8/3 z.
@@ -28,9 +28,9 @@ outcome run_packs_1(const sweep&);
 outcome run_packs_2(const sweep&);
 outcome run_packs_3(const sweep&);
 outcome run_packs_4(const sweep&);
-/// With the flags of models, and with as many batches as Myriad takes.
+/// With the flags of models, and as many batches as Myriad uses.
 outcome run_packs_as_models(const sweep&);
-/// The instruction set that models are compiled for.
+/// The instruction set for which models are compiled.
 const char* instruction_set();
 
 }  // namespace cpu_peers::lorenz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiles the kernel of the Lorenz system, and says for which instruction set.
+// Compiles the kernel of the Lorenz system, and reports the instruction set.
 #include <myriad/instantiate.hpp>
 
 #include "equations.hpp"

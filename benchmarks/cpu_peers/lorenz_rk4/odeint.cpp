@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Lorenz system by Boost.odeint, as its documentation writes it.
+// The Lorenz system by Boost.odeint, written as in its documentation.
 #include <array>
 
 #include <boost/numeric/odeint.hpp>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Lorenz system by the plain loop over packs, `for every step: y = rk4(y)`, without a check, a hook or a counter:
-// the floor under Myriad's time. The packs are the library's, arrays of xsimd batches, so that the loop is the only
-// difference.
+// The Lorenz system by the plain loop over packs, `for every step: y = rk4(y)`, without a check, a hook or a counter: a
+// lower bound on Myriad's time. The packs are the library's, arrays of xsimd batches, so that only the loop differs.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 #include "equations.hpp"
 
 namespace cpu_peers::lorenz {
-namespace {  // compiled with different flags in different files, so nothing of it may be shared
+namespace {  // compiled with different flags in different files, which must not share any of it
 
 template <class S>
 struct point {
@@ -53,7 +52,7 @@ outcome run_pack_loop(const sweep& work) {
         const std::int64_t packs = (work.instances + lanes - 1) / lanes;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(work.threads)
         for (std::int64_t i = 0; i < packs; ++i) {
-            // The last pack is filled up with copies of the last instance.
+            // The last pack is filled with copies of the last instance.
             const auto instance = [&](int lane) { return std::min(i * lanes + lane, work.instances - 1); };
             point<S> u;
             S p;

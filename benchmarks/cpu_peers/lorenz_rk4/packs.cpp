@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The loop over packs of one to four batches, with the peers' flags: how fast the hardware goes.
+// The loop over packs of one to four batches, with the peers' flags: the speed of the hardware.
 #include "pack_loop.hpp"
 
 namespace cpu_peers::lorenz {

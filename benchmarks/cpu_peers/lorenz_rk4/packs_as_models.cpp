@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The loop over packs with the models' flags and as many batches as Myriad takes: what its time is checked against.
+// The loop over packs with the models' flags and as many batches as Myriad uses: Myriad's time is checked against it.
 #include <myriad/kernel/methods/runge_kutta_4.hpp>
 #include <myriad/openmp/run.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The case relief_valve: what it integrates, and Myriad's call.
+// The case relief_valve: its sweep, and Myriad's call.
 #include <limits>
 
 #include "../cases.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pressure relief valve by CVODE and its search for roots; it starts anew after every impact.
+// The pressure relief valve by CVODE with root finding; it restarts after every impact.
 #include "../adams.hpp"
 #include "../peer.hpp"
 #include "equations.hpp"
@@ -24,7 +24,7 @@ struct thread {
 
     template <class ParameterOf>
     ending operator()(double (&y)[n], ParameterOf&& parameter_of, std::int64_t& accepted) {
-        // The steps after a start are tiny, and so many that they would be taken for rest; flights are longer.
+        // After a restart, steps are tiny and so many that they would be taken for rest; flights last longer.
         constexpr double never = 1e6, starting = 0.02;
         double started = 0;
         solver.system.q = parameter_of(0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pressure relief valve as the peers integrate it: equations, and what happens at its events, one instance at a
+// The pressure relief valve as the peers integrate it: equations, and the actions of its events, one instance at a
 // time.
 #pragma once
 
@@ -41,9 +41,9 @@ CPU_PEERS_INLINE T slope(int which, const T* y) {
     return which == section ? T(-kappa) * y[1] - (y[0] + T(delta)) + y[2] : y[1];
 }
 
-/// The length of the step from y at which an event function, beyond its tolerance at the step's end, falls to within
-/// it: regula falsi (Illinois) on steps made anew by `step(length, end)`, with bisection where the start is on the
-/// event itself. `guess` is the first length to try, 0 for none. Leaves the state there in `end`.
+/// The length of the step from y at which an event function that is beyond its tolerance at the step's end falls to
+/// within it: regula falsi (Illinois) on steps repeated by `step(length, end)`, with bisection where the start is on
+/// the event itself. `guess` is the first length to try, 0 for none. Leaves the state there in `end`.
 template <class T, class Step>
 T locate(int which, const T* start, T h, T g_high, T allowed, T guess, T* end, Step&& step) {
     T low = 0, high = h, g_low = value(which, start);
@@ -76,7 +76,7 @@ T locate(int which, const T* start, T h, T g_high, T allowed, T guess, T* end, S
     return low;
 }
 
-/// What an instance remembers besides its state, and the rules by which it goes on; the same for all peers.
+/// The data of an instance besides its state, and the rules by which it continues; the same for all peers.
 template <class T>
 struct valve {
     T side[events];  // of zero, on which each event function was last seen beyond its tolerance: +1 or -1
@@ -97,7 +97,7 @@ struct valve {
     bool crosses(int e, const T* y) const { return side[e] > 0 && value(e, y) < -allowed; }
 
     /// After an accepted step from `before` to y; `fired[e]` says which events are at its end. Returns true if the
-    /// phase is over, with `how` changed if the instance is.
+    /// phase is over; sets `how` if the instance is over too.
     bool after_step(const T* before, T* y, const bool (&fired)[events], ending& how) {
         lowest = std::min(lowest, y[0]);
         highest = std::max(highest, y[0]);
@@ -132,6 +132,6 @@ private:
 outcome run_odeint(const sweep&);
 outcome run_loop(const sweep&);
 outcome run_reference(const sweep&);
-__attribute__((weak)) outcome run_cvode(const sweep&);  // null where SUNDIALS was not found
+__attribute__((weak)) outcome run_cvode(const sweep&);  // null if SUNDIALS was not found
 
 }  // namespace cpu_peers::relief_valve_case

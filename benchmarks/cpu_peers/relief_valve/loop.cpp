@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The pressure relief valve by a hand-written scalar loop: Myriad's step and controller, events guessed on the cubic
-// Hermite interpolant and confirmed by a step made anew.
+// The pressure relief valve by a hand-written scalar loop: Myriad's step and controller, with events estimated on the
+// cubic Hermite interpolant and confirmed by a repeated step.
 #include "../peer.hpp"
 #include "equations.hpp"
 
 namespace cpu_peers::relief_valve_case {
 namespace {
 
-/// The root of the cubic Hermite polynomial through value and slope at both ends of a step, in fractions of the step,
-/// for g_start > 0 > g_end; 0, for no guess, where g_start is not positive.
+/// The root of the cubic Hermite polynomial through value and slope at both ends of a step, as a fraction of the step,
+/// for g_start > 0 > g_end; 0, for no guess, if g_start is not positive.
 double hermite_root(double g_start, double d_start, double g_end, double d_end, double h, double allowed) {
     if (!(g_start > 0)) return 0;
     double low = 0, high = 1, g_low = g_start, g_high = g_end, x = 0;

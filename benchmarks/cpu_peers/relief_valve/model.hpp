@@ -7,7 +7,7 @@
 namespace cpu_peers {
 
 /// Displacement y, velocity v, pressure u. Event `section` (v falling) ends a phase by its count, `seat` (y falling) is
-/// an impact; a valve that stays where it is for 50 steps ends its phase too.
+/// an impact; a valve that does not move for 50 steps also ends its phase.
 struct relief_valve_model {
     static constexpr bool accessories_are_outputs = true;
     static constexpr bool rare_events = true;

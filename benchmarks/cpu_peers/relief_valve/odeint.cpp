@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The pressure relief valve by Boost.odeint, which has no events: its user watches the signs after every controlled
-// step and makes the step anew with the plain stepper until it ends on the event. The reference does so with Fehlberg
-// 7(8) in long double at tolerances near rounding.
+// The pressure relief valve by Boost.odeint, which has no events: its user checks the signs after every controlled step
+// and repeats the step with the plain stepper until it ends on the event. The reference does so with Fehlberg 7(8) in
+// long double at tolerances near rounding.
 #include <array>
 
 #include <boost/numeric/odeint.hpp>

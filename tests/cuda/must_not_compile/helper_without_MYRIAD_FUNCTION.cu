@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A function that a hook calls is host code without MYRIAD_FUNCTION.
+// A function called by a hook is host code without MYRIAD_FUNCTION.
 #include <myriad/instantiate.hpp>
 #include <myriad/model.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Event tolerances that a function never leaves: what the report remarks, and when it does not.
+// Event tolerances that a function never leaves: the report's notes, and cases without one.
 #include "myriad/host/checks/event_resolution.hpp"
 
 #include <string>
@@ -32,7 +32,7 @@ constexpr function far{.c = -1000};
 
 TEST_CASE("an event tolerance larger than its function's values, of which no crossing is seen, is remarked") {
     const auto found = remarks_on(ensemble_of(some, {position(), far, far}, 0, 20), 10);
-    REQUIRE(found.size() == 1);  // the other functions are far beyond theirs
+    REQUIRE(found.size() == 1);  // the other functions are far beyond their tolerances
     INFO(found[0]);
     CHECK(found[0].find(
               "the function of event 0 is within its tolerance, 10, at the start and at the end in all 20 instances") !=
@@ -42,18 +42,18 @@ TEST_CASE("an event tolerance larger than its function's values, of which no cro
 
 TEST_CASE("event tolerances are not remarked where crossings are located, or the function is ever found beyond") {
     const double tolerance = 1e-6;
-    // on the surface at the start and at the end, and across it in between
+    // on the surface at the start and at the end, off it in between
     CHECK(remarks_on(ensemble_of(some, {position(), far, far}, 0, 2 * pi), tolerance).empty());
-    // on the surface at the start, and gone at the end
+    // on the surface at the start, away from it at the end
     CHECK(remarks_on(ensemble_of(some, {position(), far, far}, 0, 1), tolerance).empty());
-    // on the surface at the end alone, as what decays is
+    // on the surface only at the end, like a decay
     CHECK(
         remarks_on(ensemble_of(std::vector<motion>(20, cosine), {position(), far, far}, 0, pi / 2), tolerance).empty());
-    // in one instance of many it was beyond
+    // in one instance of many it was beyond the tolerance
     std::vector<motion> most(20, motion{});
     most[7] = cosine;
     CHECK(remarks_on(ensemble_of(most, {position(), far, far}, 0, 1), tolerance).empty());
-    // nobody asked for steps, or counted them
+    // no steps were requested or counted
     CHECK(remarks_on(ensemble_of(some, {position(), far, far}, 1, 1), 10).empty());
     auto uncounted = ensemble_of(some, {position(), far, far}, 0, 20);
     auto o = options_for(10, 0.1);

@@ -29,7 +29,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const device one_thread = tests::test_device();
 
-/// Checks that good decays are refused with these options, by a message with all the words, and stay untouched.
+/// Checks that valid decays are refused with these options, by a message with all the words, and stay unchanged.
 template <class Method = cash_karp>
 void options_refused(const options& o, std::initializer_list<const char*> words) {
     auto e = good_decays();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ensembles that a GPU takes in several chunks, three at a time: no bit depends on it, and what is refused is refused
-// as a whole. On the CPU the same holds of one loop over all.
+// Ensembles that a GPU takes in several chunks, three at a time: no bit depends on the chunks, and a refusal applies to
+// the whole ensemble. On the CPU the same holds for one loop over all.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -20,7 +20,7 @@ using drifts = myriad::ensemble<drift>;
 
 namespace {
 
-constexpr std::int64_t size = 400'003;  // more than are checked at once, and no multiple of a chunk
+constexpr std::int64_t size = 400'003;  // more than are checked at once, and not a multiple of a chunk
 
 /// Every thousandth instance ends itself in its second phase.
 void fill(drifts& e) {
@@ -95,7 +95,7 @@ TEST_CASE(
         if (fill_first) fill(made);
         made.pin(test_device());
         made.pin(test_device());
-        if (!fill_first) fill(made);  // time domains of its own come now
+        if (!fill_first) fill(made);  // now with time domains of its own
         drifts pinned = std::move(made);
         const auto report = myriad::solve<runge_kutta_4>(test_device(), pinned, o);
         CHECK(same(pinned, ordinary));
@@ -108,7 +108,7 @@ TEST_CASE(
         CHECK(same(pinned, ordinary));
         drifts other = filled(100'000);
         other.pin(test_device());
-        other = std::move(pinned);  // releases what was pinned there
+        other = std::move(pinned);  // releases the memory pinned there
         CHECK(same(other, ordinary));
     }
 }
@@ -147,7 +147,7 @@ TEST_CASE("chunks go on from an earlier call, with the work of this call in the 
     CHECK(same(twice, at_once));
     CHECK(first.accepted_steps + second.accepted_steps == expected.accepted_steps);
     CHECK(second.accepted_steps > 0);
-    CHECK(second.accepted_steps < first.accepted_steps);  // some have ended
+    CHECK(second.accepted_steps < first.accepted_steps);  // some instances have ended
 }
 
 TEST_CASE("bad input in the last chunk is refused, and leaves all chunks as they were, of pinned memory too") {
@@ -201,7 +201,7 @@ TEST_CASE("instances that fail or are marked in later chunks of a pinned ensembl
     pinned.pin(test_device());
     for (drifts* const e : {&ordinary, &pinned}) {
         for (const std::int64_t i : bad) e->parameter(drift::speed)(i) = std::numeric_limits<double>::quiet_NaN();
-        // Finite, and infinite after a step.
+        // Finite at first, infinite after a step.
         for (const std::int64_t i : fails) e->parameter(drift::speed)(i) = std::numeric_limits<double>::max();
         reports[e == &pinned] = myriad::solve<runge_kutta_4>(test_device(), *e, o);
     }
@@ -232,7 +232,7 @@ TEST_CASE(
     fill(ordinary);
     fill(pinned);
     pinned.pin(test_device());
-    for (const std::int64_t chunk : {170, 0, 999}) {  // the last samples find no room
+    for (const std::int64_t chunk : {170, 0, 999}) {  // the last samples do not fit
         o.chunk_size = chunk;
         o.phases = chunk == 0 ? 2 : 1;
         myriad::solve<dense>(test_device(), pinned, o);
@@ -252,7 +252,7 @@ TEST_CASE("a restarted ensemble gives the bits of a new one, on engines that wer
     myriad::options o = quarter_steps(0);
     o.chunk_size = 100'000;
     myriad::solve<runge_kutta_4>(test_device(), fresh, o);
-    myriad::solve<myriad::cash_karp>(test_device(), used, o);  // leaves next steps behind
+    myriad::solve<myriad::cash_karp>(test_device(), used, o);  // leaves next step sizes behind
     used.restart();
     fill(used);
     myriad::solve<runge_kutta_4>(test_device(), used, o);
@@ -273,7 +273,7 @@ TEST_CASE("next steps are zero with fixed steps, kept from an adaptive method ov
         CHECK((e.next_step() == 0).all());
         myriad::solve<myriad::cash_karp>(test_device(), e, o);
         const Eigen::ArrayXd kept = e.next_step();
-        CHECK((kept > 0).count() > 0);  // zero of those that ended before
+        CHECK((kept > 0).count() > 0);  // zero for those that ended before
         myriad::solve<runge_kutta_4>(test_device(), e, o);
         CHECK((e.next_step() == kept).all());
         e.restart();
@@ -307,7 +307,7 @@ TEST_CASE("rejected steps that an adaptive method counted stay while a fixed-ste
 }
 
 TEST_CASE("progress of chunks rises to the total, and an exception of it ends the work after what is under way") {
-    if (tests::tests_cpu()) return;  // where it is told otherwise
+    if (tests::tests_cpu()) return;  // where this is reported differently
     auto o = quarter_steps(50'000);
     std::vector<std::int64_t> told;
     o.progress = [&](std::int64_t now, std::int64_t all) {

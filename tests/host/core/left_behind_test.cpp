@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What moved-from objects are left with: numbers are zero, and nobody is at work there.
+// The state of moved-from objects: numbers are zero, and no thread is at work there.
 #include "myriad/host/core/left_behind.hpp"
 
 #include <utility>

@@ -131,7 +131,7 @@ TEST_CASE("functions of Eigen that give a component another length are refused, 
     CHECK(e.state(complete::v)[45] == 9);
     CHECK((x == 5).all());
     CHECK((x.setZero() == 0).all());
-    // What else gives Eigen's arrays a length, its maps do not have.
+    // The maps lack the other members by which Eigen's arrays get a length.
     const auto has_others = [](auto& map) {
         return requires { map.setZero(46); }
         || requires { map.setOnes(46); }
@@ -255,15 +255,15 @@ TEST_CASE("an ensemble that is being integrated is refused to a second call, fro
     o.progress = [](std::int64_t, std::int64_t) { throw std::runtime_error("enough"); };
     CHECK_THROWS_AS(solve<cash_karp>(one_thread, e, o), std::runtime_error);
     refused([&] { solve<cash_karp>(one_thread, e, options{.max_steps = 0}); }, {"max_steps"});
-    CHECK(solve<cash_karp>(one_thread, e).count(status::success) == 1000);  // no turn was left behind
+    CHECK(solve<cash_karp>(one_thread, e).count(status::success) == 1000);  // no turn was skipped
 }
 
 TEST_CASE("phases that would be more than an instance can count are refused until restart", "[ensemble]") {
     auto e = good_decays(3);
     constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
-    const_cast<std::int32_t*>(e.phases_done().data())[1] = most - 5;  // as billions of phases would leave it
+    const_cast<std::int32_t*>(e.phases_done().data())[1] = most - 5;  // as after billions of phases
     myriad::host::ensemble_access::expect_phases(e, most - 5);
-    myriad::host::ensemble_access::touch(e);  // so that a GPU is given it
+    myriad::host::ensemble_access::touch(e);  // so that a GPU receives it
     options o;
     o.phases = 3;
     solve<cash_karp>(one_thread, e, o);
@@ -274,7 +274,8 @@ TEST_CASE("phases that would be more than an instance can count are refused unti
     e.restart();
     CHECK(solve<cash_karp>(one_thread, e, o).count(status::success) == 3);
     for (int turn = 0; turn < 10; ++turn)
-        myriad::host::ensemble_access::expect_phases(e, 1'000'000'000);  // of which instances that have ended did none
+        myriad::host::ensemble_access::expect_phases(e, 1'000'000'000);  // none of which were done by instances that
+                                                                         // have ended
 }
 
 TEST_CASE("an ensemble that was moved keeps its memory", "[ensemble]") {
@@ -379,12 +380,13 @@ TEST_CASE("a failed instance that is given new inputs does not stay failed in si
     solve<cash_karp>(one_thread, e, o);
     REQUIRE(e.status(4) == status::not_finite);
 
-    // Reading through maps that could be written to, and another domain, change no input of the failed instance.
+    // Reading through maps that could be written to, and setting another domain, change no input of the failed
+    // instance.
     REQUIRE(e.state(bare::x).isFinite().all());
     e.time_domain(0, 2);
     const auto again = solve<cash_karp>(one_thread, e, o);
     CHECK(again.first_failed == 4);
-    CHECK(again.first_t_end == 1);  // of the run that failed
+    CHECK(again.first_t_end == 1);  // of the failed run
     CHECK(again.first_parameter == std::vector<double>{1e308});
 
     e.parameter(bare::rate)[4] = 0.5;

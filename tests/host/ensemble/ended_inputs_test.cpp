@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is remembered of instances that have ended: each once, found by its index, with a digest that tells its inputs
-// apart.
+// The record of instances that have ended: each is stored once, found by its index, with a digest that identifies its
+// inputs.
 #include "myriad/host/ensemble/ended_inputs.hpp"
 
 #include <cstdint>
@@ -44,7 +44,7 @@ TEST_CASE("instances that have ended are added once and found by their index, wh
     for (const auto& e : all) indices.push_back(e.index);
     CHECK(indices == std::vector<std::int64_t>{0, 1, 3, 4});
     REQUIRE(all.find(4) != nullptr);
-    CHECK(all.find(4)->t_end == 2);  // as it was made first
+    CHECK(all.find(4)->t_end == 2);  // as it was first stored
     CHECK(all.find(2) == nullptr);
     CHECK(all.find(5) == nullptr);
     all.clear();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ensembles so large that the host checks, counts and clears them with several threads: the same answers, wherever in
-// the ensemble there is something to say.
+// Ensembles so large that the host checks, counts and clears them with several threads: the same answers wherever in
+// the ensemble the relevant instance is.
 #include <cstdint>
 #include <limits>
 
@@ -15,7 +15,7 @@ using myriad::status;
 constexpr std::int64_t size = 300'001;  // not a multiple of any part
 constexpr std::int64_t places[] = {0, 1, size / 2, size - 2, size - 1};
 
-/// What the check of inputs says at a glance, and in full.
+/// Result of the quick check of inputs, and of the full check.
 template <class R>
 bool passes(myriad::ensemble<bare, R>& e, const myriad::options& o = {}) {
     myriad::host::input_check<bare, R> check(e, o, e.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the library says to bad input, and ensembles to say it about.
+// The library's messages about bad input, and ensembles to provoke them.
 #pragma once
 
 #include <cstdint>

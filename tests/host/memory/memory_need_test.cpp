@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is left of memory, by files like those of the system, and that too much is refused as a whole before any is
-// taken.
+// The memory that is left, read from files like the system's; and that too large a need is refused as a whole before
+// any memory is taken.
 #include "myriad/host/memory/memory_need.hpp"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// describe(): the library says what it sees in a model, so that what it does not see shows.
+// describe(): the library lists the parts of a model that it has found, so that a missing one shows.
 #include "myriad/host/model/describe.hpp"
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lists of components in options: numbers, and the enumerations that they were given by.
+// Lists of components in options: their numbers, and the enumerations through which they were given.
 #include "myriad/host/options/component_list.hpp"
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What reports remark: stiffness that an explicit method ran into, and tolerances below the precision.
+// The notes of reports: stiffness that limited an explicit method, and tolerances below the precision.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -26,8 +26,8 @@ auto follow(double rate, double t_end, const myriad::options& o) {
     return myriad::solve<Method>(tests::test_device(1), e, o);
 }
 
-/// Twenty starts near the attractor of Roessler's equations, each a run of its own over 50 units of time: how many were
-/// told that they are stiff, and the steps of all.
+/// Twenty starts near the attractor of Roessler's equations, each a separate run over 50 units of time: the number of
+/// runs reported as stiff, and the steps of all.
 template <class Method>
 std::pair<int, std::int64_t> stiff_runs_of_roessler(double tolerance) {
     int told = 0;
@@ -55,7 +55,7 @@ bool mentions(const std::vector<std::string>& notes, const char* what) {
 }  // namespace
 
 TEST_CASE("the report remarks that stability limits an explicit method and says what to try") {
-    // Accuracy alone would allow steps of a tenth; stability wants them below 3 / 1e4.
+    // Accuracy alone would allow steps of a tenth; stability requires steps below 3 / 1e4.
     const myriad::options o{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-6};
     const auto tsitouras = follow<myriad::tsitouras_5>(1e4, 1, o);
     CHECK(tsitouras.accepted_steps > 40 * 2000);
@@ -69,7 +69,7 @@ TEST_CASE("the report remarks that stability limits an explicit method and says 
 
 TEST_CASE("the report does not remark stiffness where accuracy limits the step, or the user, or there were few steps") {
     const myriad::options o{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-6};
-    CHECK(follow<myriad::rodas_5p>(1e4, 1, o).notes.empty());        // what the remark advises
+    CHECK(follow<myriad::rodas_5p>(1e4, 1, o).notes.empty());        // the method that the note recommends
     CHECK(follow<myriad::tsitouras_5>(1e4, 0.01, o).notes.empty());  // a hundred steps
     myriad::options fine = o;
     fine.relative_tolerance = fine.absolute_tolerance = 1e-13;
@@ -82,7 +82,7 @@ TEST_CASE("the report does not remark stiffness where accuracy limits the step, 
     myriad::options bounded = o;
     bounded.maximum_step = 1e-4;
     CHECK(follow<myriad::tsitouras_5>(1e4, 1, bounded).notes.empty());
-    // growth needs small steps by its nature: no method would do with fewer
+    // growth needs small steps by its nature: no method would need fewer
     CHECK(follow<myriad::tsitouras_5>(-1, 30, fine).notes.empty());
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("chaotic motion in which a stiff method would take more steps is not c
         const auto tsitouras = stiff_runs_of_roessler<myriad::tsitouras_5>(tolerance);
         const auto high = stiff_runs_of_roessler<myriad::dormand_prince_8>(tolerance);
         CHECK(tsitouras.second < stiff.second);
-        CHECK(tsitouras.first == 0);  // at 1e-4, eight of twenty were, at 1e-6 five
+        CHECK(tsitouras.first == 0);  // at 1e-4, eight of twenty were reported, at 1e-6 five
         CHECK(high.second < stiff.second);
         CHECK(high.first == 0);
     }
@@ -131,7 +131,7 @@ TEST_CASE("tangents, which stiff methods do not take, are not advised one") {
     e.state(stiff::prothero_robinson::y0) = 0;
     e.parameter(stiff::prothero_robinson::rate) = 1e4;
     e.shared_integer(stiff::prothero_robinson_with_tangent::transient_phases) = 0;
-    e.time_domain(0, 0.05);  // in which the tangent shrinks to e^-500 and does not vanish
+    e.time_domain(0, 0.05);  // over which the tangent shrinks to e^-500 but does not vanish
     myriad::initial_tangents(e);
     const auto report = solve<myriad::tsitouras_5>(
         tests::test_device(1), e, {.phases = 4, .relative_tolerance = 1e-6, .absolute_tolerance = 1e-6});

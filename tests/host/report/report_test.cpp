@@ -30,7 +30,7 @@ using myriad::status;
 
 const device one_thread = tests::test_device(1);
 
-/// Decays of which numbers 6 and 8 turn not finite at once.
+/// Decays; numbers 6 and 8 become non-finite at once.
 myriad::ensemble<bare> two_failures() {
     auto e = good_decays(10);
     for (const std::int64_t i : {6, 8}) {
@@ -55,7 +55,7 @@ TEST_CASE("the report counts the instances by status", "[report]") {
     options o;
     o.events.resize(1);
     o.events[0].stop_after = 1;
-    e.t_end() = 0.3;  // speeds from 4 on arrive
+    e.t_end() = 0.3;  // those with speeds from 4 on arrive
     const auto report = solve<cash_karp>(one_thread, e, o);
     CHECK(report.instances == 8);
     CHECK(report.count(status::success) == 3);
@@ -192,7 +192,7 @@ TEST_CASE("counters that nothing can add to take no memory until they are asked 
     const auto rejected = e.rejected_steps().sum();
     const auto accepted = e.accepted_steps().sum();
     const auto report = solve<runge_kutta_4>(one_thread, e, o);
-    CHECK(e.rejected_steps().sum() == rejected);  // those of the method before
+    CHECK(e.rejected_steps().sum() == rejected);  // those of the earlier method
     CHECK(e.accepted_steps().sum() == accepted + report.accepted_steps);
 }
 
@@ -213,7 +213,7 @@ TEST_CASE("without counting there are no counters, and reading them is refused",
     solve<cash_karp>(one_thread, counted);
     CHECK((e.state(bare::x) == counted.state(bare::x)).all());
 
-    // Counters begin with the first call that counts.
+    // Counting begins with the first call that counts.
     const auto second = solve<cash_karp>(one_thread, e);
     CHECK(e.counted());
     CHECK(second.accepted_steps == e.accepted_steps().sum());
@@ -226,7 +226,7 @@ TEST_CASE("the idle share is the part of the lanes that had nothing to do", "[re
     o.step = 1.0 / 1024;
     auto one = good_decays(1);
     const auto alone = solve<runge_kutta_4>(one_thread, one, o);
-    // One instance in a pack: all other lanes idle, but for no more than a turn or two at the end.
+    // One instance in a pack: all other lanes idle, except for an iteration or two at the end.
     const double expected = 1 - 1.0 / alone.lanes;
     CHECK(alone.idle_share() >= expected - 1e-12);
     CHECK(alone.idle_share() <= 1 - 1.0 / alone.lanes * 1024 / 1026);
@@ -235,7 +235,7 @@ TEST_CASE("the idle share is the part of the lanes that had nothing to do", "[re
     const auto busy = solve<runge_kutta_4>(one_thread, full, o);
     CHECK(busy.lane_turns >= busy.accepted_steps);
     CHECK(busy.idle_share() >= 0);
-    CHECK(busy.idle_share() <= 0.01);  // all the same length: at most a turn or two of 4096
+    CHECK(busy.idle_share() <= 0.01);  // all of the same length: at most an iteration or two of 4096
 }
 
 TEST_CASE("a finished ensemble reports no work and no idle lanes", "[report]") {
@@ -264,7 +264,7 @@ TEST_CASE("progress counts the instances that are done, and all of them once, at
             done.push_back((std::as_const(e).phases_done() == 2).count());
         };
         solve<cash_karp>(one_thread, e, o);
-        // On a GPU, the chunk after may have been brought back by then.
+        // On a GPU, the next chunk may have been downloaded by then.
         if (tests::tests_cpu()) CHECK(told == done);
         for (std::size_t k = 0; k < told.size(); ++k) CHECK(told[k] <= done[k]);
         CHECK(told.size() >= 5);
@@ -291,7 +291,7 @@ TEST_CASE("the progress function is called from the calling thread, with counts 
                 elsewhere = elsewhere || std::this_thread::get_id() != caller;
             };
             solve<cash_karp>(tests::test_device(threads), e, o);
-            // the second thread may have taken all before the first looks
+            // the second thread may have taken all instances before the first looks
             REQUIRE(told.size() >= (threads == 1 ? 2u : 1u));
             CHECK(total == 5000);
             CHECK_FALSE(elsewhere);
@@ -345,7 +345,7 @@ TEST_CASE("an exception of the progress function reaches the caller of solve, on
         CHECK(said == "enough");
         CHECK(calls == 1);
         if (threads == 1) CHECK(e.phases_done().sum() < 2000);  // no further instances were begun
-        // The ensemble is sound: after a restart it gives what it would have given.
+        // The ensemble is intact: after a restart it gives the results that it would have given.
         auto fresh = good_decays(2000);
         e.state(bare::x) = fresh.state(bare::x);
         e.state(bare::w) = fresh.state(bare::w);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The backend under test against itself (block sizes, chunks and order change no bit) and against the CPU backend, and
-// what a GPU that cannot do what is asked says.
+// its messages when a GPU cannot meet a request.
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -75,9 +75,9 @@ TEST_CASE("turning the ensemble's order around changes no bit") {
     CHECK(different == 0);
 }
 
-// Rounding grows with the 200 steps of an instance, and an impact is located to 1e-8 only, where either backend may
-// stop at another point of that interval: it comes back with a factor of the speed over the slope, a few units, and is
-// damped after.
+// Rounding grows over the 200 steps of an instance, and an impact is located only to 1e-8, so that the backends may
+// stop at different points of that interval: the difference is multiplied by the speed over the slope, a few units, and
+// damped afterwards.
 TEST_CASE("both backends agree to what the event tolerance implies") {
     const auto here = solved(1000, usual());
     myriad::ensemble<swing> there(1000);
@@ -88,7 +88,7 @@ TEST_CASE("both backends agree to what the event tolerance implies") {
     for (std::int64_t i = 0; i < 1000; ++i) {
         const bool same = here.integer_accessory(swing::impacts)(i) == there.integer_accessory(swing::impacts)(i);
         other_impacts += !same;
-        if (!same) continue;  // grazed the wall
+        if (!same) continue;  // it grazed the wall
         ++compared;
         largest = std::max(largest, std::abs(here.state(swing::x)(i) - there.state(swing::x)(i)));
     }
@@ -124,7 +124,7 @@ TEST_CASE("a matrix of 77 x 77 shared parameters gives the same wherever it is k
     double largest = 0;
     for (int i = 0; i < heat::points; ++i)
         largest = std::max(largest, (here.state(i) - there.state(i)).abs().maxCoeff());
-    // 100 steps of sums of 77 terms of at most 2, none of which grows
+    // 100 steps of sums of 77 terms of at most 2; none of the errors grows
     CHECK(largest < 100 * 77 * 2 * std::numeric_limits<double>::epsilon());
     if (tests_cpu()) return;
     CHECK(report.kernel.shared_placement == myriad::shared_placement::shared_memory);

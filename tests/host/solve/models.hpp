@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Models for the tests of solvers and backends: one with everything that a kernel copies in and out, one whose shared
-// parameters are a matrix, one that costs next to nothing.
+// Models for the tests of solvers and backends: one with every kind of data that a kernel copies in and out, one whose
+// shared parameters are a matrix, one that costs next to nothing.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -69,8 +69,8 @@ struct heat {
     }
 };
 
-/// x' = speed, for ensembles so large that they are worth several chunks. Counts the phases in which it got beyond a
-/// limit, and there ends the instance.
+/// x' = speed, for ensembles so large that several chunks pay off. Counts the phases in which x exceeded a limit, and
+/// then ends the instance.
 struct drift {
     enum state { x, n_state };
     enum parameter { speed, n_parameter };

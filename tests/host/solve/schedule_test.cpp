@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Schedules change the order of the work and nothing else, on either device; sorting by cost sorts.
+// Schedules change only the order of the work, on either device; sorting by cost sorts.
 #include <algorithm>
 #include <numeric>
 #include <string>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr schedule all_schedules[] = {schedule::automatic, schedule::in_order, schedule::dynamic, schedule::by_cost};
 
-/// More than run at the same time, so that lanes and threads take further ones.
+/// More than run at once, so that lanes and threads take further instances.
 std::int64_t many() { return tests_cpu() ? 2000 : 300'000; }
 
 myriad::options phases_of(std::int64_t phases, schedule how) {
@@ -68,7 +68,7 @@ TEST_CASE("schedules change no bit of any result, records included", "[small]") 
     const auto integrated = [](std::int64_t size, schedule how, std::int64_t from_phase) {
         myriad::options o = phases_of(5, how);
         o.record = {.from_phase = from_phase, .states = {swing::x}, .integer_accessories = {swing::my_phase}};
-        o.max_steps = 70;  // which the longest phases exceed
+        o.max_steps = 70;  // exceeded by the longest phases
         struct {
             myriad::ensemble<swing> e;
             myriad::report<swing, double> report;
@@ -122,7 +122,7 @@ TEST_CASE("the report says how a GPU was scheduled, which automatic chooses by p
         return myriad::solve<cash_karp>(test_device(), e, phases_of(phases, how)).kernel.schedule;
     };
     if (tests_cpu()) {
-        CHECK(used(100, 4, schedule::by_cost) == schedule::in_order);  // what is said of a kernel that there is not
+        CHECK(used(100, 4, schedule::by_cost) == schedule::in_order);  // the value reported without a kernel
         return;
     }
     CHECK(used(100'000, 4, schedule::automatic) == schedule::by_cost);
@@ -168,7 +168,7 @@ TEST_CASE("schedules change no bit of phases that carry time and step on, nor of
 
 TEST_CASE(
     "a solver may get domains of the instances' own after a common one, and fewer instances, with the same bits") {
-    // all but the domains, which would be the instances' own if they were asked for
+    // everything except the domains, which would become the instances' own when accessed
     const auto set = [](myriad::ensemble<swing>& e) {
         myriad::ensemble<swing> from(e.size());
         fill(from);

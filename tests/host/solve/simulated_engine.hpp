@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The engine of the simulated GPU: one chunk in memory of its own, and a thread as its stream, which integrates with
-// the kernel for the CPU.
+// The engine of the simulated GPU: one chunk in its own memory, and a thread as its stream, which integrates with the
+// CPU's kernel.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@
 
 namespace simulated {
 
-/// Components of an array: one after the other on the device, with a distance on the host.
+/// Components of an array: contiguous on the device, with a stride on the host.
 struct rows {
     std::byte* host;
     std::size_t device, bytes, count, distance;
@@ -38,7 +38,7 @@ struct rows {
     }
 };
 
-/// One thread in an engine at a time.
+/// Admits one thread to an engine at a time.
 class turn {
 public:
     explicit turn(unordered<bool>& taken) : taken_(taken) { demand(!(taken_ = true), "two threads are in one engine"); }
@@ -191,8 +191,8 @@ private:
         return {reinterpret_cast<std::byte*>(host + first_), at, bytes_of(host, count_),
                 static_cast<std::size_t>(components), bytes_of(host, size)};
     }
-    /// Bookkeeping is zero before the first call; records and samples are NaN, integers zero, where nothing was
-    /// written.
+    /// Bookkeeping is zero before the first call; where nothing was written, records and samples are NaN, integers
+    /// zero.
     template <class T>
     static void clear(T* array, std::byte* begin, std::int64_t values, kind what) {
         const bool to_nan = std::is_floating_point_v<T> && what != kind::bookkeeping;
@@ -214,7 +214,7 @@ private:
         count_ = 0;
     }
 
-    /// Has the stream do it after all that it was asked for before; after a failure it does nothing more.
+    /// Enqueues a task in the stream; after a failure the stream runs no further tasks.
     void ask(std::function<void()> task) {
         under_way_ += 1;
         the_gpu.under_way += 1;
@@ -250,8 +250,8 @@ private:
     std::uint64_t random_ = 0;
     std::int64_t first_ = 0, count_ = 0;
     std::size_t bytes_ = 0;
-    std::optional<std::vector<rows>> fetching_;  // of the download under way
-    std::shared_future<void> asked_;             // what was asked of the stream last
+    std::optional<std::vector<rows>> fetching_;  // of the download in progress
+    std::shared_future<void> asked_;             // the last task enqueued
     std::unique_ptr<std::byte[]> memory_;
     std::vector<std::byte> fetched_;
     std::vector<R> shared_;

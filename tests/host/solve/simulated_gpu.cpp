@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The simulated GPU, as the functions that programs with the CUDA backend have, and the kernels it has.
+// The simulated GPU: the functions that programs with the CUDA backend have, and its kernels.
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
@@ -21,7 +21,7 @@ namespace {
 [[maybe_unused]] const int test_on_it = setenv("MYRIAD_TEST_DEVICE", "cuda", 1);
 
 struct pinned_memory {
-    std::shared_mutex mutex;  // by which threads that only ask do not wait for each other
+    std::shared_mutex mutex;  // shared, so that threads that only query do not wait for each other
     std::map<const std::byte*, std::size_t> blocks;
 };
 pinned_memory& pinned() {

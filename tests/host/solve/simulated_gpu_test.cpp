@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What `solve` and `solver` do with a GPU, on a simulated one, which is late at random and fails where it is told to:
-// its results are those of the CPU bit for bit, and after an error nothing is lost, left at work or waited for.
+// `solve` and `solver` on a simulated GPU, which is randomly delayed and fails on request: its results are those of the
+// CPU bit for bit, and after an error nothing is lost, left running or waited for.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -59,7 +59,7 @@ myriad::options two_phases(std::int64_t chunk) {
     return o;
 }
 
-/// NaN, of any bits, is where nothing was recorded.
+/// NaN of any bit pattern marks values that were not recorded.
 template <class Table>
 bool same_values(const Table& a, const Table& b) {
     return ((a == b) || (a.isNaN() && b.isNaN())).all();
@@ -78,7 +78,7 @@ void check_same(const Report& a, const Report& b) {
     CHECK(same_values(a.records.time(), b.records.time()));
 }
 
-/// Two calls on the simulated GPU, late at random, and two on the CPU, of which the first marks an instance.
+/// Two calls on the simulated GPU, randomly delayed, and two on the CPU; the first ones mark instance `bad`.
 template <class Method, class Ensemble>
 void check_against_cpu(std::int64_t size, const myriad::options& o, std::int64_t bad, bool pinned) {
     auto here = filled<Ensemble>(size), there = filled<Ensemble>(size);
@@ -99,7 +99,7 @@ void check_against_cpu(std::int64_t size, const myriad::options& o, std::int64_t
     CHECK(same_values(here.samples().state(0), there.samples().state(0)));
 }
 
-/// An error, or "".
+/// The error's message, or "".
 std::string error_of(const std::function<void()>& work) {
     try {
         work();
@@ -155,12 +155,12 @@ TEST_CASE("no chunk is begun before its data are checked, however late the threa
     threads::all().give({}, std::move(late));
     auto o = two_phases(20'000);
     o.invalid_instances = myriad::invalid_instances::mark;
-    check_against_cpu<runge_kutta_4, drifts>(140'003, o, 30'000, pinned);  // of the second chunk
+    check_against_cpu<runge_kutta_4, drifts>(140'003, o, 30'000, pinned);  // in the second chunk
 }
 
 TEST_CASE("an error at any call is that of solve, nothing stays at work, and what was not written is as it was") {
     const auto [size, pinned] = GENERATE(table<std::int64_t, bool>({{700, false}, {700, true}, {140'003, true}}));
-    auto o = two_phases(size / 5 + 1);  // beyond 131'072 instances chunks are checked while others are at work
+    auto o = two_phases(size / 5 + 1);  // beyond 131'072 instances chunks are checked while others are integrated
     auto expected = filled<drifts>(size);
     myriad::solve<runge_kutta_4>(cpu, expected, o);
     static std::int64_t new_block_size = 0;
@@ -172,7 +172,7 @@ TEST_CASE("an error at any call is that of solve, nothing stays at work, and wha
             CAPTURE(size, pinned, static_cast<int>(kind), at);
             auto e = filled<drifts>(size);
             if (pinned) e.pin(gpu);
-            if (kind == call::make_engine) o.block_size = new_block_size += 32;  // for which no engine is kept
+            if (kind == call::make_engine) o.block_size = new_block_size += 32;  // for which no engine is cached
             the_gpu.wrote = false;
             the_gpu.fail(kind, at);
             const std::string said = error_of([&] { myriad::solve<runge_kutta_4>(gpu, e, o); });
@@ -254,7 +254,7 @@ TEST_CASE("chunks are as large as the memory allows where none is asked for") {
     auto o = two_phases(0);
     o.phases = 20;
     auto here = filled<drifts>(size), there = filled<drifts>(size), refused_one = filled<drifts>(size);
-    for (auto* const e : {&here, &there}) e->accessory(drift::limit) = -1;  // which ends all soon
+    for (auto* const e : {&here, &there}) e->accessory(drift::limit) = -1;  // ends all soon
     the_gpu.memory = 30'000'000;                                            // of 119 MB
     myriad::solve<runge_kutta_4>(gpu, here, o);
     myriad::solve<runge_kutta_4>(cpu, there, o);
@@ -271,7 +271,7 @@ TEST_CASE(
         auto e = filled<drifts>(size);
         e.t_begin() = 0;
         e.t_end() = 1;
-        e.pin(gpu);  // so that nobody waits for uploads
+        e.pin(gpu);  // so that no thread waits for uploads
         return e;
     };
     myriad::options o;
@@ -281,7 +281,8 @@ TEST_CASE(
     the_gpu.seems_idle = true;
     the_gpu.longest_delay = 5000;
     for (const bool bad : {true, false}) {
-        bool begun = false;  // more than three before the check was over: most times, as threads go
+        bool begun = false;  // more than three were begun before the check was over: nearly always, depending on the
+                             // threads
         for (int attempt = 0; attempt < 20 && !begun; ++attempt) {
             auto e = filled_and_pinned();
             if (bad) e.state(drift::x)(size - 1) = std::numeric_limits<double>::infinity();
@@ -344,7 +345,7 @@ TEST_CASE("an error of one solver is thrown by the call that meets it, and anoth
         fill(other.instances());
         other.upload();
         std::string last_begun = "nothing";
-        the_gpu.fail(kind, kind == call::wait ? 2 : 0);  // those of instances() and upload() come before
+        the_gpu.fail(kind, kind == call::wait ? 2 : 0);  // the calls in instances() and upload() come first
         const std::string said = error_of([&] {
             myriad::solver<swing, cash_karp> s(gpu, 50, usual());
             fill(s.instances());
@@ -368,7 +369,7 @@ TEST_CASE("an error of one solver is thrown by the call that meets it, and anoth
     }
 }
 
-#if defined(__has_feature)  // clang++, whose thread sanitizer ends a forked process that starts threads
+#if defined(__has_feature)  // clang++'s thread sanitizer ends a forked process that starts threads
 #if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
 #define SANITIZED
 #endif
@@ -404,7 +405,7 @@ TEST_CASE("pinning that fails in the middle names the ensemble as a whole, which
     CHECK(said == "an ensemble that takes 42 MB or more was not pinned: the simulated GPU failed");
     CHECK_FALSE(e.pinned());
     CHECK(myriad::solve<runge_kutta_4>(gpu, e, two_phases(0)).failed() == 0);
-    e.pin(gpu);  // what was pinned is not pinned twice
+    e.pin(gpu);  // pinned memory is not pinned again
     CHECK(e.pinned());
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The solver object, on the CPU and on a GPU alike: what it copies, how several of them work side by side, and what it
-// refuses.
+// The solver object, on the CPU and on a GPU alike: the data it copies, several of them in parallel, and its refusals.
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -149,7 +148,7 @@ TEST_CASE("results that were not downloaded cannot be read or overwritten by mis
     s.download({});
     CHECK(s.report().count(myriad::status::success) == 50);
     CHECK(s.records().phases() == 1);
-    s.instances().restart();  // to be filled anew
+    s.instances().restart();  // to be refilled
     fill(s.instances());
     s.upload();
     s.integrate();
@@ -167,7 +166,7 @@ TEST_CASE("instances that may have been changed are uploaded again before they a
     s.integrate(1);
     s.download();
     CHECK(s.results().phases_done().minCoeff() == 1);
-    s.integrate(1);  // reading is no change
+    s.integrate(1);  // reading changes nothing
     s.download();
     s.instances().state(swing::v) += 0.1;
     refused([&] { s.integrate(1); }, {"instances() may have changed them"});
@@ -191,7 +190,7 @@ TEST_CASE("a solver's failed instances that are given new inputs do not stay fai
     s.integrate();
     s.download();
     s.instances().parameter(swing::damping)[0] = 17;
-    CHECK(s.report().first_state.empty());  // damping is not that of the failure
+    CHECK(s.report().first_state.empty());  // damping is not the failed instance's
     refused([&] { s.upload(); }, {"instance 0 ended in an earlier call (max_steps)", "restart()"});
     s.instances().parameter(swing::damping)[0] = damping;
     CHECK(s.report().first_parameter.size() == 2);
@@ -268,7 +267,7 @@ TEST_CASE("a solver whose ensemble was replaced after the upload does not read m
     refused([&] { s.download(); }, {said});
     refused([&] { s.download({.states = {swing::x}}); }, {said});
     refused([&] { s.report(); }, {said});
-    kept = myriad::ensemble<swing>(20);  // perhaps in the memory of the first one
+    kept = myriad::ensemble<swing>(20);  // perhaps in the memory of the first
     fill(kept);
     refused([&] { s.integrate(); }, {said});
     refused([&] { s.upload(); }, {said});

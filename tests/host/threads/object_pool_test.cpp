@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Idle things for the next use: found by their key, taken by one user only, and the oldest destroyed where there are
-// too many.
+// Idle objects for reuse: found by their key, taken by only one user, and the oldest destroyed if there are too many.
 #include "myriad/host/threads/object_pool.hpp"
 
 #include <memory>

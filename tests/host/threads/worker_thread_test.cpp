@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The background thread does all it is asked, in order, and hands on what its tasks throw.
+// The background thread runs all its tasks, in order, and passes on their exceptions.
 #include "myriad/host/threads/worker_thread.hpp"
 
 #include <atomic>

@@ -51,7 +51,7 @@ void check_packs() {
 #if defined(MYRIAD_STRICT)
                 if (!(get_lane(powers, lane) == one)) ++different;
 #else
-                // contraction changes the exponent, of size 25 at most, by an ulp
+                // contraction changes the exponent, at most 25 in size, by an ulp
                 if (!(std::abs(get_lane(powers, lane) / one - 1) <= 32 * std::numeric_limits<R>::epsilon()))
                     ++different;
 #endif

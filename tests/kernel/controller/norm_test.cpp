@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The size of an error estimate: the scale max(atol, rtol max(|y|, |y1|)) of each component, and what is not finite. A
+// The size of an error estimate: the scale max(atol, rtol max(|y|, |y1|)) of each component, and non-finite values. A
 // model file: it builds trials by hand.
 #include "myriad/kernel/controller/norm.hpp"
 

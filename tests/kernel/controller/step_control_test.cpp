@@ -21,7 +21,7 @@ using myriad::tsitouras_5;
 using problems::log_circle;
 using problems::oscillator;
 
-// fast_power is accurate to 2e-5; a ratio of error to tolerance that is itself off by a rounding adds nothing to that.
+// fast_power is accurate to 2e-5; the rounding of the ratio of error to tolerance adds nothing to that.
 constexpr double power_error = 2.1e-5;
 
 template <class Model, class R = double>
@@ -63,7 +63,7 @@ double error_ratio(const options& o) {
     return worst;
 }
 
-/// Steps from far too small to far too large, and what the elementary controller of the MPGOS package makes of them.
+/// Steps from far too small to far too large, against the elementary controller of the MPGOS package.
 template <class Method>
 void check_controller(options o) {
     int accepted = 0, rejected = 0, grown = 0, shrunk = 0;
@@ -81,7 +81,7 @@ void check_controller(options o) {
         if (factor > o.growth_limit) ++grown;
         if (factor < o.shrink_limit) ++shrunk;
     }
-    // the range has shown all four cases
+    // the range has covered all four cases
     CHECK(accepted > 5);
     CHECK(rejected > 5);
     CHECK(grown > 5);
@@ -156,7 +156,7 @@ TEST_CASE("a step that grows without limit by its error grows by exactly the gro
 }
 TEST_CASE("a rejected step shrinks by the shrink limit at most") {
     options o = with_ratio<cash_karp>(0.5, 1e9);
-    // limits are kept in single precision, and some factors there round
+    // limits are stored in single precision, and some factors are rounded there
     const double rounding = 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
     CHECK(std::abs(first_trial<cash_karp>(o).next_step / (0.5 * 0.1) - 1) <= rounding);
     o.shrink_limit = 0.25;
@@ -164,7 +164,7 @@ TEST_CASE("a rejected step shrinks by the shrink limit at most") {
 }
 
 TEST_CASE("the next step is not below the minimum step after an accepted one") {
-    options o = with_ratio<cash_karp>(0.25, 0.9);  // wants 0.92 of it
+    options o = with_ratio<cash_karp>(0.25, 0.9);  // the controller wants 0.92 of it
     CHECK(first_trial<cash_karp>(o).next_step < 0.25);
     o.minimum_step = 0.25;
     const outcome o1 = first_trial<cash_karp>(o);
@@ -215,7 +215,7 @@ TEST_CASE("no step of an integration is below the minimum step but the last") {
         longest = std::max(longest, open[i].h);
     }
     REQUIRE(longest > 1.5 * shortest);
-    // The safety factor leaves room for steps longer by a tenth: the shortest ones can be, and still pass the error
+    // The safety factor leaves room for steps a tenth longer: the shortest ones can be longer and still pass the error
     // test.
     o.minimum_step = 1.05 * shortest;
     const auto steps = steps_of<cash_karp, log_circle>(o, 20);

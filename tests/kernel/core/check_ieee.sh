@@ -1,13 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks that kernel/core/ieee.hpp refuses, at compile time or at the start, every part of -ffast-math that the compiler has,
-# and nothing else.
+# Checks that kernel/core/ieee.hpp refuses, at compile time or at the start, every part of -ffast-math that the compiler
+# has, and nothing else.
 # Usage: check_ieee.sh COMPILER INCLUDE
 set -uo pipefail
 compiler=$1 include=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-printf '#include "myriad/kernel/core/ieee.hpp"\nint main() { return myriad::detail::computes_as_written() ? 0 : 3; }\n' >"$work/main.cpp"
+cat >"$work/main.cpp" <<'END'
+#include "myriad/kernel/core/ieee.hpp"
+int main() { return myriad::detail::computes_as_written() ? 0 : 3; }
+END
 failures=0
 
 # judge EXPECTED FLAG...: what comes of the flags; "refused" or "taken".

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files compiled with parts of -ffast-math that no macro shows are refused at the start, before anything is integrated.
+// Files compiled with parts of -ffast-math that no macro reveals are refused at the start, before any integration.
 #include "myriad/kernel/core/ieee.hpp"
 
 #include "tests/catch.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A vector is made of as many values as it has components, and is otherwise no more than its values.
+// A vector is made from as many values as it has components, and contains only these.
 #include <type_traits>
 
 #include <myriad/model.hpp>

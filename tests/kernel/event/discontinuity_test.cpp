@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Event functions that jump: what their actions do to them, several that jump at one instant, and phases that end on a
-// jump.
+// Event functions that jump: effects of their actions, several that jump at one instant, and phases that end on a jump.
 #include <algorithm>
 
 #include "tests/catch.hpp"
@@ -13,7 +12,7 @@ using namespace watching;
 
 namespace {
 
-// Hits are located to the rounding of t and x, and each turns up in the next as twice as much.
+// Hits are located to the rounding of t and x, and each error is doubled in the next hit.
 constexpr double resolution = 100 * std::numeric_limits<double>::epsilon();
 
 myriad::ensemble<walled> ball(bool turns_round, double x, double v, double t_end) {
@@ -44,8 +43,8 @@ myriad::options hits(std::int64_t stop_after = 0, myriad::direction d = myriad::
 
 using kinds = std::array<int, 3>;
 
-/// Points at speeds from 0.7 to 1.2, some of them just before the level that they pass (others up to 0.9 units of
-/// time), in the direction in which the domain runs.
+/// Points with speeds from 0.7 to 1.2, some just before the level that they pass (others up to 0.9 units of time
+/// before), in the direction of the domain.
 myriad::ensemble<levels> points(const kinds& of, double t_begin, double direction, const kinds& actions = {}) {
     constexpr int size = 11;
     myriad::ensemble<levels> e(size);
@@ -114,9 +113,8 @@ TEMPLATE_TEST_CASE("event functions that jump at one instant fire once each, in 
                         CAPTURE(i);
                         auto events = order_of(e, i);
                         if (std::ranges::count(of, l::smooth) > 0) {
-                            // It starts on its surface, and has no event, where it starts right before the level; and
-                            // it is still within its tolerance where the trial that shows the jumps happens to end
-                            // there.
+                            // The smooth function has no event if a point right before the level starts on its surface,
+                            // and is still within its tolerance if the trial that shows the jumps ends there.
                             if (i % 4 == 3) continue;
                             std::ranges::sort(events);
                         }
@@ -164,7 +162,7 @@ TEMPLATE_TEST_CASE("event functions that jump at one instant fire once each, bac
 
 TEMPLATE_TEST_CASE("an action that moves the state away from a jump leaves the others' events at it alone", "",
                    ALL_METHODS) {
-    // All three fire where they jump, though the first action has put x back, or turned the speed round, by then.
+    // All three fire where they jump, though by then the first action has put x back or reversed the speed.
     using l = levels;
     for (const int what : {l::step_back, l::turn_round, l::stand_on_level}) {
         for (int acting = 0; acting < 3; ++acting) {

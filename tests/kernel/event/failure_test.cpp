@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Event functions that give no number end their instance as not_finite, with the last finite state, and no other.
+// Event functions that return NaN end their instance as not_finite, with the last finite state, and no other instance.
 #include <cmath>
 
 #include <myriad/myriad.hpp>
@@ -50,7 +50,7 @@ TEMPLATE_TEST_CASE("an event function that becomes NaN ends the instance before 
     const auto report = run<TestType>(e);
     CHECK(report.count(myriad::status::not_finite) == 1);
     CHECK(e.t()[0] < 0.4);
-    CHECK(e.t()[0] >= 0.4 - 0.03);  // fixed steps end at the last before it, adaptive ones shrink towards it
+    CHECK(e.t()[0] >= 0.4 - 0.03);  // fixed steps end with the last one before it, adaptive ones shrink towards it
     CHECK(std::abs(e.state(gate::x)[0] - std::exp(-e.t()[0])) <= 1e-6);
     CHECK(e.integer_accessory(gate::fired)[0] == 0);
 }

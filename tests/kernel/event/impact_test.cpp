@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Impacts with a law of restitution: times against the closed form, accumulation, and that nothing passes the floor.
+// Impacts with a law of restitution: times against the closed form, accumulation, and that no ball passes the floor.
 #include "tests/catch.hpp"
 #include "tests/kernel/event/time_models.hpp"
 #include "tests/kernel/event/watching.hpp"
@@ -78,8 +78,8 @@ TEMPLATE_TEST_CASE("the limit of impacts is announced early by the flights that 
                 const double rest = std::sqrt(2 * height / gravity) * (1 + kept) / (1 - kept);
                 const double left = 2 * e.state(watch::v)[0] / (gravity * (1 - kept));
                 if (tolerance < 1e-9) CHECK(std::abs(e.t()[0] + left - rest) <= 1e-9);
-                // An impact is found within the tolerance of zero, so a flight that stays within it rises by twice as
-                // much.
+                // An impact is found within the tolerance of zero, so that a flight within the tolerance may rise by
+                // twice as much.
                 const double most = std::sqrt(16 * tolerance / gravity) * std::pow(kept, limit - 1) / (1 - kept);
                 CHECK(std::abs(left) <= most * 1.01 + 1e-12);
             }
@@ -105,7 +105,7 @@ TEMPLATE_TEST_CASE("the limit of accumulating impacts is an option", "", ALL_MET
 
 TEMPLATE_TEST_CASE("flights shorter than the resolution of time do not let the ball through the floor", "",
                    ALL_METHODS) {
-    // The later it is, and the less of the speed is left, the sooner a flight is too short for t to advance.
+    // The later the time, and the less speed is left, the sooner a flight is too short for t to advance.
     for (const double t_begin : {0.0, 1e3, 1e6}) {
         for (const double kept : {0.8, 0.5, 0.1, 1e-3}) {
             for (const double tolerance : {1e-6, 1e-12}) {
@@ -131,7 +131,7 @@ TEMPLATE_TEST_CASE("a ball without restitution comes to rest on the floor and do
         ensemble_of(motion{.x = height, .a = -gravity}, {position(0, watch::bounce), never(), never()}, 0, 20, 0.0);
     const auto report = solve<TestType>(e, ball_options(0.01));
     CHECK(report.count(myriad::status::event_accumulation) == 1);
-    // it may sink from a tolerance above the floor to a tolerance below it, 2 sqrt(tol / g) long, before each impact
+    // it may sink from a tolerance above the floor to a tolerance below it, for 2 sqrt(tol / g), before each impact
     CHECK(std::abs(e.t()[0] - impact_time(1)) <= 50 * 2 * std::sqrt(impact_tolerance / gravity));
     CHECK(e.accessory(watch::smallest_x)[0] >= -impact_tolerance);
 }
@@ -155,7 +155,7 @@ TEMPLATE_TEST_CASE("a ball between two walls hits them in turn", "", ALL_METHODS
         ensemble_of(motion{.x = 0.25, .v = 1}, {position(0, watch::bounce), position(1, watch::bounce), never()}, 0, 5);
     const auto report = solve<TestType>(e, options_for(1e-10, 0.1));
     CHECK(report.count(myriad::status::success) == 1);
-    // straight flights: each impact is off by at most the tolerance over the speed, 1
+    // straight flights: each impact's error is at most the tolerance over the speed, 1
     CHECK(agree(times_of(e, 1), {0.75, 2.75, 4.75}, 1e-9));
     CHECK(agree(times_of(e, 0), {1.75, 3.75}, 1e-9));
 }
@@ -176,8 +176,7 @@ TEMPLATE_TEST_CASE("impacts that a step happens to end on are not taken for accu
 }
 
 TEMPLATE_TEST_CASE("impacts far from t = 0 take no time from the flights between them", "", ALL_METHODS) {
-    // 137 impacts on walls two units apart; where t has a resolution of 1e-7, each of them would take about half of
-    // that
+    // 137 impacts on walls two units apart; with a resolution of t of 1e-7, each would lose about half of that
     constexpr double speed = 1.1, flight = 249;
     for (const double t_begin : {0.0, 1e6, 1e9}) {
         CAPTURE(t_begin);
@@ -186,7 +185,7 @@ TEMPLATE_TEST_CASE("impacts far from t = 0 take no time from the flights between
         solve<TestType>(e, options_for(1e-12, 0.1));
         CHECK(e.status(0) == myriad::status::success);
         REQUIRE(count_of(e) == 137);
-        // the 137th was on the upper wall; an impact within its tolerance shifts all that follows by twice as much
+        // the 137th was on the upper wall; the error of an impact within its tolerance doubles for all that follow
         CHECK(std::abs(e.state(watch::x)[0] - (2 * 137 - speed * flight)) <= 2 * 137 * 2e-12);
     }
 }

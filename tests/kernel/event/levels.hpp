@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A point that moves past levels which its event functions tell by a jump, or by a smooth crossing: what happens
-// where several of them lie at one place.
+// A point that moves past levels, which its event functions signal by a jump or a smooth crossing: cases with several
+// of them at one place.
 #pragma once
 
 #include <myriad/model.hpp>
 
-/// x' = v, v' = a. Three event functions of the level c_j, each of the kind that a shared integer chooses. Every action
-/// is logged, and then does what another shared integer asks for.
+/// x' = v, v' = a. Three event functions of the levels c_j, each of the kind chosen by a shared integer. Every action
+/// is logged, and then does what another shared integer selects.
 struct levels {
     enum state { x, v, n_state };
     enum parameter { a, c0, c1, c2, n_parameter };
@@ -15,8 +15,8 @@ struct levels {
     enum accessory { at, n_accessory = at + log_length };
     enum integer_accessory { steps, fired, which, n_integer_accessory = which + log_length };
     enum event { first, second, third, n_event };
-    /// A jump up or down where x passes the level, the same told by the square of x (whose rounding differs), a jump
-    /// where t passes it, a smooth crossing, and none.
+    /// A jump up or down where x passes the level, the same detected by the square of x (whose rounding differs), a
+    /// jump where t passes it, a smooth crossing, and none.
     enum kinds { up, down, square_up, time_up, smooth, none };
     enum actions { log, step_back, turn_round, stand_on_level, bounce };  // bounce: with half the speed
 
@@ -47,7 +47,7 @@ struct levels {
         for (int j = 0; j < n_event; ++j) g[j] = function<R>(p.shared_integer[kind + j], R(p[c0 + j]), R(t), y);
         return g;
     }
-    /// Changes what events may read, if asked to.
+    /// Changes inputs of events, on request.
     MYRIAD_FUNCTION static void after_step(auto& lane) {
         if (lane.shared_integer[counts_steps] != 0) lane.integer_accessory[steps] += 1;
     }

@@ -13,8 +13,8 @@ using myriad::direction;
 
 namespace {
 
-// Global error of the spring over a dozen units of time with the steps below, and with it that of a crossing of slope
-// 1: adaptive methods accept 1e-12 per step and take some hundred steps; RK4 has h^4 / 120 * t.
+// Global error of the spring over a dozen units of time with the steps below, and so of a crossing with slope 1:
+// adaptive methods accept 1e-12 per step and take some hundred steps; RK4 has h^4 / 120 * t.
 constexpr double spring_step = 1e-3, spring_error = 1e-9;
 
 template <class Method>
@@ -54,8 +54,8 @@ myriad::options one_event(double tolerance, double step) {
     return o;
 }
 
-/// x' = rest - x from one away from it, with its threshold there: a decay to zero, or an integrate-and-fire model that
-/// its threshold stops.
+/// x' = rest - x from a distance of one, with its threshold at `rest`: a decay to zero, or an integrate-and-fire model
+/// that stops at its threshold.
 template <class R>
 myriad::ensemble<settling, R> settling_to(R rest, R t_end) {
     myriad::ensemble<settling, R> e(1);
@@ -88,7 +88,7 @@ TEMPLATE_TEST_CASE("rising, falling and either pick the crossings of a sine", ""
 }
 
 TEMPLATE_TEST_CASE("backwards in time a direction is that of the integration", "", ALL_METHODS) {
-    // Seen from t = 0 backwards, sin t falls below zero first and rises through it at -pi.
+    // Backwards from t = 0, sin t first falls below zero and then rises through it at -pi.
     CHECK(agree(zeros_of_sine<TestType>(-13, direction::rising), {-pi, -3 * pi}, spring_error));
     CHECK(agree(zeros_of_sine<TestType>(-13, direction::falling), {-2 * pi, -4 * pi}, spring_error));
     CHECK(agree(zeros_of_sine<TestType>(-13, direction::either), {-pi, -2 * pi, -3 * pi, -4 * pi}, spring_error));
@@ -134,7 +134,7 @@ TEMPLATE_TEST_CASE("a flight that starts within the tolerance is caught when it 
                     const bool wanted = static_cast<double>(static_cast<int>(d)) * mirror <= 0;
                     const auto times = times_of(e);
                     REQUIRE(times.size() == (wanted ? 1 : 0));
-                    // Where x = 0 lies, and how far from it |x| is within the tolerance at a slope of v0.
+                    // The root of x, and its distance from points with |x| within the tolerance, at a slope of v0.
                     if (wanted) CHECK(std::abs(times[0] - (v0 + std::sqrt(v0 * v0 + 2 * x0))) <= 1.1 * tolerance / v0);
                 }
             }
@@ -144,7 +144,7 @@ TEMPLATE_TEST_CASE("a flight that starts within the tolerance is caught when it 
 
 TEMPLATE_TEST_CASE("a flight that never leaves the tolerance and then falls far is caught once", "", ALL_METHODS) {
     constexpr double tolerance = 1e-6;
-    // v0^2 / 2 high, and 2 v0 long: at t = 1e6 that is less than the resolution of t for the last
+    // v0^2 / 2 high and 2 v0 long: at t = 1e6 the last is below the resolution of t
     for (const double v0 : {1e-3, 1e-5, 1e-8, 1e-11}) {
         for (const double t_begin : {0.0, 1e6}) {
             for (const double mirror : {1.0, -1.0}) {
@@ -194,7 +194,8 @@ TEMPLATE_TEST_CASE("touching zero without crossing is no event", "", ALL_METHODS
     for (const double step : {0.01, 0.1, 0.37}) {
         CAPTURE(step);
         CHECK(zeros_of_wave<TestType>(-1, 1, 0, 20, one_event(1e-6, step)).empty());   // 1 - cos t
-        CHECK(zeros_of_wave<TestType>(-1, 1, -1, 20, one_event(1e-6, step)).empty());  // not from the surface either
+        CHECK(zeros_of_wave<TestType>(-1, 1, -1, 20, one_event(1e-6, step)).empty());  // not when it starts on the
+                                                                                       // surface either
         CHECK(zeros_of_wave<TestType>(1, -1, 1, 20, one_event(1e-12, step)).empty());
     }
 }
@@ -222,7 +223,7 @@ TEMPLATE_TEST_CASE("a solution that dips below zero by more than the tolerance c
     auto o = options_for(tolerance, 1e-3);  // the dip is 0.05 long
     o.maximum_step = 1e-3;
     solve<TestType>(e, o);
-    // at a slope of sqrt(6 tol) the tolerance is sqrt(tol / 6) wide
+    // at a slope of sqrt(6 tol) the tolerance spans sqrt(tol / 6)
     const double half = std::acos(1 - 3 * tolerance);
     CHECK(agree(times_of(e), {pi - half, pi + half}, std::sqrt(tolerance / 6)));
 }
@@ -285,7 +286,7 @@ TEST_CASE("a decay of a float model that comes within the tolerance of zero at t
 }
 
 TEMPLATE_TEST_CASE("a root at t_end is found however many steps lead there", "", ALL_METHODS) {
-    // x = 1 - t, whose steps' rounding adds up
+    // x = 1 - t, where the steps' rounding accumulates
     for (const int steps : {1, 3, 7, 10, 49, 99, 321, 1000}) {
         for (const double t_begin : {0.0, -1.0, 100.0}) {
             CAPTURE(steps, t_begin);
@@ -327,17 +328,17 @@ TEST_CASE("both roots of (t - 1)^2 - 1e-6 are found within one fixed step of 0.0
         return times_of(e);
     };
     // the slope is 2e-3 at both roots: 1e-12 are 5e-10 in t
-    for (const double t_begin : {0.005, 0.0, 0.0083, 0.0025}) {  // where in their step the roots lie
+    for (const double t_begin : {0.005, 0.0, 0.0083, 0.0025}) {  // the positions of the roots in their step
         CAPTURE(t_begin);
         CHECK(agree(found(t_begin, 16), {0.999, 1.001}, 1e-9));
     }
-    CHECK(found(0.005, 1).empty());  // it is the option that finds them
+    CHECK(found(0.005, 1).empty());  // only the option finds them
 }
 
 TEMPLATE_TEST_CASE("both roots within one adaptive step are found with sub-samples", "", myriad::cash_karp,
                    myriad::tsitouras_5) {
     auto e = ensemble_of(motion{}, {function{.Q = 1, .c = 1e-2}, never(), never()}, 0, 2.3);
-    auto o = options_for(1e-12, 2.2);  // nothing limits the steps of this motion: the first holds both roots
+    auto o = options_for(1e-12, 2.2);  // nothing limits the steps of this motion: the first contains both roots
     o.sub_samples = 16;
     solve<TestType>(e, o);
     CHECK(agree(times_of(e), {0.9, 1.1}, 1e-11));  // slope 0.2
@@ -356,7 +357,7 @@ TEMPLATE_TEST_CASE("sub-samples look for the wanted direction only", "", ALL_MET
 
 TEMPLATE_TEST_CASE("a discontinuous event function is located to the rounding of time and fires once", "",
                    ALL_METHODS) {
-    // sign(t - 1/2), the same without a value at 1/2, falling, and a jump between large values
+    // sign(t - 1/2), the same with NaN at 1/2, falling, and a jump between large values
     struct values {
         int before, at, after;
     };
@@ -411,7 +412,7 @@ TEST_CASE("roots of one direction are no accumulation though the middle between 
 }
 
 TEMPLATE_TEST_CASE("a crossing that redone steps overshoot is not put at the start of the step", "", ALL_METHODS) {
-    // x = sin(t + a), with a tolerance that x near its zeros only meets by chance
+    // x = sin(t + a), with a tolerance that x meets near its zeros only by chance
     for (const double tolerance : {1e-17, 1e-18}) {
         for (int n = 0; n < 40; ++n) {
             const double a = 0.1 + 0.03 * n;
@@ -466,7 +467,7 @@ TEMPLATE_TEST_CASE("no located state lies beyond its event, for a thousand rando
                 for (int n = 0; n < 10; ++n)
                     for (const double zero : {2 * pi * n + angle, 2 * pi * (n + 1) - angle})
                         if (zero < turns) ++expected;
-                // a zero this near to the end may fall on either side of it: RK4 is off by t (w h)^5 / 120 / h
+                // a zero this close to the end may be on either side of it: RK4's error is t (w h)^5 / 120 / h
                 const double slack = std::abs(std::remainder(turns - angle, 2 * pi)),
                              other = std::abs(std::remainder(turns + angle, 2 * pi));
                 if (std::min(slack, other) < 0.05) continue;

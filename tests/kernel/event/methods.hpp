@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The methods that the tests of events run with. That of high order, whose interpolant has stages of its own, takes
-// long to compile: everywhere in preset nightly, and once in all others.
+// The methods for the tests of events. The high-order method, whose interpolant has stages of its own, takes long to
+// compile: it is used everywhere in preset nightly, and once in all others.
 #pragma once
 
 #include <myriad/methods.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Several events in one step, and what their actions do: order in time, simultaneous events, stopping, which action
-// runs, jumps and resets by an action, and how the steps go on.
+// Several events in one step, and their actions: order in time, simultaneous events, stopping, which action runs, jumps
+// and resets by an action, and the steps that follow.
 #include "tests/catch.hpp"
 #include "tests/kernel/event/watching.hpp"
 
@@ -32,7 +32,7 @@ TEMPLATE_TEST_CASE("events within one step are handled in order of time and not 
             CAPTURE(c.t[0], c.t[1], c.t[2], of_time);
             const auto at = [&](int j) { return of_time ? time(c.t[j]) : position(c.t[j]); };
             auto e = ensemble_of(drift, {at(0), at(1), at(2)}, 0, 1);
-            solve<TestType>(e, options_for(1e-12, 1));  // the first step goes to the end
+            solve<TestType>(e, options_for(1e-12, 1));  // the first step reaches the end
             const auto log = log_of(e);
             CHECK(order_of(log) == c.order);
             for (const firing& f : log) CHECK(std::abs(f.t - c.t[f.event]) <= 2e-12);
@@ -85,7 +85,7 @@ TEMPLATE_TEST_CASE("a phase stops after the chosen number of detections of an ev
         const auto report = solve<TestType>(e, o);
         CHECK(report.count(myriad::status::stopped_by_event) == 1);
         CHECK(times_of(e, 0).size() == static_cast<std::size_t>(n));
-        CHECK(times_of(e, 1).size() == static_cast<std::size_t>(n));  // and the other events count on up to there
+        CHECK(times_of(e, 1).size() == static_cast<std::size_t>(n));  // the other events are counted up to there
         CHECK(std::abs(e.t()[0] - pi * static_cast<double>(n)) <= 1e-9);
         CHECK(std::abs(e.state(watch::x)[0]) <= 1e-10);  // the tolerance of the event
     }
@@ -191,7 +191,7 @@ TEMPLATE_TEST_CASE("events without hooks' options use the defaults for all of th
 TEST_CASE("fixed steps go on with their step from the event") {
     auto e = ensemble_of(drift, {time(0.25), never(), never()}, 0, 1.05);
     solve<myriad::runge_kutta_4>(e, options_for(1e-12, 0.1));
-    // 0.1, 0.2, 0.25, 0.35, ..., 1.05; on the old grid it would be one more, 1.0 and 1.05
+    // 0.1, 0.2, 0.25, 0.35, ..., 1.05; on the old grid there would be one more, 1.0 and 1.05
     CHECK(e.accepted_steps()[0] == 11);
     CHECK(e.t()[0] == 1.05);
 }
@@ -209,7 +209,7 @@ TEMPLATE_TEST_CASE("adaptive steps go on with the size they had before the event
     auto without = ensemble_of(sine, {never(), never(), never()}, 0, 13);
     solve<TestType>(with, options_for(1e-10, 0.01));
     solve<TestType>(without, options_for(1e-10, 0.01));
-    // four events cut four steps in two; a step size that started small again would take several each time
+    // four events cut four steps in two; restarting with a small step size would take several steps each time
     CHECK(with.accepted_steps()[0] - without.accepted_steps()[0] <= 8);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What users of other packages suffer from in events (peers.md, "Events"), each as a test that names it.
+// Problems that users of other packages have with events (peers.md, "Events"), each as a test named after it.
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -12,7 +12,7 @@ namespace {
 std::atomic<std::int64_t> allocations{0};
 }
 
-// Counted, so that a test can see whether events take memory while they are handled.
+// Counted, so that a test can see whether handling events allocates memory.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // inlined, they look like malloc and delete
 #endif
@@ -57,7 +57,7 @@ TEMPLATE_TEST_CASE("peers: with several events the action of the one that fired 
 TEMPLATE_TEST_CASE("peers: when two events fire in one step the earlier one is first", "", ALL_METHODS) {
     auto e = ensemble_of(motion{.v = 1}, {position(0.6, watch::zero_x), position(0.5, watch::jump_v), never()}, 0, 0.7);
     solve<TestType>(e, options_for(1e-12, 1));
-    // v doubles at t = 0.5, x = 0.6 comes at 0.55 and is set to 0; then 0.15 at speed 2
+    // v doubles at t = 0.5, x = 0.6 follows at 0.55 and is set to 0; then 0.15 at speed 2
     CHECK(agree(times_of(e, 1), {0.5}, 1e-11));
     CHECK(agree(times_of(e, 0), {0.55}, 1e-11));
     CHECK(std::abs(e.state(watch::x)[0] - 0.3) <= 1e-11);
@@ -85,7 +85,7 @@ TEMPLATE_TEST_CASE("peers: handling events takes no memory", "", ALL_METHODS) {
     const auto allocated_by = [](double t_end) {
         auto e = ensemble_of(motion{.x = 0.5, .v = 1}, {position(1, watch::lower_x), never(), never()}, 0, t_end);
         const auto o = options_for(1e-9, 0.07);
-        solve<TestType>(e, o);  // counters are there from the first call on
+        solve<TestType>(e, o);  // counters exist from the first call on
         e.restart();
         const std::int64_t before = allocations;
         solve<TestType>(e, o);

@@ -40,7 +40,7 @@ TEMPLATE_TEST_CASE("every crossing fires once wherever the phases end", "", ALL_
             o.phase_time = time;
             solve<TestType>(e, o);
             const int by_then = count_of(e);
-            CHECK(by_then == (short_of <= 0 ? 1 : 0));  // at t_end only what is at or past zero
+            CHECK(by_then == (short_of <= 0 ? 1 : 0));  // at t_end only functions at or past zero
             e.t_end() = time == myriad::phase_time::restart ? 1 : first_end + 1;
             solve<TestType>(e, o);
             CHECK(count_of(e) == 1);
@@ -71,7 +71,7 @@ TEMPLATE_TEST_CASE("a crossing within rounding of the end of a phase fires once"
 }
 
 TEMPLATE_TEST_CASE("the host may turn the flow round between phases that stop on the surface", "", ALL_METHODS) {
-    // A ball dropped from one: impacts at sqrt(2) (1, 3, 5, 7), the law of which is the host's.
+    // A ball dropped from one: impacts at sqrt(2) (1, 3, 5, 7), whose law the host applies.
     for (const auto d : {myriad::direction::either, myriad::direction::falling}) {
         for (const auto step : {myriad::phase_step::restart, myriad::phase_step::carry_on}) {
             CAPTURE(static_cast<int>(d), static_cast<int>(step));
@@ -128,7 +128,7 @@ TEMPLATE_TEST_CASE("a phase that another event stops within the tolerance of a c
 }
 
 TEMPLATE_TEST_CASE("crossings on the ends of many phases all fire once", "", ALL_METHODS) {
-    // half a period per phase: every crossing of x lies on a phase's end, up to the error of the integration
+    // half a period per phase: every crossing of x is at a phase's end, up to the integration error
     auto e = ensemble_of(sine, {position(), velocity(), never()}, 0, pi);
     auto o = options_for(1e-7, 1e-3);
     o.phases = 7;

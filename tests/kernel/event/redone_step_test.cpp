@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The lengths that a redone step is given, for events whose time is known.
+// The lengths given to a redone step, for events at known times.
 #include "myriad/kernel/event/redone_step.hpp"
 
 #include <cmath>
@@ -10,8 +10,8 @@ namespace {
 
 using step = myriad::detail::redone_step<double, 2>;
 
-/// Redoes a step of length 1 until the event at `time` is between lengths that are one up to rounding; guesses are of
-/// no use.
+/// Redoes a step of length 1 until the event at `time` is bracketed by lengths equal up to rounding; the guesses are
+/// useless.
 int trials_to(double time, double guess) {
     step s;
     s.begin(1, guess, 0.25);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Two small models with one event that depends on time alone: a smooth one, and one that jumps or is no number; a
-// pendulum; a ball between walls that its event function tells by its sign alone; and a state that settles at its
-// event.
+// Two small models with one event that depends only on time: a smooth one, and one that jumps or is NaN; a pendulum; a
+// ball between walls that its event function indicates only by its sign; and a state that settles at its event.
 #pragma once
 
 #include <limits>
 
 #include <myriad/model.hpp>
 
-/// What the models of this file keep of their actions: their number and the times of the first few.
+/// The record that the models of this file keep of their actions: their number and the times of the first few.
 template <class Model>
 MYRIAD_FUNCTION void log_action(auto& lane) {
     const int n = lane.integer_accessory[Model::fired];
@@ -37,7 +36,7 @@ struct wave {
     MYRIAD_FUNCTION static void after_event(int, auto& lane) { log_action<wave>(lane); }
 };
 
-/// x' = -x. g takes one value before, one at, and one after t = c; the values are integers, `no_number` stands for NaN.
+/// x' = -x. g has one value before, one at, and one after t = c; the values are integers, with `no_number` for NaN.
 struct gate {
     enum state { x, n_state };
     enum parameter { c, n_parameter };
@@ -86,7 +85,7 @@ struct pendulum {
     MYRIAD_FUNCTION static void after_event(int, auto& lane) { log_action<pendulum>(lane); }
 };
 
-/// x'' = 0 between walls at 0 and 1: g is 1 between and -1 beyond them. At an event the ball turns round or goes
+/// x'' = 0 between walls at 0 and 1: g is 1 between and -1 beyond them. At an event the ball reverses or passes
 /// through.
 struct walled {
     enum state { x, v, n_state };
@@ -110,8 +109,7 @@ struct walled {
     }
 };
 
-/// x' = rest - x with a threshold: an integrate-and-fire model where it resets, a decay where rest and threshold are
-/// zero.
+/// x' = rest - x with a threshold: an integrate-and-fire model if it resets, a decay if rest and threshold are zero.
 struct settling {
     enum state { x, n_state };
     enum parameter { rest, threshold, n_parameter };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A model whose motion, event functions and actions are chosen at run time, so that one compilation serves many tests
-// of events. It logs every action: which event, when, and how far its function was beyond zero.
+// of events. It logs every action: which event, when, and how far its function was past zero.
 #pragma once
 
 #include <myriad/model.hpp>

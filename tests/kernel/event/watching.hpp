@@ -21,7 +21,7 @@ namespace watching {
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// One event function X x + V v + T t + Q (t - 1)^2 - c and what is done when it fires.
+/// One event function X x + V v + T t + Q (t - 1)^2 - c and the action when it fires.
 struct function {
     double X = 0, V = 0, T = 0, Q = 0, c = 0;
     int action = watch::log;
@@ -38,7 +38,7 @@ struct motion {
 inline constexpr motion sine{.x = 0, .v = 1, .k = 1};    // x = sin t
 inline constexpr motion cosine{.x = 1, .v = 0, .k = 1};  // x = cos t
 
-/// What fired, and when.
+/// Which event fired, and when.
 struct firing {
     int event;
     double t;
@@ -128,8 +128,7 @@ auto solve(myriad::ensemble<watch, R>& e, const myriad::options& o) {
     return myriad::solve<Method>(tests::test_device(1), e, o);
 }
 
-/// Without the checks of the options, which refuse what only rounding keeps from working: the kernel itself, on the
-/// CPU.
+/// Without the checks of options, which refuse cases that fail only by rounding: the kernel itself, on the CPU.
 template <class Method, class R>
 void solve_unchecked(myriad::ensemble<watch, R>& e, const myriad::options& o) {
     myriad::host::prepared_arguments<watch, R> prepared(e, o, myriad::host::traits_of<Method>);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What follows from what a hook or an earlier call left behind: slopes, step sizes and failures.
+// Consequences of values left by a hook or an earlier call: slopes, step sizes and failures.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -88,8 +88,8 @@ TEST_CASE("books that only hooks read change no bit where the model declares the
     const Eigen::Array<std::int64_t, Eigen::Dynamic, 1> impacts =
         declared.integer_accessory(bookkeeper::impacts).cast<std::int64_t>();
     CHECK(impacts.minCoeff() > 0);
-    // The last slope of a step is the first of the next, and stays so: one evaluation less per accepted step, but for
-    // those at impacts, which change the state.
+    // The last slope of a step remains the first of the next: one evaluation less per accepted step, except at impacts,
+    // which change the state.
     const Eigen::Array<std::int64_t, Eigen::Dynamic, 1> saved = plain.rhs_evaluations() - declared.rhs_evaluations();
     CHECK((saved >= declared.accepted_steps() - 2 * impacts - 2).all());
 }
@@ -167,7 +167,7 @@ TEST_CASE("a step set by a hook keeps to the limits of the options") {
 }
 
 namespace {
-/// Eleven instances, the odd ones of which get the step `wanted` from one of their hooks.
+/// Eleven instances; one of their hooks sets the step size of the odd ones to `wanted`.
 template <class Model>
 ensemble<Model> spoiled(int hook, double wanted) {
     ensemble<Model> e(11);
@@ -185,7 +185,7 @@ void check_next_step_of_nan() {
         solve<Method>(tests::test_device(1), healthy, o);
         for (const int hook : {Model::in_initialise, Model::in_after_step, Model::in_after_event, Model::in_finalise}) {
             CAPTURE(hook);
-            auto e = spoiled<Model>(hook, -1);  // of which the hook takes the root
+            auto e = spoiled<Model>(hook, -1);  // the hook takes its root
             solve<Method>(tests::test_device(1), e, o);
             const double ends[] = {0, 0, 0.25, 0.5, 1};
             for (std::int64_t i = 0; i < e.size(); ++i) {

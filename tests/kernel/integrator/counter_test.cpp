@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The counters: what the library counts against what the models count themselves.
+// The library's counters against the models' own counts.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -32,7 +32,7 @@ ensemble<Model> oscillators(std::int64_t size = 9) {
     return e;
 }
 
-/// Runs phases of oscillators; compares evaluations and hands on the report.
+/// Runs phases of oscillators; compares evaluations and returns the report.
 template <class Model, class Method>
 auto count(options o, int threads = 1) {
     auto e = oscillators<Model>();
@@ -45,7 +45,7 @@ auto count(options o, int threads = 1) {
     CHECK(e.accepted_steps().sum() == r.accepted_steps);
     CHECK(e.rejected_steps().sum() == r.rejected_steps);
     CHECK(e.located_steps().sum() == r.located_steps);
-    if (tests::tests_cpu()) {  // scalar lanes have no idle neighbours: every turn is somebody's trial
+    if (tests::tests_cpu()) {  // scalar lanes have no idle neighbours: every iteration is some instance's trial
         CHECK(r.lanes == 1);
         CHECK(r.lane_turns == r.accepted_steps + r.rejected_steps + r.located_steps);
     }
@@ -53,11 +53,11 @@ auto count(options o, int threads = 1) {
     return r;
 }
 
-/// A first step that is far too long, so that trials are rejected.
+/// A first step far too long, so that trials are rejected.
 options rough_start() {
     options o = with_tolerance(1e-9);
     o.step = 10;
-    o.advice = myriad::advice::off;  // its evaluations are not the integration's
+    o.advice = myriad::advice::off;  // its evaluations are not part of the integration
     return o;
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("evaluations are counted as the model counts them where events change 
 }
 TEST_CASE("steps without event, and those redone for one, are counted apart") {
     each_adaptive_method([]<class Method> {
-        // events that the right-hand side does not feel: as many accepted steps as after_step would see
+        // events that do not affect the right-hand side: as many accepted steps as after_step would see
         options o = with_tolerance(1e-9);
         auto plain = oscillators<counted::oscillator>(1);
         auto watched = oscillators<counted::with_events>(1);
@@ -127,7 +127,7 @@ TEST_CASE("steps without event, and those redone for one, are counted apart") {
         solve<Method>(tests::test_device(1), watched, o);
         CHECK(plain.located_steps()[0] == 0);
         CHECK(watched.located_steps()[0] > 0);
-        // each of the 12 events cuts a step in two, at most
+        // each of the 12 events splits at most one step in two
         CHECK(watched.accepted_steps()[0] <= plain.accepted_steps()[0] + 2 * 12);
     });
 }

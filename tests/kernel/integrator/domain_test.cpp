@@ -66,8 +66,8 @@ TEST_CASE("10000 steps of a thousandth over [0, 10] are 10000 steps in single pr
     each_method([]<class Method> { check_steps<Method>(0.0f, 10.0f, fixed_step(1e-3), 10000); });
 }
 TEST_CASE("100000 steps of a ten-thousandth over [0, 10] are 100000 steps in single precision") {
-    // Near t = 10 every hundredth of a step would be lost to the rounding of t, were it not kept; and the last step but
-    // one may be rounded to the end itself.
+    // Near t = 10 the rounding of t would lose a hundredth of every step if it were not kept; and the last step but one
+    // may be rounded to the end itself.
     each_method([]<class Method> { check_steps<Method>(0.0f, 10.0f, fixed_step(1e-4), 100000); });
 }
 TEST_CASE("10000 steps of a thousandth back from 10 to 0 are 10000 steps") {
@@ -123,7 +123,7 @@ TEST_CASE("the state advances by as much as t, however coarse the resolution of 
             CHECK(e.status(0) == status::success);
             CHECK(std::abs(e.state(0)[0] - length) <= tolerance);
         };
-        // t is a multiple of two here, and of 2^-23 there; the sums of the state are rounded to a few 1e-13
+        // t is a multiple of two at 1e16, and of 2^-23 at 1e9; the sums of the state are rounded to a few 1e-13
         for (const double direction : {1.0, -1.0}) {
             check(1e16, direction * 1000, 3, 1e-9);
             check(1e9, direction * 1000, 0.1, 1e-9);
@@ -240,7 +240,7 @@ TEST_CASE("an integration back to its start returns to where it began") {
         e.restart();
         const auto back = solve<Method>(tests::test_device(1), e, with_tolerance(1e-9));
         // Every step adds an error below the tolerance of 1e-9 times |y| <= e. The flow along the circle magnifies it
-        // by the ratio of the coordinates, e^2, at most. RK4 with h = 1/64: error per step h^5 / 120 times derivatives
+        // at most by the ratio of the coordinates, e^2. RK4 with h = 1/64: error per step h^5 / 120 times derivatives
         // of ten.
         const double steps = static_cast<double>(there.accepted_steps + back.accepted_steps) / 8;
         const double bound = std::exp(2.0) * steps * std::exp(1.0) * 1e-9;
@@ -327,7 +327,7 @@ TEST_CASE("an endless domain goes on until a hook ends the phase") {
         for (const double sign : {1.0, -1.0}) {
             ensemble<hooked::stopper> e(1);
             e.state(0) = 0.0;
-            // backwards t falls: the instance's end, y >= 0 from the first step on, is what stops it
+            // backwards t falls: the end of the instance, as y >= 0 from the first step on, stops it
             e.parameter(hooked::stopper::phase_stop) = sign > 0 ? 20.0 : 1e9;
             e.parameter(hooked::stopper::instance_stop) = sign > 0 ? 1e9 : -1e9;
             e.time_domain(0, sign * std::numeric_limits<double>::infinity());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How instances fail, and that a failure touches nothing but its own instance: values that are not finite, steps that
-// vanish, too many steps.
+// How instances fail, and that a failure affects only its own instance: values that are not finite, steps that vanish,
+// too many steps.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -44,8 +44,7 @@ ensemble<clock_fault, R> healthy(std::int64_t size, R t_end) {
     return e;
 }
 
-/// Runs 67 instances, some of which fail at different times, on one and two threads, and once more without the
-/// failures.
+/// Runs 67 instances, some of which fail at different times, on one and two threads, and again without the failures.
 template <class Method, class R>
 void check_neighbours(const options& o) {
     constexpr std::int64_t size = 67;
@@ -80,7 +79,7 @@ void check_neighbours(const options& o) {
     }
 }
 
-/// y' = 1 from 0, and NaN beyond 1 that no slope of a state which is NaN passes on.
+/// y' = 1 from 0, and NaN beyond 1, which the slope of a NaN state does not pass on.
 template <class Method, class R = double>
 void check_open_cliff() {
     for (const double t_end : {1.25, 2.0, 3.0, 17.0, 1e6}) {
@@ -110,7 +109,7 @@ TEST_CASE(
             auto bad = healthy(1, 4.0), until = healthy(1, 1.0);
             bad.parameter(clock_fault::last_good) = 1.0;
             bad.parameter(clock_fault::kind) = kind;
-            // adaptive methods must not shrink the step further: it is the minimum
+            // adaptive methods must not shrink this step, which is the minimum
             solve<Method>(tests::test_device(1), bad, fixed_step(0.125));
             solve<Method>(tests::test_device(1), until, fixed_step(0.125));
             CHECK(bad.status(0) == status::not_finite);
@@ -196,7 +195,7 @@ TEST_CASE("a right-hand side that depends on the state alone and leaves its doma
     });
 }
 TEST_CASE("a right-hand side without a value beyond the state is not crept up to by steps that change nothing") {
-    // Where t is finer than y, at the limit, a step that leaves y as it is is fine, and the next one, longer, is not.
+    // Where t is finer than y, at the limit, a step that does not change y succeeds, and the next, longer one fails.
     each_adaptive_method([]<class Method> {
         for (const double speed : {1.0, -1.0}) {
             for (const double t_begin : {0.0, -0.5, -1.0, 0.99, 10.0}) {
@@ -239,7 +238,7 @@ TEST_CASE("with fixed steps, a slope that is NaN in a stage without weight ends 
     e.time_domain(0, 3);
     solve<faulty::midpoint_rule>(tests::test_device(1), e, fixed_step(0.375));
     CHECK(e.status(0) == status::not_finite);
-    // the middle of the third step, at 0.9375, is within the domain, and its end is not
+    // the middle of the third step, at 0.9375, is within the domain, its end is not
     CHECK(e.t()[0] == 1.125);
     CHECK(e.state(0)[0] == 1.125);
 }
@@ -302,8 +301,7 @@ TEST_CASE("a failed instance takes no part in further calls, until the ensemble 
     });
 }
 TEST_CASE("with step-size control, a finite trial after one that was not is judged by its error alone") {
-    // NaN for t > 1 costs a rejection where the domain ends at 1 and the first step goes beyond: it must leave no
-    // trace.
+    // NaN for t > 1 costs one rejection if the domain ends at 1 and the first step goes beyond: it must leave no trace.
     each_adaptive_method([]<class Method> {
         auto e = healthy(1, 1.0);
         e.parameter(clock_fault::last_good) = 1.0;
@@ -366,7 +364,8 @@ TEST_CASE("with step-size control, a solution that blows up ends as step_underfl
             e.time_domain(0, 2 * sign);
             solve<Method>(tests::test_device(1), e, with_tolerance(1e-9));
             CHECK(e.status(0) == status::step_underflow);
-            // The pole of the numerical solution: each step with relative error 1e-9 shifts it by 1e-9 of what is left.
+            // The pole of the numerical solution: each step's relative error of 1e-9 shifts it by 1e-9 of the remaining
+            // time.
             CHECK(std::abs(sign * e.t()[0] - 1) < 1e-8);
             CHECK(std::isfinite(e.state(0)[0]));
             CHECK(sign * e.state(0)[0] > 1e7);
@@ -419,7 +418,7 @@ TEST_CASE("a slope that jumps is passed with small steps, or ends the instance w
         solve<Method>(tests::test_device(1), e, o);
         CHECK(e.status(0) == status::success);
         // Only the step across the jump has an error. The stages on one side of it leave an estimate of h times a sum
-        // of some first error weights, at least 0.0017 in size for both methods, so h < 1e-9 / 0.0017.
+        // of some first error weights, at least 0.0017 in magnitude for both methods, so that h < 1e-9 / 0.0017.
         CHECK(std::abs(e.state(0)[0] - 2.0 / 3) < 1e-9 / 0.0017);
         CHECK(e.rejected_steps()[0] > 3);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hooks: in which order they are called, what they see, what they may write and what follows from that; and what a
-// right-hand side may read.
+// Hooks: the order of their calls, what they see, what they may write, and the consequences; and the inputs of a
+// right-hand side.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -513,7 +513,7 @@ void check_kick(double in_push) {
     solve<Method>(tests::test_device(1), by_hand, o);
     CHECK(compare::same_bits_everywhere(hooked_kick.state(kicked_base::x), by_hand.state(kicked_base::x)));
     CHECK(compare::same_bits_everywhere(hooked_kick.state(kicked_base::v), by_hand.state(kicked_base::v)));
-    // and it did matter
+    // and the kick mattered
     CHECK((hooked_kick.state(kicked_base::v) - 0.75).abs().maxCoeff() > 0.1);
 }
 

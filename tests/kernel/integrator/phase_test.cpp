@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Integration phases: many in one call as one by one, restarted and carried-over times and steps, records.
+// Integration phases: many in one call or one by one, restarted and carried-over times and steps, records.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -234,7 +234,7 @@ TEST_CASE("time that is carried on to a finite t_end leaves no phases without le
     CHECK(e.t()[3] == 10);
     e.restart();
     CHECK_NOTHROW(solve<cash_karp>(tests::test_device(1), e, o));
-    // What something may end early is nobody's mistake.
+    // Phases that something may end early are no mistake.
     auto stopped = stoppers(3, 1.0);
     stopped.parameter(stopper::phase_stop) = 0.5;
     o.phases = 9;
@@ -409,7 +409,7 @@ TEST_CASE("a step cut short by the end of the domain does not shorten the one ca
         e.state(1) = 0.0;
         e.time_domain(0, 3);
         options o = with_tolerance(1e-6, 0.2);
-        o.growth_limit = 1;  // no growth hides it
+        o.growth_limit = 1;  // so that growth does not hide it
         o.phase_step = phase_step::carry_on;
         e.t_end() = 0.21;  // one step of 0.2, one of 0.01
         solve<Method>(tests::test_device(1), e, o);
@@ -473,7 +473,7 @@ TEST_CASE("an instance that a hook ended and that is given a new state is not le
     const options o = fixed_step(0.125);
     solve<myriad::runge_kutta_4>(tests::test_device(1), e, o);
     REQUIRE((e.t() == 0.5).all());
-    solve<myriad::runge_kutta_4>(tests::test_device(1), e, o);  // they take no part, and none was asked to
+    solve<myriad::runge_kutta_4>(tests::test_device(1), e, o);  // they take no part, and none was requested
     e.state(0)[3] = 0.0;
     CHECK_THROWS_WITH(solve<myriad::runge_kutta_4>(tests::test_device(1), e, o),
                       Catch::Matchers::Contains("instance 3 ended in an earlier call (stopped_by_user)"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Stiff methods in the loop: statuses, counts, events, hooks and dense output, large systems, and results that depend
-// on the instance alone.
+// only on the instance.
 #include "tests/support/stiff.hpp"
 
 #include <algorithm>
@@ -32,8 +32,8 @@ using stiff::van_der_pol;
 
 constexpr double pi = 3.14159265358979323846;
 
-/// The rate at which I / (h gamma) - J of `growth` has a pivot of zero: what the method itself computes, 1 / h times
-/// the rounded 1 / gamma.
+/// The rate at which I / (h gamma) - J of `growth` has a zero pivot, as the method itself computes it: 1 / h times the
+/// rounded 1 / gamma.
 template <class Method, class R>
 R singular_rate(R h) {
     return R(1) / h * static_cast<R>(1 / Method::tableau().gamma);
@@ -80,7 +80,7 @@ void check_relay(double tolerance, double slack) {
     options o;
     o.relative_tolerance = o.absolute_tolerance = tolerance;
     o.step = 1e-3;
-    o.maximum_step = 0.2;  // nobody controls the error of the interpolant, 4e-4 h^4 here for rodas_5p (measured)
+    o.maximum_step = 0.2;  // the error of the interpolant is not controlled: 4e-4 h^4 here for rodas_5p (measured)
     o.events = {{myriad::direction::falling, 1e-9, 0}};
     o.samples = {.states = {relay::y0}, .capacity = 81, .evenly = 81};
     solve<myriad::dense<Method>>(tests::test_device(1), e, o);
@@ -91,8 +91,8 @@ void check_relay(double tolerance, double slack) {
         CHECK(std::abs(e.accessory(relay::last_event)[i] - 2 * pi / 3) <=
               (slack * tolerance + 1e-9) / std::sin(pi / 3));
         CHECK(std::abs(e.state(relay::y0)[i] - (std::cos(4.0) + 2)) <= slack * tolerance);
-        // the largest state is the one at an event or at the start, before the action: hooks see steps, and these end
-        // below
+        // the largest state is the one at an event or at the start, before the action: hooks see steps, which end below
+        // it
         CHECK(e.accessory(relay::largest)[i] >= 1);
         CHECK(e.accessory(relay::largest)[i] <= 1.5 + slack * tolerance);
         CHECK(e.integer_accessory(relay::begun)[i] == 1);
@@ -107,8 +107,8 @@ void check_relay(double tolerance, double slack) {
     }
 }
 
-/// The slowest mode of the rod, exp(-lambda t) sin(j pi / (n + 1)) with lambda = 4 rate sin^2(pi / (2 (n + 1))), and
-/// with it the fastest one, which decays at once.
+/// The slowest mode of the rod, exp(-lambda t) sin(j pi / (n + 1)) with lambda = 4 rate sin^2(pi / (2 (n + 1))), plus
+/// the fastest one, which decays at once.
 template <class Method, int n, class R = double>
 void check_rod(double tolerance) {
     ensemble<stiff::rod<n>, R> e(19);
@@ -129,8 +129,8 @@ void check_rod(double tolerance) {
     for (int j = 0; j < n; ++j) {
         const double exact = std::exp(-lambda * end) * std::sin((j + 1) * pi / (n + 1));
         CAPTURE(n, j, steps);
-        // The matrix exponential of the rod shrinks errors in every norm but the largest component may collect those of
-        // all others: rows of it sum up to one at most. A step's error is below the tolerance, states are at most 1.1.
+        // The rod's matrix exponential shrinks errors in every norm, but the largest component may collect those of all
+        // others: its rows sum to at most one. A step's error is below the tolerance, states are at most 1.1.
         CHECK(std::abs(static_cast<double>(e.state(j)[7]) - exact) <= 1.1 * steps * tolerance);
     }
 }
@@ -148,7 +148,7 @@ ensemble<van_der_pol> oscillators(const std::vector<std::int64_t>& numbers) {
     return e;
 }
 
-/// Balls of 99 restitutions, whose impacts accumulate. At the end, the flights that are left take 2 v / (g (1 - e)).
+/// Balls with 99 restitutions, whose impacts accumulate. At the end, the remaining flights take 2 v / (g (1 - e)).
 template <class Method, class R = double>
 void check_accumulation(R event_tolerance, double resolution) {
     ensemble<stiff::ball, R> e(99);
@@ -254,7 +254,7 @@ TEST_CASE("a Jacobian that is infinite while rhs is finite ends as singular_jaco
             CHECK(e.state(0)[i] == 0);
         } else {
             CHECK(e.status(i) == status::success);
-            // y = (1 - t/2)^2, and errors are not magnified: y' falls with y
+            // y = (1 - t/2)^2, and errors are not magnified, as y' falls with y
             CHECK(std::abs(e.state(0)[i] - 0.25) <= 1e-6 * static_cast<double>(e.accepted_steps()[i]));
         }
     }
@@ -296,7 +296,7 @@ TEST_CASE("evaluations of rhs are counted, two a step of rosenbrock_23 and eight
     options o = compare::with_tolerance(1e-5, 1e-3);
     o.absolute_tolerance = 1e-10;
     solve<rosenbrock_23>(tests::test_device(1), e, o);
-    for (std::int64_t i = 0; i < e.size(); ++i)  // and the first slope, which a step that is rejected keeps
+    for (std::int64_t i = 0; i < e.size(); ++i)  // plus the first slope, which a rejected step keeps
         CHECK(e.rhs_evaluations()[i] == 2 * (e.accepted_steps()[i] + e.rejected_steps()[i]) + 1);
     e = kinetics();
     solve<rodas_5p>(tests::test_device(1), e, o);
@@ -304,7 +304,7 @@ TEST_CASE("evaluations of rhs are counted, two a step of rosenbrock_23 and eight
         CHECK(e.rhs_evaluations()[i] == 8 * e.accepted_steps()[i] + 7 * e.rejected_steps()[i]);
 }
 
-// Errors of a stiff problem die out, so that the error anywhere is that of a step or two and of the interpolant.
+// Errors of a stiff problem decay, so that the error at any time is that of a step or two and of the interpolant.
 TEST_CASE("rosenbrock_23 locates events, samples and calls hooks on a stiff problem") {
     check_relay<rosenbrock_23>(1e-6, 10);
 }
@@ -339,7 +339,8 @@ TEST_CASE("the model's own Jacobian gives what the one by dual numbers gives") {
                                    static_cast<double>(e.accepted_steps()[0])};
     };
     const auto dual = run(ensemble<stiff::robertson>(1)), own = run(ensemble<stiff::robertson_with_jacobian>(1));
-    // The two differ by rounding: the steps are the same, the results within the roundings of a few hundred of them.
+    // The two differ by rounding: the steps are the same, the results agree within the roundings of a few hundred
+    // steps.
     CHECK(dual[3] == own[3]);
     for (std::size_t c = 0; c < 3; ++c)
         CHECK(std::abs(dual[c] - own[c]) <= dual[3] * 10 * std::numeric_limits<double>::epsilon());
@@ -347,7 +348,7 @@ TEST_CASE("the model's own Jacobian gives what the one by dual numbers gives") {
 
 namespace {
 
-/// The largest errors of samples and of ends of steps of sin t over [0, 10], the solution of Prothero and Robinson's
+/// The largest errors of samples and of ends of steps for sin t over [0, 10], the solution of Prothero and Robinson's
 /// problem.
 template <class Method>
 std::pair<double, double> errors_of_samples(double rate, double maximum_step) {
@@ -370,7 +371,7 @@ std::pair<double, double> errors_of_samples(double rate, double maximum_step) {
 
 TEST_CASE("samples of a very stiff solution err by the fourth power of the step, far above the tolerance of 1e-6") {
     const double free = std::numeric_limits<double>::infinity();
-    // docs/numerics.md has these. Ends of steps are good, so that steps grow with the rate, and with them the error
+    // As in docs/numerics.md. Ends of steps are accurate, so that steps grow with the rate, and with them the error
     // inside.
     const std::pair<double, double> expected[] = {{1e4, 6e-5}, {1e6, 2e-2}, {1e8, 2e-1}};
     for (const auto& [rate, inside] : expected) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Chosen step-size controls: the steps that kernels take against a loop written out from the formulas.
+// Chosen step-size controls: the kernels' steps against a loop written from the formulas.
 #include "tests/kernel/methods/controller_policies.hpp"
 
 #include <algorithm>
@@ -84,9 +84,9 @@ struct rule {
     }
 };
 
-/// The kernels' powers are accurate to 2e-5 where three of them are multiplied, and a step that is wrong by so much
-/// makes the error that the next one follows wrong by five times as much. A rejection at the limit would part the two
-/// for good: the number of rejections must agree, and every step within 0.2 %.
+/// The kernels' powers are accurate to 2e-5 where three of them are multiplied, and an error in a step changes the
+/// error that the next step size follows five times as much. A rejection at the limit would separate the two for good:
+/// the numbers of rejections must agree, and every step within 0.2 %.
 template <class Method, class Plain>
 void check(const rule& r) {
     const trajectory expected = r.follow<Plain>(), found = run<Method>(first_step);
@@ -170,7 +170,8 @@ TEST_CASE("dormand_prince_8 with pi_control and automatic_first_step ends at the
     myriad::options o;
     o.relative_tolerance = o.absolute_tolerance = 1e-11;
     myriad::solve<choices::high_order>(tests::test_device(1), e, o);
-    // some 300 steps, each wrong by less than the tolerance; errors along the limit cycle grow by its speeds' ratio
+    // some 300 steps, each with an error below the tolerance; errors along the limit cycle grow by the ratio of its
+    // speeds
     CHECK(std::abs(e.state(0)[0] - 2.0081497621749485920) <= 300 * 1e-11);
     CHECK(std::abs(e.state(1)[0] + 0.042508875273202146986) <= 300 * 1e-11);
 }
@@ -196,7 +197,7 @@ TEST_CASE("with tolerance_per_instance each instance is integrated as by a call 
         myriad::options scaled = o;
         scaled.relative_tolerance = scaled.absolute_tolerance = std::ldexp(0x1p-30, static_cast<int>(4 * i) - 8);
         myriad::solve<plain>(tests::test_device(1), one, scaled);
-        // powers of two: the ratios to the tolerances are the same, but for the size of what single precision can hold
+        // powers of two: the ratios to the tolerances are the same, except for the limits of single precision
         CHECK(one.accepted_steps()[i] == own.accepted_steps()[i]);
         CHECK(one.rejected_steps()[i] == own.rejected_steps()[i]);
         for (int c = 0; c < 2; ++c) CHECK(std::abs(one.state(c)[i] - own.state(c)[i]) <= 1e-5 * 0x1p-30);

@@ -42,7 +42,7 @@ double density(const tree& t) {
     return gamma;
 }
 
-// All trees with one leaf more, hung on any node.
+// All trees with one more leaf, attached to any node.
 void grow(const tree& t, std::set<tree>& grown) {
     tree with_leaf = t;
     with_leaf.children.push_back({});
@@ -95,11 +95,11 @@ long double dot(const weights& a, const weights& b) {
 
 struct residual {
     long double size = 0;      // largest |sum_i w_i Phi_i - theta^order / gamma| over the trees of one order
-    long double rounding = 0;  // what the rounding of the coefficients to double may have made of zero
+    long double rounding = 0;  // the largest value that rounding the coefficients to double may give instead of zero
     long double excess = 0;    // largest size / rounding of one tree
 };
 
-/// `absolute` holds the sizes of the numbers that the weights were summed from.
+/// `absolute` holds the magnitudes of the numbers from which the weights were summed.
 template <int stages>
 residual condition(const myriad::explicit_tableau<stages>& t, const weights& w, const weights& absolute, int order,
                    long double theta = 1) {
@@ -172,7 +172,7 @@ void check_row_sums() {
     }
 }
 
-/// The tableau with the stages that only the interpolant has: the slope at the end of the step and those after it.
+/// The tableau with the interpolant's own stages: the slope at the end of the step and those after it.
 template <class Method>
 auto extended_tableau() {
     constexpr int stages = Method::stages, all = myriad::detail::interpolant_stages<Method>;
@@ -194,7 +194,7 @@ auto extended_tableau() {
     return t;
 }
 
-/// Inside the step the interpolant is that of a method whose weights depend on theta.
+/// Inside the step the interpolant is a method whose weights depend on theta.
 template <class Method>
 void check_interpolant_conditions(int order) {
     REQUIRE(Method::interpolant_order == order);
@@ -233,7 +233,7 @@ void check_interpolant_ends() {
             size += (k + 1) * std::abs(Method::interpolant_weight(i, k));
         }
         INFO("stage " << i);
-        // the coefficients are rounded, and their sums are: half an ulp each
+        // the coefficients and their sums are rounded: half an ulp each
         const double rounding = Method::interpolant_degree * std::numeric_limits<double>::epsilon() * size;
         const double weight = i < Method::stages ? t.b[static_cast<std::size_t>(i)] : 0.0;
         CHECK(std::abs(end - weight) <= rounding);
@@ -343,7 +343,7 @@ TEST_CASE("the embedded weights of cash_karp are the published rationals") {
 
 TEST_CASE("the weights of cash_karp are the published rationals") {
     constexpr auto t = cash_karp::tableau();
-    // Over a common denominator the numbers of the paper are whole: 37/378 + 250/621 + 125/594 + 512/1771 = 1.
+    // Over a common denominator the paper's numbers are integers: 37/378 + 250/621 + 125/594 + 512/1771 = 1.
     const double denominator = 378.0 * 23.0 * 11.0;  // lcm of 378 = 2 27 7, 621 = 27 23, 594 = 2 27 11, 1771 = 7 11 23
     const double numerators[] = {37.0 * 253.0, 0.0, 250.0 * 154.0, 125.0 * 161.0, 0.0, 512.0 * 54.0};
     CHECK(numerators[0] + numerators[2] + numerators[3] + numerators[5] == denominator);

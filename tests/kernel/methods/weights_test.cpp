@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The weights as kernels have them: in single precision the order conditions that every step's error hangs on are kept.
+// The kernels' weights: in single precision the order conditions that determine every step's error are preserved.
 #include "myriad/kernel/methods/weights.hpp"
 
 #include <algorithm>
@@ -21,8 +21,7 @@ struct sums {
     double weights = 0, moments = 0;
 };
 
-/// What a row of an explicit method adds up to, where row 0 has nothing. `nodes` are those that the rows before it
-/// have.
+/// The sum of a row of an explicit method; row 0 has none. `nodes` are those of the rows before it.
 template <class Method, int row, class R, std::size_t stages>
 sums sums_of(const std::array<double, stages>& nodes) {
     sums s;
@@ -57,8 +56,8 @@ void check_explicit() {
     }
 }
 
-/// The weights of a Rosenbrock method in the arithmetic of floats: how its stages and its solution answer to a constant
-/// slope, and its solution to a linear one.
+/// The weights of a Rosenbrock method in float arithmetic: the responses of its stages and its solution to a constant
+/// slope, and of its solution to a linear one.
 template <class Method>
 void check_rosenbrock() {
     constexpr auto stages = static_cast<std::size_t>(Method::stages);

@@ -61,7 +61,7 @@ ensemble<Model> some() {
     return e;
 }
 
-/// n components with f_i = i y_(n-1-i) + y_0^2: the loops over columns that are written out and those that are not.
+/// n components with f_i = i y_(n-1-i) + y_0^2: for unrolled and rolled loops over columns.
 template <int size>
 struct mirror {
     enum { n_state = size };

@@ -6,22 +6,21 @@
 #include <myriad/model.hpp>
 
 // Outside of any namespace, as in many a user's model. The names are those of functions in myriad::detail.
-#define OWN_NAMES(each)                                                                                                \
-    each(all_finite) each(sign_of) each(count_where) each(set_count) each(for_each_lane) each(any_event)               \
-        each(first_event) each(pick) each(factorise) each(solve_factorised) each(evaluate_rhs) each(evaluate_events)   \
-            each(event_slopes) each(get_lane) each(set_lane) each(get_lanes) each(same_values) each(any) each(all)     \
-                each(bits) each(larger) each(smaller) each(limited) each(quotient) each(commit) each(control_step)     \
-                    each(take_trial_step) each(explicit_rk_step) each(interpolate) each(complete_interpolant)          \
-                        each(know_slope_end) each(find_root) each(interval_from) each(lay_fixed_steps)                 \
-                            each(propose_fixed_step) each(propose_adaptive_step) each(choose_first_step) each(creeps)  \
-                                each(scaled_error) each(error_sum) each(fast_power) each(run_on_lane)                  \
-                                    each(extract_lane) each(insert_lane) each(action_of) each(combine) each(part)      \
-                                        each(along) each(derivatives) each(polynomial) each(see_stage_before)          \
-                                            each(time_derivative) each(dual_jacobian) each(static_for) each(integrate) \
-                                                each(solve)
+// clang-format off
+#define OWN_NAMES(each) \
+    each(all_finite) each(sign_of) each(count_where) each(set_count) each(for_each_lane) each(any_event) \
+    each(first_event) each(pick) each(factorise) each(solve_factorised) each(evaluate_rhs) each(evaluate_events) \
+    each(event_slopes) each(get_lane) each(set_lane) each(get_lanes) each(same_values) each(any) each(all) \
+    each(bits) each(larger) each(smaller) each(limited) each(quotient) each(commit) each(take_trial_step) \
+    each(explicit_rk_step) each(interpolate) each(complete_interpolant) each(know_slope_end) each(find_root) \
+    each(interval_from) each(choose_first_step) each(scaled_error) each(error_sum) each(fast_power) \
+    each(run_on_lane) each(extract_lane) each(insert_lane) each(action_of) each(combine) each(part) each(along) \
+    each(derivatives) each(polynomial) each(see_stage_before) each(time_derivative) each(dual_jacobian) \
+    each(static_for) each(integrate) each(solve) each(elapsed_beyond) each(cubic_root) each(crossing_fraction) \
+    each(earliest_crossing) each(first_of) each(error_ratio) each(hermite_interpolation)
+// clang-format on
 
-/// One takes vectors, as the model calls it. The other takes anything, and would take what the library means for
-/// itself.
+/// One takes vectors, as the model calls it. The other takes anything, and would intercept the library's own calls.
 #define DECLARE_OWN_NAME(name)                                           \
     template <class S, int n>                                            \
     MYRIAD_FUNCTION myriad::vec<S, n> name(const myriad::vec<S, n>& y) { \
@@ -59,13 +58,13 @@ struct strangely_named : plainly_named {
 #define CALL_OWN_NAME(name) y = name(constant);
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, myriad::vec<R, n_state> y, const auto& p) {
-        const auto& constant = y;  // which the function for vectors fits better
+        const auto& constant = y;  // the function for vectors fits it better
         OWN_NAMES(CALL_OWN_NAME)
         return plainly_named::rhs<R>(t, y, p);
     }
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto t, myriad::vec<R, n_state> y, const auto& p) {
-        const auto& constant = y;  // which the function for vectors fits better
+        const auto& constant = y;  // the function for vectors fits it better
         OWN_NAMES(CALL_OWN_NAME)
         return plainly_named::events<R>(t, y, p);
     }

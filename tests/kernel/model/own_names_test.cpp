@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Names in a model's file are the user's: those of the library's internals change nothing.
+// Names in a model's file belong to the user: equal names in the library's internals change nothing.
 #include "tests/kernel/model/own_names.hpp"
 
 #include <myriad/myriad.hpp>

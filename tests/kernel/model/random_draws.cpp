@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiles the kernels that write down random numbers.
+// Compiles the kernels that record random numbers.
 #include "tests/kernel/model/random_draws.hpp"
 
 #include <myriad/instantiate.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A model that integrates nothing: its hooks write down the random numbers that they draw.
+// A model that integrates nothing: its hooks record the random numbers that they draw.
 #pragma once
 
 #include <type_traits>

@@ -39,7 +39,7 @@ double chi_square(First&& first, Second&& second) {
     return sum;
 }
 
-/// Within the quantiles 1e-5 and 1 - 1e-5 of that distribution. The seeds are fixed, so that the outcome is, too.
+/// Within the quantiles 1e-5 and 1 - 1e-5 of that distribution. The seeds are fixed, and so is the outcome.
 bool is_likely(double statistic) { return statistic > 169.9 && statistic < 363.0; }
 
 /// Draw number n of an instance in a phase.
@@ -131,7 +131,7 @@ TEST_CASE("the check of pairs refuses what is too even, shifted, or depends on i
 
 TEST_CASE("normal_quantile errs by 1e-15 in double and 1e-6 in single precision") {
     // The approximation's own error is about 1e-16; rounding adds an ulp in each of p's parts, numerator, denominator
-    // and logarithm. In single precision 16 ulps allow the same.
+    // and logarithm. 16 ulps in single precision are the same allowance.
     double worst = 0, worst_float = 0;
     for (std::int64_t i = 0; i < 50'000; ++i) {
         const double u = draw(1, i, 0, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tangents pass events and hooks as the differences of trajectories do, and events and hooks do with tangents what they
-// do without.
+// Tangents pass events and hooks like differences of trajectories, and events and hooks act with tangents as they do
+// without.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,7 +39,7 @@ struct doubling {
     }
 };
 
-/// One instance outside any integration, for hooks to be called on it.
+/// One instance without an integration, for calling hooks on it.
 template <class W>
 struct by_hand {
     myriad::detail::lane_data<W, double> data{};
@@ -83,10 +83,10 @@ TEST_CASE("tangents pass impacts on a moving table as the differences of traject
     using W = table_spectrum;
     myriad::ensemble<W> e(24);
     fill_table(e);
-    for (int c = 0; c < 2; ++c)  // instances take turns in which direction comes first
+    for (int c = 0; c < 2; ++c)  // instances alternate in which direction comes first
         for (int i = 0; i < 2; ++i)
             for (Index k = 0; k < e.size(); ++k) e.state(W::tangent(c, i))[k] = (c + i + k) % 2 == 0 ? 1 : 0;
-    // Central differences, d = 1e-5: their error is of the order d^2, and 1e-10, what steps and events leave, over d.
+    // Central differences, d = 1e-5: their error is of order d^2, plus the error of steps and events, 1e-10, over d.
     const double d = 1e-5;
     const auto shifted = [&](double sign) {
         myriad::ensemble<table> alone(e.size());
@@ -105,13 +105,14 @@ TEST_CASE("tangents pass impacts on a moving table as the differences of traject
         const auto difference = [&](int c) { return (up.state(c)[k] - down.state(c)[k]) / (2 * d); };
         const Eigen::Vector2d expected(difference(table::x), difference(table::v));
         CHECK((first_tangent(e, k) - expected).norm() <= 2e-5 * (1 + expected.norm()));
-        // Areas: an impact takes r^2 of them, drag the rest; exact, but for the errors of steps and events.
+        // Areas: an impact multiplies them by r^2, drag does the rest; exact except for the errors of steps and events.
         const double growth = e.accessory(W::growth(0))[k] + e.accessory(W::growth(1))[k];
         CHECK(std::abs(growth - (2 * bounces * std::log(e.parameter(table::r)[k]) - 0.05 * 8)) <= 1e-8);
     }
 }
 
-// The tangents' model declares its accessories outputs, the one without them does not: no bit depends on that either.
+// The tangents' model declares its accessories outputs, the one without tangents does not: no bit depends on that
+// either.
 TEST_CASE("hooks and events do with tangents what they do without, at the ends of phases too") {
     // Of 400 phases many end while an event function is within such a tolerance.
     myriad::options o = with_tolerance(1e-9);
@@ -142,7 +143,7 @@ TEST_CASE("hooks and events do with tangents what they do without, at the ends o
 }
 
 TEST_CASE("tangents made orthonormal between phases do not make an event function forget its side") {
-    // It lingers below zero, within its tolerance, while a phase ends, and goes back up: no crossing.
+    // It stays below zero, within its tolerance, while a phase ends, and rises again: no crossing.
     using W = myriad::with_tangents<dip>;
     myriad::ensemble<W> e(4);
     e.state(dip::x) = 0.995;
@@ -174,7 +175,7 @@ TEST_CASE("a change of mode and a map at the end of a phase move the tangent") {
         return ArrayXd(e.accessory(W::growth()) - before);
     };
     e.accessory(W::growth()) = 0;
-    // Twice the speed is twice the distance; then finalise takes x to three times x. Exact up to some roundings.
+    // At twice the speed distances double; then finalise multiplies x by three. Exact up to some roundings.
     CHECK((growth_of_phase() - (3 * e.parameter(gear::speed)).log()).abs().maxCoeff() <= 1e-14);
     CHECK((e.state(gear::x) - 1.5 * e.parameter(gear::speed)).abs().maxCoeff() <= 1e-5);  // located to 1e-6
     CHECK((growth_of_phase() - std::log(3.0)).abs().maxCoeff() <= 1e-14);
@@ -248,7 +249,7 @@ TEST_CASE("hooks that change the state move the tangents") {
     CHECK(two.tangents() == std::array<double, 4>{10, 0, 6, 1});
     by_hand<W> start({30, 5, 0.6, 0.8, -0.8, 0.6});
     start.data.t = start.data.t_begin = 0;
-    start.data.phase = 0;  // where what initialise does is the start, and tangents begin as they are given
+    start.data.phase = 0;  // so that initialise sets the start, and tangents begin as given
     W::initialise(start.lane);
     CHECK(start.data.y[doubling::x] == 150);
     CHECK(std::abs(start.tangents()[0] - 0.6) <= 4e-16);  // two divisions and a root

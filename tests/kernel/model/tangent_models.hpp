@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Models whose Lyapunov exponents or whose tangents are known, and one with every hook, for the tests of tangent
-// dynamics.
+// Models with known Lyapunov exponents or tangents, and one with every hook, for the tests of tangent dynamics.
 #pragma once
 
 #include <myriad/kernel/model/tangent.hpp>
@@ -87,7 +86,7 @@ struct table {
     MYRIAD_FUNCTION static void finalise(auto& lane) { lane.integer_accessory[phases] += 1; }
 };
 
-/// The same, whose accessories rhs and events do not see.
+/// The same, with accessories that rhs and events do not see.
 struct recording_table : table {
     static constexpr bool accessories_are_outputs = true;
 };
@@ -116,7 +115,7 @@ struct gear {
     MYRIAD_FUNCTION static void finalise(auto& lane) { lane.y[x] = lane.y[x] * 3; }
 };
 
-/// x = x(0) - 1 + (t - 1)^2, whose lowest value is at t = 1, and beside it w' = w, so that tangents grow.
+/// x = x(0) - 1 + (t - 1)^2, lowest at t = 1, and w' = w, so that tangents grow.
 struct dip {
     enum state { x, w, n_state };
     enum integer_accessory { crossings, n_integer_accessory };

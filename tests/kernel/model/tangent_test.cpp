@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tangents of smooth flows are those of closed forms, exponents those that are known, and nothing of the model itself
-// changes.
+// Tangents of smooth flows agree with closed forms, exponents with known ones, and the model itself is unaffected.
 #include "myriad/kernel/model/tangent.hpp"
 
 #include <cmath>
@@ -102,13 +101,13 @@ TEST_CASE("tangents of a linear flow are its solutions, forwards and backwards")
         CHECK(e.accepted_steps()[i] < 2000);
         CHECK((first_tangent(e, i) - exact).cwiseAbs().maxCoeff() <= 4e-8);
     }
-    // The sum of the exponents of the flow is its trace, whichever way time goes.
+    // The exponents of the flow sum to its trace, in either direction of time.
     const ArrayXd trace = 2 * e.parameter(spiral::growth) + e.parameter(spiral::decay);
     CHECK((myriad::exponents(e).rowwise().sum() - trace).abs().maxCoeff() <= 4e-8);
 }
 
 TEST_CASE("with fixed steps the tangent is the derivative of the method's own map") {
-    // Of a linear flow the map of Runge-Kutta 4 is linear: the first four terms of the exponential series, per step.
+    // For a linear flow the map of Runge-Kutta 4 is linear: the first four terms of the exponential series, per step.
     auto e = spirals(1);
     e.parameter(spiral::coupling) = 0;
     e.state(spiral_spectrum::tangent(spiral::x)) = 1;
@@ -135,8 +134,8 @@ TEST_CASE("exponents of a linear flow are the real parts of its eigenvalues, and
     CHECK((e.accessory(spiral_spectrum::time_summed) == 0.5 * (phases - transient)).all());  // exact in binary
     const Eigen::ArrayXXd found = myriad::exponents(e);
     const ArrayXd growth = e.parameter(spiral::growth);
-    // By then the tangents of an instance are in their planes to e^(-0.5 * 50), and turn there, being longer and
-    // shorter by a factor of less than 4 (the coupling tilts the plane): over a time of 500 that makes ln 4 / 500.
+    // By then the tangents of an instance are in their planes to e^(-0.5 * 50), and rotate there, with lengths that
+    // vary by a factor of less than 4 (the coupling tilts the plane): over a time of 500 that makes ln 4 / 500.
     CHECK((found.col(0) - growth).abs().maxCoeff() <= 2.8e-3);
     CHECK((found.col(1) - growth).abs().maxCoeff() <= 2.8e-3);
     CHECK((found.col(2) + 1).abs().maxCoeff() <= 2.8e-3);
@@ -156,7 +155,7 @@ TEST_CASE("exponents of Lorenz' equations are those known, and sum up to the div
     const Eigen::ArrayXXd found = myriad::exponents(e);
     const estimate largest(found.col(0)), middle(found.col(1));
     CAPTURE(largest.mean, largest.error, middle.mean, middle.error);
-    CHECK(largest.error <= 4e-4);  // else the next lines say nothing
+    CHECK(largest.error <= 4e-4);  // else the next lines prove nothing
     CHECK(std::abs(largest.mean - 0.9055) <= 3e-4 + 3 * largest.error);
     CHECK(std::abs(middle.mean) <= 3 * middle.error + 1e-5);
     // The divergence is the same everywhere. 100 steps per unit of time err by 1e-7 in each of three tangents.
@@ -185,7 +184,7 @@ TEST_CASE("the largest exponent of Roessler's equations is the one known") {
 
 namespace {
 
-/// The mean smallest exponent of 128 solutions over 100 units of time, and what the report remarked of phases.
+/// The mean smallest exponent of 128 solutions over 100 units of time, and the report's note about phases.
 std::pair<double, std::string> smallest_of_strong_roessler(double phase, double tolerance) {
     using W = strong_roessler_spectrum;
     myriad::ensemble<W> e(128);
@@ -215,7 +214,7 @@ TEST_CASE("where tolerance and phase length spoil the smallest exponent, the rep
     CHECK(spoilt - right > 0.3);
     CHECK(said.find("phases may be too long for the smallest exponent in 128 of 128 instances looked at") == 0);
     CHECK(smallest_of_strong_roessler(1, 1e-8).second != "");
-    // Shorter phases heal it.
+    // Shorter phases cure it.
     const auto [healed, silence] = smallest_of_strong_roessler(0.25, 1e-6);
     CHECK(std::abs(healed - right) < 0.05);  // five standard errors of 128 solutions over 100
     CHECK(silence == "");
@@ -234,7 +233,7 @@ TEST_CASE("on a limit cycle one exponent is zero and the other the mean divergen
     };
     cycle y(2, 0, 0);
     long double t = 0, t_maximum = 0, divergence = 0, period = 0;
-    for (int maxima = 0; maxima < 8;) {  // each period takes the cycle nearer by a factor of 1000
+    for (int maxima = 0; maxima < 8;) {  // each period brings the cycle closer by a factor of 1000
         const long double h = 1e-3L;
         if (y[1] > 0 && step(y, h)[1] <= 0) {
             long double low = 0, high = h;
@@ -252,7 +251,7 @@ TEST_CASE("on a limit cycle one exponent is zero and the other the mean divergen
         y = step(y, h);
         t += h;
     }
-    CHECK(std::abs(static_cast<double>(period) - 6.66328685932313) <= 1e-10);  // known to all these digits
+    CHECK(std::abs(static_cast<double>(period) - 6.66328685932313) <= 1e-10);  // all digits known
 
     using W = van_der_pol_spectrum;
     myriad::ensemble<W> e(16);
@@ -285,7 +284,7 @@ TEST_CASE("left out of the error test, tangents do not change a bit of the model
     for (int c = 0; c < lorenz::n_state; ++c) {
         if (tests::tests_cpu()) {
             CHECK(same_bits_everywhere(e.state(c), alone.state(c)));
-        } else {  // whose compiler may fuse other operations: roundings grow by e^(0.9 * 2.1) and a little more
+        } else {  // its compiler may fuse different operations: roundings grow by e^(0.9 * 2.1) and a little more
             CHECK((e.state(c) - alone.state(c)).abs().maxCoeff() <= 1e-10);
         }
     }

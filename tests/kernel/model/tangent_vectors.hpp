@@ -19,7 +19,7 @@ Eigen::MatrixXd tangents_of(const myriad::ensemble<W, R>& e, Eigen::Index instan
     return q;
 }
 
-/// Where the first tangent has got to in one phase, with its length.
+/// The position of the first tangent after one phase, with its length.
 template <class W>
 Eigen::VectorXd first_tangent(const myriad::ensemble<W>& e, Eigen::Index instance) {
     return tangents_of(e, instance).col(0) * std::exp(e.accessory(W::growth(0))[instance]);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double event_tolerance = 1e-12;
 
-/// None is such that an impact falls on a sample of the tests, where the time would come before and after the action.
+/// Chosen so that no impact coincides with a sample, whose time would come before and after the action.
 double height(std::int64_t i) { return 1.01 + 0.0625 * static_cast<double>(i); }
 
 /// Balls from different heights, whose impacts come at different times.
@@ -77,7 +77,7 @@ TEST_CASE("samples across events lie on the exact solution, before and after eve
                 for (int k = 0; k < 997; ++k) {
                     const double t = e.samples().time()(i, k);
                     const flight exact(height(i), e.parameter(bouncing::g)[i], e.parameter(bouncing::r)[i], t);
-                    if (exact.to_impact < 1e-9) continue;  // on which side of the jump is open
+                    if (exact.to_impact < 1e-9) continue;  // the side of the jump is undetermined
                     near_jumps += exact.to_impact < 0.01;
                     const double off = std::max(std::abs(e.samples().state(bouncing::x)(i, k) - exact.x),
                                                 std::abs(e.samples().state(bouncing::v)(i, k) - exact.v));
@@ -87,14 +87,14 @@ TEST_CASE("samples across events lie on the exact solution, before and after eve
             CAPTURE(step, worst);
             CHECK(near_jumps > 300);
             // Every impact is located to 1e-12 in x, that is 1e-12 / v in t; at most ten impacts, none slower than
-            // 0.75^10 of 2: each is wrong by 2e-11 in time, which the acceleration of 3 turns into errors of v.
+            // 0.75^10 of 2: each has an error of 2e-11 in time, which the acceleration of 3 turns into errors of v.
             CHECK(worst <= 10 * 3 * 2e-11);
         }
     });
 }
 
 TEST_CASE("samples across events do not depend on the pack", "[output]") {
-    // parabolas have + - * / only, so that a scalar lane and a pack agree bit for bit
+    // parabolas use only + - * /, so that a scalar lane and a pack agree bit for bit
     for (const std::int64_t every : {0, 1}) {
         options o = bounces(101);
         o.samples.evenly = every == 0 ? 101 : 0;

@@ -44,7 +44,7 @@ struct retargeted {
     }
 };
 
-/// As the backend does it, but one instance at a time.
+/// Like the backend, but one instance at a time.
 template <class Model, class Method>
 myriad::detail::run_statistics run_one_lane(const myriad::detail::kernel_arguments<Model, double>& arguments,
                                             const myriad::detail::run_options& options);

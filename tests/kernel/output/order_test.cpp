@@ -6,16 +6,16 @@ using namespace output;
 
 namespace {
 
-/// Root mean square error of samples that fall at other fractions of every step.
+/// Root mean square error of samples, each at a different fraction of its step.
 template <class Method>
 double sample_error(double h, double span) {
     auto e = curves(span, 16);
     for (std::int64_t i = 0; i < e.size(); ++i) e.t_end()[i] = e.t_begin()[i] + span;
     options o = compare::fixed_step(h);
     o.samples.states = {curve::u, curve::w};
-    o.samples.evenly = o.samples.capacity = 998;  // 997 is a prime, so no fraction comes twice
+    o.samples.evenly = o.samples.capacity = 998;  // 997 is prime, so that no fraction occurs twice
     const auto report = solve<dense<Method>>(tests::test_device(1), e, o);
-    REQUIRE(report.accepted_steps == e.size() * std::lround(std::abs(span) / h));  // steps of h and no other
+    REQUIRE(report.accepted_steps == e.size() * std::lround(std::abs(span) / h));  // steps of length h only
     REQUIRE((e.samples().stored() == 998).all());
     double squares = 0;
     for (std::int64_t i = 0; i < e.size(); ++i) {
@@ -56,7 +56,7 @@ TEST_CASE("samples of cash_karp have an error of order four, that of the Hermite
 TEST_CASE("samples of tsitouras_5 have an error of order five", "[output]") { check_order<tsitouras_5>(5); }
 #if defined(MYRIAD_NIGHTLY)
 TEST_CASE("samples of dormand_prince_5 have an error of order five", "[output]") { check_order<dormand_prince_5>(5); }
-// The error coefficients of order seven are so small that rounding comes before them.
+// The error coefficients of order seven are so small that rounding dominates first.
 TEST_CASE("samples of verner_7 have an error of order seven at least", "[output]") {
     for (const double h : {0.25, 0.125, 0.0625})
         CHECK(std::log2(sample_error<verner_7>(h, 1) / sample_error<verner_7>(h / 2, 1)) > 6.7);

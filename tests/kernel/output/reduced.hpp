@@ -40,8 +40,8 @@ struct peak_of_swing : plain_swing {
         return myriad::vec<R, n_observed>{y[x]};
     }
 };
-/// Quantities of time alone, beside a state that lets the steps grow: with one extremum, two in one step, NaN, none at
-/// all.
+/// Quantities that depend only on time, next to a state that lets the steps grow: with one extremum, two in one step,
+/// NaN, none at all.
 struct timed {
     static constexpr bool accessories_are_outputs = true;
     enum state { y0, n_state };
@@ -82,8 +82,7 @@ struct timed {
                 s * s * s * s * s};
     }
 };
-/// A ball thrown up, which bounces; the ground moves it up by a given distance at each impact, and keeps a part of its
-/// speed.
+/// A ball thrown up that bounces; at each impact the ground lifts it by a given distance and keeps part of its speed.
 struct ball {
     enum state { x, v, n_state };
     enum shared { lift, kept, n_shared };
@@ -112,7 +111,7 @@ struct ball {
         lane.y[v] = -lane.shared[kept] * lane.y[v];
     }
 };
-/// Slows down by the largest speed it has had: rhs reads what a reduction writes, as accessories are no outputs here.
+/// Slowed by its largest speed so far: rhs reads the result of a reduction, as accessories are not outputs here.
 struct remembering {
     enum state { x, n_state };
     enum accessory { largest, n_accessory };
@@ -128,7 +127,7 @@ struct remembering {
         return myriad::vec<R, n_observed>{y[x]};
     }
 };
-/// The same by a hook.
+/// The same with a hook.
 struct remembering_by_hook {
     enum state { x, n_state };
     enum accessory { largest, n_accessory };

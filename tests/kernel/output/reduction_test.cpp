@@ -27,7 +27,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double from = 0.3;  // x = sin(t + from), so that no extremum is at an end of the domain
 
-/// Eleven swings over domains of a length near `span`, some two and a half periods for 17; a negative one goes
+/// Eleven swings over domains of a length near `span`, some two and a half periods for 17; a negative span goes
 /// backwards.
 template <class Model, class R = double>
 ensemble<Model, R> swings(double span = 17) {
@@ -40,7 +40,7 @@ ensemble<Model, R> swings(double span = 17) {
     return e;
 }
 
-/// Distance of a time from the nearest at which t + from is `phase` up to whole turns.
+/// Distance of a time from the nearest one at which t + from is `phase` modulo 2 pi.
 double off_phase(double t, double phase) { return std::abs(std::remainder(t + from - phase, 2 * pi)); }
 double integral_of_square(double t) { return t / 2 - (std::sin(2 * (t + from)) - std::sin(2 * from)) / 4; }
 
@@ -98,7 +98,7 @@ TEST_CASE("the largest and smallest value of an oscillation are as good as the s
         const errors error = swing_errors<Method>(1e-8);
         CHECK(error.extremum <= 2 * error.state);
         CHECK(error.extremum < 2e-7);
-        // An extremum of height 1 is flat: where it is, is known to the error of the slope.
+        // An extremum of height 1 is flat: its position is only known to the error of the slope.
         CHECK(error.time <= 20 * error.state);
         CHECK(error.time < 2e-5);
         CHECK(error.integral <= 17 * error.state);
@@ -174,12 +174,11 @@ TEST_CASE("what reductions evaluate is counted, and the slope at the end of a st
     const std::int64_t instances = 11, extrema = 3 * instances;  // sin(t + from) has its maxima at 1.3, 7.6 and 13.8
     const auto plain = evaluations.template operator()<cash_karp, plain_swing>();
     const auto peak = evaluations.template operator()<cash_karp, peak_of_swing>();
-    // The slope at the end of the last step, and one point inside each step that may have an extremum: those of minima,
-    // too.
+    // The slope at the end of the last step, and one point inside each step that may have an extremum, also for minima.
     CHECK(peak.first - plain.first >= instances + extrema);
     CHECK(peak.first - plain.first <= instances + 2 * extrema);
     const auto all = evaluations.template operator()<cash_karp, swing>();
-    CHECK(all.first - plain.first == instances + plain.second);  // an integral looks into every step
+    CHECK(all.first - plain.first == instances + plain.second);  // an integral evaluates inside every step
     CHECK(evaluations.template operator()<tsitouras_5, peak_of_swing>() ==
           evaluations.template operator()<tsitouras_5, plain_swing>());
 }
@@ -301,7 +300,7 @@ TEST_CASE("extrema never lie beyond an event, and the state that an action leave
         CHECK(e.accessory(ball::lowest)[4] <= 1e-9);
         CHECK(e.accessory(ball::fastest)[4] == Approx(std::sqrt(2.0)).epsilon(1e-9));
 
-        // The action puts the ball at rest at 2, higher than it ever was; from there it falls until the phase ends.
+        // The action puts the ball at rest at 2, higher than ever before; from there it falls until the phase ends.
         e.restart();
         e.state(ball::x) = 0.5;
         e.state(ball::v) = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which samples dense output stores: times, steps, spacing, components, and no more than there is room for.
+// Which samples dense output stores: times, steps, spacing, components, and no more than fit.
 #include <algorithm>
 #include <limits>
 
@@ -219,7 +219,7 @@ TEST_CASE("nothing is written beyond the arrays of the samples", "[output]") {
         arguments.sample.stored = stored.data() + guard;
         arguments.sample.capacity = capacity;
         arguments.sample.every = steps ? 1 : 0;
-        arguments.sample.count = 100;  // far more than there is room for
+        arguments.sample.count = 100;  // far more than fit
         arguments.sample.column[0] = 0;
         arguments.sample.column[1] = 1;
         myriad::openmp::run<curve, dense<cash_karp>, double>(arguments, {});
@@ -255,7 +255,7 @@ TEST_CASE("phases in one call and in several give the same samples", "[output]")
                 CAPTURE(every, length);
                 CHECK(same_samples(at_once, split));
                 if (every == 0) CHECK((at_once.samples().stored() == (length == 0 ? 20 : 17)).all());
-                if (every == 0 && length > 0) {  // what is between two phases is there once
+                if (every == 0 && length > 0) {  // the sample between two phases is stored once
                     for (int k = 0; k < 17; ++k)
                         CHECK((at_once.samples().time().col(k) - at_once.t_begin() - 0.125 * k).abs().maxCoeff() <
                               1e-15 * 64);

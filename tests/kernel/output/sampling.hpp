@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ensembles to sample, ways of sampling them, and comparison of what was sampled. Host test files only.
+// Ensembles to sample, kinds of sampling, and comparisons of samples. Host test files only.
 #pragma once
 
 #include <cmath>
@@ -31,7 +31,7 @@ using myriad::verner_7;
 template <class R>
 inline constexpr double eps_of = static_cast<double>(std::numeric_limits<R>::epsilon());
 
-/// Curves on their exact solutions, each from another time on and over another length; a negative span goes backwards.
+/// Curves on their exact solutions, with different starting times and lengths; a negative span goes backwards.
 template <class R = double>
 ensemble<curve, R> curves(double span = 1, std::int64_t size = 19) {
     ensemble<curve, R> e(size);

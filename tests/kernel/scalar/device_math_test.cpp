@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The branch-free functions on the device that the tests run on: in ulp against the next wider type.
+// The branch-free functions on the device under test: errors in ulp against the next wider type.
 #include <random>
 
 #include <myriad/myriad.hpp>
@@ -93,7 +93,7 @@ TEMPLATE_TEST_CASE("sqrt is rounded correctly on the device, and special values 
     std::vector<R> x = spread<R>(sizeof(R) == 8 ? -307 : -37, sizeof(R) == 8 ? 308 : 38, true);
     const std::vector<R> near_one = spread<R>(0.25, 4, false);
     x.insert(x.end(), near_one.begin(), near_one.end());
-    // squares, and their neighbours, whose roots lie next to where rounding turns
+    // squares, and their neighbours, whose roots are close to a change of rounding
     for (int k = 1; k < 2000; ++k) {
         const R square = static_cast<R>(k) * static_cast<R>(k);
         x.insert(x.end(), {square, std::nextafter(square, limits::max()), std::nextafter(square, R(0))});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Dual numbers: their values are those of plain code, their derivatives those of a central difference in long double,
-// and those of packs the same lane by lane.
+// Dual numbers: their values are those of plain code, their derivatives agree with a central difference in long double,
+// and packs agree lane by lane.
 
 #include "myriad/kernel/scalar/dual.hpp"
 
@@ -31,7 +31,7 @@ wide difference(F f, wide x) {
 
 template <class T>
 void check_close(T got, wide wanted) {
-    // A few roundings of the formula, and for double the error of the difference.
+    // A few roundings of the formula and, for double, the error of the difference.
     const wide tolerance = 16 * static_cast<wide>(std::numeric_limits<T>::epsilon()) + 1e-11L;
     CAPTURE(sizeof(T), static_cast<double>(got), static_cast<double>(wanted));
     CHECK(std::fabs(static_cast<wide>(got) - wanted) <= tolerance * (1 + std::fabs(wanted)));
@@ -45,7 +45,7 @@ void check_derivative(const char* name, F f, G g, double x) {
     const auto of_type = [&]<class T>(T) {
         const T at = static_cast<T>(x);
         const wide slope = difference(g, static_cast<wide>(at));
-        // The direction is not 1, so that a forgotten factor shows.
+        // The direction is not 1, so that a missing factor shows.
         const auto plain = f(dual<T>(at, T(3)));
         check_close(plain.value, g(static_cast<wide>(at)));
         check_close(plain.derivative, 3 * slope);
@@ -149,7 +149,7 @@ TEST_CASE("pow of a base zero or negative keeps a finite derivative") {
     REQUIRE(myriad::pow(zero, 1.0).derivative == 1);
     REQUIRE(myriad::pow(dual<double>(-2, 1), 3.0).derivative == 12);
     REQUIRE(myriad::pow(dual<double>(-2, 1), 2).derivative == -4);
-    // an exponent that is a dual number, but a constant, as R(2) is in a model
+    // the exponent is a dual number but constant, like R(2) in a model
     REQUIRE(myriad::pow(zero, dual<double>(2)).derivative == 0);
     REQUIRE(myriad::pow(zero, dual<double>(1)).derivative == 1);
     REQUIRE(myriad::pow(dual<double>(-2, 1), dual<double>(3)).derivative == 12);

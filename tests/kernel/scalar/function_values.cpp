@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiles the kernel that writes down function values.
+// Compiles the kernel that records function values.
 #include "tests/kernel/scalar/function_values.hpp"
 
 #include <myriad/instantiate.hpp>

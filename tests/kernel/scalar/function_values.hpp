@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A model that integrates nothing: its hook writes down what the elementary functions give on the device that runs it.
+// A model that integrates nothing: its hook records the values of elementary functions on the device that runs it.
 #pragma once
 
 #include <myriad/model.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The elementary functions of plain numbers and packs: accuracy in ulp against the next wider type, special values
-// against the standard library, and above all that no lane's result depends on what its neighbours hold.
+// against the standard library, and above all that a lane's result never depends on its neighbours.
 
 #include "myriad/kernel/scalar/math.hpp"
 
@@ -111,7 +111,7 @@ FUNCTION(pow, std::pow(x, y))
 FUNCTION(powr, std::pow(x, y))
 #undef FUNCTION
 
-// The one place where a function is called with a kind of number: otherwise each test would compile all of them again.
+// The only place where a function is called with a kind of number; otherwise each test would compile all of them again.
 template <class F, class S, class... More>
 [[gnu::noinline]] void evaluate(S& result, const S& x, const More&... more) {
     result = F::of(x, more...);
@@ -159,7 +159,7 @@ void for_sizes(Check check) {
     check.template operator()<4>();
 }
 
-/// Numbers that functions, reductions and neighbours treat specially.
+/// Numbers that functions, reductions or neighbours treat specially.
 template <class T>
 std::vector<T> special_values() {
     using limits = std::numeric_limits<T>;
@@ -189,7 +189,7 @@ std::vector<T> special_values() {
 }
 
 /// The special values, pi/4 with its neighbours, multiples of pi/2 and of 20 pi, where argument reductions change, and
-/// numbers between.
+/// numbers in between.
 template <class T>
 std::vector<T> arguments() {
     std::vector<T> values = special_values<T>();
@@ -284,7 +284,7 @@ TEST_CASE("a lane's result does not depend on its neighbours nor on the pack's s
 }
 
 TEST_CASE("random neighbours leave a lane's result alone") {
-    // As above with lanes that differ from each other, so that a path taken by the majority would show too.
+    // As above with lanes that differ, so that a path taken by the majority would show too.
     std::mt19937_64 random(5);
     const auto of_type = [&]<class T>(T) {
         using P = pack<T, 4>;
@@ -318,7 +318,7 @@ TEST_CASE("random neighbours leave a lane's result alone") {
 namespace {
 
 struct expression_function {
-    // As in a model: products before and after the functions, which a compiler may fuse with what is inside them.
+    // As in a model: products before and after the functions, which a compiler may fuse with operations inside them.
     template <class S>
     static S of(const S& x) {
         using namespace myriad;
@@ -386,7 +386,7 @@ double worst_error(double low, double high, spacing kind) {
 }  // namespace
 
 TEST_CASE("packs are accurate to the documented ulps") {
-    // The bounds are those of pack_math.hpp, which a larger sample on three instruction sets gave.
+    // The bounds are those of pack_math.hpp, obtained from a larger sample on three instruction sets.
     const auto of_type = []<class T>(T) {
         const double big = std::is_same_v<T, double> ? 1e300 : 1e37;
         const double exponent = std::is_same_v<T, double> ? 700 : 86;

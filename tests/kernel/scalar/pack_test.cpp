@@ -29,7 +29,7 @@ using myriad::select;
 template <class T>
 bool same_bits(T a, T b) {
     if constexpr (std::is_floating_point_v<T>) {
-        if (std::isnan(a) && std::isnan(b)) return true;  // which NaN is left open
+        if (std::isnan(a) && std::isnan(b)) return true;  // any NaN equals any other here
         using bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
         return std::bit_cast<bits>(a) == std::bit_cast<bits>(b);
     } else {
@@ -37,7 +37,7 @@ bool same_bits(T a, T b) {
     }
 }
 
-// Values that meet each other in every lane: ordinary ones, and all that compare or round specially.
+// Values that are paired in every lane: ordinary ones, and all that compare or round specially.
 template <class T>
 std::vector<T> samples() {
     std::vector<T> values{T(0), T(1), T(-1), T(2), T(3), T(-7), T(100)};
@@ -152,7 +152,7 @@ void check_masks() {
     REQUIRE(bits(Mask(true)) == every);
     REQUIRE(bits(Mask(false)) == 0);
     for (int k = 0; k < 50; ++k) {
-        // Mostly ones, mostly zeros, and single lanes, on which any and all turn.
+        // Mostly ones, mostly zeros, and single lanes, which decide any and all.
         std::uint64_t p = random() & every;
         if (k % 5 == 1) p = std::uint64_t{1} << (k % P::lanes);
         if (k % 5 == 2) p = every & ~(std::uint64_t{1} << (k % P::lanes));

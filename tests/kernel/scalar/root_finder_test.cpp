@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Roots in brackets: found to rounding, each lane its own, and what is returned where there is none to find.
+// Roots in brackets: found to rounding, in each lane separately, and the value returned if there is none.
 #include "myriad/kernel/scalar/root_finder.hpp"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How far a function value is from the truth, which the next wider type gives.
+// The error of a function value, with the next wider type as reference.
 #pragma once
 
 #include <cmath>
@@ -11,8 +11,7 @@ namespace tests {
 template <class T>
 using wider = std::conditional_t<std::is_same_v<T, double>, long double, double>;
 
-/// |got - wanted| in units of the last place of `wanted`, which for subnormal ones is that of the smallest normal
-/// number.
+/// |got - wanted| in units of the last place of `wanted`; for subnormal ones, of the smallest normal number.
 template <class T>
 double error_in_ulp(T got, wider<T> wanted) {
     if (std::isnan(got) || std::isnan(wanted)) return std::isnan(got) && std::isnan(wanted) ? 0 : 1e30;

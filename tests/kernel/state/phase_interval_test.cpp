@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Intervals of phases of a given length: from their own ends, from within, backwards, and the last one.
+// Intervals of phases of a given length: from their ends, from inside, backwards, and the last one.
 #include "myriad/kernel/state/phase_interval.hpp"
 
 #include "tests/catch.hpp"

@@ -31,10 +31,10 @@ void check_order_everywhere(double order, window allowed) {
 TEST_CASE("runge_kutta_4 has order four") { check_order_everywhere<runge_kutta_4>(4, {0.1, 0.1}); }
 TEST_CASE("cash_karp has order five") { check_order_everywhere<cash_karp>(5, {0.1, 0.1}); }
 // Its leading error coefficients are so small (2e-4 at most) that on the nonlinear problems the next term, with slope
-// six, counts until rounding does; the linear oscillator shows that it is five.
+// six, dominates until rounding does; the linear oscillator shows the order five.
 TEST_CASE("tsitouras_5 has order five") { check_order_everywhere<tsitouras_5>(5, {0.1, 0.7}); }
 TEST_CASE("dormand_prince_5 has order five") { check_order_everywhere<dormand_prince_5>(5, {0.1, 0.7}); }
-// On the nonlinear problems rounding comes before the leading term does; on the oscillator it does not.
+// On the nonlinear problems rounding dominates before the leading term does; not on the oscillator.
 TEST_CASE("verner_7 has order seven") {
     check_order<verner_7, problems::oscillator>(7, 1, 16);
     check_order<verner_7, problems::log_circle>(7, 0.5, 2, {0.1, 3});

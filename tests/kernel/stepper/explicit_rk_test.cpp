@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Single steps of given length: local order of the solutions, of the error estimates and of the interpolants, and that
-// a step is what the textbook formulas say. A model file: compiled as kernels are, without Eigen.
+// a step follows the textbook formulas. A model file: compiled like kernels, without Eigen.
 #include "myriad/kernel/stepper/explicit_rk.hpp"
 
 #include <cmath>
@@ -28,7 +28,7 @@ using myriad::verner_7;
 template <class R>
 constexpr R eps = std::numeric_limits<R>::epsilon();
 
-/// One step of a problem from its exact solution, and all that the library makes of it.
+/// One step of a problem from its exact solution, with all its results.
 template <class Method, class Model, class R = double>
 struct single_step {
     static constexpr int n = Model::n_state;
@@ -97,7 +97,7 @@ auto interpolation_error(double theta) {
     };
 }
 
-/// For errors whose leading coefficient is so small that rounding comes before it: they fall no slower than h^order.
+/// For errors whose leading coefficient is so small that rounding dominates first: they decrease at least like h^order.
 template <class Error>
 void check_least_local_order(Error error, int order, double first_h) {
     mean_error coarse(error, order, first_h);
@@ -141,7 +141,7 @@ void check_textbook(double t, double h) {
     for (int c = 0; c < step.n; ++c) {
         CAPTURE(c, step.trial.y[c], step.estimate(c));
         // Every stage rounds its argument, its slope and its share of the sum a few times, each by half an ulp of the
-        // terms in `size`; the problems' slopes pass that on with a factor times h below one.
+        // terms in `size`; the problems' slopes pass this on with a factor times h below one.
         const double bound = 4 * Method::stages * eps<double> * book.size[c];
         CHECK(std::abs(step.trial.y[c] - book.y[c]) <= bound);
         CHECK(std::abs(step.estimate(c) - book.estimate[c]) <= bound);
@@ -214,7 +214,7 @@ TEST_CASE("a step of tsitouras_5 has a local error of order six") { check_soluti
 TEST_CASE("a step of dormand_prince_5 has a local error of order six") {
     check_solution_order<dormand_prince_5>(6, 0.25);
 }
-// Its error coefficients of order eight are below 1e-5: the next term, of order nine, counts until rounding does.
+// Its error coefficients of order eight are below 1e-5: the next term, of order nine, dominates until rounding does.
 TEST_CASE("a step of verner_7 has a local error of order eight at least") {
     check_least_local_order(solution_error<verner_7, problems::log_circle>, 8, 1);
     check_least_local_order(solution_error<verner_7, problems::timed_circle>, 8, 0.125);
@@ -321,7 +321,7 @@ TEST_CASE("cash_karp integrates quartic slopes exactly and quintic ones not") {
     CHECK(quadrature_error<cash_karp, 6>() > 1e-4);
 }
 TEST_CASE("tsitouras_5 integrates quartic slopes exactly and quintic ones not") {
-    // weights of up to 3.3 that cancel: the rounding of the coefficients weighs more
+    // weights of up to 3.3 that cancel: the rounding of the coefficients dominates
     CHECK(quadrature_error<tsitouras_5, 5>() <= 10 * eps<double>);
     CHECK(quadrature_error<tsitouras_5, 6>() > 1e-5);
 }

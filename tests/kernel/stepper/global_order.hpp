@@ -30,7 +30,7 @@ double end_error(double h, double span) {
     }
     const auto report = myriad::solve<Method>(tests::test_device(1), e, fixed_step(h));
     REQUIRE(report.count(myriad::status::success) == e.size());
-    // the step must be the one asked for, or the order measured is not the method's
+    // the step must be the requested one, or the order measured is not the method's
     REQUIRE(report.accepted_steps == e.size() * static_cast<std::int64_t>(std::lround(std::abs(span) / h)));
     REQUIRE(report.rejected_steps == 0);
     double squares = 0;

@@ -14,8 +14,8 @@ namespace local_order::inline MYRIAD_TARGET {
 
 /// Root mean squares over many starts, so that a zero of the leading error term at one of them does not count.
 struct mean_error {
-    double leading;  // of the error's part of the order's parity: C h^order + C' h^(order + 2) + ...
-    double whole;    // of the error of a step by h
+    double leading;  // the part of the error with the order's parity: C h^order + C' h^(order + 2) + ...
+    double whole;    // the error of a step of length h
 
     template <class Error>
     mean_error(Error error, int order, double h) {
@@ -35,10 +35,10 @@ struct mean_error {
     }
 };
 
-/// error(h) = C h^order + C' h^(order + 1) + ... for both signs of h. Where C is small, as it should be, the next term
-/// hides it at any h whose error is clear of rounding; a step forward and one back part the two. The leading part must
-/// fall with the order, up to a term in h^2, small enough at the finest h for a window of 0.1, and the whole error no
-/// slower.
+/// error(h) = C h^order + C' h^(order + 1) + ... for both signs of h. If C is small, as it should be, the next term
+/// hides it at any h whose error is clear of rounding; a step forward and one back separate the two. The leading part
+/// must decrease with the order, up to a term in h^2, small enough at the finest h for a window of 0.1, and the whole
+/// error at least as fast.
 template <class Error>
 void check_local_order(Error error, int order, double first_h, double window = 0.1) {
     for (const double sign : {1.0, -1.0}) {
@@ -54,7 +54,7 @@ void check_local_order(Error error, int order, double first_h, double window = 0
         }
         CAPTURE(sign, first_h, leading_slopes, slopes);
         REQUIRE(coarse.leading >
-                10 * std::numeric_limits<double>::epsilon());  // rounding then changes a slope by 0.1 or less
+                10 * std::numeric_limits<double>::epsilon());  // rounding then changes a slope by at most 0.1
         CHECK(std::abs(leading_slopes[2] - order) < window);
         CHECK(slopes[1] > order - 3 * window);
         CHECK(slopes[2] > order - 3 * window);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The library's LU factors behind plain arrays: declared for host files, which compare them with Eigen's, and compiled
-// with the instruction-set flags, which Eigen must not see, in lu_lanes.cpp.
+// The library's LU factors behind plain arrays: declared for host files, which compare them with Eigen's; compiled in
+// lu_lanes.cpp with the instruction-set flags, which Eigen must not see.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,7 @@ struct solutions {
 };
 
 constexpr int largest_system = 32;
-/// Every size that is written out, the first ones that are not and a few more, as each takes its time to compile; of
-/// single precision fewer.
+/// All unrolled sizes, the first rolled ones and a few more, as each takes time to compile; fewer in single precision.
 constexpr bool is_compiled(kind which, int n) {
     const bool wide = which == kind::one_double || which == kind::pack_of_double;
     return wide ? n <= 8 || n % 8 == 0 : n == 2 || n == 6 || n == 7 || n == 32;

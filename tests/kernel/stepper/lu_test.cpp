@@ -45,7 +45,7 @@ void each_system(Test test) {
             if (lu_lanes::is_compiled(which, n)) test(which, n);
 }
 
-/// One system per lane, of a matrix and a right-hand side that `fill(lane, a, b)` sets; rounded to single precision, so
+/// One system per lane, with a matrix and a right-hand side set by `fill(lane, a, b)`; rounded to single precision, so
 /// that every kind of number holds the same matrix.
 template <class Fill>
 systems make(kind which, int n, Fill fill) {
@@ -76,7 +76,7 @@ struct random_systems {
 
 /// The residual of Gaussian elimination with partial pivoting: |A x - b| <= 3 n eps |L| |U| |x| (Higham, Accuracy and
 /// Stability of Numerical Algorithms, theorem 9.4, with eps twice the unit roundoff), with Eigen's factors, whose
-/// pivots are of the same size; and the solution of Eigen has a residual of that size too.
+/// pivots are of the same size; Eigen's solution has a residual of that size too.
 void check_against_eigen(kind which, const systems& s) {
     const auto found = lu_lanes::solve(which, s);
     for (int lane = 0; lane < lu_lanes::lanes(which); ++lane) {
@@ -93,7 +93,7 @@ void check_against_eigen(kind which, const systems& s) {
             CAPTURE(i, residual(i), bound(i));
             CHECK(std::abs(residual(i)) <= bound(i));
         }
-        // two solutions of such residuals differ by A^-1 of both
+        // two solutions with such residuals differ by A^-1 of both
         const VectorXd apart = lu.inverse().cwiseAbs() * (lu.permutationP().transpose() * (2 * bound));
         const VectorXd eigen = lu.solve(b);
         for (int i = 0; i < s.n; ++i) CHECK(std::abs(x(i) - eigen(i)) <= apart(i));
@@ -140,7 +140,7 @@ TEST_CASE("a singular matrix is reported, in its lane alone") {
             const int bad_lane = lu_lanes::lanes(which) / 2;
             const systems good = make(which, n, random_systems{});
             systems s = good;
-            // a column of zeros stays one to the last bit; NaN and infinity reach a pivot from wherever they stand
+            // a column of zeros stays zero to the last bit; NaN and infinity reach a pivot from any position
             const int column = n / 2;
             for (int i = 0; i < n; ++i)
                 if (flaw == 0 || i == n / 3) s.matrix[static_cast<std::size_t>((bad_lane * n + i) * n + column)] = flaw;
@@ -149,7 +149,7 @@ TEST_CASE("a singular matrix is reported, in its lane alone") {
                 CAPTURE(n, lane, flaw, static_cast<int>(which));
                 CHECK(found.regular[static_cast<std::size_t>(lane)] == (lane != bad_lane));
                 if (lane == bad_lane) continue;
-                for (int i = 0; i < n; ++i)  // not a bit is changed by the neighbour
+                for (int i = 0; i < n; ++i)  // the neighbour changes no bit
                     CHECK(found.x[static_cast<std::size_t>(lane * n + i)] ==
                           expected.x[static_cast<std::size_t>(lane * n + i)]);
             }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rosenbrock methods: order conditions of the tableaux, and of single steps of given length the local order of the
-// solutions, of the error estimates and of the interpolants. A model file: compiled as kernels are, without Eigen.
+// Rosenbrock methods: order conditions of the tableaux, and for single steps of given length the local order of the
+// solutions, of the error estimates and of the interpolants. A model file: compiled like kernels, without Eigen.
 #include "myriad/kernel/stepper/rosenbrock.hpp"
 
 #include <cmath>
@@ -20,7 +20,7 @@ using myriad::rodas_5p;
 using myriad::rosenbrock_23;
 using myriad::satisfies_order_conditions;
 
-/// One step of a problem from its exact solution, and all that the library makes of it.
+/// One step of a problem from its exact solution, with all its results.
 template <class Method, class Model>
 struct single_step {
     static constexpr int n = Model::n_state;
@@ -70,7 +70,7 @@ void check_orders_on(double first_h) {
                           first_h);
     }
     {
-        INFO("embedded solution");  // the solution less its error estimate; of order three for rosenbrock_23
+        INFO("embedded solution");  // the solution minus its error estimate; of order three for rosenbrock_23
         const int order = Method::order == 2 ? 3 : 4;
         check_local_order(
             [](double t, double h) {
@@ -80,7 +80,7 @@ void check_orders_on(double first_h) {
             order + 1, first_h);
     }
     for (const double theta :
-         {0.3, 0.5, 0.7}) {  // nearer to the end the error is that of the solution until h is small
+         {0.3, 0.5, 0.7}) {  // closer to the end the error of the solution dominates until h is small
         INFO("interpolant at " << theta);
         check_local_order(
             [theta](double t, double h) { return difference(step(t, h).at(theta), Model::exact(t + theta * h)); },

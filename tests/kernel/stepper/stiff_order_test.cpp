@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Order of convergence of the stiff methods over whole integrations with fixed steps: on problems that are not stiff,
-// and on Prothero and Robinson's, where stiffness reduces it.
+// Order of convergence of the stiff methods over whole integrations with fixed steps: on non-stiff problems, and on
+// Prothero and Robinson's, where stiffness reduces it.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -63,7 +63,8 @@ TEST_CASE("rosenbrock_23 has order two in single precision") {
     check_order<rosenbrock_23, problems::oscillator, float>(2, 0.25, 2, {0.2, 0.2});
 }
 
-// Its coefficients magnify rounding some hundred times, which leaves no room for an order in single precision.
+// Its coefficients magnify rounding some hundred times, which leaves no range in which to measure an order in single
+// precision.
 TEST_CASE("rodas_5p keeps a tolerance in single precision") {
     using problems::oscillator;
     const double tolerance = 1e-4;
@@ -73,7 +74,7 @@ TEST_CASE("rodas_5p keeps a tolerance in single precision") {
     e.time_domain(0.0f, 8.0f);
     const auto report = myriad::solve<rodas_5p>(tests::test_device(1), e, compare::with_tolerance(tolerance, 0.1));
     REQUIRE(report.count(myriad::status::success) == 1);
-    // a rotation: the errors of the steps add up, of both components
+    // a rotation: the errors of the steps in both components add up
     const double bound = std::sqrt(2.0) * tolerance * static_cast<double>(report.accepted_steps);
     CHECK(std::abs(static_cast<double>(e.state(oscillator::x)[0]) - std::cos(8.0)) <= bound);
     CHECK(std::abs(static_cast<double>(e.state(oscillator::v)[0]) + std::sin(8.0)) <= bound);
@@ -83,8 +84,8 @@ TEST_CASE("rodas_5p keeps a tolerance in single precision") {
 TEST_CASE("rosenbrock_23 keeps order two on Prothero and Robinson's problem, however stiff it is") {
     for (const double rate : {1.0, 1e2, 1e4, 1e6}) check_stiff_order<rosenbrock_23>(rate, 1.95, 2.05);
 }
-// Stiff order three, for which it was built; other methods of its kind fall to one. The order of the tableau is seen
-// where h times the rate is small, and comes back slowly on the way there.
+// Stiff order three, for which it was designed; other methods of its kind drop to one. The tableau's order shows where
+// h times the rate is small, and returns slowly on the way there.
 TEST_CASE(
     "rodas_5p has order three on Prothero and Robinson's problem where it is very stiff, and five where it is not") {
     check_stiff_order<rodas_5p>(1.0, 4.9, 5.1);

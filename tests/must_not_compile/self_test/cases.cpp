@@ -3,7 +3,7 @@
 // case: other_message
 // expect: anything
 // SPDX-License-Identifier: MIT
-// A right program, and one that is wrong for another reason than expected: check.sh must complain of each.
+// A correct program, and one with a different error than expected: check.sh must complain about each.
 #ifdef CASE_other_message
 int wrong() { return nothing; }
 #endif

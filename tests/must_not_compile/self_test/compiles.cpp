@@ -1,4 +1,4 @@
 // expect: anything
 // SPDX-License-Identifier: MIT
-// A right program: check.sh must complain.
+// A correct program: check.sh must complain.
 int right() { return 1; }

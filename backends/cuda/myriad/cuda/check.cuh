@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// MYRIAD_CUDA(call): checks a CUDA call and throws an error with the call, what went wrong and what to do.
+// MYRIAD_CUDA(call): checks a CUDA call; the error it throws names the call, the problem and a remedy.
 #pragma once
 
 #include <string>
@@ -43,7 +43,7 @@ inline const char* advice_for(cudaError_t status) {
 
 inline void check(cudaError_t status, const char* call) {
     if (status == cudaSuccess) return;
-    cudaGetLastError();  // so that the next call does not report a non-sticky error again
+    cudaGetLastError();  // so that the next call does not report this error, if non-sticky, again
     throw error(message(call, " failed: ", cudaGetErrorString(status), " (", cudaGetErrorName(status),
                         "): ", advice_for(status)));
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The engine of the CUDA backend: device memory for one chunk of an ensemble, its transfers and its kernels, all in one
-// stream.
+// The engine of the CUDA backend: device memory, transfers and kernels for one chunk of an ensemble, all in one stream.
 #pragma once
 
 #include <algorithm>
@@ -61,8 +60,8 @@ public:
         arrays(stage);
         records(stage);
         if (to_stage > little_transfer::most && !has_staged_) {
-            // Created now, since that waits for all work of the device: one for an upload, one for a download, and one
-            // on request.
+            // Created now, as that waits for all work on the device: one for an upload, one for a download, one on
+            // request.
             const pooled_staging up(device_), down(device_), next(device_);
             has_staged_ = true;
         }
@@ -91,7 +90,7 @@ public:
         } else {
             pooled_staging(device_)->upload(list, stream_.get());
         }
-        // After the copies: clearing needs multiprocessors, and would make the copies wait for kernels of other chunks.
+        // After the copies: clearing needs multiprocessors, so that the copies would wait for kernels of other chunks.
         std::byte *zeros = nullptr, *end_of_zeros = nullptr;
         walk(from, [&](auto*&, auto* target, std::int64_t components, array_access, array_kind kind) {
             if (!is_cleared(kind)) return;
@@ -147,7 +146,7 @@ public:
         row_list of_arrays = std::exchange(list, {});
         walk_records(to.record, [&](auto*& target, auto* source, std::int64_t components, array_access,
                                     array_kind kind) { add(target, source, components, kind); });
-        // Records have their own memory, which may precede that of the arrays.
+        // Records have memory of their own, which may precede that of the arrays.
         const bool after = records_.data() > memory_.data();
         row_list& lower = after ? of_arrays : list;
         const row_list& upper = after ? list : of_arrays;
@@ -235,7 +234,7 @@ public:
     }
 
 private:
-    /// Calls `visit(pointer, on the device, components, access, kind)` for every array.
+    /// Calls `visit(host pointer, device pointer, components, access, kind)` for every array.
     template <class Visit>
     void walk(arguments& host, Visit&& visit) {
         auto* next = static_cast<std::byte*>(memory_.data());
@@ -251,7 +250,7 @@ private:
         return {reinterpret_cast<std::byte*>(host + first_), reinterpret_cast<std::byte*>(device),
                 bytes_of(host, count_), static_cast<std::size_t>(components), bytes_of(host, size)};
     }
-    /// Removes the rows of pinned memory from a list, unless it is small enough for a single transfer.
+    /// Removes the rows in pinned memory from a list, unless the list is small enough for a single transfer.
     static row_list take_pinned(row_list& list) {
         if (little_transfer::takes(list)) return {};
         const auto in_pages = [](const array_rows& rows) { return !is_pinned(rows.host); };
@@ -266,7 +265,7 @@ private:
         if (const auto lent = std::move(fetching_)) (*lent)->finish_download();
     }
 
-    /// NaN for reals, meaning that nothing was written, and 0 for integers.
+    /// Sets reals to NaN, which means that nothing was written, and integers to 0.
     template <class T>
     void clear(T* device, std::int64_t components) {
         const int byte = std::is_floating_point_v<T> ? 0xff : 0;
@@ -280,7 +279,7 @@ private:
         return false;
     }
 
-    /// Memory in use is not freed.
+    /// Waits first, so that no memory in use is freed.
     void grow(device_memory& memory, std::size_t bytes, std::size_t per_instance) {
         if (bytes <= memory.bytes()) return;
         wait();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The layout of a chunk's arrays in device memory: one after the other, in the order of host/backend/arrays.hpp.
+// The layout of a chunk's arrays in device memory: contiguous, in the order of host/backend/arrays.hpp.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ std::size_t bytes_of(const T*, std::int64_t values) {
     return static_cast<std::size_t>(values) * sizeof(T);
 }
 
-/// Bytes of an array, rounded up so that the next one is aligned to memory transactions.
+/// Bytes of an array, rounded up to align the next one with memory transactions.
 inline std::size_t padded(std::int64_t values, std::size_t element) {
     constexpr std::size_t unit = piece::padding;
     return (static_cast<std::size_t>(values) * element + unit - 1) / unit * unit;
@@ -32,8 +32,8 @@ std::size_t bytes_for(std::int64_t count, Each&& each) {
     return bytes == 0 ? 0 : bytes + piece::padding;  // so that no copy spans two allocations
 }
 
-/// For `for_each_array` and `for_each_record`: calls `visit(pointer, on the device, components, access, kind)` for each
-/// array, the first of which is at `next`.
+/// For `for_each_array` and `for_each_record`: calls `visit(host pointer, device pointer, components, access, kind)`
+/// for each array; the first is placed at `next`.
 template <class Visit>
 auto placing(std::byte*& next, std::int64_t count, Visit&& visit) {
     return [&next, &visit, count](auto*& array, std::int64_t components, array_access access, array_kind kind) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sorts instances by cost on the GPU, without the host: a histogram, its sums, and a scatter.
+// Sorts instances by cost on the GPU, without the host: histogram, prefix sums, scatter.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 inline constexpr int cost_block = 1024, costs_per_block = 8 * cost_block;
 static_assert(cost_buckets == cost_block, "one thread per bucket");
 
-/// Counts this block's costs in shared memory; synchronises the block at the beginning and the end.
+/// Counts this block's costs in shared memory; synchronises the block at the start and at the end.
 __device__ __forceinline__ void count_costs(const std::uint32_t* cost, std::uint32_t size, unsigned* counted) {
     counted[threadIdx.x] = 0;
     __syncthreads();
@@ -30,7 +30,7 @@ static __global__ void __launch_bounds__(cost_block)
     if (counted[threadIdx.x] > 0) atomicAdd(&total[threadIdx.x], counted[threadIdx.x]);
 }
 
-/// Where each bucket begins, from the bucket sizes; one block.
+/// The start of each bucket, from the bucket sizes; one block.
 static __global__ void __launch_bounds__(cost_block) sum_costs(unsigned* total) {
     __shared__ unsigned sum[cost_buckets];
     const unsigned own = total[threadIdx.x];
@@ -45,7 +45,7 @@ static __global__ void __launch_bounds__(cost_block) sum_costs(unsigned* total) 
     total[threadIdx.x] = sum[threadIdx.x] - own;
 }
 
-/// Each block reserves its share of every bucket at once, so that neighbours stay close to each other.
+/// Each block reserves its share of a bucket at once, so that neighbours stay close together.
 static __global__ void __launch_bounds__(cost_block)
     place_by_cost(const std::uint32_t* cost, std::uint32_t size, unsigned* begin, std::uint32_t* order) {
     __shared__ unsigned place[cost_buckets];
@@ -75,7 +75,7 @@ public:
         cost_.release();
         order_.release();
     }
-    /// Enqueues clearing of the costs.
+    /// Enqueues the clearing of the costs.
     void clear(std::int64_t count, cudaStream_t where) {
         MYRIAD_CUDA(cudaMemsetAsync(cost_.data(), 0, static_cast<std::size_t>(count) * sizeof(std::uint32_t), where));
     }

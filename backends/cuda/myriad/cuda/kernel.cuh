@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The CUDA kernel: one thread takes one instance through the loop, or several one after the other. Variants differ only
-// in where shared parameters are stored.
+// The CUDA kernel: one thread takes one instance through the loop, or several in succession. Variants differ only in
+// where shared parameters are stored.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Whether instances may differ in cost: if steps are adaptive, or something can end phases. Other kernels take them in
-/// order.
+/// Whether instances may differ in cost: if steps are adaptive, or events or hooks can end phases. Other kernels take
+/// them in order.
 template <class Model, class Method>
 inline constexpr bool costs_differ = is_adaptive<Method> || has_events<Model> || has_after_step<Model>;
 
-/// A thread's supply of one instance, given by the thread's number.
+/// A thread's source of one instance, that of the thread's number.
 class own_instance {
 public:
     __device__ __forceinline__ own_instance(const std::int64_t size, const std::uint32_t*, unsigned long long*)
@@ -28,14 +28,14 @@ public:
         index_ = -1;
         return given;
     }
-    /// Whether the first instance is the only one.
+    /// Whether the first instance is also the last.
     __device__ __forceinline__ bool gives_only_one() const { return true; }
 
 private:
     std::int64_t index_;
 };
 
-/// A supply of that one, and then, if there is a queue, of the next ones in it.
+/// A source of that instance and, if there is a queue, of further ones from the queue.
 class queued_instances {
 public:
     __device__ __forceinline__ queued_instances(std::int64_t size, const std::uint32_t* order,
@@ -44,7 +44,7 @@ public:
 
     __device__ __forceinline__ std::int64_t next() {
         std::int64_t block = blockIdx.x;
-        MYRIAD_FORGET(block);  // otherwise the address stays in registers through the loop
+        MYRIAD_FORGET(block);  // else the address stays in registers through the loop
         std::int64_t place = block * blockDim.x + threadIdx.x;
         if (has_begun_) {
             if (queue_ == nullptr) return -1;
@@ -68,8 +68,8 @@ template <class Model, class R>
 inline constexpr int shared_parameter_bytes =
     n_shared<Model>* static_cast<int>(sizeof(R)) + n_shared_integer<Model>* static_cast<int>(sizeof(std::int32_t));
 
-/// Most threads per block; a model may choose with `static constexpr int max_block_size = 512;`. Up to 256, a thread
-/// can have as many registers as the hardware can address. nvcc trades registers for resident blocks of this size
+/// Most threads per block; a model may set it by `static constexpr int max_block_size = 512;`. Up to 256, a thread can
+/// have as many registers as the hardware can address. nvcc trades registers for resident blocks of this size
 /// (docs/gpu.md).
 template <class Model>
 constexpr int max_block_size() {
@@ -80,11 +80,11 @@ constexpr int max_block_size() {
     }
 }
 
-/// A kernel's launch parameters. In the constant bank, the shared parameters are passed with the arguments.
+/// A kernel's launch parameters. For the constant bank, they include the shared parameters.
 template <class Model, class R, shared_placement placement>
 struct launch_arguments {
     kernel_arguments<Model, R> ensemble;
-    unsigned long long* queue;  // instances taken beyond the first one of each thread; null: there are no others
+    unsigned long long* queue;  // number of instances taken beyond each thread's first one; null: no queue
 };
 template <class Model, class R>
 struct launch_arguments<Model, R, shared_placement::constant_bank> {
@@ -94,7 +94,7 @@ struct launch_arguments<Model, R, shared_placement::constant_bank> {
     std::int32_t shared_integer[at_least_one(n_shared_integer<Model>)];
 };
 
-/// Copies the shared parameters to the block's shared memory, using all its threads.
+/// Copies the shared parameters to the block's shared memory, with all its threads.
 template <class Model, class R>
 __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parameters<R>& from) {
     extern __shared__ double staged[];  // double: aligned for either real type
@@ -108,7 +108,7 @@ __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parame
     return {real, integer};
 }
 
-/// Integrates the instances from its threads' supplies.
+/// Integrates the instances from its threads' sources.
 template <class Model, class Method, class R, shared_placement placement>
 __global__ void __launch_bounds__(max_block_size<Model>())
     integrate_ensemble(const __grid_constant__ launch_arguments<Model, R, placement> arguments) {

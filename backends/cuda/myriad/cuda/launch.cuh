@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Chooses how a kernel is launched: the place of the shared parameters and the block size, given its compiled
-// resources.
+// Chooses how to launch a kernel: the place of the shared parameters and the block size, from its compiled resources.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +12,7 @@
 
 namespace myriad::cuda {
 
-/// The places for which a kernel of the model is compiled: the constant bank for few shared parameters, the others for
-/// many.
+/// The places for which a model's kernel is compiled: the constant bank for few shared parameters, the others for many.
 template <class Model, class R>
 constexpr bool is_compiled(shared_placement placement) {
     constexpr bool few = shared_parameter_bytes<Model, R> <= 1024;
@@ -50,7 +48,7 @@ public:
     }
 
     const kernel_facts& facts() const { return facts_; }
-    /// Threads that keep every warp scheduler of the GPU busy with one warp.
+    /// Number of threads that gives every warp scheduler of the GPU one warp.
     std::int64_t least_threads() const { return std::int64_t{128} * multiprocessors_; }
     void note(schedule how) { facts_.schedule = how; }
 
@@ -62,8 +60,8 @@ public:
         }
     }
 
-    /// Launches the kernel on device pointers. With a queue, which must be zero, no more threads than run at the same
-    /// time.
+    /// Launches the kernel on device pointers. With a queue, which must be zero, launches no more threads than run at
+    /// once.
     void launch(const kernel_arguments<Model, R>& arguments, unsigned long long* queue, cudaStream_t where) {
         const int block = facts_.block_size = block_for(arguments.size);
         auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
@@ -86,7 +84,7 @@ public:
 private:
     template <place p>
     void run(const launch_arguments<Model, R, p>& all, unsigned blocks, int block, cudaStream_t where) const {
-        // Not <<<>>>, whose status is that of the thread's last failure, whatever it was.
+        // Not <<<>>>, which returns the status of the thread's last failure, whatever its cause.
         void* arguments[] = {const_cast<launch_arguments<Model, R, p>*>(&all)};
         check(
             cudaLaunchKernel(reinterpret_cast<const void*>(kernel<p>), dim3(blocks), dim3(static_cast<unsigned>(block)),
@@ -124,7 +122,7 @@ private:
                 wanted <= 1024 && max_block_size<Model>() < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");
-        // The smallest block among those that keep most threads running at the same time.
+        // The smallest block size among those that keep most threads resident.
         int best_threads = 0;
         for (int block = wanted > 0 ? wanted : std::min(64, most / 32 * 32); block <= (wanted > 0 ? wanted : most);
              block *= 2) {
@@ -149,7 +147,7 @@ private:
         return static_cast<unsigned>(per_multiprocessor * multiprocessors_);
     }
 
-    /// Ensembles too small to fill the GPU are spread over all its multiprocessors, one warp per block if need be.
+    /// Ensembles too small to fill the GPU are spread over all its multiprocessors, down to one warp per block.
     int block_for(std::int64_t size) const {
         int block = chosen_block_;
         if (chosen_by_user_) return block;

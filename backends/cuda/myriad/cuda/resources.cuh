@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// RAII owners of CUDA resources: device memory, streams and events. Each is bound to the device that was current when
-// it was created.
+// RAII owners of CUDA resources: device memory, streams and events. Each belongs to the device that was current at its
+// creation.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ private:
     int before_ = 0;
 };
 
-/// Device memory that grows on request; its contents are then lost.
+/// Device memory that grows on request and then loses its contents.
 class device_memory {
 public:
     device_memory() = default;
@@ -34,7 +34,7 @@ public:
     device_memory& operator=(const device_memory&) = delete;
     ~device_memory() { cudaFree(data_); }
 
-    /// Makes room for `bytes`. For the message, if `per_instance` is not zero: the bytes per instance, and those
+    /// Makes room for `bytes`. For the error message, unless `per_instance` is zero: the bytes per instance, and those
     /// already held for instances.
     void reserve(std::size_t bytes, std::size_t per_instance = 0, std::size_t held = 0) {
         if (bytes <= bytes_) return;
@@ -84,7 +84,7 @@ private:
     cudaStream_t stream_ = nullptr;
 };
 
-/// A CUDA event. `timed`: the time at which it is reached is recorded.
+/// A CUDA event; a `timed` one records when it is reached.
 class event {
 public:
     enum class kind { plain, timed };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The CUDA backend as a model's source file sees it: what MYRIAD_INSTANTIATE defines when nvcc compiles that file.
+// The CUDA backend as a model's source file sees it: the definitions of MYRIAD_INSTANTIATE when nvcc compiles that
+// file.
 #pragma once
 
 #include <memory>
@@ -12,7 +13,7 @@
 
 namespace myriad::cuda {
 
-/// Number of GPUs; if there are none, `why_none` says why.
+/// Number of GPUs; if there are none, `why_none` gives the reason.
 inline int count_devices(std::string& why_none) {
     int count = 0;
     const cudaError_t status = cudaGetDeviceCount(&count);
@@ -25,7 +26,7 @@ inline int count_devices(std::string& why_none) {
     return count;
 }
 
-// Weak, and so in every model's object file: the linker keeps one.
+// Weak, as it is in every model's object file: the linker keeps one.
 __attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_none) {
     const int count = count_devices(why_none);
     std::vector<device_facts> found;

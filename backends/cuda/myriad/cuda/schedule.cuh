@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Launches the phases of a call in the order given by the schedule; holds the device memory for it.
+// Launches the phases of a call in the order of the schedule; owns the device memory for it.
 #pragma once
 
 #include <cstddef>
@@ -19,11 +19,11 @@ class phase_scheduler {
 public:
     explicit phase_scheduler(schedule wanted) : wanted_(costs_differ<Model, Method> ? wanted : schedule::in_order) {}
 
-    /// Device memory that an instance may take besides its own data: a cost and a place in the order.
+    /// Device memory per instance besides its own data: a cost and a place in the order.
     std::size_t bytes_per_instance() const {
         return wanted_ == schedule::by_cost || wanted_ == schedule::automatic ? 2 * sizeof(std::uint32_t) : 0;
     }
-    /// Allocates the memory for calls of that many phases; no work may be in progress.
+    /// Allocates memory for calls with that many phases; no work may be in progress.
     void reserve(std::int64_t count, std::int64_t phases, std::int64_t worthwhile) {
         const schedule how = chosen(count, phases, worthwhile);
         if (how == schedule::by_cost) by_cost_.reserve(count);
@@ -31,7 +31,7 @@ public:
     }
     std::size_t bytes() const { return by_cost_.bytes(); }
     void release() { by_cost_.release(); }
-    /// To be called when other instances have been uploaded.
+    /// To be called after other instances have been uploaded.
     void forget_costs() { costs_known_ = false; }
 
     void launch(kernel_launcher<Model, Method, R>& kernel, arguments now, cudaStream_t where) {
@@ -42,7 +42,7 @@ public:
         if (how == schedule::dynamic) return launch_with_queue(kernel, now, where);
         now.cost = by_cost_.cost();
         if (!costs_known_) {
-            by_cost_.clear(now.size, where);  // instances that have ended get no cost
+            by_cost_.clear(now.size, where);  // instances that have ended write no cost
             const std::int32_t phases = now.phases;
             now.phases = 1;
             launch_with_queue(kernel, now, where);
@@ -57,8 +57,8 @@ public:
     }
 
 private:
-    /// Sorting pays off if most of the work is still to come; `worthwhile`: threads that keep the GPU's warp schedulers
-    /// busy.
+    /// Sorting pays off if most of the work is still ahead. `worthwhile`: number of threads that keeps the GPU's warp
+    /// schedulers busy.
     schedule chosen(std::int64_t count, std::int64_t phases, std::int64_t worthwhile) const {
         const bool sortable = count <= most_sorted;
         if (wanted_ == schedule::automatic)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Copies to and from a GPU through small pinned buffers, for host memory that is not pinned: pinning all of it would
-// take longer than the copy.
+// Copies to and from a GPU through small pinned buffers, for host memory that is not pinned: pinning it all would take
+// longer than the copy.
 #pragma once
 
 #include <algorithm>
@@ -36,14 +36,14 @@ private:
     std::byte* data_ = nullptr;
 };
 
-/// For transfers so small that their number matters: as few as possible, through a single buffer.
+/// For transfers so small that their number matters: as few as possible, through one buffer.
 class little_transfer {
 public:
-    /// The most bytes of a transfer, not counting padding between arrays.
+    /// Most bytes in a transfer, without padding between arrays.
     static constexpr std::size_t most = 65'536;
     static bool takes(const row_list& list) { return bytes_of(list) <= most && list.size() <= most / piece::padding; }
 
-    /// The host's memory may be reused on return.
+    /// On return, the host memory may be reused.
     void upload(const row_list& list, cudaStream_t stream) {
         finish_download();
         check(cudaEventSynchronize(done_.get()), "an upload");
@@ -65,7 +65,7 @@ public:
         }
         MYRIAD_CUDA(cudaEventRecord(done_.get(), stream));
     }
-    /// Waits for what `begin_download` began, and puts it in its place.
+    /// Waits for the download that `begin_download` started, and scatters its data.
     void finish_download() {
         const std::vector<piece> pieces = std::exchange(pieces_, {});
         if (pieces.empty()) return;
@@ -82,18 +82,18 @@ private:
 
     pinned_memory memory_{capacity};
     event done_{event::kind::plain};
-    std::vector<piece> pieces_;  // of the download under way
+    std::vector<piece> pieces_;  // of the download in progress
 };
 
-/// For all others: several threads, each filling and emptying its own two buffers without waiting for the others, so
-/// that the GPU copies one buffer meanwhile.
+/// For all other transfers: several threads, each filling or emptying its own two buffers independently, so that the
+/// GPU copies one buffer meanwhile.
 class staging {
 public:
     explicit staging(int device) : device_(device) {
         for (std::size_t i = 0; i < buffers; ++i) buffers_[i].data = memory_.data() + i * largest;
     }
 
-    /// The host's memory may be reused on return.
+    /// On return, the host memory may be reused.
     void upload(const row_list& list, cudaStream_t stream) {
         each_piece(cut(list), [&](const piece& p, std::size_t, buffer& b) {
             if (const cudaError_t status = b.wait(); status != cudaSuccess) return status;
@@ -102,7 +102,7 @@ public:
             return status == cudaSuccess ? b.mark(stream) : status;
         });
     }
-    /// Enqueues the first pieces, and returns.
+    /// Enqueues the first pieces and returns.
     void begin_download(const row_list& list, cudaStream_t stream) {
         for (buffer& b : buffers_) check(b.wait(), "a copy to the GPU");
         pieces_ = cut(list);
@@ -110,12 +110,12 @@ public:
         for (std::size_t i = 0; i < std::min(pieces_.size(), buffers); ++i)
             check(ask(pieces_[i], buffers_[i]), "a download");
     }
-    /// Whether later work in the same stream may overwrite the data: all pieces are enqueued.
+    /// Whether all pieces are enqueued, so that later work in the same stream may overwrite the data.
     bool asked_for_all() const { return pieces_.size() <= buffers; }
-    /// Waits for what `begin_download` began, and puts it in its place.
+    /// Waits for the download that `begin_download` started, and scatters its data.
     void finish_download() {
         const std::vector<piece> pieces = std::exchange(pieces_, {});
-        check(buffers_[0].wait(), "the integration on the GPU");  // one thread alone, as this may take long
+        check(buffers_[0].wait(), "the integration on the GPU");  // in one thread, as this may take long
         each_piece(pieces, [&](const piece& p, std::size_t i, buffer& b) {
             if (const cudaError_t status = b.wait(); status != cudaSuccess) return status;
             p.scatter(b.data);
@@ -135,7 +135,7 @@ private:
         cudaError_t wait() { return cudaEventSynchronize(copied.get()); }
     };
 
-    /// Large enough to use the bus fully, and equally many for each thread.
+    /// Pieces large enough to saturate the bus, and equally many for each thread.
     static std::vector<piece> cut(const row_list& list) {
         const std::size_t bytes = bytes_of(list) + list.size() * piece::padding,
                           turns = (bytes - 1) / (workers * largest) + 1;
@@ -144,7 +144,7 @@ private:
     }
 
     /// Calls `work(piece, its number, its buffer)` for each piece, in several threads; pieces that share a buffer are
-    /// handled by one thread, in order. Throws `error` if any call returns anything but success.
+    /// handled by one thread, in order. Throws `error` if any call fails.
     template <class Work>
     void each_piece(const std::vector<piece>& pieces, Work&& work) {
         std::atomic<cudaError_t> failed{cudaSuccess};
@@ -173,11 +173,11 @@ private:
     int device_;
     pinned_memory memory_{buffers * largest};
     buffer buffers_[buffers];
-    std::vector<piece> pieces_;  // of the download under way
+    std::vector<piece> pieces_;  // of the download in progress
     cudaStream_t stream_ = nullptr;
 };
 
-/// Staging memory of a device, borrowed from a pool for one transfer; the pool holds as many as there were concurrent
+/// Staging memory of a device, borrowed from a pool for one transfer; the pool grows to the number of concurrent
 /// transfers.
 class pooled_staging {
 public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Copies between an ensemble's arrays on the host and a chunk on the device: the rows to copy, copied directly if the
-// host's memory is pinned, or cut into pieces to be copied through pinned buffers (cuda/staging.cuh).
+// host memory is pinned, or cut into pieces that are copied through pinned buffers (cuda/staging.cuh).
 #pragma once
 
 #include <algorithm>
@@ -35,14 +35,14 @@ inline std::size_t bytes_of(const row_list& list) {
     return bytes;
 }
 
-/// Whether host memory is pinned; testing its first byte is enough, as arrays are pinned as a whole.
+/// Whether host memory is pinned. Testing its first byte is enough, as arrays are pinned as a whole.
 inline bool is_pinned(const void* host) {
     cudaPointerAttributes facts{};
     MYRIAD_CUDA(cudaPointerGetAttributes(&facts, host));
     return facts.type == cudaMemoryTypeHost;
 }
 
-/// One copy for each array. The host's memory must be pinned.
+/// One copy per array. The host memory must be pinned.
 inline void copy_directly(const row_list& list, cudaMemcpyKind way, cudaStream_t stream) {
     for (const array_rows& rows : list) {
         const bool up = way == cudaMemcpyHostToDevice;
@@ -56,10 +56,10 @@ inline void copy_directly(const row_list& list, cudaMemcpyKind way, cudaStream_t
     }
 }
 
-/// A part of the device's memory that is a single transfer, whatever arrays it covers, and the rows that overlap it.
+/// A part of device memory copied in one transfer, whatever arrays it covers, and the rows that overlap it.
 class piece {
 public:
-    /// Arrays on the device begin at multiples of it; the padding between them is copied along.
+    /// Arrays on the device begin at multiples of this; the padding between them is copied too.
     static constexpr std::size_t padding = 256;
 
     static std::vector<piece> cut(const row_list& list, std::size_t largest) {
@@ -80,14 +80,14 @@ public:
     }
 
     std::size_t bytes() const { return bytes_; }
-    /// From the host's arrays to a buffer, and back.
+    /// Copy from the host arrays to a buffer, and back.
     void gather(std::byte* buffer) const {
         each_run(buffer, [](std::byte* host, std::byte* staged, std::size_t n) { std::memcpy(staged, host, n); });
     }
     void scatter(std::byte* buffer) const {
         each_run(buffer, [](std::byte* host, std::byte* staged, std::size_t n) { copy_past_caches(host, staged, n); });
     }
-    /// A pinned buffer to the device, and back.
+    /// Copy from a pinned buffer to the device, and back.
     cudaError_t begin_upload(const std::byte* buffer, cudaStream_t stream) const {
         return cudaMemcpyAsync(device_, buffer, bytes_, cudaMemcpyHostToDevice, stream);
     }
@@ -114,7 +114,7 @@ private:
             }
         }
     }
-    /// Writes results with non-temporal stores, without reading the old contents into the cache as memcpy would.
+    /// Writes results with non-temporal stores, which do not read the old contents into the cache as memcpy would.
     static void copy_past_caches(std::byte* to, const std::byte* from, std::size_t bytes) {
 #if defined(__SSE2__)
         constexpr std::size_t line = 64, part = sizeof(__m128i), worthwhile = 32 * line;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hands out instances to the lanes of the OpenMP backend: chunks of consecutive indices, to whichever thread asks, so
+// Hands out instances to the lanes of the OpenMP backend: chunks of consecutive indices, to any thread that asks, so
 // that no thread waits for another.
 #pragma once
 
@@ -16,17 +16,17 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// The shared state of a run's threads.
 struct common_supply {
     std::atomic<std::int64_t> begun{0};  // instances handed out
-    std::atomic<std::int64_t> done{0};   // as far as the threads have reported
-    std::atomic<bool> stopped{false};    // the progress function said no, or a function of the model threw
+    std::atomic<std::int64_t> done{0};   // reported as done by the threads
+    std::atomic<bool> stopped{false};    // the progress function returned false, or a function of the model threw
 
-    /// No further one of the `size` instances is to be started.
+    /// Makes sure that none of the `size` instances is started any more.
     void stop(std::int64_t size) {
         stopped = true;
         begun.store(size, std::memory_order_relaxed);
     }
 };
 
-/// One thread's view of the ensemble; the loop uses only `next()`.
+/// One thread's source of instances; the loop uses only `next()`.
 class chunked_instances {
 public:
     /// `lanes` lanes ask for instances in turn; `order`, if not null, maps positions to instances. `reports`: this
@@ -38,7 +38,7 @@ public:
 
     /// The next instance, or -1 when all are taken. Once the progress function returns false, no more are handed out.
     std::int64_t next() {
-        // A lane that asks again has finished its last instance; the first time it had none.
+        // A lane that asks again has finished its last instance; at first it had none.
         if (++done_ >= tell_at_) tell();
         if (next_ == end_) {
             next_ = std::min(all_.begun.fetch_add(chunk_, std::memory_order_relaxed), size_);
@@ -55,7 +55,7 @@ private:
         const std::int64_t since = done_ - told_;
         told_ = done_;
         const std::int64_t done = all_.done.fetch_add(since, std::memory_order_relaxed) + since;
-        // The last report is made when all threads are done.
+        // The last report is made after all threads are done.
         if (reports_ && done < size_ && !options_.progress(options_.context, done)) all_.stop(size_);
         if (all_.stopped) next_ = end_;
     }
@@ -65,8 +65,8 @@ private:
     const std::uint32_t* order_;
     const run_options& options_;
     bool reports_;
-    std::int64_t done_;      // instances that this thread has done; negative: lanes that have not asked yet
-    std::int64_t told_ = 0;  // those already added to the shared count
+    std::int64_t done_;      // instances that this thread has finished; negative: lanes that have not asked yet
+    std::int64_t told_ = 0;  // instances already added to the shared count
     std::int64_t tell_at_;
     std::int64_t next_ = 0, end_ = 0;
 };

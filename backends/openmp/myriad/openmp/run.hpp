@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The OpenMP backend: every thread runs the loop on a pack of SIMD lanes that refill from a common supply of instances.
+// The OpenMP backend: every thread runs the loop on a pack of SIMD lanes, refilled from a common supply of instances.
 #pragma once
 
 #include <algorithm>
@@ -21,21 +21,21 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// SIMD batches per pack: enough independent work to hide the latency of a batch, few enough that the stages of a large
+/// SIMD batches per pack: enough independent work to hide a batch's latency, few enough that the stages of a large
 /// state stay in the first-level cache, and one if events make lanes diverge at every step. Measured on a Zen 4, CPU
-/// time per step and instance with 1, 2, 3, 4 batches: with AVX-512, whose 32 registers hold two batches, Lorenz with
-/// RK4 -, 1.35, 1.46, 1.40 ns and Duffing with Cash-Karp -, 11.6, 12.2, -; with AVX2, whose 16 hold none, -, 2.38,
+/// time per step and instance in ns with 1, 2, 3, 4 batches: with AVX-512, whose 32 registers hold two batches, Lorenz
+/// with RK4 -, 1.35, 1.46, 1.40 and Duffing with Cash-Karp -, 11.6, 12.2, -; with AVX2, whose 16 hold none, -, 2.38,
 /// 2.10, 2.07 and -, 16.6, 15.7, 15.9, but the bubble of cpu_peers, with its 13 parameters, -, 54, 56, -; with events
-/// every 5 steps 46, 48, 76, - and 63, 71, 78, -, with hundreds of steps between them (the valve of cpu_peers) -, 12.4,
-/// 13.0, - and -, 19.4, 17.3, 18.7. That is g++'s code; clang++'s with AVX-512 on an Intel Xeon takes -, 1.25, 0.98, -,
-/// Duffing -, 9.6, 9.3, -, the valve -, 11.3, 12.1, -. A model may choose by `static constexpr bool rare_events =
-/// true;` or `static constexpr int pack_batches = 2;`.
+/// every 5 steps 46, 48, 76, - and 63, 71, 78, -; with hundreds of steps between events (the valve of cpu_peers) -,
+/// 12.4, 13.0, - and -, 19.4, 17.3, 18.7. That is g++'s code; clang++'s with AVX-512 on an Intel Xeon takes -, 1.25,
+/// 0.98, -, Duffing -, 9.6, 9.3, -, the valve -, 11.3, 12.1, -. A model may choose by `static constexpr bool
+/// rare_events = true;` or `static constexpr int pack_batches = 2;`.
 template <class Model, class Method>
 constexpr int default_batches() {
 #if defined(MYRIAD_WITHOUT_XSIMD)  // MYRIAD_SIMD
     return 0;
 #else
-#if defined(MYRIAD_SCALAR_LANES)  // with sanitizers, which take minutes to compile the kernel of a pack
+#if defined(MYRIAD_SCALAR_LANES)  // with sanitizers, which take minutes to compile a pack's kernel
     constexpr bool one_by_one = true;
 #else
     constexpr bool one_by_one = scalar_only<Model>;
@@ -58,7 +58,7 @@ constexpr int default_batches() {
 #endif
 }
 
-/// The kind of lane of `batches` batches; 0: one instance at a time.
+/// The scalar kind with `batches` batches; 0: one instance at a time.
 template <class R, int batches>
 struct lane_kind;
 #if !defined(MYRIAD_WITHOUT_XSIMD)
@@ -72,9 +72,8 @@ struct lane_kind<R, 0> {
     using type = R;
 };
 
-/// Estimate of a kernel's stack per thread in bytes: twice the data it holds, since the compiler makes separate copies
-/// of parts of them, and some states for a step's intermediate values. g++ was observed to use half to nine tenths of
-/// that.
+/// Estimate of a kernel's stack per thread in bytes: twice the data it holds, as the compiler makes separate copies of
+/// parts of it, and some states for a step's intermediate values. g++ was seen to use half to nine tenths of that.
 template <class Model, class Method, class S>
 constexpr std::size_t stack_of_kernel() {
     constexpr std::size_t state = sizeof(vec<S, n_state<Model>>), few = 4096;
@@ -93,8 +92,8 @@ struct team_run {
     std::atomic<std::int64_t> iterations{0};
     bool failed = false;
 
-    /// An exception thrown by a function of the model ends the run: no further instance is started. The host stores it,
-    /// since functions of the standard library that this file does not inline are shared with files for other
+    /// An exception from a function of the model ends the run: no further instance is started. The host stores the
+    /// exception, as functions of the standard library that are not inlined here are shared with files for other
     /// instruction sets.
     static void work(void* context, int part) noexcept {
         auto& run = *static_cast<team_run*>(context);
@@ -116,7 +115,7 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
     using S = typename lane_kind<R, batches>::type;
     constexpr int lanes = lanes_of<S>;
     const std::int64_t count = options.count > 0 ? options.count : arguments.size;
-    const std::int64_t packs = (count + lanes - 1) / lanes;  // another thread would have nothing to do
+    const std::int64_t packs = (count + lanes - 1) / lanes;  // more threads would have nothing to do
     const std::int64_t threads =
         std::min<std::int64_t>(options.threads > 0 ? options.threads : omp_get_max_threads(), packs);
     // In order: one chunk per thread.
@@ -154,7 +153,7 @@ run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const ke
         myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, \
         const myriad::detail::kernel_arguments<Model, R>&, const myriad::detail::run_options&);
 
-/// The same, and ensures that no other file does.
+/// The same, and makes sure that no other file does so.
 #define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                             \
     template <>                                                                                                  \
     void myriad::detail::instantiated_in_one_file_alone<                                                         \

@@ -21,7 +21,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// Threads besides the calling one, created for one task and joined at its end.
 class own_threads {
 public:
-    /// Creates `count` threads, or as many as the system allows, which call `work(context, number)` with numbers from 1
+    /// Creates `count` threads, or as many as the system allows, that call `work(context, number)` with numbers from 1
     /// on.
     own_threads(int count, std::size_t stack, void (*work)(void*, int), void* context)
         : work_(work), context_(context) {
@@ -65,10 +65,10 @@ private:
     int made_ = 0;
 };
 
-/// How many of `wanted` threads the system lets the program have besides the existing ones: found by creating them,
-/// since OpenMP's runtime ends the program if it cannot.
+/// How many of `wanted` threads the system allows the program besides the existing ones: found by creating them, as
+/// OpenMP's runtime ends the program if it cannot.
 inline int obtainable(int wanted) {
-    pthread_mutex_t all_made = PTHREAD_MUTEX_INITIALIZER;  // all exist at the same time
+    pthread_mutex_t all_made = PTHREAD_MUTEX_INITIALIZER;  // holds the threads, so that all exist at once
     pthread_mutex_lock(&all_made);
     const own_threads probes(
         wanted, 0,
@@ -81,7 +81,7 @@ inline int obtainable(int wanted) {
     return probes.made();
 }
 
-/// Unused bytes of the calling thread's stack; the largest number if the system does not tell.
+/// Unused bytes of the calling thread's stack; SIZE_MAX if the system does not tell.
 inline std::size_t stack_left() {
     static thread_local const std::uintptr_t end = [] {
         pthread_attr_t attributes;
@@ -97,13 +97,13 @@ inline std::size_t stack_left() {
     return end == 0 || here < end ? SIZE_MAX : here - end;
 }
 
-/// What is known of the teams that OpenMP has made for one calling thread.
+/// Known facts about the teams that OpenMP has made for one calling thread.
 struct known_teams {
     int last = 1, largest = 1;
-    std::size_t least_stack = SIZE_MAX;  // of the other threads
+    std::size_t least_stack = SIZE_MAX;  // smallest unused one of the other threads
 };
 
-/// As many threads as `all.parts`, or as are available, which is tested if necessary.
+/// `all.parts` threads, or as many as are available, which is tested if necessary.
 inline int team_of(const openmp::team& all, known_teams& known) {
     if (omp_get_active_level() >= omp_get_max_active_levels()) return 1;
     int threads = std::min(all.parts, omp_get_thread_limit());
@@ -149,14 +149,14 @@ inline const pid_t process_at_start = getpid();
 
 namespace myriad::openmp {
 
-// Weak, and so in every model's object file; the linker keeps one for each instruction set.
+// Weak, as it is in every model's object file; the linker keeps one per instruction set.
 __attribute__((weak)) int most_parts(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>) {
     return omp_in_parallel() != 0 ? 1 : omp_get_max_threads();
 }
 
 __attribute__((weak)) void in_parts(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, team& all) {
     static thread_local known_teams known;
-    // A child process inherits OpenMP's record of its threads, but not the threads, and would wait for them for ever.
+    // A child process inherits OpenMP's record of its threads but not the threads, and would wait for them forever.
     const bool forked = process_at_start != 0 && getpid() != process_at_start;
     const int threads = forked || all.parts <= 1 ? 1 : team_of(all, known);
     all.least_stack = std::min(stack_left(), threads > 1 ? known.least_stack : SIZE_MAX);

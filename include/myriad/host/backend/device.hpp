@@ -12,8 +12,14 @@ namespace myriad {
 /// number.
 class device {
 public:
-    enum class kind { cpu, cuda };
+    /// The kinds of devices.
+    enum class kind {
+        cpu,   ///< the cores of this machine
+        cuda,  ///< a GPU
+    };
 
+    /// The CPU with at most `threads` threads; 0: as many as OMP_NUM_THREADS says, or all cores. Throws `error` if
+    /// `threads` is negative or above 4096.
     static device cpu(int threads = 0);
     /// Throws `error` if there is no such GPU, or if the program was built without the CUDA backend.
     static device cuda(int number = 0);
@@ -25,8 +31,11 @@ public:
     /// device that does not exist.
     static device parse(std::string_view name);
 
+    /// Whether it is the CPU or a GPU.
     device::kind which() const { return kind_; }
+    /// The largest number of threads of a CPU, 0 if none was given; 0 for a GPU.
     int threads() const { return kind_ == kind::cpu ? number_ : 0; }
+    /// The number of a GPU, as in `cuda:1`; 0 for the CPU.
     int number() const { return kind_ == kind::cuda ? number_ : 0; }
     /// The name that `parse` understands.
     std::string name() const;

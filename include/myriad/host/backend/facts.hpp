@@ -15,6 +15,7 @@ struct kernel_facts {
     int registers = 0;              ///< per thread
     std::int64_t local_bytes = 0;   ///< per thread: stack frame and spilled registers
     std::int64_t shared_bytes = 0;  ///< of shared memory per block
+    /// Where the kernel read the shared parameters.
     myriad::shared_placement shared_placement = myriad::shared_placement::constant_bank;
     myriad::schedule schedule = myriad::schedule::in_order;  ///< of the last call of `integrate`
     int blocks_per_multiprocessor = 0;  ///< resident at the same time, for the size with the best occupancy

@@ -52,10 +52,13 @@ public:
         int before_ = std::uncaught_exceptions();
     };
 
+    /// Of `size` values; made by the accessors of an ensemble.
     component_map(T* values, std::int64_t size, const host::component_label& label)
         : base(values, size), label_(label) {}
     component_map(const component_map&) = default;
 
+    /// Assigns an expression with one value per instance, or one value to all. Throws `error` for any other number of
+    /// values.
     component_map& operator=(const component_map& values) { return assign(values); }
     template <class Other>
     component_map& operator=(const Eigen::EigenBase<Other>& values) {
@@ -66,6 +69,8 @@ public:
         return *this;
     }
     using base::setLinSpaced;
+    /// Evenly spaced values from `first` to `last`; the number of values may be given, and must then be that of the
+    /// instances.
     component_map& setLinSpaced(Eigen::Index size, const T& first, const T& last) {
         check(size, size);
         base::setLinSpaced(first, last);
@@ -74,11 +79,13 @@ public:
     /// These change nothing, as the length stays what it is.
     void resize(Eigen::Index size) const { check(size, size); }
     void resize(Eigen::Index rows, Eigen::Index columns) const { check(rows * columns, columns == 1 ? rows : -1); }
+    /// Exchanges the values with those of another array of the same length; throws `error` for another length.
     template <class Other>
     void swap(Other&& other) {
         check(other);
         base::swap(other);
     }
+    /// Starts a list of values, `map << 1, 2, 3;`, which must give one for each instance.
     list operator<<(const T& first) { return list(*this, first); }
     template <class Other>
     list operator<<(const Eigen::DenseBase<Other>& first) {

@@ -82,17 +82,21 @@ class ensemble {
     static_assert(std::is_same_v<R, double> || std::is_same_v<R, float>, "an ensemble's real type is double or float");
 
 public:
+    /// The model.
     using model = Model;
+    /// The type of states, parameters, accessories and times.
     using real = R;
+    /// What accessors return: one component over all instances, writable. See component_map.
     template <class T>
     using map = component_map<T>;
+    /// The same, to be read: an array of Eigen with one entry per instance.
     template <class T>
     using const_map = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
 
     /// Throws `error` if size is not positive, or if there is not enough memory.
     explicit ensemble(std::int64_t size) : data_(host::shape_of<Model>, size) {}
 
-    /// Zero for a moved-from ensemble.
+    /// Number of instances; zero for a moved-from ensemble.
     std::int64_t size() const { return data_.size; }
 
     /// State component c: initial values before a call, end values after it.
@@ -104,7 +108,7 @@ public:
     const_map<R> state(C c) const& {
         return view(data_.state, host::state_numbering<Model>::find(c));
     }
-    /// Control parameter c.
+    /// Control parameter c, in its own unit.
     template <class C>
     map<R> parameter(C c) & {
         return view(data_.parameter, host::parameter_numbering<Model>::find(c));
@@ -113,7 +117,7 @@ public:
     const_map<R> parameter(C c) const& {
         return view(data_.parameter, host::parameter_numbering<Model>::find(c));
     }
-    /// The user's own real storage; NaN until set.
+    /// Accessory c, the model's own real storage; NaN until set.
     template <class C>
     map<R> accessory(C c) & {
         return view(data_.accessory, host::accessory_numbering<Model>::find(c));
@@ -122,7 +126,7 @@ public:
     const_map<R> accessory(C c) const& {
         return view(data_.accessory, host::accessory_numbering<Model>::find(c));
     }
-    /// The user's own integer storage; 0 until set.
+    /// Integer accessory c, the model's own integer storage; 0 until set.
     template <class C>
     map<std::int32_t> integer_accessory(C c) & {
         return view(data_.integer_accessory, host::integer_accessory_numbering<Model>::find(c));
@@ -136,6 +140,8 @@ public:
     /// after time_domain allocates memory, even on a const ensemble.
     map<R> t_begin() & { return view(data_.own_domains(), {"t_begin"}); }
     const_map<R> t_begin() const& { return view(data_.read_domains(), {"t_begin"}); }
+    /// The end of the time domain of each instance, in the model's unit of time; may be infinite if events or hooks end
+    /// the phase. See `t_begin`.
     map<R> t_end() & { return view(data_.own_domains(), {"t_end"}, 1); }
     const_map<R> t_end() const& { return view(data_.read_domains(), {"t_end"}, 1); }
     /// The same domain for all instances. Unless t_begin or t_end are accessed, it takes no memory and is not copied to
@@ -145,6 +151,7 @@ public:
     bool has_common_domain() const { return data_.has_common_domain(); }
     /// The domain of instance i, without allocating that memory.
     R t_begin_of(std::int64_t i) const { return data_.t_begin_of(i); }
+    /// The end of the domain of instance i, in the same way.
     R t_end_of(std::int64_t i) const { return data_.t_end_of(i); }
 
     /// The factor by which both tolerances are multiplied in each instance, one until set, for a method
@@ -170,24 +177,32 @@ public:
         return present(data_.shared_integer).data()[host::shared_integer_numbering<Model>::find(c).number];
     }
 
-    /// Results: where the last phase ended, and how.
+    /// The time at which the last phase of each instance ended, in the model's unit of time: t_end, or that of the
+    /// event or failure that ended it.
     const_map<R> t() const& { return view(data_.t, {"t"}); }
+    /// How the last phase of instance i ended. Throws `error` if there is no such instance.
     myriad::status status(std::int64_t i) const { return data_.status_of(i); }
+    /// The statuses of all instances, `size()` of them, instance 0 first.
     const myriad::status* statuses() const { return data_.status.data(); }
-    /// Phases completed since the start.
+    /// Number of phases that each instance has completed since the ensemble's start or `restart`.
     const_map<std::int32_t> phases_done() const& { return view(data_.phase, {"phases_done"}); }
     /// True once an instance takes no further part.
     bool ended(std::int64_t i) const { return data_.ended.data()[i] != 0; }
     /// Step size the instance would try next; zero before the first phase, and with fixed steps. The first call
     /// allocates memory unless an adaptive method has done so.
     const_map<R> next_step() const& { return view(data_.next_steps(), {"next_step"}); }
-    /// Work since the start: accepted and rejected steps, steps redone to locate events, evaluations of rhs. A fixed
-    /// step is never rejected: one with a non-finite result ends the instance, and only its evaluations count. Throws
-    /// `error` if no call has counted. The first access to a counter that no call has used allocates memory.
+    /// Accepted steps since the start, per instance. A fixed step is never rejected: one with a non-finite result ends
+    /// the instance, and only its evaluations count. Throws `error` if no call has counted. The first access to a
+    /// counter that no call has used allocates memory.
     const_map<std::int64_t> accepted_steps() const& { return counter(0); }
+    /// Trial steps rejected by the error test since the start, per instance. As for `accepted_steps`.
     const_map<std::int64_t> rejected_steps() const& { return counter(1); }
+    /// Trial steps redone to locate events since the start, per instance. As for `accepted_steps`.
     const_map<std::int64_t> located_steps() const& { return counter(2); }
+    /// Evaluations of `rhs` since the start, per instance; those with dual numbers, for a Jacobian, are not counted. As
+    /// for `accepted_steps`.
     const_map<std::int64_t> rhs_evaluations() const& { return counter(3); }
+    /// Whether a call has counted steps and evaluations: `options::counting`.
     bool counted() const { return data_.counts(); }
     /// Dense output, if options::samples asked for any.
     const trajectory_samples<Model, R>& samples() const& { return samples_; }
@@ -243,6 +258,7 @@ private:
     // Behind host::ensemble_access.
     friend host::ensemble_access;
 
+    /// Adds the memory that a call allocates for `size` instances, except what `there`, if not null, has already.
     static void add_memory_of_call(host::memory_need& need, std::int64_t size, const ensemble* there, const options& o,
                                    host::step_sizes steps, bool scales) {
         host::ensemble_data<R>::add_memory_of_call(need, host::shape_of<Model>, size, there ? &there->data_ : nullptr,

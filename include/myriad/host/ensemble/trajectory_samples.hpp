@@ -21,8 +21,10 @@ namespace myriad {
 template <class Model, class R>
 class trajectory_samples {
 public:
+    /// An array of Eigen with one row per instance and one column per sample.
     using map = Eigen::Map<const Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic>>;
 
+    /// Made by `solve` and `solver`, for `size` instances.
     trajectory_samples() = default;
     trajectory_samples(const sample_options& o, std::int64_t size) : data_(detail::n_state<Model>, o, size) {}
 
@@ -33,8 +35,10 @@ public:
         return {data_.stored.data(), data_.size};
     }
     Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> stored() const&& = delete;
+    /// The times of the samples, in the model's unit of time; NaN beyond those stored.
     map time() const& { return map(data_.time.data(), data_.size, data_.capacity); }
     map time() const&& = delete;
+    /// State component c at those times; NaN beyond the samples stored. Throws `error` if it was not sampled.
     template <class C>
     map state(C c) const& {
         const std::int64_t number = host::state_numbering<Model>::index(c);
@@ -43,11 +47,15 @@ public:
     template <class C>
     map state(C) const&& = delete;
 
+    /// Whether no samples were asked for.
     bool empty() const { return data_.capacity == 0; }
     /// Whether samples with these options can be appended to the existing ones.
     bool fits(const sample_options& o) const { return o.capacity == data_.capacity && o.states == data_.chosen; }
+    /// Forgets all samples, as `ensemble::restart` does.
     void clear() { data_.clear(); }
+    /// Pins their memory, for copies from GPUs; used by the library.
     void pin(int device) { data_.pin(device); }
+    /// Passes their memory to a kernel; used by the library.
     void describe(detail::sample_arguments<Model, R>& a) {
         a.time = data_.time.data();
         a.values = data_.values.data();

@@ -22,6 +22,7 @@ public:
     /// One of them.
     class component {
     public:
+        /// From an enumerator, or a number counted from 0.
         template <class C>
         requires(std::is_enum_v<C> || std::is_integral_v<C>) component(C c)
             : number_(in_range(static_cast<std::int64_t>(c))) {
@@ -38,6 +39,7 @@ public:
         std::string_view enumeration_;
     };
 
+    /// Empty, or of the components in braces or in a vector.
     component_list() = default;
     component_list(std::initializer_list<component> all) {
         for (const component& c : all) push_back(c);
@@ -47,16 +49,22 @@ public:
         for (const C& c : all) push_back(c);
     }
 
+    /// Appends a component.
     void push_back(const component& c) {
         numbers_.push_back(c.number_);
         enumerations_.push_back(c.enumeration_);
     }
+    /// Whether there is none.
     bool empty() const { return numbers_.empty(); }
+    /// The number of components.
     std::size_t size() const { return numbers_.size(); }
     /// Number of the i-th component, and the name of its enumeration: empty for a plain number.
     int operator[](std::size_t i) const { return numbers_[i]; }
+    /// Name of the enumeration of the i-th component, as the compiler spells it; empty for a plain number.
     std::string_view enumeration(std::size_t i) const { return enumerations_[i]; }
+    /// Iterators over the numbers of the components.
     auto begin() const { return numbers_.begin(); }
+    /// The end of the numbers of the components.
     auto end() const { return numbers_.end(); }
     /// Whether both name the same components in the same order.
     bool operator==(const component_list& other) const { return numbers_ == other.numbers_; }

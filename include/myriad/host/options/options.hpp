@@ -19,10 +19,12 @@ namespace myriad {
 /// One value for all components, or one for each: `1e-9` or `{1e-9, 1e-6}`.
 class per_component {
 public:
+    /// One value for all components, or one for each.
     per_component(double value) : values_{value} {}
     per_component(std::initializer_list<double> values) : values_(values) {}
     per_component(std::vector<double> values) : values_(std::move(values)) {}
 
+    /// 1 for one value that holds for all components, otherwise the number of values.
     std::size_t size() const { return values_.size(); }
     /// The value of component i.
     double operator[](std::size_t i) const { return values_.size() == 1 ? values_[0] : values_.at(i); }
@@ -32,11 +34,15 @@ private:
 };
 
 /// Which sign changes of an event function count, in the direction of integration.
-enum class direction { falling = -1, either = 0, rising = 1 };
+enum class direction {
+    falling = -1,  ///< from positive to negative
+    either = 0,    ///< both
+    rising = 1,    ///< from negative to positive
+};
 
 /// How one event is detected.
 struct event_options {
-    myriad::direction direction = myriad::direction::either;
+    myriad::direction direction = myriad::direction::either;  ///< which crossings count
     double tolerance = 1e-6;      ///< an event is located where |g| is at most this; in units of the event function
     std::int64_t stop_after = 0;  ///< number of detections in a phase that ends it (`stopped_by_event`); 0: never
 };
@@ -44,28 +50,44 @@ struct event_options {
 /// Where a phase starts: at the instance's t_begin, or where the last phase ended, for phases that events or hooks end.
 /// Otherwise the first phase ends at t_end, and the others would have no length, which is refused: see
 /// `options::phase_length`.
-enum class phase_time { restart, carry_on };
+enum class phase_time {
+    restart,   ///< at t_begin
+    carry_on,  ///< where the last phase ended
+};
 /// The first step of a phase: `options::step` again, or what the last phase ended with.
-enum class phase_step { restart, carry_on };
+enum class phase_step {
+    restart,   ///< with `options::step`
+    carry_on,  ///< with the step size that the last phase would have tried next
+};
 /// Whether work is counted per instance (16 bytes each, 8 more with an adaptive method, 8 more with events).
-enum class counting { off, on };
+enum class counting {
+    off,  ///< no counters, no memory for them
+    on,   ///< counters per instance, and their sums in the report
+};
 /// Whether `solve` checks after the integration for stiffness, with some evaluations of rhs on the host, and for phases
 /// too long for Lyapunov exponents.
-enum class advice { off, on };
+enum class advice {
+    off,  ///< no checks
+    on,   ///< checks, and notes in the report if they find something
+};
 /// What to do with instances whose state, parameters or times are not finite, and with those that ended in an earlier
 /// call and whose state or parameters were set again without `ensemble::restart`: refuse the call; or mark the former
 /// `invalid_input`, leave the latter as they are, and run the others.
-enum class invalid_instances { refuse, mark };
+enum class invalid_instances {
+    refuse,  ///< throw `error` before any work
+    mark,    ///< give them the status `invalid_input`, and run the others
+};
 
 /// States, accessories and times to keep at the end of every phase from `from_phase` on (counted from 0 in each call).
 /// Nothing is recorded, and no memory allocated, unless something is chosen.
 struct record_options {
-    std::int64_t from_phase = 0;
-    component_list states = {};
-    component_list accessories = {};
-    component_list integer_accessories = {};
-    bool time = false;
+    std::int64_t from_phase = 0;              ///< first phase of the call that is recorded, counted from 0
+    component_list states = {};               ///< states to record
+    component_list accessories = {};          ///< accessories to record
+    component_list integer_accessories = {};  ///< integer accessories to record
+    bool time = false;                        ///< whether to record the time at the end of the phase
 
+    /// Whether nothing is recorded.
     bool empty() const { return states.empty() && accessories.empty() && integer_accessories.empty() && !time; }
 };
 
@@ -83,6 +105,7 @@ struct sample_options {
     double minimum_spacing = 0;                   ///< least time between samples by steps
     std::int64_t from_phase = 0;                  ///< first phase of the call that is sampled
 
+    /// Whether there are no samples.
     bool empty() const { return states.empty(); }
 };
 
@@ -97,17 +120,19 @@ struct options {
 
     double step =
         std::numeric_limits<double>::quiet_NaN();  ///< fixed step (must be given), or first step (default 1e-2)
-    double minimum_step = 0;                       ///< 0: the resolution of t
-    double maximum_step = std::numeric_limits<double>::infinity();
+    double minimum_step = 0;                       ///< smallest step size; 0: the resolution of t
+    double maximum_step = std::numeric_limits<double>::infinity();  ///< largest step size; infinity: no limit
     double growth_limit = 5;              ///< largest factor from one step to the next; rounded to single precision
-    double shrink_limit = 0.1;            ///< smallest factor, also rounded
+    double shrink_limit = 0.1;            ///< smallest factor from one step to the next, rounded in the same way
     std::int64_t max_steps = 10'000'000;  ///< trial steps per phase; an instance that needs more ends as `max_steps`
 
+    /// Where a phase starts.
     myriad::phase_time phase_time = myriad::phase_time::restart;
     /// Length of a phase; 0: up to t_end. With a length, time continues from phase to phase, whatever `phase_time`
     /// says, and each phase ends at the next of its instance's times t_begin + k phase_length (backwards: minus), or at
     /// t_end, which may be infinite. A phase that an event or a hook ends early leaves the rest to the next.
     double phase_length = 0;
+    /// The first step of a phase.
     myriad::phase_step phase_step = myriad::phase_step::restart;
 
     std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all
@@ -115,15 +140,17 @@ struct options {
     std::int64_t accumulation_limit = 50;  ///< actions of one event, without its function leaving its tolerance in
                                            ///< between, that end the instance as `event_accumulation`
 
-    record_options record = {};
-    sample_options samples = {};
-    myriad::counting counting = myriad::counting::on;
-    myriad::advice advice = myriad::advice::on;
+    record_options record = {};                        ///< what to keep at the end of every phase
+    sample_options samples = {};                       ///< dense output
+    myriad::counting counting = myriad::counting::on;  ///< whether work is counted per instance
+    myriad::advice advice = myriad::advice::on;        ///< whether to look for stiffness and for phases too long
+    /// What to do with instances whose inputs are not valid.
     myriad::invalid_instances invalid_instances = myriad::invalid_instances::refuse;
 
-    myriad::schedule schedule = myriad::schedule::automatic;
+    myriad::schedule schedule = myriad::schedule::automatic;  ///< order of the instances; changes no result
     std::int64_t block_size = 0;  ///< CUDA threads per block; 0: the size with the best occupancy
     std::int64_t chunk_size = 0;  ///< instances on a GPU at a time; 0: chosen so that transfers and kernels overlap
+    /// Where a GPU keeps shared parameters.
     myriad::shared_placement shared_placement = myriad::shared_placement::automatic;
 
     /// Called by `solve` from time to time, in the calling thread, with the number of instances done, which never

@@ -15,7 +15,13 @@ namespace myriad {
 /// instances than one for each thread of a warp on every warp scheduler, otherwise in_order. Kernels with fixed steps
 /// and without events and after_step always run in order on a GPU. With by_cost on the CPU, no instance is done before
 /// all have completed their first phase.
-enum class schedule : std::uint8_t { automatic, in_order, dynamic, by_cost };
+enum class schedule : std::uint8_t {
+    automatic,  ///< chosen by device, model and number of instances
+    in_order,   ///< by index, fixed beforehand
+    dynamic,    ///< by index, each lane or thread taking the next when it is done
+    by_cost,    ///< the most expensive first, by the trial steps of the first phase or of the last call
+};
+/// The name of a schedule, as in the code.
 constexpr const char* name_of(schedule s) {
     constexpr const char* names[] = {"automatic", "in_order", "dynamic", "by_cost"};
     return names[static_cast<int>(s)];

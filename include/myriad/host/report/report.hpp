@@ -25,23 +25,28 @@ namespace myriad {
 template <class Model, class R>
 class phase_records {
 public:
+    /// An array of Eigen with one row per instance and one column per recorded phase.
     template <class T>
     using map = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic>>;
 
+    /// Made by `solve` and `solver`, for `size` instances and `phases` phases.
     phase_records() = default;
     phase_records(const record_options& o, std::int64_t phases, std::int64_t size)
         : data_(host::shape_of<Model>, o, phases, size) {}
 
     /// Number of recorded phases.
     std::int64_t phases() const { return data_.phases; }
+    /// State component c at the end of each recorded phase. Throws `error` if it was not recorded.
     template <class C>
     map<R> state(C c) const& {
         return view(data_.values, data_.find(data_.state, host::state_numbering<Model>::index(c), "state"));
     }
+    /// Accessory c at the end of each recorded phase. Throws `error` if it was not recorded.
     template <class C>
     map<R> accessory(C c) const& {
         return view(data_.values, data_.find(data_.accessory, host::accessory_numbering<Model>::index(c), "accessory"));
     }
+    /// Integer accessory c at the end of each recorded phase. Throws `error` if it was not recorded.
     template <class C>
     map<std::int32_t> integer_accessory(C c) const& {
         return view(data_.integers,
@@ -63,6 +68,7 @@ public:
     /// Pins their memory, for copies from GPUs.
     void pin(int device) { data_.pin(device); }
 
+    /// Passes their memory to a kernel; used by the library.
     void describe(detail::record_arguments<Model, R>& a) {
         a.values = data_.values.data();
         a.integers = data_.integers.data();
@@ -90,7 +96,7 @@ private:
 /// The outcome of one call to solve: what `report_of` has, and the records.
 template <class Model, class R>
 struct report : report_of<R> {
-    phase_records<Model, R> records;
+    phase_records<Model, R> records;  ///< what `options::record` asked for
 };
 
 }  // namespace myriad

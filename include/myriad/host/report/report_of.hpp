@@ -22,30 +22,33 @@ namespace myriad {
 /// How the instances ended, the first failure with its inputs, the work.
 template <class R>
 struct report_of {
-    std::int64_t instances = 0;
+    std::int64_t instances = 0;                          ///< number of instances of the call
     std::array<std::int64_t, status_count> by_status{};  ///< number of instances with each status
 
-    std::int64_t first_failed = -1;  ///< index of the first instance with a failure status, or -1
-    myriad::status first_status = status::not_started;
-    R first_t = 0, first_t_begin = 0, first_t_end = 0;
+    std::int64_t first_failed = -1;                     ///< index of the first instance with a failure status, or -1
+    myriad::status first_status = status::not_started;  ///< its status
+    R first_t = 0;                                      ///< the time at which it failed
+    R first_t_begin = 0;                                ///< the begin of its time domain
+    R first_t_end = 0;                                  ///< the end of its time domain
     std::vector<R> first_state;  ///< its last finite state; empty if that or its parameters were set since it failed
-    std::vector<R> first_parameter;
+    std::vector<R> first_parameter;  ///< its parameters; empty in the same case
 
-    std::int64_t accepted_steps = 0;  ///< of all instances in this call; zero with `counting::off`
-    std::int64_t rejected_steps = 0;
-    std::int64_t located_steps = 0;  ///< trial steps redone to locate events
-    std::int64_t rhs_evaluations = 0;
-    std::int64_t lane_turns = 0;  ///< trial steps times lanes, including idle lanes
-    int lanes = 1;
-    int threads = 1;                 ///< that did some work; may be fewer than the device has
-    double seconds = 0;              ///< wall time of the integration, on a GPU with transfers
-    std::string device;              ///< its name, as in device::parse
-    std::string instruction_set;     ///< on the CPU, of the kernel that ran: avx512, avx2, sse2 or generic
-    cuda::kernel_facts kernel;       ///< on a GPU: the kernel's registers, block size and shared parameters
-    double kernel_seconds = 0;       ///< on a GPU: time of the kernels alone
-    std::vector<std::string> notes;  ///< tolerances raised; from `solve` also that the equations are stiff, or
-                                     ///< phases too long for the smallest Lyapunov exponent
+    std::int64_t accepted_steps = 0;   ///< of all instances in this call; zero with `counting::off`
+    std::int64_t rejected_steps = 0;   ///< trial steps that failed the error test, of all instances
+    std::int64_t located_steps = 0;    ///< trial steps redone to locate events
+    std::int64_t rhs_evaluations = 0;  ///< evaluations of `rhs`, of all instances
+    std::int64_t lane_turns = 0;       ///< trial steps times lanes, including idle lanes
+    int lanes = 1;                     ///< instances side by side in one pack, or CUDA threads in a block
+    int threads = 1;                   ///< that did some work; may be fewer than the device has
+    double seconds = 0;                ///< wall time of the integration, on a GPU with transfers
+    std::string device;                ///< its name, as in device::parse
+    std::string instruction_set;       ///< on the CPU, of the kernel that ran: avx512, avx2, sse2 or generic
+    cuda::kernel_facts kernel;         ///< on a GPU: the kernel's registers, block size and shared parameters
+    double kernel_seconds = 0;         ///< on a GPU: time of the kernels alone
+    std::vector<std::string> notes;    ///< tolerances raised; from `solve` also that the equations are stiff, or
+                                       ///< phases too long for the smallest Lyapunov exponent
 
+    /// Number of instances with that status.
     std::int64_t count(status s) const { return by_status[static_cast<std::size_t>(s)]; }
     /// Instances with a failure status.
     std::int64_t failed() const {

@@ -25,9 +25,9 @@ namespace myriad {
 
 /// What `solver::download` copies back, besides times, statuses, counters, records and samples, which it always does.
 struct components {
-    component_list states = {};
-    component_list accessories = {};
-    component_list integer_accessories = {};
+    component_list states = {};               ///< states to copy
+    component_list accessories = {};          ///< accessories to copy
+    component_list integer_accessories = {};  ///< integer accessories to copy
 };
 
 /// Up to `capacity` instances on a device, with pinned host memory. On a GPU, copies and kernels run one after the
@@ -62,7 +62,9 @@ public:
     solver(const solver&) = delete;
     solver& operator=(const solver&) = delete;
 
+    /// The largest number of instances.
     std::int64_t capacity() const { return instances_.size(); }
+    /// The device.
     const device& where() const { return where_; }
 
     /// The host's data, to be set: the next `integrate` needs an `upload` before it. Waits until no copy from or to

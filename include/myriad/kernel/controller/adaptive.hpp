@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Step-size control by the embedded error estimate: proposes a step, judges a trial, and says how long the next one is.
+// Adaptive steps by the embedded error estimate: proposes a step, judges the trial, and sets the next length.
 #pragma once
 
 #include "myriad/kernel/controller/fast_power.hpp"
@@ -8,124 +8,169 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// The next step of every lane: the one wanted, or what is left of the domain. A step that falls short of t_end by less
-/// than 1/1024 of itself is stretched, so that no sliver is left over; its error is tested like any other. The state
-/// advances by exactly the step by which t does, else the difference adds up over the steps.
-template <class Model, class Method, class S>
-MYRIAD_FUNCTION void propose_adaptive_step(integration_state<Model, Method, S>& s) {
-    using R = real_of<S>;
-    S remaining = s.data.t_end - s.data.t;
-    if constexpr (keeps_time_low<Model, Method, R>) remaining = remaining - s.time_low;
-    s.final_step = abs(remaining) <= abs(s.data.h_next) * S(R(1 + 1.0 / 1024));
-    S h = copysign(s.data.h_next, remaining);
-    if constexpr (!keeps_time_low<Model, Method, R>) h = (s.data.t + h) - s.data.t;
-    s.h = select(s.final_step, remaining, h);
-}
-
-/// Ends lanes that can make no step, as not_finite or singular_jacobian where that was why their last trial failed.
-template <class Model, class Method, class S>
-MYRIAD_FUNCTION void end_stuck_lanes(integration_state<Model, Method, S>& s, const mask_of<S>& stuck) {
-    if constexpr (solves_linear_systems<Method>)
-        s.end_lanes(stuck & s.last_not_finite & s.last_singular, status::singular_jacobian);  // the first status stands
-    s.end_lanes(stuck & s.last_not_finite, status::not_finite);
-    s.end_lanes(stuck & !s.last_not_finite, status::step_underflow);
-}
-
-/// Iterations of the loop after which a phase is looked at for whether it creeps.
-inline constexpr std::int32_t creep_interval = 1024;
-
-/// Whether lane i creeps up to where its right-hand side has no value: at the pace of its last `creep_interval`
-/// iterations, `max_steps` of them would take t neither to t_end, nor on by the time since t_begin or by the first
-/// step. Where t is finer than the state, a step too short to change the state is fine and the next, longer one is not,
-/// for ever. To be asked after every so many iterations: the ensemble's array of times, which is of no other use within
-/// a phase, holds t at the last look.
-template <class Model, class Method, class S>
-MYRIAD_FUNCTION bool creeps(const kernel_arguments<Model, real_of<S>>& args,
-                            const integration_state<Model, Method, S>& s, int i) {
-    using R = real_of<S>;
-    const std::int64_t index = s.instance[i];
-    const R t = get_lane(s.data.t, i), gained = abs(t - args.t[index]);
-    args.t[index] = t;
-    if (!get_lane(s.last_not_finite, i)) return false;
-    const R t_begin = args.t_begin != nullptr ? args.t_begin[index] : args.common_t_begin;
-    const R goal = min(abs(get_lane(s.data.t_end, i) - t), max(abs(t - t_begin), args.step));
-    return gained * (static_cast<R>(args.max_steps) / R(creep_interval)) < goal;
-}
-
 /// Binary logarithm of 1e-4, as in Hairer and Wanner's DOPRI5.
 inline constexpr double least_error_remembered = -13.2877;
 
-/// Accepts or rejects the trial of every lane and sets `data.h_next`, the elementary (I) controller of the MPGOS
-/// package: factor 0.9 q^(-1/(p+1)) after an accepted and 0.9 q^(-1/p) after a rejected step, with q the largest ratio
-/// of error to tolerance and p the order of the error estimate, kept within the options' limits (Hairer, Norsett,
-/// Wanner, Solving ODE I, II.4, eq. (4.13)); or the one chosen with `controlled`. Lanes whose trial is not finite (or
-/// not `valid`, or singular) are rejected with the smallest factor. Lanes that are rejected at the minimum step end; so
-/// do those in `may_stick` whose step does not advance (`t1`, at which it ends, is where it began). Returns the
-/// accepted lanes.
+/// Stepping (see stepping.hpp) with a step size of its own in every lane.
 template <class Model, class Method, class S>
-MYRIAD_FUNCTION mask_of<S> control_step(const kernel_arguments<Model, real_of<S>>& args,
-                                        integration_state<Model, Method, S>& s,
-                                        const trial_step<Method, S, n_state<Model>>& trial, const S& t1,
-                                        mask_of<S> valid, const mask_of<S>& may_stick) {
-    using C = control_of<S>;
-    using R = real_of<C>;
+struct adaptive_stepping {
+    using R = real_of<S>;
     using mask = mask_of<S>;
-    if constexpr (solves_linear_systems<Method>) valid = valid & !trial.singular;
-    error_norm<S> error = detail::scaled_error<Model, Method>(args, s.data.y, s.h, trial);
-    if constexpr (scales_tolerances<Method>)
-        error.worst = static_cast<C>(error_ratio(S(error.worst), s.tolerance_scale));
-    valid = valid & error.finite;
-    const mask within = valid & (error.worst <= C(R(1)));
-    mask accepted = s.running() & within;
-    constexpr int order = estimate_order<Method>;
-    const C shrink_limit = C(static_cast<R>(args.shrink_limit));
-    C factor;
-    if constexpr (remembers_errors<Method>) {
-        const C now = fast_log2(error.worst);
-        C sum = fma(C(R(Method::exponent_last)), s.errors.last, C(R(Method::exponent_now)) * now);
-        if constexpr (Method::exponent_before != 0) sum = fma(C(R(Method::exponent_before)), s.errors.before, sum);
-        factor = C(R(0.9)) * fast_exp2(select(within, sum * C(R(-1.0 / (order + 1))), now * C(R(-1.0 / order))));
-        // An error of zero counts as 1e-4: less would shorten the next steps for nothing.
-        s.errors.before = select(accepted, s.errors.last, s.errors.before);
-        s.errors.last = select(accepted, larger(now, C(R(least_error_remembered))), s.errors.last);
-    } else {
-        const C exponent = select(within, C(R(-1.0 / (order + 1))), C(R(-1.0 / order)));
-        factor = C(R(0.9)) * fast_power(error.worst, exponent);
-    }
-    factor = limited(factor, shrink_limit, C(static_cast<R>(args.growth_limit)));
+    static constexpr int n = n_state<Model>;
+    static constexpr bool keeps_low = keeps_time_low<Model, Method, R>;
+    static constexpr std::int32_t look_interval = 1024;
+    using C = control_of<S>;  // less precise in CUDA threads
+    using L = real_of<C>;
 
-    const mask rejected = s.running() & !within;
-    if (any(rejected)) {
-        const mask finite = valid & (error.worst > C(R(1))) & (error.worst <= C(largest_of<R>));
-        factor = select(within | finite, factor, shrink_limit);
-        // Of a few roundings of t, nine tenths may be the same step again.
-        const S rounding = S(epsilon_of<real_of<S>>) * abs(s.data.t);
-        if constexpr (!keeps_time_low<Model, Method, real_of<S>>)
-            factor = select(rejected & (abs(s.h) <= S(R(16)) * rounding), smaller(factor, C(R(0.45))), factor);
-        s.rejected = count_where(rejected, s.rejected);
-        // A step of length zero says nothing about why the one before it failed.
-        const mask moved = rejected & (s.h != S(real_of<S>(0)));
-        s.last_not_finite = select(moved, !finite, s.last_not_finite);
-        // No Jacobian can be had where the right-hand side itself is not finite.
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
+
+    MYRIAD_FUNCTION void load(int i) {
+        const std::int64_t index = s.instance[i];
+        set_lane(s.data.h_next, i, args.h_next[index]);
+        if constexpr (scales_tolerances<Method>) set_lane(s.control.tolerance_scale, i, args.tolerance_scale[index]);
+    }
+    MYRIAD_FUNCTION void store(int i) const { args.h_next[s.instance[i]] = get_lane(s.data.h_next, i); }
+
+    MYRIAD_FUNCTION void choose_step(int i, std::int32_t phase) {
+        // A method with fixed steps leaves no step size to carry on with.
+        const bool restart = !args.carry_step || phase == 0 || get_lane(s.data.h_next, i) == R(0);
+        if (restart) set_lane(s.data.h_next, i, args.step);
+    }
+    MYRIAD_FUNCTION void begin(int i, R t) {
+        if constexpr (chooses_first_step<Method>)
+            set_lane(s.control.first_step_open, i, get_lane(s.data.h_next, i) == R(0));
+        if constexpr (remembers_errors<Method>) {
+            set_lane(s.control.errors.last, i, 0);
+            set_lane(s.control.errors.before, i, 0);
+        }
+        set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), get_lane(s.data.t_end, i) - t));
+        s.bound_step(args, i);
+        set_lane(s.control.last_not_finite, i, false);
+    }
+    MYRIAD_FUNCTION void move(int, R) {}
+    MYRIAD_FUNCTION void resume(int i, R h) { set_lane(s.data.h_next, i, h); }
+    MYRIAD_FUNCTION R time(int i) const { return get_lane(s.data.t, i); }
+
+    /// The next step of every lane: the proposed one, or the rest of the domain. A step that falls short of t_end by
+    /// less than 1/1024 of itself is stretched, so that no sliver remains; its error is tested as usual. The state
+    /// advances by exactly the same step as t; otherwise the difference would accumulate.
+    MYRIAD_FUNCTION void propose() {
+        S remaining = s.data.t_end - s.data.t;
+        if constexpr (keeps_low) remaining = remaining - s.time_low;
+        s.final_step = abs(remaining) <= abs(s.data.h_next) * S(R(1 + 1.0 / 1024));
+        S h = copysign(s.data.h_next, remaining);
+        if constexpr (!keeps_low) h = (s.data.t + h) - s.data.t;
+        s.h = select(s.final_step, remaining, h);
+    }
+
+    MYRIAD_FUNCTION S end_time() const {
+        const S t1 = keeps_low ? s.data.t + (s.h + s.time_low) : s.data.t + s.h;
+        return select(s.final_step, s.data.t_end, t1);
+    }
+
+    /// Accepts or rejects the trial of every lane and sets `data.h_next`, by the elementary (I) controller of the MPGOS
+    /// package: factor 0.9 q^(-1/(p+1)) after an accepted and 0.9 q^(-1/p) after a rejected step, with q the largest
+    /// ratio of error to tolerance and p the order of the error estimate, within the options' limits (Hairer, Norsett,
+    /// Wanner, Solving ODE I, II.4, eq. (4.13)); or by the controller chosen with `controlled`. Lanes whose trial is
+    /// not finite (or not `valid`, or singular) are rejected with the smallest factor. Lanes rejected at the minimum
+    /// step end; so do those in `may_stick` whose step does not advance t (it ends, at `t1`, where it began). Returns
+    /// the accepted lanes.
+    MYRIAD_FUNCTION mask judge(const trial_step<Method, S, n>& trial, const S& t1, mask valid, const mask& may_stick) {
+        if constexpr (solves_linear_systems<Method>) valid = valid & !trial.singular;
+        error_norm<S> error = detail::scaled_error<Model, Method>(args, s.data.y, s.h, trial);
+        if constexpr (scales_tolerances<Method>)
+            error.worst = static_cast<C>(error_ratio(S(error.worst), s.control.tolerance_scale));
+        valid = valid & error.finite;
+        const mask within = valid & (error.worst <= C(L(1)));
+        mask accepted = s.running() & within;
+        C factor = factor_of_step(error.worst, within, accepted);
+        const mask rejected = s.running() & !within;
+        if (any(rejected)) {
+            const mask finite = valid & (error.worst > C(L(1))) & (error.worst <= C(largest_of<L>));
+            factor = select(within | finite, factor, C(static_cast<L>(args.shrink_limit)));
+            // At a few roundings of t, nine tenths of the step may round to the same step.
+            const S rounding = S(epsilon_of<R>) * abs(s.data.t);
+            if constexpr (!keeps_low)
+                factor = select(rejected & (abs(s.h) <= S(R(16)) * rounding), smaller(factor, C(L(0.45))), factor);
+            s.rejected = count_where(rejected, s.rejected);
+            // A step of length zero does not show why the previous one failed.
+            const mask moved = rejected & (s.h != S(R(0)));
+            s.control.last_not_finite = select(moved, !finite, s.control.last_not_finite);
+            // Where the right-hand side itself is not finite, there is no Jacobian.
+            if constexpr (solves_linear_systems<Method>)
+                s.control.last_singular =
+                    select(moved & !finite, trial.singular & all_finite(trial.k[0]), s.control.last_singular);
+            const mask smallest = rejected & (abs(s.h) <= S(args.minimum_step) + rounding);
+            if (MYRIAD_UNLIKELY(any(smallest))) end_stuck_lanes(smallest);
+        }
+        S next = s.h * S(factor);
+        const S minimum = S(args.minimum_step), maximum = S(args.maximum_step);
+        const mask ends = accepted & (t1 == s.data.t_end), stuck = may_stick & (t1 == s.data.t);
+        if (MYRIAD_UNLIKELY(any(ends | stuck | (s.running() & !clearly_between(minimum, next, maximum))))) {
+            S size = limited(abs(next), minimum, maximum);
+            // A step cut short by the end of the domain says little about the step size to continue with.
+            size = select(ends, larger(size, abs(s.data.h_next)), size);
+            next = copysign(size, s.h);
+            s.rejected = count_where(stuck & accepted, s.rejected);
+            accepted = accepted & !stuck;
+            end_stuck_lanes(stuck);
+        }
+        s.data.h_next = select(s.running(), next, s.data.h_next);
+        return accepted;
+    }
+
+    MYRIAD_FUNCTION void advance(const mask& accepted, const S& t1, const mask&) {
+        if constexpr (keeps_low) s.time_low = select(accepted, (s.h + s.time_low) - (t1 - s.data.t), s.time_low);
+        s.data.t = select(accepted, t1, s.data.t);
+        // The last step ends there; an earlier one may, by rounding or at an event.
+        s.ended = s.ended | (accepted & (t1 == s.data.t_end));
+    }
+
+    /// Whether lane i creeps towards a point where its right-hand side has no value: at the pace of its last
+    /// `look_interval` iterations, `max_steps` of them would take t neither to t_end, nor on by the time since t_begin
+    /// or by the first step. Where t is finer than the state, a step too short to change the state succeeds and the
+    /// next, longer one fails, for ever. To be called after that many iterations each time: the ensemble's array of
+    /// times, unused within a phase, holds t at the last check.
+    MYRIAD_FUNCTION bool creeps(int i) {
+        const std::int64_t index = s.instance[i];
+        const R t = get_lane(s.data.t, i), gained = abs(t - args.t[index]);
+        args.t[index] = t;
+        if (!get_lane(s.control.last_not_finite, i)) return false;
+        const R t_begin = args.t_begin != nullptr ? args.t_begin[index] : args.common_t_begin;
+        const R goal = min(abs(get_lane(s.data.t_end, i) - t), max(abs(t - t_begin), args.step));
+        return gained * (static_cast<R>(args.max_steps) / R(look_interval)) < goal;
+    }
+
+private:
+    /// The ratio of the next step to the last one, from `worst`, the ratio of error to tolerance.
+    MYRIAD_FUNCTION C factor_of_step(const C& worst, const mask& within, const mask& accepted) {
+        constexpr int order = estimate_order<Method>;
+        const L after_accepted = L(-1.0 / (order + 1)), after_rejected = L(-1.0 / order);
+        C factor;
+        if constexpr (remembers_errors<Method>) {
+            auto& errors = s.control.errors;
+            const C now = fast_log2(worst);
+            C sum = fma(C(L(Method::exponent_last)), errors.last, C(L(Method::exponent_now)) * now);
+            if constexpr (Method::exponent_before != 0) sum = fma(C(L(Method::exponent_before)), errors.before, sum);
+            factor = C(L(0.9)) * fast_exp2(select(within, sum * C(after_accepted), now * C(after_rejected)));
+            // An error of zero counts as 1e-4: a smaller one would shorten the next steps needlessly.
+            errors.before = select(accepted, errors.last, errors.before);
+            errors.last = select(accepted, larger(now, C(L(least_error_remembered))), errors.last);
+        } else {
+            factor = C(L(0.9)) * fast_power(worst, select(within, C(after_accepted), C(after_rejected)));
+        }
+        return limited(factor, C(static_cast<L>(args.shrink_limit)), C(static_cast<L>(args.growth_limit)));
+    }
+
+    /// Ends lanes that cannot step, as not_finite or singular_jacobian if that is why their last trial failed.
+    MYRIAD_FUNCTION void end_stuck_lanes(const mask& stuck) {
         if constexpr (solves_linear_systems<Method>)
-            s.last_singular = select(moved & !finite, trial.singular & all_finite(trial.k[0]), s.last_singular);
-        const mask smallest = rejected & (abs(s.h) <= S(args.minimum_step) + rounding);
-        if (MYRIAD_UNLIKELY(any(smallest))) detail::end_stuck_lanes(s, smallest);
+            s.end_lanes(stuck & s.control.last_not_finite & s.control.last_singular,
+                        status::singular_jacobian);  // the first status stands
+        s.end_lanes(stuck & s.control.last_not_finite, status::not_finite);
+        s.end_lanes(stuck & !s.control.last_not_finite, status::step_underflow);
     }
-    S next = s.h * S(factor);
-    const S minimum = S(args.minimum_step), maximum = S(args.maximum_step);
-    const mask ends = accepted & (t1 == s.data.t_end), stuck = may_stick & (t1 == s.data.t);
-    if (MYRIAD_UNLIKELY(any(ends | stuck | (s.running() & !clearly_between(minimum, next, maximum))))) {
-        S size = limited(abs(next), minimum, maximum);
-        // A step cut short by the end of the domain says little about the step size that goes on from there.
-        size = select(ends, larger(size, abs(s.data.h_next)), size);
-        next = copysign(size, s.h);
-        s.rejected = count_where(stuck & accepted, s.rejected);
-        accepted = accepted & !stuck;
-        detail::end_stuck_lanes(s, stuck);
-    }
-    s.data.h_next = select(s.running(), next, s.data.h_next);
-    return accepted;
-}
+};
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

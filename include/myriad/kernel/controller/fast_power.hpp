@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A power for the step-size control, where four digits are enough: exponent bits and short polynomials instead of pow,
-// which would cost as much as a right-hand side. Plain reals and packs give the same bits.
+// A power function for step-size control, where four digits are enough: exponent bits and short polynomials instead of
+// pow, which would cost as much as a right-hand side. Plain reals and packs give the same bits.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ template <>
 struct float_format<double> {
     static constexpr int mantissa = 52;
     static constexpr std::uint64_t one = 0x3ff0000000000000, mantissa_mask = 0x000fffffffffffff;
-    static constexpr std::uint64_t magic_bits = 0x4330000000000000;  // 2^52: an integer below it is its mantissa
+    static constexpr std::uint64_t magic_bits = 0x4330000000000000;  // 2^52, whose mantissa counts units
     static constexpr double magic = 4503599627370496.0, bias = 1023;
 };
 template <>
@@ -27,11 +27,11 @@ struct float_format<float> {
     static constexpr float magic = 8388608.0f, bias = 127;
 };
 
-// Both polynomials by Estrin's scheme, as the next step waits for them: Horner's costs a tenth of the time of a cheap
-// step.
+// Both polynomials use Estrin's scheme, as the next step waits for them: with Horner's, a cheap step takes a tenth
+// longer.
 
-/// log2(x) of one real or one SIMD batch of positive normal numbers. Chebyshev fit on [1, 2) within 1.6e-5. The shift
-/// is one of unsigned numbers, as AVX2 has no other for 64 bits.
+/// log2(x) of a real or a SIMD batch, positive and normal. Chebyshev fit on [1, 2) within 1.6e-5. The shift is
+/// unsigned, as AVX2 has no arithmetic shift for 64 bits.
 template <class B>
 MYRIAD_FUNCTION B fast_log2_of(const B& x) {
     using A = arithmetic<B>;
@@ -47,7 +47,7 @@ MYRIAD_FUNCTION B fast_log2_of(const B& x) {
     const B high = A::multiply_add(B(R(0.0439286278)), m, B(R(-0.409475586)));
     return A::multiply_add(m2, A::multiply_add(m2, high, middle), low);
 }
-/// 2^z likewise. Chebyshev fit on [-1/2, 1/2] within 4e-6.
+/// 2^z in the same way. Chebyshev fit on [-1/2, 1/2] within 4e-6.
 template <class B>
 MYRIAD_FUNCTION B fast_exp2_of(const B& z) {
     using A = arithmetic<B>;
@@ -61,7 +61,7 @@ MYRIAD_FUNCTION B fast_exp2_of(const B& z) {
     return A::from_bits(A::to_bits(power) + (A::to_bits(shifted) << float_format<R>::mantissa));
 }
 
-/// Calls `part(x)` for a real, or for every batch of a pack.
+/// Calls `part(x)` for a real, or for each batch of a pack.
 template <class S, class Part>
 MYRIAD_FUNCTION S part_by_part(const S& x, Part&& part) {
     if constexpr (lanes_of<S> == 1) {
@@ -75,11 +75,11 @@ MYRIAD_FUNCTION S part_by_part(const S& x, Part&& part) {
     }
 }
 
-/// The binary logarithm within about 2e-5, for x within the range of normal numbers.
+/// log2(x) within about 2e-5, for normal x.
 template <class S>
 MYRIAD_FUNCTION S fast_log2(const S& x) {
 #if defined(__CUDA_ARCH__)
-    float y;  // without the instructions that subnormal numbers take
+    float y;  // without the extra instructions for subnormal numbers
     asm("lg2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(static_cast<float>(x)));
     return static_cast<S>(y);
 #else
@@ -87,7 +87,7 @@ MYRIAD_FUNCTION S fast_log2(const S& x) {
 #endif
 }
 
-/// 2^z within a relative error of about 4e-6, for results within the range of normal numbers.
+/// 2^z within a relative error of about 4e-6, for normal results.
 template <class S>
 MYRIAD_FUNCTION S fast_exp2(const S& z) {
 #if defined(__CUDA_ARCH__)
@@ -99,7 +99,7 @@ MYRIAD_FUNCTION S fast_exp2(const S& z) {
 #endif
 }
 
-/// x^exponent within a relative error of about 2e-5, for x and the result within the range of normal numbers.
+/// x^exponent within a relative error of about 2e-5, for normal x and results.
 template <class S>
 MYRIAD_FUNCTION S fast_power(const S& x, const S& exponent) {
     return fast_exp2(exponent * fast_log2(x));

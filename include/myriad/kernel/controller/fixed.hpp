@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fixed steps: how many there are in a domain and which is the last.
+// Fixed steps: their number in a domain, and the last one.
 #pragma once
 
 #include <limits>
@@ -9,7 +9,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// base + done * step - t, without the rounding of such times: that of base - t is added (Knuth, The Art of Computer
+/// base + done * step - t, without the rounding error of base - t, which is added back (Knuth, The Art of Computer
 /// Programming 2, 4.2.2, theorem B).
 template <class R>
 MYRIAD_FUNCTION R elapsed_beyond(R base, R t, R done, R step) {
@@ -19,81 +19,132 @@ MYRIAD_FUNCTION R elapsed_beyond(R base, R t, R done, R step) {
     return fma(done, step, difference) + rounding;
 }
 
-/// Lays the steps of lane i from t to t_end: their number, and the last one, which ends exactly at t_end. A domain that
-/// is a whole number of steps up to rounding gets that number, without a sliver at the end.
+/// Stepping (see stepping.hpp) with one step size for all lanes, except for the last step and those to events.
 template <class Model, class Method, class S>
-MYRIAD_FUNCTION void lay_fixed_steps(const kernel_arguments<Model, real_of<S>>& args,
-                                     integration_state<Model, Method, S>& s, int i, real_of<S> t) {
+struct fixed_stepping {
     using R = real_of<S>;
-    // Past it counts are no longer exact; options::max_steps, which is checked to be smaller, ends the phase before.
-    constexpr R most = std::numeric_limits<R>::digits > 31 ? R(2147483647) : R(16777216);
-    const R t_end = get_lane(s.data.t_end, i);
-    const R signed_step = copysign(args.step, t_end - t);
-    const R ratio = abs(t_end - t) / args.step;
-    const R steps = -floor(R(1e-6) - ratio * (R(1) - R(4) * epsilon_of<R>));
-    const R bounded = min(max(steps, R(1)), most);
-    args.t[s.instance[i]] = t;
-    set_lane(s.base, i, t);
-    set_lane(s.step, i, signed_step);
-    set_count(s.done, i, 0);
-    set_count(s.left, i, bounded);
-}
+    using mask = mask_of<S>;
+    using count = count_of<S>;
+    static constexpr int n = n_state<Model>;
+    static constexpr bool keeps_low = keeps_time_low<Model, Method, R>;
+    static constexpr std::int32_t look_interval = 0;
 
-/// Lays the steps of lane i anew from t, where it is after `done` steps up to rounding, which time_low keeps, or after
-/// the last one.
-template <class Model, class Method, class S>
-MYRIAD_FUNCTION void move_fixed_steps(const kernel_arguments<Model, real_of<S>>& args,
-                                      integration_state<Model, Method, S>& s, int i, real_of<S> t) {
-    using R = real_of<S>;
-    const R taken =
-        detail::elapsed_beyond(get_lane(s.base, i), t, static_cast<R>(get_lane(s.done, i)), get_lane(s.step, i));
-    set_lane(s.time_low, i, get_lane(s.left, i) == 0 ? R(0) : get_lane(s.time_low, i) + taken);
-    detail::lay_fixed_steps(args, s, i, t);
-}
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
 
-/// Where lane i's phase is to end, for rare use: from the ensemble, so that it need not stay in a register. With
-/// events, which compare it with t at every step, it does.
-template <class Model, class Method, class S>
-MYRIAD_FUNCTION real_of<S> domain_end(const kernel_arguments<Model, real_of<S>>& args,
-                                      const integration_state<Model, Method, S>& s, int i) {
-    if constexpr (writes_time_domain<Model> || has_events<Model>) {
-        return get_lane(s.data.t_end, i);
-    } else {
-        const bool own = args.t_end != nullptr;
-        const auto t_end = own ? args.t_end[s.instance[i]] : args.common_t_end;
-        if (args.phase_length == real_of<S>(0)) return t_end;
-        const auto t_begin = own ? args.t_begin[s.instance[i]] : args.common_t_begin;
-        return detail::interval_from(args, args.t[s.instance[i]], t_begin, t_end)
-            .end;  // where the steps were laid from
+    MYRIAD_FUNCTION void load(int) {}
+    MYRIAD_FUNCTION void store(int) const {}
+
+    MYRIAD_FUNCTION void choose_step(int i, std::int32_t) { set_lane(s.data.h_next, i, args.step); }
+    MYRIAD_FUNCTION void begin(int i, R t) {
+        lay(i, t);
+        set_lane(s.data.h_next, i, get_lane(s.steps.step, i));
     }
-}
-
-/// Time of lane i's committed state. For rare use: from the ensemble's array, so that a model whose right-hand side
-/// does not depend on time keeps none in its registers. Exactly t_end after the last step.
-template <class Model, class Method, class S>
-MYRIAD_FUNCTION real_of<S> fixed_step_time(const kernel_arguments<Model, real_of<S>>& args,
-                                           const integration_state<Model, Method, S>& s, int i) {
-    using R = real_of<S>;
-    if (get_lane(s.left, i) == 0) return detail::domain_end(args, s, i);
-    return fma(static_cast<R>(get_lane(s.done, i)), get_lane(s.step, i), args.t[s.instance[i]]);
-}
-
-/// The next step of every lane: the fixed one, or what is left of the domain.
-template <class Model, class Method, class S>
-MYRIAD_FUNCTION void propose_fixed_step(const kernel_arguments<Model, real_of<S>>& args,
-                                        integration_state<Model, Method, S>& s) {
-    using count = typename integration_state<Model, Method, S>::count;
-    s.final_step = s.left <= count(1);
-    s.h = s.step;
-    if (MYRIAD_UNLIKELY(any(s.final_step))) {
-        using R = real_of<S>;
-        for_each_lane(s.running() & s.final_step, [&](int i) MYRIAD_LAMBDA {
-            R beyond = detail::elapsed_beyond(args.t[s.instance[i]], detail::domain_end(args, s, i),
-                                              static_cast<R>(get_lane(s.done, i)), get_lane(s.step, i));
-            if constexpr (keeps_time_low<Model, Method, R>) beyond += get_lane(s.time_low, i);
-            set_lane(s.h, i, -beyond);
-        });
+    /// Lays out the steps of lane i again from t, its time after `done` steps up to rounding, which time_low keeps, or
+    /// after the last step.
+    MYRIAD_FUNCTION void move(int i, R t) {
+        const R taken = detail::elapsed_beyond(get_lane(s.steps.base, i), t, static_cast<R>(get_lane(s.steps.done, i)),
+                                               get_lane(s.steps.step, i));
+        set_lane(s.time_low, i, get_lane(s.steps.left, i) == 0 ? R(0) : get_lane(s.time_low, i) + taken);
+        lay(i, t);
     }
-}
+
+    MYRIAD_FUNCTION void resume(int, R) {}
+    /// Time of lane i's committed state, exactly t_end after the last step. For rare use: it reads the ensemble's
+    /// array, so that models whose right-hand side does not depend on time keep no time in registers.
+    MYRIAD_FUNCTION R time(int i) const {
+        if (get_lane(s.steps.left, i) == 0) return domain_end(i);
+        return fma(static_cast<R>(get_lane(s.steps.done, i)), get_lane(s.steps.step, i), args.t[s.instance[i]]);
+    }
+
+    /// The next step of every lane: the fixed one, or the rest of the domain.
+    MYRIAD_FUNCTION void propose() {
+        s.final_step = s.steps.left <= count(1);
+        s.h = s.steps.step;
+        if (MYRIAD_UNLIKELY(any(s.final_step))) {
+            for_each_lane(s.running() & s.final_step, [&](int i) MYRIAD_LAMBDA {
+                R beyond = detail::elapsed_beyond(args.t[s.instance[i]], domain_end(i),
+                                                  static_cast<R>(get_lane(s.steps.done, i)), get_lane(s.steps.step, i));
+                if constexpr (keeps_low) beyond += get_lane(s.time_low, i);
+                set_lane(s.h, i, -beyond);
+            });
+        }
+    }
+
+    MYRIAD_FUNCTION S end_time() const {
+        // bit for bit the time at which the next step begins, so that it can reuse the slope
+        S t1 = fma(S(s.steps.done + count(1)), s.steps.step, s.steps.base);
+        if constexpr (has_events<Model>) {
+            const S redone = s.now() + (s.h + s.time_low);  // a step redone to an event
+            t1 = select(s.h == s.steps.step, t1, redone);
+        }
+        return select(s.final_step, s.data.t_end, t1);
+    }
+
+    MYRIAD_FUNCTION mask judge(const trial_step<Method, S, n>& trial, const S&, const mask& valid, const mask&) {
+        const mask finite = valid & all_finite(trial.y);
+        const mask failed = s.running() & !finite;
+        if (MYRIAD_UNLIKELY(any(failed))) {
+            s.rejected = count_where(failed, s.rejected);
+            s.end_lanes(failed, status::not_finite);
+        }
+        return s.running() & finite;
+    }
+
+    MYRIAD_FUNCTION void advance(const mask& accepted, const S& t1, const mask& at_event) {
+        s.steps.done = count_where(accepted, s.steps.done);
+        s.steps.left = select(accepted, s.steps.left - count(1), s.steps.left);
+        if constexpr (has_events<Model>) {
+            for_each_lane(accepted & at_event & !s.final_step, [&](int i) MYRIAD_LAMBDA {
+                // the last step taken was shorter than the others
+                set_lane(s.time_low, i, get_lane(s.time_low, i) + (get_lane(s.h, i) - get_lane(s.steps.step, i)));
+                move(i, get_lane(t1, i));
+            });
+        }
+        if constexpr (shows_time) {
+            s.data.t = s.now();
+            for_each_lane(accepted & s.final_step, [&](int i) MYRIAD_LAMBDA { set_lane(s.data.t, i, domain_end(i)); });
+        }
+        s.ended = s.ended | (accepted & s.final_step);
+        if constexpr (has_events<Model>) s.ended = s.ended | (accepted & at_event & (s.data.t == s.data.t_end));
+    }
+
+    MYRIAD_FUNCTION bool creeps(int) { return false; }
+
+private:
+    /// The number of steps gives the time; it is only stored if something reads it.
+    static constexpr bool shows_time = has_after_step<Model> || has_events<Model>;
+
+    /// Divides the domain of lane i, from t to t_end, into steps, the last ending exactly at t_end. A domain that is a
+    /// whole number of steps up to rounding gets that number, without a sliver at the end.
+    MYRIAD_FUNCTION void lay(int i, R t) {
+        // Beyond this, counts are inexact; options::max_steps, which is checked to be smaller, ends the phase before.
+        constexpr R most = std::numeric_limits<R>::digits > 31 ? R(2147483647) : R(16777216);
+        const R t_end = get_lane(s.data.t_end, i);
+        const R signed_step = copysign(args.step, t_end - t);
+        const R ratio = abs(t_end - t) / args.step;
+        const R steps = -floor(R(1e-6) - ratio * (R(1) - R(4) * epsilon_of<R>));
+        const R bounded = min(max(steps, R(1)), most);
+        args.t[s.instance[i]] = t;
+        set_lane(s.steps.base, i, t);
+        set_lane(s.steps.step, i, signed_step);
+        set_count(s.steps.done, i, 0);
+        set_count(s.steps.left, i, bounded);
+    }
+
+    /// The end of lane i's phase, for rare use: read from the ensemble, so that it need not stay in a register. With
+    /// events, which compare it with t at every step, it stays there.
+    MYRIAD_FUNCTION R domain_end(int i) const {
+        if constexpr (writes_time_domain<Model> || has_events<Model>) {
+            return get_lane(s.data.t_end, i);
+        } else {
+            const bool own = args.t_end != nullptr;
+            const auto t_end = own ? args.t_end[s.instance[i]] : args.common_t_end;
+            if (args.phase_length == R(0)) return t_end;
+            const auto t_begin = own ? args.t_begin[s.instance[i]] : args.common_t_begin;
+            return detail::interval_from(args, args.t[s.instance[i]], t_begin, t_end).end;  // where the steps begin
+        }
+    }
+};
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The first step of a phase where the user gave none: from the size of the slope and of its change.
+// The first step of a phase if the user gave none: from the size of the slope and of its change.
 #pragma once
 
 #include "myriad/kernel/controller/norm.hpp"
@@ -8,37 +8,38 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Sets `data.h_next` of the lanes whose first step is open. Hairer, Norsett, Wanner, Solving ODE I, II.4, "Starting
-/// step size", with the largest component for the norm: an Euler step that changes y by a hundredth of its size tells
-/// how fast the slope changes; the step's own leading error term is to be a hundredth of the tolerance.
+/// step size", in the maximum norm: an Euler step that changes y by a hundredth of its size shows how fast the slope
+/// changes; the leading error term of the first step is to be a hundredth of the tolerance.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION void choose_first_step(const kernel_arguments<Model, real_of<S>>& args,
                                        integration_state<Model, Method, S>& s, const mask_of<S>& open) {
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
-    s.renew_slope(open);
+    s.slopes.renew(open, s.now(), s.data, s.extra_evaluations);
+    const vec<S, n> slope0 = s.slopes.start();
     const S direction = copysign(S(R(1)), s.data.t_end - s.data.t);
     S scale[n], d0 = S(R(0)), d1 = S(R(0)), d2 = S(R(0));
     MYRIAD_UNROLL
     for (int c = 0; c < n; ++c) {
         scale[c] = fma(S(args.relative_tolerance[c]), abs(s.data.y[c]), S(args.absolute_tolerance[c]));
-        if constexpr (scales_tolerances<Method>) scale[c] = scale[c] * s.tolerance_scale;
+        if constexpr (scales_tolerances<Method>) scale[c] = scale[c] * s.control.tolerance_scale;
         d0 = larger(abs(s.data.y[c]) / scale[c], d0);
-        d1 = larger(abs(s.slope[c]) / scale[c], d1);
+        d1 = larger(abs(slope0[c]) / scale[c], d1);
     }
     const mask_of<S> tiny = (d0 < S(R(1e-5))) | (d1 < S(R(1e-5)));
     const S h0 = select(tiny, S(R(1e-6)), S(R(0.01)) * d0 / d1);
     vec<S, n> y;
     MYRIAD_UNROLL
-    for (int c = 0; c < n; ++c) y[c] = fma(direction * h0, s.slope[c], s.data.y[c]);
+    for (int c = 0; c < n; ++c) y[c] = fma(direction * h0, slope0[c], s.data.y[c]);
     const auto slope = detail::evaluate_rhs<Model>(fma(direction, h0, s.data.t), y, s.data);
     s.extra_evaluations = count_where(open, s.extra_evaluations);
     MYRIAD_UNROLL
-    for (int c = 0; c < n; ++c) d2 = larger(abs(slope[c] - s.slope[c]) / (scale[c] * h0), d2);
+    for (int c = 0; c < n; ++c) d2 = larger(abs(slope[c] - slope0[c]) / (scale[c] * h0), d2);
     const S most = larger(d1, d2);
     const S power = S(fast_power(S(R(0.01)) / most, S(R(1.0 / (estimate_order<Method> + 1)))));
     const S h1 = select(most <= S(R(1e-15)), larger(S(R(1e-6)), h0 * S(R(1e-3))), power);
     S h = smaller(S(R(100)) * h0, h1);
-    h = select(h > S(R(0)), h, S(R(1e-6)));  // the slope was NaN: the trial step will say so
+    h = select(h > S(R(0)), h, S(R(1e-6)));  // the slope is NaN: the trial step will report it
     h = limited(h, S(args.minimum_step), S(args.maximum_step));
     s.data.h_next = select(open, direction * h, s.data.h_next);
 }

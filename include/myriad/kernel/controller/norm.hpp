@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The size of an error estimate against the tolerances: the largest component, as in the MPGOS package, or their root
-// mean square.
+// The error estimate relative to the tolerances: the largest component, as in the MPGOS package, or the root mean
+// square.
 #pragma once
 
 #include "myriad/kernel/methods/controller_policies.hpp"
@@ -10,7 +10,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// |error| / scale. In CUDA threads within 1e-6, over the whole range of S but for a scale that is subnormal.
+/// |error| / scale. In CUDA threads within 1e-6, over the whole range of S except for a subnormal scale.
 template <class S>
 MYRIAD_FUNCTION S error_ratio(const S& error, const S& scale) {
 #if defined(__CUDA_ARCH__)
@@ -26,17 +26,17 @@ MYRIAD_FUNCTION S error_ratio(const S& error, const S& scale) {
 #endif
 }
 
-/// max(|a|, |b|) of a finite a; not finite where b is not.
+/// max(|a|, |b|) for a finite a; not finite if b is not.
 template <class S>
 MYRIAD_FUNCTION S larger_magnitude(const S& a, const S& b) {
     return larger(abs(a), abs(b));
 }
-/// max(a, b) of a number a that is not negative; NaN where b is.
+/// max(a, b) for a non-negative number a; NaN if b is.
 template <class S>
 MYRIAD_FUNCTION S larger_scale(const S& a, const S& b) {
     return larger(a, b);
 }
-/// The largest of numbers that are not negative; NaN where one is.
+/// The largest of non-negative numbers; NaN if one of them is.
 template <class S, int n>
 MYRIAD_FUNCTION S largest_ratio(const vec<S, n>& a) {
     S largest = a[0], sum = a[0];
@@ -48,22 +48,22 @@ MYRIAD_FUNCTION S largest_ratio(const vec<S, n>& a) {
     if constexpr (n == 1) return largest;
     return select(sum == sum, largest, sum);
 }
-/// Whether a state that is not finite makes its ratio NaN all by itself.
+/// Whether a state that is not finite makes its ratio NaN without a separate check.
 template <class S>
 inline constexpr bool tells_infinity = false;
 
 #if defined(__CUDA_ARCH__)
 // The same in CUDA threads: the larger of two numbers by the upper halves of their bits, off the floating-point pipe.
-// The lower halves are left out, which is 1e-6 of the number's size.
+// Leaving out the lower halves changes a number by at most 1e-6 of its size.
 
 template <>
 inline constexpr bool tells_infinity<double> = true;
 
 MYRIAD_FUNCTION double larger_magnitude(const double& a, const double& b) {
-    // with a lower half that makes NaN of infinity
+    // with a lower half that turns infinity into NaN
     return __hiloint2double(::max(__double2hiint(a) & 0x7fffffff, __double2hiint(b) & 0x7fffffff), 1);
 }
-/// A NaN's bits, taken for an unsigned integer, are above those of infinity.
+/// As an unsigned integer, a NaN's bits are above those of infinity.
 MYRIAD_FUNCTION double larger_scale(const double& a, const double& b) {
     const unsigned upper = ::max(static_cast<unsigned>(__double2hiint(a)), static_cast<unsigned>(__double2hiint(b)));
     return __hiloint2double(static_cast<int>(upper), 0);
@@ -77,18 +77,18 @@ MYRIAD_FUNCTION double largest_ratio(const vec<double, n>& a) {
 }
 #endif
 
-/// What the errors of a trial are compared with.
+/// The values with which the errors of a trial are compared.
 template <class S, int n>
 struct error_scale {
-    vec<S, n> of;       // max(atol, rtol * max(|y|, |y1|)), or what was chosen instead
-    mask_of<S> finite;  // no component of y1 is infinite; one that is NaN makes its ratio NaN
+    vec<S, n> of;       // max(atol, rtol * max(|y|, |y1|)), or the chosen alternative
+    mask_of<S> finite;  // no component of y1 is infinite; a NaN makes its ratio NaN
 };
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION error_scale<S, n_state<Model>> scale_of_errors(const kernel_arguments<Model, real_of<S>>& args,
                                                                const vec<S, n_state<Model>>& y,
                                                                const vec<S, n_state<Model>>& y1) {
     error_scale<S, n_state<Model>> scale;
-    S largest = S(real_of<S>(0));  // which may pass over NaN
+    S largest = S(real_of<S>(0));  // may skip NaN
     MYRIAD_UNROLL
     for (int c = 0; c < n_state<Model>; ++c) {
         const S atol = S(args.absolute_tolerance[c]), rtol = S(args.relative_tolerance[c]);
@@ -104,7 +104,7 @@ MYRIAD_FUNCTION error_scale<S, n_state<Model>> scale_of_errors(const kernel_argu
     return scale;
 }
 
-/// The largest of the components' |factor * sum(c)| over their scales, or what was chosen instead; NaN where one is.
+/// The largest |factor * sum(c)| / scale over the components, or the chosen norm; NaN if one of them is.
 template <class Method, class S, int n, class Sum>
 MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const S& factor, Sum&& sum) {
     using C = control_of<S>;
@@ -127,12 +127,13 @@ MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const
 
 template <class S>
 struct error_norm {
-    control_of<S> worst;  // largest ratio of error to tolerance; NaN where one of them is
+    control_of<S> worst;  // largest ratio of error to tolerance; NaN if one of them is
     mask_of<S> finite;    // no new value is infinite
 };
 
 /// The size of a trial's error. Two estimates of orders q and q - 2 are combined into e_q^2 / sqrt(e_q^2 + 0.01
-/// e_(q-2)^2), which falls with h as one of order q + 2 (Hairer, Norsett, Wanner, Solving ODE I, II.10, for DOP853).
+/// e_(q-2)^2), which decreases with h like one of order q + 2 (Hairer, Norsett, Wanner, Solving ODE I, II.10, for
+/// DOP853).
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of<S>>& args,
                                            const vec<S, n_state<Model>>& y, const S& h,
@@ -149,11 +150,11 @@ MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of
         using C = control_of<S>;
         using R = real_of<C>;
         const C coarse = worst_of(constant_index<row_of<Method>::coarse_error>{});
-        // e / sqrt(1 + (0.1 c / e)^2); the estimates of an exact step are both zero
+        // e / sqrt(1 + (0.1 c / e)^2); both estimates of an exact step are zero
         const C steepness = quotient(C(R(0.1)) * coarse, norm.worst);
         const C combined = norm.worst * inverse_root(fma(steepness, steepness, C(R(1))));
         norm.worst = select(norm.worst > C(R(0)), combined, norm.worst);
-        norm.finite = norm.finite & (coarse <= C(largest_of<R>));  // an infinite one says nothing
+        norm.finite = norm.finite & (coarse <= C(largest_of<R>));  // an infinite estimate tells nothing
     }
     return norm;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Refuses compiler options that assume there is no NaN or reorder sums: a failed step is recognised by its NaN, and the
-// same inputs must give the same bits wherever they are computed.
+// Refuses compiler options that assume there is no NaN or that reorder sums: a failed step is recognised by its NaN,
+// and equal inputs must give equal bits wherever they are computed.
 #pragma once
 
 #include <limits>
@@ -23,7 +23,7 @@ inline constexpr const char* not_as_written =
     "-fno-fast-math after it";
 
 /// Whether NaN, infinity, sums and quotients are computed as written in the code around the call: g++ defines a macro
-/// for each option that changes them, clang++ only for -ffast-math and -ffinite-math-only.
+/// for each option that affects them, clang++ only for -ffast-math and -ffinite-math-only.
 __attribute__((always_inline)) inline bool computes_as_written() {
     // volatile: unknown at compile time
     const volatile double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reports that the language standard is too old before the compiler fails on everything else. Included first by public
+// Reports a language standard that is too old before the compiler fails on everything else. Included first by public
 // headers.
 #pragma once
 

@@ -1,31 +1,33 @@
 // SPDX-License-Identifier: MIT
-// The execution-space macros: besides backends/cuda, a few functions with different code for CUDA devices (in math.hpp,
-// fast_power.hpp and norm.hpp) and kernel/scalar/control_number.hpp, the only place that depends on the compiler.
+// The execution-space macros: the only place that depends on the compiler, besides backends/cuda,
+// kernel/scalar/control_number.hpp, and a few functions with different code for CUDA devices (in math.hpp,
+// fast_power.hpp and norm.hpp).
 #pragma once
 
 #include "myriad/kernel/core/ieee.hpp"
 
 #if defined(__CUDACC__)
-// A function without MYRIAD_FUNCTION is host code: if a kernel calls it, nvcc would only warn, and leave the call out.
+// A function without MYRIAD_FUNCTION is host code: nvcc would only warn if a kernel calls it, and leave the call out.
 #pragma nv_diag_error 20011, 20014
-/// A function of the kernel body: device code under nvcc, inlined host code elsewhere. Required on a model's functions
-/// and on its own helpers, so that no copy of them is shared between files compiled for different instruction sets.
+/// A function of the kernel body: device code under nvcc, inlined host code elsewhere. Required for a model's functions
+/// and the helpers they call, so that files compiled for different instruction sets share no copy of them.
 #define MYRIAD_FUNCTION __host__ __device__ __forceinline__
+/// `MYRIAD_FUNCTION` for a lambda, placed between its parameters and its body.
 #define MYRIAD_LAMBDA
-/// A constant at namespace scope that device code reads from constant memory, as an operand of its instructions.
+/// A constant at namespace scope that device code reads from constant memory as an operand of its instructions.
 #define MYRIAD_CONSTANT_MEMORY __constant__
-/// Hides from the compiler that a pointer or index is unchanged, so that it recomputes addresses instead of keeping
-/// them in registers through the loop.
+/// Hides from the compiler that a pointer or index has not changed, so that addresses are recomputed instead of kept in
+/// registers through the loop.
 #define MYRIAD_FORGET(value) asm volatile("" : "+l"(value))
 #if defined(__CUDA_ARCH__)
 /// A point where diverged threads of a warp reconverge; all threads that have not exited reach it. The compiler's own
-/// reconvergence points are not enough: threads that took instances one by one were observed never to reconverge.
+/// reconvergence points are not enough: threads that took instances one by one were seen never to reconverge.
 #define MYRIAD_REJOIN __syncwarp()
-/// Unrolls the loop that follows; in device code only up to 32 iterations, so that large states stay loops.
+/// Unrolls the following loop; in device code only up to 32 iterations, so that large states stay loops.
 #define MYRIAD_UNROLL _Pragma("unroll 32")
-/// Unrolls the loop of steps that follows, in device code, where constants are reloaded in every iteration.
+/// In device code, unrolls the following loop over steps, in which constants are reloaded in every iteration.
 #define MYRIAD_UNROLL_BY_FOUR _Pragma("unroll 4")
-/// Keeps the compiler from unrolling the loop that follows, in device code.
+/// Keeps device code from unrolling the following loop.
 #define MYRIAD_ROLLED _Pragma("unroll 1")
 #else
 #define MYRIAD_REJOIN static_cast<void>(0)
@@ -37,7 +39,6 @@
 #define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
 #else
 #define MYRIAD_FUNCTION inline __attribute__((always_inline))
-/// The same for a lambda, between its parameters and its body.
 #define MYRIAD_LAMBDA __attribute__((always_inline))
 #define MYRIAD_CONSTANT_MEMORY inline constexpr
 #define MYRIAD_FORGET(value) static_cast<void>(value)
@@ -65,7 +66,7 @@
 #endif
 #endif
 
-// Whether the target has a fused multiply-add; then fma uses it for every kind of number.
+// Whether the target has a fused multiply-add, which fma then uses for every kind of number.
 #if defined(__FMA__) || defined(__AVX512F__) || defined(__ARM_FEATURE_FMA) || defined(__CUDA_ARCH__)
 #define MYRIAD_FUSED 1
 #else
@@ -75,14 +76,14 @@
 // Code of the kernel body is in `namespace myriad::inline MYRIAD_TARGET`, internal code in `namespace
 // myriad::detail::inline MYRIAD_TARGET`, so that every mangled name contains the backend and the instruction set. Types
 // exchanged between host and backends are not in these inline namespaces. Classes that models handle have no base, and
-// no template argument, in `detail`: argument-dependent look-up, which then finds nothing there, would bring its
-// functions into a model's own calls.
+// no template argument, in `detail`: else argument-dependent look-up would bring its functions into a model's own
+// calls.
 namespace myriad {
 inline namespace MYRIAD_TARGET {}
 namespace detail {
 inline namespace MYRIAD_TARGET {}
 }  // namespace detail
-// The host side and the backends may use internal names. Argument-dependent look-up ignores using directives.
+// The host side and the backends may use internal names. Argument-dependent look-up ignores using-directives.
 namespace host {
 using namespace detail;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A loop whose index is a compile-time constant: for stages and events, whose coefficients must be folded.
+// A loop whose index is a compile-time constant: for stages and events, whose coefficients must be constants too.
 #pragma once
 
 #include <utility>

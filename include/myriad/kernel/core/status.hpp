@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How an instance ended, and what a hook may request: the two enumerations that host and kernel exchange.
+// How an instance ended, and what a hook may request: the two enumerations exchanged by host and kernel.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,20 @@ enum class status : std::uint8_t {
     stopped_by_event,    ///< an event reached the number of detections at which it stops the phase
     stopped_by_user,     ///< a hook returned `action::end_phase` or `action::end_instance`
     max_steps,           ///< more trial steps in one phase than `options::max_steps`
-    step_underflow,      ///< the error test failed at the minimum step, or the step vanished against t
+    step_underflow,      ///< the error test failed at the minimum step, or the step became negligible against t
     not_finite,          ///< the right-hand side, an event function or a hook gave a non-finite value
-    event_accumulation,  ///< actions of one event accumulated within its tolerance (Zeno); t is that of
-                         ///< the last one counted: a bouncing ball rests 2 v / (g (1 - e)) later (docs/numerics.md)
+    event_accumulation,  ///< actions of one event accumulated within its tolerance (Zeno); t is that of the last one
+                         ///< counted: a bouncing ball comes to rest 2 v / (g (1 - e)) later (docs/numerics.md)
     singular_jacobian,   ///< a linear solve of an implicit method failed
     invalid_input,       ///< a state, parameter or time was not finite at the start
 };
+/// The number of statuses.
 inline constexpr int status_count = 10;
 
 /// True for the statuses that end an instance for good.
 MYRIAD_FUNCTION constexpr bool is_failure(status s) { return s >= status::max_steps; }
 
-/// What a scalar hook requests by its return value; a hook that returns nothing requests to proceed.
+/// The request made by a scalar hook's return value; a hook that returns nothing requests to proceed.
 enum class action : std::uint8_t {
     proceed,       ///< continue
     end_phase,     ///< end this integration phase here

@@ -9,8 +9,8 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-// A call that optimisation does not remove is a compile-time error. Not under nvcc, but the host's compiler sees every
-// model too.
+// A call that survives optimisation is a compile-time error. Not under nvcc, but the host compiler sees every model
+// too.
 #if !defined(__CUDACC__)
 // clang-format off
 [[gnu::error("there is no component of this number: components are counted from 0 and named by the enumerators of "
@@ -18,7 +18,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 // clang-format on
 #endif
 
-/// Returns the index. The compiler refuses one that optimisation shows to be out of range; others are not checked.
+/// Returns the index. The compiler refuses an index that optimisation shows to be out of range; others are not checked.
 template <int size>
 MYRIAD_FUNCTION constexpr int checked_index(int i) {
 #if !defined(__CUDACC__)
@@ -29,7 +29,7 @@ MYRIAD_FUNCTION constexpr int checked_index(int i) {
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
 
-// clang++ does not say where such a call was inlined: this makes it warn where the index is written.
+// clang++ does not report where such a call was inlined; this makes it warn where the index is written.
 #if defined(__clang__) && !defined(__CUDACC__)
 #define MYRIAD_WARN_OF_INDEX(i, size) \
     __attribute__((diagnose_if((i) < 0 || (i) >= (size), "there is no component of this number", "warning")))
@@ -39,19 +39,19 @@ MYRIAD_FUNCTION constexpr int checked_index(int i) {
 
 namespace myriad::inline MYRIAD_TARGET {
 
-/// The values that a vector is initialised with, as many as it has components.
+/// The values that initialise a vector, one per component.
 template <class S, class Components>
 struct vec_values;
 template <class S, int... c>
 struct vec_values<S, std::integer_sequence<int, c...>> {
     template <int>
-    using value = S;  // not a reference, since clang++ would then let a double become a float
+    using value = S;  // not a reference, as clang++ would then let a double become a float
 
     S values[sizeof...(c)];
 
     vec_values() = default;
     MYRIAD_FUNCTION constexpr vec_values(value<c>... v) : values{v...} {}
-    // From an array, in another pair of braces.
+    // From an array, in a second pair of braces.
     template <int length>
     MYRIAD_FUNCTION constexpr vec_values(const S (&v)[length]) : values{v[c]...} {
         static_assert(
@@ -60,16 +60,18 @@ struct vec_values<S, std::integer_sequence<int, c...>> {
     }
 };
 
-/// `size` values of kind `S` (a real number, a pack or a dual number): `return {a, b};`, as many values as components,
+/// `size` values of kind `S` (a real number, a pack or a dual number): `return {a, b};`, with one value per component,
 /// or `{}` for zeros. Declared without braces, it is uninitialised. For a vector of one component write the type,
-/// `return myriad::vec<S, 1>{a};`, since nvcc has rejected the short form in templates.
+/// `return myriad::vec<S, 1>{a};`, as nvcc has rejected the short form in templates.
 template <class S, int size>
 struct vec : vec_values<S, std::make_integer_sequence<int, size>> {
+    /// What holds the values.
     using base = vec_values<S, std::make_integer_sequence<int, size>>;
     using base::base;
 
+    /// Uninitialised, or `size` values; any other number of values does not compile.
     vec() = default;
-    // Chosen for any other number of values, to give a readable error.
+    // Selected for any other number of values, to give a readable error.
     template <class First, class... More>
     requires(1 + sizeof...(More) != size && std::is_convertible_v<First, S>)
         MYRIAD_FUNCTION constexpr vec(const First&, const More&...) {
@@ -79,6 +81,8 @@ struct vec : vec_values<S, std::make_integer_sequence<int, size>> {
             "value for each event, a matrix has a row in braces for each");
     }
 
+    /// Component i, counted from 0. An index that is known to be out of range when the model is compiled is an error;
+    /// others are not checked.
     MYRIAD_FUNCTION constexpr S& operator[](int i) MYRIAD_WARN_OF_INDEX(i, size) {
         return this->values[detail::checked_index<size>(i)];
     }
@@ -87,10 +91,11 @@ struct vec : vec_values<S, std::make_integer_sequence<int, size>> {
     }
 };
 
-/// Nothing: takes the place of parameters, accessories or events that a model does not have.
+/// Empty: takes the place of parameters, accessories or events that a model does not have.
 template <class S>
 struct vec<S, 0> {
     // Needed to compile loops over no components; never called.
+    /// Never called; an enumerator as index does not compile, with a message that names the missing enumeration.
     MYRIAD_FUNCTION S& operator[](int i) const {
         S* nothing = nullptr;
         return nothing[detail::checked_index<0>(i)];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where in a step an event function crosses zero, as its values and slopes at both ends tell.
+// The crossing of an event function inside a step, from its values and slopes at both ends.
 #pragma once
 
 #include "myriad/kernel/core/macros.hpp"
@@ -8,17 +8,17 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// An event function at both ends of a step: its values, and its slopes over the whole step. Signs are such that it
-/// crosses from above.
+/// An event function at both ends of a step: values, and slopes per step. Signs are chosen so that it falls through
+/// zero.
 template <class R>
 struct function_ends {
     R value, slope;
     R end_value, end_slope;
 };
 
-/// The fraction, 0 < x < 1, at which a + x (b + x (c + x d)) is zero; it is positive at 0 and negative at 1. By
-/// Newton's method, kept inside the bracket by bisection, until the value is `close` to zero; six iterations are enough
-/// for a guess. A half where the coefficients are not finite.
+/// The root, 0 < x < 1, of the cubic a + x (b + x (c + x d)), which is positive at 0 and negative at 1: Newton's
+/// method, safeguarded by bisection, until the value is within `close` of zero. Six iterations are enough for a guess.
+/// Returns 1/2 if the coefficients are not finite.
 template <class R>
 MYRIAD_FUNCTION R cubic_root(R a, R b, R c, R d, R close) {
     constexpr R last = R(1) - R(4) * epsilon_of<R>;
@@ -44,9 +44,9 @@ MYRIAD_FUNCTION R cubic_root(R a, R b, R c, R d, R close) {
     return x < last ? x : last;
 }
 
-/// The fraction of the step at which the function crosses zero, to within `close` of it: a root of the cubic through
-/// both ends (Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7)). If the function leaves the surface at the start
-/// of the step, the fraction at which it comes back: the root there is divided out.
+/// The fraction of the step at which the function crosses zero, to within `close`: a root of the cubic through both
+/// ends (Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7)). If the step starts on the surface and the function
+/// leaves it, the fraction at which it returns: the root at 0 is divided out.
 template <class R>
 MYRIAD_FUNCTION R crossing_fraction(const function_ends<R>& g, bool leaves, R close) {
     const R rise = g.end_value - g.value;

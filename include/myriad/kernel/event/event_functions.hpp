@@ -14,7 +14,7 @@ MYRIAD_FUNCTION vec<S, n_event<Model>> evaluate_events(const S& t, const vec<S, 
     return Model::template events<S>(t, y, p);
 }
 
-/// Derivatives of the event functions along the solution that passes (t, y) with the given slope.
+/// Derivatives of the event functions along the solution through (t, y) with the given slope.
 template <class Model, class S>
 MYRIAD_FUNCTION vec<S, n_event<Model>> event_slopes(const S& t, const vec<S, n_state<Model>>& y,
                                                     const vec<S, n_state<Model>>& slope, const inputs<Model, S>& p) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The step that is taken anew, shorter, until it ends at an event: its next length, from the trials so far.
+// A step repeated with shorter lengths until it ends at an event: its next length, from the trials so far.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,24 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// The location of an event of one instance. Lengths are signed, like the step itself. It is needed in few steps, so it
-/// lies in memory and not in the registers of a GPU thread.
+/// The location of one instance's event. Lengths are signed, like the step. Few steps need it, so it lies in memory,
+/// not in a GPU thread's registers.
 template <class R, int events>
 struct redone_step {
-    /// Trials after which a guess that leads nowhere is left for bisection.
+    /// Number of trials after which bisection replaces a guess that does not converge.
     static constexpr std::int32_t most_guesses = 10;
-    /// A step halved that often is as long as the rounding of its ends.
+    /// A step halved this often is no longer than the rounding of its ends.
     static constexpr std::int32_t most_trials = 80;
 
-    R length;          // of the next trial; 0: the event is where the step begins
-    R before, beyond;  // the longest known to end before the event, the shortest beyond it
-    R resume;          // the step size to go on with afterwards
+    R length;          // of the next trial; 0: the event is at the start of the step
+    R before, beyond;  // the bracket: longest length known to end before the event, shortest beyond it
+    R resume;          // the step size to resume with afterwards
     std::int32_t tries;
-    std::int32_t target;             // the event that the step is redone to
-    bool narrow;                     // `before` and `beyond` are the same time up to rounding
-    mask_set<bool, events> crossed;  // events that crossed in the trial in which the target was found
+    std::int32_t target;             // the event to which the step is redone
+    bool narrow;                     // `before` and `beyond` are equal up to rounding
+    mask_set<bool, events> crossed;  // the events that crossed in the trial that found the target
 
-    /// The trial of a step of length h ended beyond an event.
+    /// A trial of length h ended beyond an event.
     MYRIAD_FUNCTION void begin(R h, R guess, R h_next) {
         resume = h_next;
         before = R(0);
@@ -44,7 +44,7 @@ struct redone_step {
         narrow = are_one(before, h);
         if (narrow || tries >= most_trials) length = before;
     }
-    /// Whether the event is, up to rounding, where a redone step of length h ended before it.
+    /// Whether the event, up to rounding, is where a redone step of length h ended before it.
     MYRIAD_FUNCTION bool is_between(R h) const { return are_one(h, beyond); }
     /// A redone step of length h ended before the event.
     MYRIAD_FUNCTION void lengthen(R h, R guess) {
@@ -52,7 +52,7 @@ struct redone_step {
         length = tries < most_guesses && is_inside(guess, beyond) ? guess : R(0.5) * (h + beyond);
         ++tries;
     }
-    /// A redone step of length h ended within the tolerance of the event: whether a better guess is worth another
+    /// A redone step of length h ended within the tolerance of the event: whether a better guess deserves another
     /// trial.
     MYRIAD_FUNCTION bool improve(R h, R guess, bool before_event) {
         if (tries >= most_guesses || !is_inside(guess, beyond) || are_one(guess, h)) return false;
@@ -63,11 +63,11 @@ struct redone_step {
     }
 
 private:
-    /// Whether a guess is longer than what is known to end before the event and shorter than `end`.
+    /// Whether a guess lies inside the bracket between `before` and `end`.
     MYRIAD_FUNCTION bool is_inside(R guess, R end) const {
         return abs(guess) > abs(before) && abs(guess) < abs(end) && guess * end > R(0);
     }
-    /// Lengths that differ by their rounding. The rounding of t is kept beside t, so it does not count here.
+    /// Whether two lengths agree up to rounding. The rounding of t is stored beside t and does not count here.
     static MYRIAD_FUNCTION bool are_one(R a, R b) { return abs(b - a) <= R(2) * epsilon_of<R> * abs(b); }
 };
 

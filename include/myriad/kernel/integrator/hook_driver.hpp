@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What hooks do inside a phase: after_step on the accepted lanes, after_event on the lanes whose events fired, and what
-// follows from a hook having changed the state.
+// Calls hooks within a phase: after_step in the accepted lanes, after_event in lanes whose events fired; and handles
+// the changes they make.
 #pragma once
 
-#include "myriad/kernel/controller/fixed.hpp"
-#include "myriad/kernel/event/locator.hpp"
+#include "myriad/kernel/controller/stepping.hpp"
+#include "myriad/kernel/event/side_follower.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -18,8 +18,8 @@ struct hook_driver {
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
-    event_locator<Model, Method, S>& locator;
-    fired_events<Model, S>& events;  // that have happened in this iteration
+    side_follower<Model, Method, S>& sides;
+    fired_events<Model, S>& events;  // that fired in this iteration
 
     /// Calls after_step on the lanes whose step was accepted.
     MYRIAD_FUNCTION void after_step(const mask& accepted) {
@@ -34,7 +34,7 @@ struct hook_driver {
             } else {
                 stops = accepted & Model::template after_step<S>(view);
             }
-            // By what the hook was given and left, so that the compiler sees what it leaves alone.
+            // Compares the hook's input with its output, so that the compiler sees which members it leaves alone.
             changed = accepted & differs(before, after);
             adopt(accepted, before, after);
             if (MYRIAD_UNLIKELY(any(stops))) s.end_lanes(stops, status::stopped_by_user);
@@ -47,7 +47,7 @@ struct hook_driver {
             });
             changed = accepted & differs(before, s.data);
         }
-        // Where the slope at the end of the step may be known, as the first of the next.
+        // The slope at the end of the step may be known already, as the first of the next.
         if constexpr (Method::first_same_as_last || has_events<Model> || samples_trajectory<Method>) {
             if (any(changed)) {
                 check_finite(changed, before.y);
@@ -58,7 +58,7 @@ struct hook_driver {
         }
     }
 
-    /// Lanes in which a reduction has changed an accessory that rhs and events may read.
+    /// Handles lanes in which a reduction has changed an accessory that rhs or events may read.
     MYRIAD_FUNCTION void follow_reductions(const mask& changed) {
         if (any(changed)) follow_up(changed, s.data);
     }
@@ -69,26 +69,46 @@ struct hook_driver {
         if (!MYRIAD_UNLIKELY(any(acting))) return;
         if constexpr (has_after_event<Model>) {
             const lane_data<Model, S> before = s.data;
-            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA {
-                locator.aim(i, events);
-                act_on_lane(i);
-            });
+            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
             const mask changed = acting & differs(before, s.data);
             if (any(changed)) {
                 events.changed = events.changed | changed;
-                s.slope_valid = s.slope_valid & !changed;
+                s.slopes.invalidate(changed);
                 check_finite(changed, before.y);
-                locator.restart(changed, events.value, events);
+                sides.restart(changed, events.value, events);
             }
+            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { sides.settle(i, events, before); });
         } else {
-            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
+            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA {
+                act_on_lane(i);
+                sides.settle(i, events, s.data);
+            });
         }
-        for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { locator.settle(i, events); });
     }
 
 private:
+    /// chosen: the new value in these lanes, the old one elsewhere. changed: the lanes that differ.
+    template <class T>
+    static MYRIAD_FUNCTION T chosen(const mask& lanes, const T& now, const T& before) {
+        return select(lanes, now, before);
+    }
+    template <class T, int size>
+    static MYRIAD_FUNCTION vec<T, size> chosen(const mask& lanes, const vec<T, size>& now, const vec<T, size>& before) {
+        vec<T, size> values;
+        MYRIAD_UNROLL
+        for (int c = 0; c < size; ++c) values[c] = select(lanes, now[c], before[c]);
+        return values;
+    }
+    template <class T, int size>
+    static MYRIAD_FUNCTION mask changed(const vec<T, size>& now, const vec<T, size>& before) {
+        mask different = mask(false);
+        MYRIAD_UNROLL
+        for (int c = 0; c < size; ++c) different = different | differs_in_bits(now[c], before[c]);
+        return different;
+    }
+
     MYRIAD_FUNCTION void act_on_lane(int i) {
-        auto& lingered = locator.memory_of(i).lingered;
+        auto& lingered = sides.memory_of(i).lingered;
         static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
             if (!events.which.get(j, i)) return;
             const auto detections = static_cast<std::int32_t>(get_lane(s.data.event_count[j], i)) + 1;
@@ -98,12 +118,12 @@ private:
             }
             if (args.event[j].stop_after > 0 && detections >= args.event[j].stop_after)
                 s.end_lane(i, status::stopped_by_event);
-            lingered[j] = locator.e.left.get(j, i) ? 1 : lingered[j] + 1;
+            lingered[j] = sides.e.left.get(j, i) ? 1 : lingered[j] + 1;
             if (lingered[j] >= args.accumulation_limit) s.end_lane(i, status::event_accumulation);
         });
     }
 
-    /// Calls a scalar hook and does what it asks for.
+    /// Calls a scalar hook and carries out the action that it returns.
     template <class Hook>
     MYRIAD_FUNCTION void run_hook(int i, Hook&& hook) {
         const R t_end = get_lane(s.data.t_end, i), h_next = get_lane(s.data.h_next, i);
@@ -117,7 +137,7 @@ private:
         if (wanted == action::end_instance) s.instance_over[i] = true;
     }
 
-    /// A hook moved the end of the phase: it goes on to there, backwards if need be, or is over if it is there.
+    /// A hook moved the end of the phase: the phase continues to it, backwards if need be, or ends if it is there.
     MYRIAD_FUNCTION void retarget(int i) {
         const R t = get_lane(s.data.t, i);
         const R t_end = get_lane(s.data.t_end, i);
@@ -125,60 +145,43 @@ private:
         const bool there = t == t_end;
         if (s.ending[i] == status::success) set_lane(s.ended, i, there);  // other endings stand
         if (there) return;
-        if constexpr (!is_adaptive<Method>) detail::move_fixed_steps(args, s, i, t);
+        stepping<Model, Method, S>{args, s}.move(i, t);
     }
 
-    /// Takes over what a generic hook made of `before`, in the given lanes.
+    /// Adopts the changes that a generic hook made to `before`, in the given lanes.
     MYRIAD_FUNCTION void adopt(const mask& lanes, const lane_data<Model, S>& before, const lane_data<Model, S>& after) {
-        lane_data<Model, S>& d = s.data;
-        const auto blend_all = [&](auto& to, const auto& from, const auto& old, int size) MYRIAD_LAMBDA {
-            MYRIAD_UNROLL
-            for (int c = 0; c < size; ++c) to[c] = select(lanes, from[c], old[c]);
+        const auto take = [&](auto use, auto& to, const auto& from, const auto& old) MYRIAD_LAMBDA {
+            if constexpr (use.written) to = chosen(lanes, from, old);
         };
-        blend_all(d.y, after.y, before.y, n);
-        blend_all(d.accessory, after.accessory, before.accessory, n_accessory<Model>);
-        blend_all(d.integer_accessory, after.integer_accessory, before.integer_accessory, n_integer_accessory<Model>);
+        detail::for_each_member<Model>(take, s.data, after, before);
         const mask rescaled = lanes & differs_in_bits(after.h_next, before.h_next);
-        d.h_next = select(lanes, after.h_next, before.h_next);
         if (any(rescaled)) {
             for_each_lane(rescaled,
                           [&](int i) MYRIAD_LAMBDA { s.take_step_size(args, i, get_lane(before.h_next, i)); });
         }
-        if constexpr (writes_parameters<Model>)
-            blend_all(d.parameter, after.parameter, before.parameter, n_parameter<Model>);
-        if constexpr (writes_time_domain<Model>) {
-            d.t_begin = select(lanes, after.t_begin, before.t_begin);
-            d.t_end = select(lanes, after.t_end, before.t_end);
-        }
     }
 
-    /// Lanes in which something that rhs or events may read has changed.
+    /// Lanes in which an input of rhs or events has changed.
     MYRIAD_FUNCTION mask differs(const lane_data<Model, S>& a, const lane_data<Model, S>& b) const {
         mask different = mask(false);
-        const auto compare = [&](const auto& x, const auto& y, int size) MYRIAD_LAMBDA {
-            MYRIAD_UNROLL
-            for (int c = 0; c < size; ++c) different = different | differs_in_bits(x[c], y[c]);
+        const auto compare = [&](auto use, const auto& x, const auto& y) MYRIAD_LAMBDA {
+            if constexpr (use.acts) different = different | changed(x, y);
         };
-        compare(a.y, b.y, n);
-        if constexpr (!accessories_are_outputs<Model>) {
-            compare(a.accessory, b.accessory, n_accessory<Model>);
-            compare(a.integer_accessory, b.integer_accessory, n_integer_accessory<Model>);
-        }
-        if constexpr (writes_parameters<Model>) compare(a.parameter, b.parameter, n_parameter<Model>);
+        detail::for_each_member<Model>(compare, a, b);
         return different;
     }
 
-    /// After a hook has changed something that was as in `before`: slopes and event functions are taken anew.
+    /// After a hook changed lanes that were as in `before`: slopes and event functions are evaluated again.
     MYRIAD_FUNCTION void follow_up(const mask& changed, const lane_data<Model, S>& before) {
-        s.slope_valid = s.slope_valid & !changed;
+        s.slopes.invalidate(changed);
         if constexpr (has_events<Model>) {
             events.changed = events.changed | changed;
             const inputs<Model, S>& p = before;
-            locator.restart(changed, detail::evaluate_events<Model>(s.now(), before.y, p), events);
+            sides.restart(changed, detail::evaluate_events<Model>(s.now(), before.y, p), events);
         }
     }
 
-    /// A state that is not finite is refused.
+    /// Refuses a state that is not finite: restores `before` and ends the lane.
     MYRIAD_FUNCTION void check_finite(const mask& lanes, const vec<S, n>& before) {
         const mask bad = lanes & !all_finite(s.data.y);
         if (MYRIAD_UNLIKELY(any(bad))) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The life of an instance in a lane: loaded, taken through its phases, recorded, stored, and the lane refilled. What
-// the steps do not need (counters, phases done, the time at which the phase began) is kept in the ensemble's arrays and
-// not in the lane, where it would cost a GPU thread registers.
+// The life of an instance in a lane: it is loaded, integrated through its phases, recorded and stored, and the lane
+// refilled. Values that the steps do not need (counters, phases done, the time at which the phase began) stay in the
+// ensemble's arrays, as in the lane they would cost a GPU thread registers.
 #pragma once
 
-#include "myriad/kernel/controller/fixed.hpp"
-#include "myriad/kernel/event/locator.hpp"
+#include "myriad/kernel/controller/stepping.hpp"
+#include "myriad/kernel/event/side_follower.hpp"
 #include "myriad/kernel/output/reducer.hpp"
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
@@ -16,16 +16,17 @@ template <class Model, class Method, class S>
 struct phase_driver {
     using R = real_of<S>;
     using arguments = kernel_arguments<Model, R>;
+    using stepping_type = stepping<Model, Method, S>;
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
 
     const arguments& args;
     integration_state<Model, Method, S>& s;
-    event_locator<Model, Method, S>& locator;
+    side_follower<Model, Method, S>& sides;
     sample_state<Method, S>& o;
 
-    /// Ends the phase of lane i, if it holds an instance, and takes it to its next phase or to the next instance that
-    /// needs work. Returns false when there is none: the lane stays empty.
+    /// Ends the phase of lane i, if it holds an instance, and starts its next phase or the next instance that needs
+    /// work. Returns false if there is none: the lane stays empty.
     template <class Source>
     MYRIAD_FUNCTION bool advance(int i, Source& source) {
         MYRIAD_FORGET(s.instance[i]);
@@ -51,7 +52,7 @@ struct phase_driver {
         }
     }
 
-    /// Ends the phase and the instance that `advance` left to be ended with those of the other threads of a warp.
+    /// Ends the phase and the instance that `advance` left open, together with those of the warp's other threads.
     MYRIAD_FUNCTION void finish(int i) {
         if (s.instance[i] < 0) return;
         end_phase(i);
@@ -59,7 +60,7 @@ struct phase_driver {
     }
 
 private:
-    /// Whether lane i is to end with its instance, in its last phase. Threads of a warp do so side by side, after the
+    /// Whether lane i is in the last phase of its only instance. The threads of a warp end theirs together, after the
     /// loop.
     template <class Source>
     MYRIAD_FUNCTION bool is_last(int i, const Source& source) const {
@@ -87,8 +88,7 @@ private:
         for (int c = 0; c < n_integer_accessory<Model>; ++c)
             set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
-        if constexpr (is_adaptive<Method>) set_lane(s.data.h_next, i, args.h_next[index]);
-        if constexpr (scales_tolerances<Method>) set_lane(s.tolerance_scale, i, args.tolerance_scale[index]);
+        stepping_type{args, s}.load(i);
         set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(args.first_index + index));
         s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases - args.first_phase;
     }
@@ -116,7 +116,7 @@ private:
         MYRIAD_UNROLL
         for (int c = 0; c < n_integer_accessory<Model>; ++c)
             at(args.integer_accessory, c, i) = static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
-        if constexpr (is_adaptive<Method>) args.h_next[index] = get_lane(s.data.h_next, i);
+        stepping_type{args, s}.store(i);
     }
 
     /// Adds the work of the phase to the instance's counters.
@@ -129,20 +129,20 @@ private:
         if constexpr (is_adaptive<Method>) args.rejected[index] += rejected;
         if constexpr (m > 0) args.located[index] += located;
         args.evaluations[index] +=
-            trials * evaluations_per_trial<Model, Method> + static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
+            trials * s.slopes.evaluations_per_trial + static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
     }
 
-    /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on. Returns false if it is over
-    /// without a step: its domain is empty, or `initialise` left something that is not finite.
+    /// Starts the next phase of lane i at (t_begin, y), or at t where time is carried on. Returns false if the phase is
+    /// over without a step: its domain is empty, or `initialise` left a value that is not finite.
     MYRIAD_FUNCTION bool begin_phase(int i) {
         s.ending[i] = status::success;
-        // Read again for each phase, so that t_begin need not stay in a register.
+        // Loaded again for each phase, so that t_begin need not stay in a register.
         if constexpr (!writes_time_domain<Model>) load_time_domain(i);
         const std::int64_t index = s.instance[i];
         const std::int32_t phase = args.phase[index];
         const bool carry_on = args.carry_time && phase > 0;
         set_lane(s.data.t, i, carry_on ? args.t[index] : get_lane(s.data.t_begin, i));
-        if constexpr (!writes_time_domain<Model>) {  // whose hooks say where phases end
+        if constexpr (!writes_time_domain<Model>) {  // else its hooks set the ends of phases
             if (args.phase_length != R(0)) {
                 const R t_begin = get_lane(s.data.t_begin, i), t_end = get_lane(s.data.t_end, i);
                 const auto part = detail::interval_from(args, get_lane(s.data.t, i), t_begin, t_end);
@@ -155,13 +155,8 @@ private:
         set_lane(s.data.h, i, R(0));
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) set_lane(s.data.event_count[j], i, 0);
-        if constexpr (is_adaptive<Method>) {
-            // A method with fixed steps leaves none to carry on with.
-            const bool restart_step = !args.carry_step || phase == 0 || get_lane(s.data.h_next, i) == R(0);
-            if (restart_step) set_lane(s.data.h_next, i, args.step);
-        } else {
-            set_lane(s.data.h_next, i, args.step);
-        }
+        stepping_type steps{args, s};
+        steps.choose_step(i, phase);
         if constexpr (has_initialise<Model>) {
             place(i, [](auto& lane) MYRIAD_LAMBDA { Model::initialise(lane); });
             if constexpr (writes_time_domain<Model>) {
@@ -171,27 +166,14 @@ private:
         const R t = get_lane(s.data.t, i);
         args.t[index] = t;
         if constexpr (has_reductions<Model>) reducer<Model, Method, S>{s}.begin(i);
-        if constexpr (is_adaptive<Method>) {
-            if constexpr (chooses_first_step<Method>)
-                set_lane(s.first_step_open, i, get_lane(s.data.h_next, i) == R(0));
-            if constexpr (remembers_errors<Method>) {
-                set_lane(s.errors.last, i, 0);
-                set_lane(s.errors.before, i, 0);
-            }
-            set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), get_lane(s.data.t_end, i) - t));
-            s.bound_step(args, i);
-        } else {
-            detail::lay_fixed_steps(args, s, i, t);
-            set_lane(s.data.h_next, i, get_lane(s.step, i));
-        }
+        steps.begin(i, t);
         if constexpr (m > 0) {
-            if (phase == 0) locator.forget(i);
+            if (phase == 0) sides.forget(i);
         }
         if constexpr (samples_trajectory<Method>)
             sampler<Model, Method, S>{args, s, o}.begin(i, args.phases - s.phases_left[i]);
         set_lane(s.active, i, true);
-        set_lane(s.slope_valid, i, false);
-        set_lane(s.last_not_finite, i, false);
+        s.slopes.forget(i);
         s.instance_over[i] = false;
         set_count(s.rejected, i, 0);
         set_count(s.located, i, 0);
@@ -204,8 +186,8 @@ private:
         return s.ending[i] == status::success && t != get_lane(s.data.t_end, i);
     }
 
-    /// Runs `initialise` or `finalise`. A state or step that is not finite is refused; a state that was moved was
-    /// placed, not integrated, where it is, so functions within their tolerance come from no side.
+    /// Runs `initialise` or `finalise`. A state or step that is not finite is refused. A state that the hook changed
+    /// was set, not integrated: functions then within their tolerance have no side.
     template <class Hook>
     MYRIAD_FUNCTION void place(int i, Hook&& hook) {
         const auto before = get_lanes<R>(s.data.y, i);
@@ -221,16 +203,16 @@ private:
             set_lane(s.data.h_next, i, h_next);
             s.ending[i] = status::not_finite;
         } else if (!same_values(before, after, n - n_tangent<Model>)) {
-            if constexpr (m > 0) locator.forget(i);
+            if constexpr (m > 0) sides.forget(i);
         }
     }
 
-    /// Ends the phase that lane i is in: `finalise`, record, count; a failed phase ends the instance instead.
+    /// Ends the phase of lane i: `finalise`, record, count; if it failed, ends the instance.
     MYRIAD_FUNCTION void end_phase(int i) {
         const std::int64_t index = s.instance[i];
         if (args.accepted != nullptr) count_work(i);
-        if constexpr (!is_adaptive<Method>) set_lane(s.data.t, i, detail::fixed_step_time(args, s, i));
-        if constexpr (m > 0) locator.keep(i);
+        set_lane(s.data.t, i, stepping_type{args, s}.time(i));
+        if constexpr (m > 0) sides.keep(i);
         args.t[index] = get_lane(s.data.t, i);
         if constexpr (has_finalise<Model>) {
             if (!is_failure(s.ending[i])) place(i, [](auto& lane) MYRIAD_LAMBDA { Model::finalise(lane); });

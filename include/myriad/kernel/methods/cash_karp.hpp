@@ -6,14 +6,19 @@
 
 namespace myriad {
 
-/// Cash and Karp, ACM Trans. Math. Softw. 16 (1990) 201-222: six stages, advances the solution of order 5, error
-/// estimate of order 4. Its interpolant is the cubic Hermite polynomial through both ends of the step (order 3).
+/// Cash and Karp, ACM Trans. Math. Softw. 16 (1990) 201-222: six stages, solution of order 5, error estimate of order
+/// 4. Its interpolant is the cubic Hermite polynomial through both ends of the step (order 3).
 struct cash_karp {
+    /// Number of stages.
     static constexpr int stages = 6;
+    /// Order of the solution that is advanced.
     static constexpr int order = 5;
+    /// Order of the embedded solution, from which the error estimate comes; 0 for a method with fixed steps.
     static constexpr int embedded_order = 4;
+    /// Whether the last stage of an accepted step is the first of the next, which saves an evaluation.
     static constexpr bool first_same_as_last = false;
 
+    /// The coefficients.
     static constexpr explicit_tableau<stages> tableau() {
         explicit_tableau<stages> t{};
         t.c = {0, 1.0 / 5, 3.0 / 10, 3.0 / 5, 1, 7.0 / 8};

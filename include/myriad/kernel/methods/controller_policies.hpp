@@ -1,48 +1,52 @@
 // SPDX-License-Identifier: MIT
-// Step-size controls other than the default, chosen with the method. Each is a type, so that kernels contain no code
-// for controls that were not chosen.
+// Alternatives to the default step-size control, chosen with the method. Each is a type, so that kernels contain no
+// code for controls that were not chosen.
 #pragma once
 
 namespace myriad {
 
-/// PI control: the factor of the next step is 0.9 q^(-0.7/k) r^(0.4/k), with q and r the errors over tolerance of this
+/// PI control: the step-size factor is 0.9 q^(-0.7/k) r^(0.4/k), with q and r the ratios of error to tolerance of this
 /// and of the last accepted step and k the order of the error estimate plus one. Fewer rejections where stability
 /// limits the step. Gustafsson, ACM Trans. Math. Softw. 17 (1991) 533; Hairer, Wanner, Solving ODE II, IV.2, eq.
 /// (2.43c).
 struct pi_control {
-    static constexpr double exponent_now = 0.7, exponent_last = -0.4, exponent_before = 0;
+    static constexpr double exponent_now = 0.7;    ///< of this step's error, times -1 / k
+    static constexpr double exponent_last = -0.4;  ///< of the last accepted step's error, times -1 / k
+    static constexpr double exponent_before = 0;   ///< of the error of the step before that, times -1 / k
 };
 
-/// PID control: 0.9 q^(-0.58/k) r^(0.21/k) s^(-0.1/k), s being the error of the accepted step before the last. Kennedy
+/// PID control: 0.9 q^(-0.58/k) r^(0.21/k) s^(-0.1/k), with s the ratio for the accepted step before the last. Kennedy
 /// and Carpenter, Appl. Numer. Math. 44 (2003) 139; the constants are those of SUNDIALS' ARKODE.
 struct pid_control {
-    static constexpr double exponent_now = 0.58, exponent_last = -0.21, exponent_before = 0.1;
+    static constexpr double exponent_now = 0.58;    ///< as in `pi_control`
+    static constexpr double exponent_last = -0.21;  ///< as in `pi_control`
+    static constexpr double exponent_before = 0.1;  ///< as in `pi_control`
 };
 
-/// The root mean square of the components' errors over their tolerances, instead of the largest.
+/// The root mean square of the components' ratios of error to tolerance, instead of the largest.
 struct rms_norm {
-    static constexpr bool averages_errors = true;
+    static constexpr bool averages_errors = true;  ///< how a method that has this choice is recognised
 };
 
-/// Errors are compared with atol + rtol max(|y|, |y1|), instead of the larger of the two.
+/// Errors are compared with atol + rtol max(|y|, |y1|), not with the larger of the two.
 struct mixed_scale {
-    static constexpr bool adds_tolerances = true;
+    static constexpr bool adds_tolerances = true;  ///< how a method that has this choice is recognised
 };
 
 /// If options::step is not given, the first step of a phase is computed from the slope and its change over a short
-/// Euler step, with two evaluations, one of which the first step uses. Hairer, Norsett, Wanner, Solving ODE I, II.4,
+/// Euler step, with two evaluations, one of which the first step reuses. Hairer, Norsett, Wanner, Solving ODE I, II.4,
 /// "Starting step size".
 struct automatic_first_step {
-    static constexpr bool chooses_first_step = true;
+    static constexpr bool chooses_first_step = true;  ///< how a method that has this choice is recognised
 };
 
-/// Both tolerances are multiplied by `ensemble::tolerance_scale`, which may differ from instance to instance.
+/// Both tolerances are multiplied by `ensemble::tolerance_scale`, which may differ between instances.
 struct tolerance_per_instance {
-    static constexpr bool scales_tolerances = true;
+    static constexpr bool scales_tolerances = true;  ///< how a method that has this choice is recognised
 };
 
-/// `Method`, an adaptive one, with the chosen controls. Instantiate it like any method, under a name of its own,
-/// because macro arguments cannot contain commas: `using careful = controlled<dormand_prince_8, pi_control>;` and
+/// The adaptive `Method` with the chosen controls. Instantiate it like any method, under a name of its own, as macro
+/// arguments cannot contain commas: `using careful = controlled<dormand_prince_8, pi_control>;` and
 /// `MYRIAD_INSTANTIATE(duffing, careful)`.
 template <class Method, class... Choices>
 struct controlled : Method, Choices... {
@@ -55,7 +59,7 @@ struct controlled : Method, Choices... {
 
 namespace myriad::detail {
 
-/// Whether a method's control uses the errors of earlier steps.
+/// Whether a method's controller uses the errors of earlier steps.
 template <class Method>
 inline constexpr bool remembers_errors = requires {
     Method::exponent_last;

@@ -8,6 +8,7 @@ namespace myriad {
 /// `MYRIAD_INSTANTIATE(duffing, myriad::dense<myriad::cash_karp>)`.
 template <class Method>
 struct dense : Method {
+    /// How a method with dense output is recognised.
     static constexpr bool samples = true;
 };
 
@@ -15,7 +16,7 @@ struct dense : Method {
 
 namespace myriad::detail {
 
-/// Whether a method's kernels can sample.
+/// Whether a method's kernels take samples.
 template <class Method>
 inline constexpr bool samples_trajectory = requires {
     Method::samples;

@@ -7,8 +7,8 @@
 namespace myriad {
 
 /// Dormand and Prince, J. Comput. Appl. Math. 6 (1980) 19-26: seven stages, the last of which is the first of the next
-/// step, so six evaluations a step; advances order 5, error estimate of order 4. Interpolant of order 4: Shampine,
-/// Math. Comp. 46 (1986) 135-150, as in DOPRI5 (Hairer, Norsett, Wanner, Solving ODE I, II.6).
+/// step, so six evaluations per step; the solution has order 5, the error estimate order 4. Interpolant of order 4:
+/// Shampine, Math. Comp. 46 (1986) 135-150, as in DOPRI5 (Hairer, Norsett, Wanner, Solving ODE I, II.6).
 struct dormand_prince_5 {
     static constexpr int stages = 7;
     static constexpr int order = 5;

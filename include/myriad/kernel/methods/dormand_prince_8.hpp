@@ -7,15 +7,15 @@
 
 namespace myriad {
 
-/// DOP853: Hairer, Norsett, Wanner, Solving ODE I, II.5, II.6 and II.10: twelve stages, advances order 8. Estimates of
-/// orders 5 and 3 are combined into one that falls with h^8 (II.10, "stretched" there). The interpolant of order 7
-/// takes the slope at the end of the step and three more stages, evaluated only in steps that contain an event or a
+/// DOP853: Hairer, Norsett, Wanner, Solving ODE I, II.5, II.6 and II.10: twelve stages, solution of order 8. Estimates
+/// of orders 5 and 3 are combined into one that decreases as h^8 (II.10, "stretched" there). The interpolant of order 7
+/// needs the slope at the end of the step and three more stages, evaluated only in steps that contain an event or a
 /// sample. Coefficients: 30-digit decimals of DOP853.
 struct dormand_prince_8 {
     static constexpr int stages = 12;
     static constexpr int order = 8;
     static constexpr int embedded_order = 5;
-    static constexpr int estimate_order = 7;  // of both estimates together
+    static constexpr int estimate_order = 7;  ///< order of both error estimates together
     static constexpr bool first_same_as_last = false;
 
     static constexpr explicit_tableau<stages> tableau() {
@@ -46,7 +46,7 @@ struct dormand_prince_8 {
         // clang-format on
         return t;
     }
-    /// A second estimate, of order 3. The one used is |e5|^2 / sqrt(|e5|^2 + 0.01 |e3|^2), of order 7.
+    /// A second estimate, of order 3. The combined one is |e5|^2 / sqrt(|e5|^2 + 0.01 |e3|^2), of order 7.
     static constexpr double coarse_error_weight(int stage) {
         // clang-format off
         constexpr double weights[stages] = {-0.18980075407240762, 0, 0, 0, 0, 4.450312892752409, 1.8915178993145003,

@@ -6,8 +6,8 @@
 
 namespace myriad {
 
-/// Steinebach, BIT Numer. Math. 63 (2023) 27: eight stages, eight evaluations a step, stiffly accurate and L-stable;
-/// advances order 5, error estimate of order 4, own interpolant of order 4. Designed to lose little order on
+/// Steinebach, BIT Numer. Math. 63 (2023) 27: eight stages, eight evaluations per step, stiffly accurate and L-stable;
+/// solution of order 5, error estimate of order 4, own interpolant of order 4. Designed to lose little order on
 /// time-dependent stiff problems (Prothero and Robinson's). Coefficients: those distributed with SciML's
 /// OrdinaryDiffEq, in double precision.
 struct rodas_5p {

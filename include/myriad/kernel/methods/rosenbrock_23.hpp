@@ -7,13 +7,13 @@
 namespace myriad {
 
 /// Shampine and Reichelt, SIAM J. Sci. Comput. 18 (1997) 1-22: three stages, the last of which is the first of the next
-/// step, so two evaluations a step; advances the L-stable solution of order 2. The estimate is its distance from a
-/// solution of order 3. Own interpolant of order 2, which uses no slope, so that stiffness does not spoil it.
+/// step, so two evaluations per step; the solution is L-stable and of order 2. The error estimate is its distance from
+/// a solution of order 3. Own interpolant of order 2, which uses no slope, so that stiffness does not spoil it.
 /// Coefficients: the published ones with d = 1 / (2 + sqrt 2), e32 = 6 + sqrt 2, transformed in exact arithmetic.
 struct rosenbrock_23 {
     static constexpr int stages = 3;
     static constexpr int order = 2;
-    static constexpr int embedded_order = 2;  // that of the estimate, which falls with h^3
+    static constexpr int embedded_order = 2;  // the order of the estimate, which decreases as h^3
     static constexpr bool first_same_as_last = true;
     static constexpr int interpolant_order = 2;
     static constexpr int interpolant_degree = 2;

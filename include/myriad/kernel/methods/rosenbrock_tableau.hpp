@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The coefficients of a Rosenbrock method in the form that needs no product with the Jacobian, and the order conditions
+// The coefficients of a Rosenbrock method in the form that avoids products with the Jacobian, and the order conditions
 // that every method must satisfy. Evaluated at compile time only.
 #pragma once
 
@@ -15,16 +15,19 @@ namespace myriad {
 ///     y(theta) = (1 - theta) y + theta (y1 + (1 - theta) (v_0 + theta (v_1 + ...))),  v_r = sum_i dense_ri u_i.
 template <int stages, int dense_terms>
 struct rosenbrock_tableau {
+    /// One coefficient per stage.
     using row = std::array<double, static_cast<std::size_t>(stages)>;
+    /// One coefficient per pair of stages.
     using square = std::array<row, static_cast<std::size_t>(stages)>;
 
-    double gamma{};
-    row c{};
-    row d{};
-    square a{};
-    square coupling{};
-    row m{};
-    row e{};
+    double gamma{};     ///< the diagonal element
+    row c{};            ///< nodes, as fractions of the step
+    row d{};            ///< factors of df/dt
+    square a{};         ///< weights in the arguments of the stages
+    square coupling{};  ///< factors of earlier stages on the right-hand side
+    row m{};            ///< weights of the solution
+    row e{};            ///< weights of the error estimate
+    /// Weights v_r of the interpolant.
     std::array<row, static_cast<std::size_t>(dense_terms)> dense{};
 
     /// Weight of stage j in the argument of stage `of`, or in the solution (of == stages).
@@ -35,9 +38,9 @@ struct rosenbrock_tableau {
 };
 
 /// Order conditions up to order five of the weights `m` of the stages u, each within `tolerance` relative to the sum of
-/// the sizes of its terms, and that c and d are the row sums of alpha and gamma. In Butcher's form, k_i = f(y + h sum
-/// alpha_ij k_j) + h J sum gamma_ij k_j and beta = alpha + gamma; a vertex of a tree with one child counts beta, one
-/// with several alpha for each (Hairer, Wanner, IV.7, eq. (7.11') and Table 7.1).
+/// the magnitudes of its terms; and that c and d are the row sums of alpha and gamma. In Butcher's form, k_i = f(y + h
+/// sum alpha_ij k_j) + h J sum gamma_ij k_j and beta = alpha + gamma; a vertex of a tree with one child counts beta,
+/// one with several children alpha for each (Hairer, Wanner, IV.7, eq. (7.11') and Table 7.1).
 template <int stages, int dense_terms>
 constexpr bool satisfies_order_conditions(const rosenbrock_tableau<stages, dense_terms>& t,
                                           const typename rosenbrock_tableau<stages, dense_terms>::row& m, int order,

@@ -8,19 +8,20 @@
 
 namespace myriad {
 
-/// Butcher tableau of `stages` stages: nodes c, matrix a (strictly lower), weights b of the solution that is advanced,
-/// error weights e = b - b_hat (zero for a method without error estimate).
+/// Butcher tableau of `stages` stages: nodes c, matrix a (strictly lower), weights b of the solution, error weights e =
+/// b - b_hat (zero for a method without error estimate).
 template <int stages>
 struct explicit_tableau {
+    /// One coefficient per stage.
     using row = std::array<double, static_cast<std::size_t>(stages)>;
 
-    row c{};
-    std::array<row, static_cast<std::size_t>(stages)> a{};
-    row b{};
-    row e{};
+    row c{};                                                ///< nodes, as fractions of the step
+    std::array<row, static_cast<std::size_t>(stages)> a{};  ///< a[i][j]: weight of stage j in the argument of stage i
+    row b{};                                                ///< weights of the solution
+    row e{};  ///< weights of the error estimate: b minus those of the embedded solution
 
-    /// Weight of stage j in: the argument of stage `of` (1 <= of < stages), the solution (of == stages) or the error
-    /// estimate (of == stages + 1).
+    /// Weight of stage j in the argument of stage `of` (1 <= of < stages), in the solution (of == stages) or in the
+    /// error estimate (of == stages + 1).
     constexpr double weight(int of, int j) const {
         const auto unsigned_j = static_cast<std::size_t>(j);
         if (of == stages) return b[unsigned_j];
@@ -29,9 +30,8 @@ struct explicit_tableau {
     }
 };
 
-/// Order conditions up to order five (Hairer, Norsett, Wanner, Solving ODE I, Table II.2.1, 17 trees) of the given
-/// weights, each within `tolerance`, the row-sum condition, and four of each higher order. The full set is in the
-/// tests.
+/// Order conditions of the given weights up to order five (Hairer, Norsett, Wanner, Solving ODE I, Table II.2.1, 17
+/// trees), each within `tolerance`, the row-sum condition, and four of each higher order. The full set is in the tests.
 template <int stages>
 constexpr bool satisfies_order_conditions(const explicit_tableau<stages>& t,
                                           const typename explicit_tableau<stages>::row& w, int order,
@@ -83,7 +83,7 @@ constexpr bool satisfies_order_conditions(const explicit_tableau<stages>& t,
         check(apply(c3), 1.0 / 20), check(apply(times(c, ac)), 1.0 / 40);
         check(apply(apply(c2)), 1.0 / 60), check(apply(apply(ac)), 1.0 / 120);
     }
-    // for each higher order, the conditions of the bushy tree, of its neighbours, and of the tall one
+    // for each higher order, the conditions of the bushy tree, its neighbours and the tall tree
     column power = c3, chain = apply(apply(ac));
     double factorial = 120;
     for (int q = 6; q <= order; ++q) {

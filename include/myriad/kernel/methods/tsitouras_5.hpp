@@ -7,8 +7,8 @@
 namespace myriad {
 
 /// Tsitouras, Comput. Math. Appl. 62 (2011) 770-775: seven stages, the last of which is the first of the next step, so
-/// six evaluations a step; advances order 5, error estimate of order 4, own interpolant of order 4 (published in double
-/// precision). Coefficients: the 80-digit values distributed with SciML's OrdinaryDiffEq, rounded to double.
+/// six evaluations per step; solution of order 5, error estimate of order 4, own interpolant of order 4 (published in
+/// double precision). Coefficients: the 80-digit values distributed with SciML's OrdinaryDiffEq, rounded to double.
 struct tsitouras_5 {
     static constexpr int stages = 7;
     static constexpr int order = 5;
@@ -34,7 +34,9 @@ struct tsitouras_5 {
         return t;
     }
 
+    /// Order of the method's own interpolant; a method without this member gets the cubic Hermite polynomial.
     static constexpr int interpolant_order = 4;
+    /// Degree of that polynomial in theta, the fraction of the step.
     static constexpr int interpolant_degree = 4;
     /// Coefficient of theta^(power + 1) in the weight of a stage: y(t + theta h) = y + h sum_i b_i(theta) k_i.
     static constexpr double interpolant_weight(int stage, int power) {

@@ -6,10 +6,10 @@
 
 namespace myriad {
 
-/// Verner, Numer. Algorithms 53 (2010) 383-396: ten stages, advances order 7, error estimate of order 6. The
-/// interpolant takes the slope at the end of the step and five more stages, evaluated only in steps that contain an
+/// Verner, Numer. Algorithms 53 (2010) 383-396: ten stages, solution of order 7, error estimate of order 6. The
+/// interpolant needs the slope at the end of the step and five more stages, evaluated only in steps that contain an
 /// event or a sample. Coefficients: exact rationals and 40-digit decimals distributed with SciML's OrdinaryDiffEq,
-/// rounded to double. There the interpolant is said to be of order 7; it satisfies the order conditions up to 6.
+/// rounded to double. The interpolant is said there to have order 7; it satisfies the order conditions up to 6.
 struct verner_7 {
     static constexpr int stages = 10;
     static constexpr int order = 7;
@@ -45,10 +45,12 @@ struct verner_7 {
     static constexpr int interpolant_degree = 7;
     /// Stages used only by the interpolant. Stage `stages` is the slope at the end of the step; these follow it.
     static constexpr int extra_stages = 5;
+    /// Node of stage i of those used only by the interpolant, as a fraction of the step.
     static constexpr double extra_node(int i) {
         constexpr double nodes[extra_stages] = {0.29, 0.125, 0.25, 0.53, 0.79};
         return nodes[i];
     }
+    /// Weight of a stage in the argument of stage i of those used only by the interpolant.
     static constexpr double extra_weight(int i, int stage) {
         constexpr double weights[extra_stages][stages + extra_stages] = {
             {0.0523222769159969, 0, 0, 0.22495861826705715, 0.017443709248776376, -0.007669379876829393,

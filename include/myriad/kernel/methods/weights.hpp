@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The weights of a method in the precision of a kernel. In single precision, rounding each weight separately may change
-// the sum of a row of the tableau by many rounding errors, since weights that nearly cancel may be large; this makes an
-// error of order one or two in every step, whatever the method's order. So some weights of a row compensate for the
+// the sum of a row of the tableau by many rounding errors, since weights that nearly cancel may be large; every step
+// then has an error of order one or two, whatever the method's order. So some weights of a row compensate for the
 // rounding of the others. Evaluated at compile time only.
 #pragma once
 
@@ -10,14 +10,14 @@
 
 namespace myriad::detail {
 
-/// Row weights and their factors, for which the row's order conditions are preserved.
+/// One number per stage: the weights of a row, or the factors in its order conditions.
 template <std::size_t stages>
 using stage_numbers = std::array<double, stages>;
 
 /// The weights divided by `divisor`, rounded to R. If R is less precise than double, the one or two smallest weights
-/// that may be changed (`first` to `last`) are chosen so that sum_j w_j x_j and, if there are two, sum_j w_j x_j c_j
-/// are preserved: this affects other sums least. `x` and `c` are those of the tableau, `kept_x` and `kept_c` those of
-/// earlier rows after rounding.
+/// from `first` to `last` are adjusted to preserve sum_j w_j x_j and, if there are two, sum_j w_j x_j c_j; adjusting
+/// the smallest affects other sums least. `x` and `c` are those of the tableau, `kept_x` and `kept_c` those of earlier
+/// rows after rounding.
 template <class R, std::size_t stages>
 constexpr std::array<R, stages> rounded_weights(const stage_numbers<stages>& w, double divisor, std::size_t first,
                                                 std::size_t last, const stage_numbers<stages>& x,
@@ -27,7 +27,7 @@ constexpr std::array<R, stages> rounded_weights(const stage_numbers<stages>& w, 
     for (std::size_t j = 0; j < stages; ++j) rounded[j] = static_cast<R>(w[j] / divisor);
     if (sizeof(R) >= sizeof(double)) return rounded;
 
-    // The errors of the row's sums.
+    // The error of the row's sum, or of its first moment.
     const auto lacking = [&](bool moment) {
         double lack = 0;
         for (std::size_t j = 0; j < stages; ++j)
@@ -66,7 +66,7 @@ inline constexpr bool has_coarse_estimate = requires {
     Method::coarse_error_weight(0);
 };
 
-/// Rows of an explicit method's weights: the arguments of stages 1, 2, ... come first.
+/// Numbers of the rows of an explicit method's weights; the arguments of stages 1, 2, ... come first.
 template <class Method>
 struct row_of {
     static constexpr int solution = Method::stages;
@@ -81,7 +81,7 @@ constexpr double weight_in(int row, int stage) {
     return Method::tableau().weight(row, stage);
 }
 
-/// First stage whose weight in `row` is not zero.
+/// First stage with a non-zero weight in `row`.
 template <class Method, int row>
 inline constexpr int first_stage = [] {
     int j = 0;
@@ -92,7 +92,7 @@ inline constexpr int first_stage = [] {
 template <class Method, int row, class R>
 inline constexpr R first_weight = static_cast<R>(weight_in<Method>(row, first_stage<Method, row>));
 
-/// The weights of all rows over the first one of each; row 0, of the first stage, is empty.
+/// The weights of all rows, each divided by its row's first weight; row 0, for the first stage, is empty.
 template <class Method, class R>
 inline constexpr auto relative_weights = [] {
     constexpr auto stages = static_cast<std::size_t>(Method::stages);
@@ -106,7 +106,7 @@ inline constexpr auto relative_weights = [] {
         std::size_t first = 0;
         while (first < stages && w[first] == 0) ++first;
         if (first == stages) continue;  // a method without error estimate
-        // The first weight is rounded, and is one after the division.
+        // The first weight is rounded before the division, and is one after it.
         const double divisor = static_cast<double>(static_cast<R>(w[first]));
         kept[row] = rounded_weights<R>(w, sizeof(R) < sizeof(double) ? divisor : w[first], first + 1, stages, ones, c,
                                        ones, kept_c);
@@ -119,7 +119,7 @@ inline constexpr auto relative_weights = [] {
     }
     return kept;
 }();
-/// The weight of stage j over the first one.
+/// The weight of stage j divided by the row's first weight.
 template <class Method, int row, int j, class R>
 inline constexpr R relative_weight =
     relative_weights<Method, R>[static_cast<std::size_t>(row)][static_cast<std::size_t>(j)];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a model consists of: its numbers of components, its hooks and its declarations, all read at compile time.
+// The contents of a model: its numbers of components, hooks and declarations, all read at compile time.
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace myriad::detail {
 
-// Counts: the last enumerator of each of the model's enumerations; zero if there is none.
+// Counts: the last enumerator of each of the model's enumerations, or zero.
 #define MYRIAD_MODEL_COUNT(count)                   \
     template <class Model>                          \
     constexpr int count##_of() {                    \
@@ -34,8 +34,8 @@ MYRIAD_MODEL_COUNT(n_tangent)
 #undef MYRIAD_MODEL_COUNT
 
 // Enumerations: `enum state { ..., n_state };`, or an unnamed one, recognised by its count. enumerates_<kind>: whether
-// E is the model's enumeration of such components. counts_<kind>: whether a model that has the enumeration has the
-// count too.
+// E is the model's enumeration of such components. counts_<kind>: false if the model has the enumeration but not the
+// count.
 #define MYRIAD_MODEL_ENUMERATION(kind)                                                                            \
     template <class Model, class E>                                                                               \
     constexpr bool enumerates_##kind() {                                                                          \
@@ -70,8 +70,8 @@ inline constexpr bool enumerates_any =
     enumerates_shared_integer<Model, E>() || enumerates_accessory<Model, E>() ||
     enumerates_integer_accessory<Model, E>() || enumerates_event<Model, E>() || enumerates_observed<Model, E>();
 
-// Refuses an index of type I into components of a kind: any index if the model has none, or an enumerator of another
-// kind.
+// Refuses an index of type I into components of a kind: any index if the model has none of them, or an enumerator of
+// another kind.
 #define MYRIAD_INDEX_CHECK(kind)                                                                                      \
     template <class Model, class I>                                                                                   \
     constexpr bool check_##kind##_index() {                                                                           \
@@ -107,15 +107,15 @@ MYRIAD_MODEL_DECLARATION(writes_parameters)
 MYRIAD_MODEL_DECLARATION(writes_time_domain)
 /// Accessories are outputs of hooks for the host: rhs and events do not see them, so that writing one changes no slope.
 MYRIAD_MODEL_DECLARATION(accessories_are_outputs)
-/// The model branches on its state, so it runs one instance at a time on the CPU.
+/// The model branches on its state, so that the CPU runs it one instance at a time.
 MYRIAD_MODEL_DECLARATION(scalar_only)
-/// Many steps lie between events, so that on the CPU packs as large as without events pay off.
+/// Many steps lie between events, so that on the CPU packs as large as those without events pay off.
 MYRIAD_MODEL_DECLARATION(rare_events)
 #undef MYRIAD_MODEL_DECLARATION
 
-// Does a model have a member of that name, whatever its signature? A class that inherits the name twice finds it
-// ambiguous. That finds templates and overloads too, which a plain look at the signature would miss, so that a hook
-// with a wrong signature is an error instead of being ignored.
+// Whether a model has a member of that name, whatever its signature: a class that inherits the name twice finds it
+// ambiguous. This also finds templates and overloads, which a test of the signature would miss, so that a hook with a
+// wrong signature is an error and not ignored.
 #define MYRIAD_HOOK_NAME(hook)                                           \
     namespace hook_names {                                               \
     struct hook##_name {                                                 \
@@ -152,8 +152,8 @@ MYRIAD_HOOK_NAME(n_event)
 MYRIAD_HOOK_NAME(n_observed)
 #undef MYRIAD_HOOK_NAME
 
-/// Whether other files can name a type: one in an anonymous namespace is a different type in each file. Recognised by
-/// the compiler's spelling of the name.
+/// Whether other files can name a type: in an anonymous namespace, each file has a type of its own. Recognised by the
+/// compiler's spelling of the name.
 template <class T>
 constexpr bool is_known_elsewhere() {
     constexpr std::string_view name = __PRETTY_FUNCTION__;
@@ -174,12 +174,12 @@ constexpr bool check_linkage() {
     return true;
 }
 
-/// Whether a model has its own Jacobian. One inherited by a model with tangents is that of the states without them, and
-/// does not count.
+/// Whether a model has its own Jacobian. One that a model with tangents inherits is for the states without tangents,
+/// and does not count.
 template <class Model>
 inline constexpr bool gives_jacobian = has_jacobian<Model>&& n_tangent<Model> == 0;
 
-/// Checks what can be checked of a model without calling it; everything that uses a model starts here.
+/// Checks a model as far as possible without calling it; everything that uses a model starts here.
 template <class Model>
 constexpr bool check_model() {
     static_assert(std::is_class_v<Model>, "a model is a struct with static member functions");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Calls the optional functions of a model: checks their signatures with a readable message, distinguishes scalar from
-// generic hooks, and runs a scalar hook on one lane of a pack.
+// Calls the optional functions of a model: checks their signatures with readable messages, tells scalar from generic
+// hooks, and runs a scalar hook on one lane of a pack.
 #pragma once
 
 #include <concepts>
@@ -13,7 +13,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// `after_step` with an explicit scalar type runs on whole packs; without one, on one instance at a time.
+/// `after_step` with an explicit scalar type runs on whole packs, without one on one instance at a time.
 template <class Model, class R = double>
 inline constexpr bool has_generic_after_step = has_after_step<Model>&& requires(lane<Model, R>& l) {
     Model::template after_step<R>(l);
@@ -25,8 +25,8 @@ concept generic_hook_result = std::is_void_v<T> || std::same_as<T, mask_of<R>>;
 template <class T>
 concept hook_result = std::is_void_v<T> || std::same_as<T, action>;
 
-// Refuses a call that does not compile or has a different result type, with the message, and then makes the call so
-// that the compiler reports the cause: an argument, or that the hook is private.
+// Refuses a call that does not compile or returns a wrong type, with the message; then makes the call, so that the
+// compiler reports the cause: an argument, or that the hook is private.
 #define MYRIAD_CHECK_CALL(call, result, what)                    \
     static_assert(                                               \
         requires {                                               \
@@ -37,7 +37,7 @@ concept hook_result = std::is_void_v<T> || std::same_as<T, action>;
         [[maybe_unused]] decltype(call)* what_the_compiler_says; \
     }
 
-/// Refuses hooks with a wrong signature, and shows the right one. The arguments' values are not used.
+/// Refuses hooks with a wrong signature, and shows the right one. The arguments' values are unused.
 template <class Model, class R>
 constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inputs<Model, R>* p = nullptr,
                            lane<Model, R>* l = nullptr) {
@@ -121,7 +121,7 @@ MYRIAD_FUNCTION action action_of(Call&& call) {
     }
 }
 
-/// Runs a scalar hook on lane i: directly on the data of one instance, on a copy of its lane for a pack.
+/// Runs a scalar hook on lane i: on the data itself for one instance, on a copy of the lane for a pack.
 template <class Model, class S, class Hook>
 MYRIAD_FUNCTION action run_on_lane(lane_data<Model, S>& data, int i, Hook&& hook) {
     if constexpr (lanes_of<S> == 1) {

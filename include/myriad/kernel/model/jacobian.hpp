@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Derivatives of a model's right-hand side: the Jacobian, by dual numbers or the model's own, and the time derivative.
+// Derivatives of a model's right-hand side: the time derivative, and the Jacobian, the model's own or by dual numbers.
 #pragma once
 
 #include "myriad/kernel/model/concepts.hpp"
@@ -36,8 +36,8 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> time_derivative(const S& t, const vec<S, 
     return detail::directional_derivative<Model>(dual<S>(t, S(real_of<S>(1))), constants(y), p);
 }
 
-/// df_i/dy_j in row i and column j, by one evaluation of the right-hand side with dual numbers per column. If the loop
-/// is unrolled (small systems), the compiler computes the values, which all columns share, once.
+/// df_i/dy_j in row i and column j, by one evaluation of the right-hand side with dual numbers per column. In an
+/// unrolled loop (small systems), the compiler computes the values, common to all columns, once.
 template <class Model, class S>
 MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                    matrix<S, n_state<Model>>& jacobian) {
@@ -50,7 +50,7 @@ MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, 
     });
 }
 
-/// The model's own Jacobian if it has one, otherwise the one by dual numbers.
+/// The model's own Jacobian if it has one, else that by dual numbers.
 template <class Model, class S>
 MYRIAD_FUNCTION void evaluate_jacobian(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                        matrix<S, n_state<Model>>& jacobian) {

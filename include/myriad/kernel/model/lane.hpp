@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the functions of a model see: `inputs` for rhs and events (the argument p), `lane` for the hooks, and the data
-// behind both, with the copying of single lanes out of a pack and back.
+// The arguments of a model's functions: `inputs` for rhs and events (the argument p), `lane` for the hooks, and the
+// data behind both, with the copying of single lanes out of a pack and back.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class S>
 using index_of = std::conditional_t<std::is_floating_point_v<S>, std::int64_t, integer_of<S>>;
 
-/// The integer type of one lane of it.
+/// The integer type of one of its lanes.
 template <class I>
 struct lane_integer_type {
     using type = I;
@@ -35,16 +35,19 @@ struct lane_data;
 
 namespace myriad::inline MYRIAD_TARGET {
 
-/// The user's own storage, or nothing.
+/// The accessories, if `there`.
 template <class Model, class S, bool there>
 struct accessories {
+    /// `p.accessory[a]`: real accessories of the instance.
     [[no_unique_address]] vec<S, detail::n_accessory<Model>> accessory;
+    /// `p.integer_accessory[a]`: its integer accessories.
     [[no_unique_address]] vec<integer_of<S>, detail::n_integer_accessory<Model>> integer_accessory;
 };
+/// None, where the model declares that accessories are outputs.
 template <class Model, class S>
 struct accessories<Model, S, false> {};
 
-/// Shared values, reals or integers: a pointer to them that refuses components of other kinds.
+/// Shared values, reals or integers: a pointer that refuses indices of other kinds of components.
 template <class Model, class T>
 struct shared_values {
     static constexpr bool integers = std::is_integral_v<T>;
@@ -66,15 +69,17 @@ struct shared_values {
     }
 };
 
-/// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value all instances share.
-/// It has no accessories in a model that declares them outputs.
+/// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value common to all
+/// instances. It has no accessories in a model that declares them outputs.
 template <class Model, class S>
 struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
-    using real = real_of<S>;
+    using real = real_of<S>;  ///< double or float
+    /// The parameters of the instance; `p[k]` is short for `p.parameter[k]`.
     [[no_unique_address]] vec<S, detail::n_parameter<Model>> parameter;
-    shared_values<Model, real> shared;
-    shared_values<Model, std::int32_t> shared_integer;
+    shared_values<Model, real> shared;                  ///< `p.shared[B]`: real values that all instances share
+    shared_values<Model, std::int32_t> shared_integer;  ///< `p.shared_integer[i]`: integers that all share
 
+    /// Parameter i; an enumerator of another enumeration does not compile.
     template <class I>
     MYRIAD_FUNCTION const S& operator[](I i) const
         MYRIAD_WARN_OF_INDEX(static_cast<int>(i), detail::n_parameter<Model>) {
@@ -87,7 +92,7 @@ struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Everything of one instance (or of one pack of them) that hooks may see.
+/// All data of one instance (or one pack of them) that hooks may see.
 template <class Model, class S>
 struct lane_data : inputs<Model, S>, accessories<Model, S, accessories_are_outputs<Model>> {
     S t, t_begin, t_end;
@@ -103,31 +108,34 @@ struct lane_data : inputs<Model, S>, accessories<Model, S, accessories_are_outpu
 
 namespace myriad::inline MYRIAD_TARGET {
 
-/// What a hook gets: references into the data, constant where the model may not write. Times and steps are in the
+/// The argument of a hook: references into the data, constant where the model may not write. Times and steps are in the
 /// model's unit of time; `h` is negative when integrating backwards. `index` is the number of the instance, `phase`
 /// counts from zero at the ensemble's start, `event_count[i]` the detections of event i in this phase. Parameters are
 /// writable if the model declares `writes_parameters`, the time domain if it declares `writes_time_domain`: a phase
 /// continues to a new t_end, backwards if need be; a new t_begin takes effect in the next phase.
 template <class Model, class S>
 struct lane {
+    /// A reference, constant where the model may not write.
     template <class T, bool writable>
     using ref = std::conditional_t<writable, T&, const T&>;
 
-    const S& t;
-    ref<S, detail::writes_time_domain<Model>> t_begin;
-    ref<S, detail::writes_time_domain<Model>> t_end;
-    const S& h;
-    S& h_next;
-    vec<S, detail::n_state<Model>>& y;
+    const S& t;                                         ///< time
+    ref<S, detail::writes_time_domain<Model>> t_begin;  ///< begin of the time domain; with `phase_length` of the phase
+    ref<S, detail::writes_time_domain<Model>> t_end;    ///< end of the time domain; with `phase_length` of the phase
+    const S& h;                                         ///< length of the step just taken; 0 before the first
+    S& h_next;                                          ///< length of the next trial step, which a hook may change
+    vec<S, detail::n_state<Model>>& y;                  ///< the state
+    /// The parameters of the instance.
     ref<vec<S, detail::n_parameter<Model>>, detail::writes_parameters<Model>> parameter;
-    shared_values<Model, real_of<S>> shared;
-    shared_values<Model, std::int32_t> shared_integer;
-    vec<S, detail::n_accessory<Model>>& accessory;
-    vec<integer_of<S>, detail::n_integer_accessory<Model>>& integer_accessory;
-    const detail::index_of<S>& index;
-    const integer_of<S>& phase;
-    const vec<integer_of<S>, detail::n_event<Model>>& event_count;
+    shared_values<Model, real_of<S>> shared;                                    ///< values that all instances share
+    shared_values<Model, std::int32_t> shared_integer;                          ///< integers that all instances share
+    vec<S, detail::n_accessory<Model>>& accessory;                              ///< the model's own storage
+    vec<integer_of<S>, detail::n_integer_accessory<Model>>& integer_accessory;  ///< its integers
+    const detail::index_of<S>& index;                               ///< number of the instance in the ensemble
+    const integer_of<S>& phase;                                     ///< number of the phase, from the ensemble's start
+    const vec<integer_of<S>, detail::n_event<Model>>& event_count;  ///< detections of each event in this phase
 
+    /// Made by the library.
     MYRIAD_FUNCTION explicit lane(detail::lane_data<Model, S>& d)
         : t(d.t), t_begin(d.t_begin), t_end(d.t_end), h(d.h), h_next(d.h_next), y(d.y), parameter(d.parameter),
           shared(d.shared), shared_integer(d.shared_integer), accessory(d.accessory),
@@ -138,7 +146,7 @@ struct lane {
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Copies lane i of a vector of packs; `set_lanes` writes it back.
+/// Copies lane i out of a vector of packs; `set_lanes` writes it back.
 template <class R, class S, int n>
 MYRIAD_FUNCTION vec<R, n> get_lanes(const vec<S, n>& v, int i) {
     vec<R, n> out;
@@ -152,7 +160,7 @@ MYRIAD_FUNCTION void set_lanes(vec<S, n>& v, int i, const vec<R, n>& lane) {
     for (int c = 0; c < n; ++c) set_lane(v[c], i, lane[c]);
 }
 
-/// Whether two states are the same in their first components (a NaN differs from everything).
+/// Whether the first components of two states are equal (a NaN equals nothing).
 template <class R, int n>
 MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int count = n) {
     bool same = true;
@@ -161,40 +169,72 @@ MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int cou
     return same;
 }
 
+/// How a member of `lane_data` is used.
+template <bool written_by_hooks, bool read_by_rhs>
+struct member_use {
+    static constexpr bool written = written_by_hooks;              // by hooks
+    static constexpr bool acts = written_by_hooks && read_by_rhs;  // by hooks, and rhs or events may read it
+};
+
+/// Calls `visit(member_use, the member in each of the data...)` for every member of `lane_data`.
+template <class Model, class Visit, class... Data>
+MYRIAD_FUNCTION void for_each_member(Visit&& visit, Data&... d) {
+    constexpr bool read = !accessories_are_outputs<Model>;
+    visit(member_use<true, true>{}, d.y...);
+    visit(member_use<true, read>{}, d.accessory...);
+    visit(member_use<true, read>{}, d.integer_accessory...);
+    visit(member_use<writes_parameters<Model>, true>{}, d.parameter...);
+    visit(member_use<writes_time_domain<Model>, false>{}, d.t_begin...);
+    visit(member_use<writes_time_domain<Model>, false>{}, d.t_end...);
+    visit(member_use<true, false>{}, d.h_next...);
+    visit(member_use<false, true>{}, d.t...);
+    visit(member_use<false, true>{}, d.shared...);
+    visit(member_use<false, true>{}, d.shared_integer...);
+    visit(member_use<false, false>{}, d.h...);
+    visit(member_use<false, false>{}, d.index...);
+    visit(member_use<false, false>{}, d.phase...);
+    visit(member_use<false, false>{}, d.event_count...);
+}
+
+/// Copies lane i of a member out of a pack; `put_lane` writes it back.
+template <class R, class S>
+MYRIAD_FUNCTION void copy_lane(R& to, const S& from, int i) {
+    to = static_cast<R>(get_lane(from, i));
+}
+template <class R, class S, int n>
+MYRIAD_FUNCTION void copy_lane(vec<R, n>& to, const vec<S, n>& from, int i) {
+    to = get_lanes<R>(from, i);
+}
+template <class Model, class T>
+MYRIAD_FUNCTION void copy_lane(shared_values<Model, T>& to, const shared_values<Model, T>& from, int) {
+    to = from;
+}
+template <class S, class R>
+MYRIAD_FUNCTION void put_lane(S& to, int i, const R& from) {
+    set_lane(to, i, from);
+}
+template <class S, class R, int n>
+MYRIAD_FUNCTION void put_lane(vec<S, n>& to, int i, const vec<R, n>& from) {
+    set_lanes(to, i, from);
+}
+
 /// Lane i of a pack as the data of one instance.
 template <class Model, class S>
 MYRIAD_FUNCTION lane_data<Model, real_of<S>> extract_lane(const lane_data<Model, S>& d, int i) {
-    using R = real_of<S>;
-    lane_data<Model, R> one;
-    one.parameter = get_lanes<R>(d.parameter, i);
-    one.accessory = get_lanes<R>(d.accessory, i);
-    one.integer_accessory = get_lanes<std::int32_t>(d.integer_accessory, i);
-    one.shared = d.shared;
-    one.shared_integer = d.shared_integer;
-    one.t = get_lane(d.t, i);
-    one.t_begin = get_lane(d.t_begin, i);
-    one.t_end = get_lane(d.t_end, i);
-    one.h = get_lane(d.h, i);
-    one.h_next = get_lane(d.h_next, i);
-    one.y = get_lanes<R>(d.y, i);
-    one.index = static_cast<std::int64_t>(get_lane(d.index, i));
-    one.phase = static_cast<std::int32_t>(get_lane(d.phase, i));
-    one.event_count = get_lanes<std::int32_t>(d.event_count, i);
+    lane_data<Model, real_of<S>> one;
+    detail::for_each_member<Model>(
+        [&](auto, auto& to, const auto& from) MYRIAD_LAMBDA { detail::copy_lane(to, from, i); }, one, d);
     return one;
 }
 
-/// Writes back what a hook may have changed.
+/// Writes back the members that a hook may have changed.
 template <class Model, class S>
 MYRIAD_FUNCTION void insert_lane(lane_data<Model, S>& d, int i, const lane_data<Model, real_of<S>>& one) {
-    if constexpr (writes_parameters<Model>) set_lanes(d.parameter, i, one.parameter);
-    if constexpr (writes_time_domain<Model>) {
-        set_lane(d.t_begin, i, one.t_begin);
-        set_lane(d.t_end, i, one.t_end);
-    }
-    set_lanes(d.accessory, i, one.accessory);
-    set_lanes(d.integer_accessory, i, one.integer_accessory);
-    set_lane(d.h_next, i, one.h_next);
-    set_lanes(d.y, i, one.y);
+    detail::for_each_member<Model>(
+        [&](auto use, auto& to, const auto& from) MYRIAD_LAMBDA {
+            if constexpr (use.written) detail::put_lane(to, i, from);
+        },
+        d, one);
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Random numbers for hooks: a function of seed, instance, phase and number of the draw, with the same bits on every
-// backend and on the host, whatever the order of the work.
+// backend and on the host, in whatever order the work is done.
 #pragma once
 
 #include <cmath>
@@ -14,10 +14,10 @@
 
 namespace myriad::inline MYRIAD_TARGET {
 
-/// Four 32-bit words: a counter, and the random bits made of it.
+/// Four 32-bit words: a counter, or the random bits computed from it.
 using random_block = vec<std::uint32_t, 4>;
 
-/// The types that random numbers may have.
+/// The number types that random numbers may have.
 template <class R>
 concept random_real = std::same_as<R, float> || std::same_as<R, double>;
 
@@ -80,9 +80,9 @@ namespace myriad::inline MYRIAD_TARGET {
 
 /// The inverse of the normal distribution function, for p in (0, 1); -infinity at 0, infinity at 1, NaN beyond:
 /// Wichura's algorithm AS 241, PPND16, Appl. Statist. 37 (1988) 477-484. Relative error at most 1e-15 in double
-/// precision, 1e-6 in single precision. Written only with fused operations, integer operations, divisions and square
-/// roots, which no compiler replaces by others: so its bits are the same on every target. On processors without fused
-/// operations the C library emulates them.
+/// precision, 1e-6 in single precision. Its bits are the same on every target, as it uses only fused operations,
+/// integer operations, divisions and square roots, which no compiler replaces. On processors without fused operations
+/// the C library emulates them.
 template <random_real R>
 MYRIAD_FUNCTION R normal_quantile(R p) {
     using detail::fused_polynomial;
@@ -122,11 +122,12 @@ MYRIAD_FUNCTION R normal_quantile(R p) {
 
 /// The random numbers of one instance in one phase, in sequence, each from its own block of bits: counter (index, low
 /// and high word; phase; number of the draw), key `seed`. No state outlives the hook: another hook of the same phase
-/// must start at another number, so that the two do not draw the same, for example an event's hook at one derived from
-/// the event's count.
+/// must start at another number to get different ones; an event's hook, for example, at a number derived from the
+/// event's count.
 template <random_real R>
 class random_numbers {
 public:
+    /// Draws of instance `index` in phase `phase`, from number `first` on.
     MYRIAD_FUNCTION constexpr random_numbers(std::uint64_t seed, std::int64_t index, std::int32_t phase,
                                              std::uint32_t first = 0)
         : seed_(seed), index_(static_cast<std::uint64_t>(index)), phase_(static_cast<std::uint32_t>(phase)),
@@ -134,9 +135,9 @@ public:
 
     /// Uniform in (0, 1): see uniform_of.
     MYRIAD_FUNCTION constexpr R uniform() { return uniform_of<R>(next()); }
-    /// Uniform between two numbers, either of which may be returned because of rounding.
+    /// Uniform between two numbers; because of rounding, either may be returned.
     MYRIAD_FUNCTION R uniform(R from, R to) { return std::fma(to - from, uniform(), from); }
-    /// Normal with mean zero and variance one: normal_quantile of a uniform one, so within 8.3 (float 5.3).
+    /// Normal with mean zero and variance one: normal_quantile of a uniform number, within +-8.3 (float 5.3).
     MYRIAD_FUNCTION R normal() { return normal_quantile(uniform()); }
     MYRIAD_FUNCTION R normal(R mean, R standard_deviation) { return std::fma(standard_deviation, normal(), mean); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reductions: which quantity of a model's `observe` goes into which accessory as its extremum, the time of one, or its
-// integral over the phase. Declared in the model, read at compile time.
+// Reductions: extrema of quantities of a model's `observe`, the times of extrema, and integrals over the phase, each
+// with the accessory that receives it. Declared in the model, read at compile time.
 #pragma once
 
 #include <cstddef>
@@ -12,20 +12,20 @@
 
 namespace myriad {
 
-/// What is computed from an observed quantity over a phase, along the solution and not only at the ends of steps.
+/// The reductions of an observed quantity over a phase, along the solution and not only at the ends of steps.
 enum class over_phase : std::uint8_t {
-    maximum,
-    minimum,
+    maximum,          ///< the largest value; the ends of the phase count too
+    minimum,          ///< the smallest value, likewise
     time_of_maximum,  ///< the first of equal ones; the model must also have the quantity's `maximum`
-    time_of_minimum,
-    integral,  ///< over t: backwards in time, that of a positive quantity is negative
+    time_of_minimum,  ///< the same with the quantity's `minimum`
+    integral,         ///< over t: backwards in time, that of a positive quantity is negative
 };
 
 }  // namespace myriad
 
 namespace myriad::detail {
 
-/// Its address identifies a type in constant expressions.
+/// A variable whose address identifies a type in constant expressions.
 template <class E>
 inline constexpr char type_mark = 0;
 
@@ -36,12 +36,13 @@ namespace myriad {
 /// An observed quantity, what to compute from it, and the accessory that receives it: `static constexpr
 /// myriad::reduction reductions[] = {{height, myriad::over_phase::maximum, highest}};`
 struct reduction {
-    int quantity;
-    over_phase kind;
-    int accessory;
-    const char* quantity_type;
-    const char* accessory_type;
+    int quantity;                ///< number of the observed quantity
+    over_phase kind;             ///< what is computed from it
+    int accessory;               ///< number of the accessory that receives it
+    const char* quantity_type;   ///< a mark of the type of the first argument, for checks
+    const char* accessory_type;  ///< a mark of the type of the last argument, for checks
 
+    /// From enumerators of `observed` and `accessory`.
     template <class Q, class A>
     constexpr reduction(Q observed, over_phase kind_, A receiver)
         : quantity(static_cast<int>(observed)), kind(kind_), accessory(static_cast<int>(receiver)),
@@ -60,12 +61,12 @@ constexpr int n_reduction_of() {
         return 0;
     }
 }
-/// Reductions that a model declares.
+/// Number of reductions that a model declares.
 template <class Model>
 inline constexpr int n_reduction = n_reduction_of<Model>();
 template <class Model>
 inline constexpr bool has_reductions = n_reduction<Model> > 0;
-/// One of them, without the type tags, which device code cannot use.
+/// A reduction without the type tags, which device code cannot use.
 struct unmarked_reduction {
     int quantity;
     over_phase kind;
@@ -89,7 +90,7 @@ constexpr bool marks_accessory(const char* mark) {
     return own;
 }
 
-/// Whether the model has that reduction of a quantity.
+/// Whether the model has this reduction of the quantity.
 template <class Model>
 constexpr bool reduces(int quantity, over_phase kind) {
     if constexpr (has_reductions<Model>) {
@@ -98,14 +99,14 @@ constexpr bool reduces(int quantity, over_phase kind) {
     }
     return false;
 }
-/// The accessory that receives it, or -1.
+/// The accessory that receives this reduction, or -1.
 template <class Model, int quantity, over_phase kind>
 inline constexpr int reduced_into = [] {
     for (const reduction& r : Model::reductions)
         if (r.quantity == quantity && r.kind == kind) return r.accessory;
     return -1;
 }();
-/// Whether the model has a reduction of that kind.
+/// Whether the model has a reduction of this kind.
 template <class Model, over_phase kind>
 inline constexpr bool reduces_any = [] {
     bool found = false;
@@ -120,7 +121,7 @@ inline constexpr bool seeks_extrema =
 template <class Model>
 inline constexpr bool sees_reductions = has_reductions<Model> && !accessories_are_outputs<Model>;
 
-/// Checks what can be checked of a model's reductions without calling `observe`.
+/// Checks a model's reductions as far as possible without calling `observe`.
 template <class Model>
 constexpr bool check_reductions() {
     constexpr bool declared = requires { Model::reductions; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tangent dynamics: a model together with its variational equations, whose right-hand side is that of the model called
-// with dual numbers, and with the growth of the tangent vectors, which gives Lyapunov exponents.
+// Tangent dynamics: a model with its variational equations, whose right-hand side is the model's called with dual
+// numbers, and with the growth of the tangent vectors, which gives Lyapunov exponents.
 #pragma once
 
 #include <utility>
@@ -11,7 +11,7 @@
 namespace myriad::detail {
 
 // One layer for each optional function, present only if the model has it, so that the wrapped model has the same
-// functions as the model. Each layer inherits the previous one, and hides the model's function by its own.
+// functions as the model. Each layer inherits the previous one, and hides the model's function with its own.
 namespace tangent_layers {
 
 template <class Model, int vectors>
@@ -85,7 +85,7 @@ struct after_event_layer<Model, vectors> : after_step_layer<Model, vectors> {
         for (int i = 0; i < vectors; ++i) {
             vec<R, n> v = part<n>(wrapped.y, n + i * n);
             dt[i] = -event_along(event, wrapped, v, R(0)) / approach;
-            // If the solution only touches the surface, there is no dt; that is harmless if nothing jumps.
+            // If the solution only touches the surface, dt does not exist; this is harmless if nothing jumps.
             const R finite = is_finite(dt[i]) ? dt[i] : R(0);
             for (int c = 0; c < n; ++c) v[c] = fma(before[c], finite, v[c]);
             set_part(arriving, i * n, v);
@@ -96,7 +96,7 @@ struct after_event_layer<Model, vectors> : after_step_layer<Model, vectors> {
         });
         const vec<R, n> after = slope<R>(wrapped);
         const bool no_jump = same_values(left, arriving) && same_values(before, after);
-        if (no_jump) return wanted;  // exactly, without rounding
+        if (no_jump) return wanted;  // compared exactly, without rounding
         MYRIAD_UNROLL
         for (int i = 0; i < vectors; ++i)
             for (int c = 0; c < n; ++c) wrapped.y[n + i * n + c] = fma(-after[c], dt[i], left[i * n + c]);
@@ -123,42 +123,43 @@ namespace myriad {
 
 /// Model with `vectors` solutions v' = J v of its variational equations, J the Jacobian of its right-hand side: itself
 /// a model, in which `with_tangents<Model>::tangent(c, i)` is component c of tangent i among the states. The tangents
-/// start orthonormal (`initial_tangents(ensemble)` sets some), are orthonormalised at the end of every phase by a QR
-/// decomposition, and the logarithms of the diagonal of R are summed from phase `transient_phases` on: divided by
+/// start orthonormal (`initial_tangents(ensemble)` sets them) and are orthonormalised at the end of every phase by a QR
+/// decomposition. The logarithms of the diagonal of R are summed from phase `transient_phases` on: divided by
 /// `time_summed`, the sums are the Lyapunov exponents, the largest first (`exponents(ensemble)`); Benettin et al.,
 /// Meccanica 15 (1980) 9 and 21. The first components, parameters, shared values, accessories, events and hooks are
-/// those of Model; actions transform the tangents as they do the distance to a neighbouring solution.
+/// those of Model; actions transform the tangents like the distance to a neighbouring solution.
 ///
-/// Model's functions, hooks included, are called with dual numbers: their variables are `auto` or R, their functions
-/// those of `myriad`. What a hook writes elsewhere than to the state, and `rhs` reads, must not depend on the state,
-/// and `rhs` may jump only where an event with `after_event` is.
+/// Model's functions, hooks included, are called with dual numbers: their variables must be `auto` or R, the functions
+/// they call those of `myriad`. Values that a hook writes outside the state, and `rhs` reads, must not depend on the
+/// state, and `rhs` may jump only at an event with `after_event`.
 template <class Model, int vectors = 1>
 struct with_tangents : detail::tangent_layers::after_event_layer<Model, vectors> {
     static_assert(detail::check_model<Model>());
     static_assert(vectors >= 1 && vectors <= detail::n_state<Model>,
                   "a model of n components has from 1 to n independent tangent vectors");
 
-    using original = Model;
-    static constexpr int n_original = detail::n_state<Model>;
-    static constexpr int n_vectors = vectors;
+    using original = Model;                                    ///< the model without tangents
+    static constexpr int n_original = detail::n_state<Model>;  ///< number of its states
+    static constexpr int n_vectors = vectors;                  ///< number of tangent vectors
 
-    /// Number of states, the last ones, that are not the model's own.
+    /// Number of states, the last ones, that are not Model's own.
     static constexpr int n_tangent = vectors * n_original;
-    static constexpr int n_state = n_original + n_tangent;
+    static constexpr int n_state = n_original + n_tangent;  ///< number of all states
     /// Component c of tangent vector i, among the states.
     MYRIAD_FUNCTION static constexpr int tangent(int c, int i = 0) { return n_original + i * n_original + c; }
 
-    /// The sum of ln |r_ii| of the phases, among the accessories.
+    /// The sum of ln |r_ii| over the phases, among the accessories.
     MYRIAD_FUNCTION static constexpr int growth(int i = 0) { return detail::n_accessory<Model> + i; }
-    /// The time summed, and the time at which the current phase began.
+    /// The time summed, among the accessories.
     static constexpr int time_summed = detail::n_accessory<Model> + vectors;
-    static constexpr int phase_began = time_summed + 1;
-    static constexpr int n_accessory = phase_began + 1;
+    static constexpr int phase_began = time_summed + 1;  ///< the time at which the current phase began
+    static constexpr int n_accessory = phase_began + 1;  ///< number of all accessories
 
-    /// Number of phases, from the ensemble's start, that are left out of the sums, among the shared integers.
+    /// Number of phases, from the ensemble's start, left out of the sums, among the shared integers.
     static constexpr int transient_phases = detail::n_shared_integer<Model>;
-    static constexpr int n_shared_integer = transient_phases + 1;
+    static constexpr int n_shared_integer = transient_phases + 1;  ///< number of all shared integers
 
+    /// The slopes of the states and, by dual numbers, of the tangents.
     template <class R>
     MYRIAD_FUNCTION static vec<R, n_state> rhs(auto t, const vec<R, n_state>& y, const auto& p) {
         static_assert(detail::hooks_fit<Model, real_of<R>>);
@@ -166,12 +167,13 @@ struct with_tangents : detail::tangent_layers::after_event_layer<Model, vectors>
                          std::make_integer_sequence<int, vectors>{}, std::make_integer_sequence<int, n_state>{});
     }
 
+    /// The model's own hook; sets the sums to zero in phase 0.
     MYRIAD_FUNCTION static void initialise(auto& wrapped) {
         const bool at_t_begin = wrapped.t == wrapped.t_begin;
         if constexpr (detail::has_initialise<Model>) {
             const auto given = detail::part<n_tangent>(wrapped.y, n_original);
             detail::move_tangents<Model, vectors>(wrapped, [](auto& own) MYRIAD_LAMBDA { Model::initialise(own); });
-            if (wrapped.phase == 0) detail::set_part(wrapped.y, n_original, given);  // they start from its state
+            if (wrapped.phase == 0) detail::set_part(wrapped.y, n_original, given);  // they start as given
         }
         wrapped.accessory[phase_began] = at_t_begin ? wrapped.t_begin : wrapped.t;
         if (wrapped.phase == 0) {
@@ -181,6 +183,7 @@ struct with_tangents : detail::tangent_layers::after_event_layer<Model, vectors>
         }
     }
 
+    /// The model's own hook; then orthonormalises the tangents and adds their growth to the sums.
     MYRIAD_FUNCTION static void finalise(auto& wrapped) {
         if constexpr (detail::has_finalise<Model>)
             detail::move_tangents<Model, vectors>(wrapped, [](auto& own) MYRIAD_LAMBDA { Model::finalise(own); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What tangent dynamics needs besides the variational equations: hooks of a model called with dual numbers, and the QR
+// Tools of tangent dynamics beside the variational equations: hooks of a model called with dual numbers, and the QR
 // decomposition that keeps tangent vectors linearly independent.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// The first components of a vector, and `size` of them from `from` on.
+/// The first `size` components of a vector, or those from `from` on.
 template <int size, class S, int n>
 MYRIAD_FUNCTION vec<S, size> part(const vec<S, n>& v, int from = 0) {
     vec<S, size> out;
@@ -22,7 +22,7 @@ MYRIAD_FUNCTION void set_part(vec<S, n>& v, int from, const vec<S, size>& to) {
     for (int c = 0; c < size; ++c) v[from + c] = to[c];
 }
 
-/// y + e direction, whose functions have their derivatives in that direction.
+/// y + e direction: functions of it have their derivatives in that direction.
 template <class S, int n>
 MYRIAD_FUNCTION vec<dual<S>, n> along(const vec<S, n>& y, const vec<S, n>& direction) {
     vec<dual<S>, n> moving;
@@ -38,7 +38,7 @@ MYRIAD_FUNCTION vec<S, n> derivatives(const vec<dual<S>, n>& v) {
     return out;
 }
 
-/// The inputs of Model, from those of a model W that adds to its accessories.
+/// The inputs of Model, taken from those of a model W that has additional accessories.
 template <class Model, class W, class S>
 MYRIAD_FUNCTION inputs<Model, S> inputs_in(const lane<W, S>& l) {
     inputs<Model, S> p;
@@ -52,8 +52,8 @@ MYRIAD_FUNCTION inputs<Model, S> inputs_in(const lane<W, S>& l) {
     return p;
 }
 
-/// The lane as Model's own, in dual numbers: the derivative of its state is the given direction, that of its time dt;
-/// everything else is constant.
+/// The lane of Model alone, in dual numbers: the derivative of its state is the given direction, that of its time is
+/// dt; everything else is constant.
 template <class Model, class W, class S>
 MYRIAD_FUNCTION lane_data<Model, dual<S>> moving_lane(const lane<W, S>& l, const vec<S, n_state<Model>>& direction,
                                                       const S& dt) {
@@ -77,7 +77,7 @@ MYRIAD_FUNCTION lane_data<Model, dual<S>> moving_lane(const lane<W, S>& l, const
     return d;
 }
 
-/// Copies back the values that a hook has left in Model's own lane.
+/// Copies back the values that a hook left in Model's own lane.
 template <class Model, class W, class S>
 MYRIAD_FUNCTION void take_values(lane<W, S>& l, const lane_data<Model, dual<S>>& d) {
     MYRIAD_UNROLL
@@ -96,9 +96,9 @@ MYRIAD_FUNCTION void take_values(lane<W, S>& l, const lane_data<Model, dual<S>>&
     }
 }
 
-/// Calls `hook` with Model's own lane once for each of `count` directions, whose derivatives of state and time are the
-/// direction and its dt, and returns the derivatives of the state that the hook leaves. The values it leaves are the
-/// same every time.
+/// Calls `hook` with Model's own lane once for each of `count` directions, with the direction and its dt as derivatives
+/// of state and time, and returns the derivatives of the state after the hook. The values after the hook are the same
+/// every time.
 template <class Model, int count, class W, class S, class Hook>
 MYRIAD_FUNCTION vec<S, count * n_state<Model>> move_through(lane<W, S>& l,
                                                             const vec<S, count * n_state<Model>>& directions,
@@ -117,7 +117,7 @@ MYRIAD_FUNCTION vec<S, count * n_state<Model>> move_through(lane<W, S>& l,
     return left;
 }
 
-/// The same for a hook that is called at given times, along the tangents that follow Model's state, which are updated.
+/// The same for a hook called at given times, in the directions of the tangents after Model's state; updates them.
 template <class Model, int count, class W, class S, class Hook>
 MYRIAD_FUNCTION void move_tangents(lane<W, S>& l, Hook&& hook) {
     constexpr int n = n_state<Model>;
@@ -128,9 +128,9 @@ MYRIAD_FUNCTION void move_tangents(lane<W, S>& l, Hook&& hook) {
 }
 
 /// Makes `count` vectors of n components, from v[from] on, orthonormal, and calls `stretch(i, length)` with the
-/// diagonal of R in their decomposition QR. Gram-Schmidt, modified, and each vector against the others twice, which
-/// leaves them orthogonal to rounding however close they had come (Giraud, Langou, Rozloznik, Comput. Math. Appl. 50
-/// (2005) 1069).
+/// diagonal of R in their QR decomposition. Modified Gram-Schmidt, each vector against the others twice, which leaves
+/// them orthogonal to rounding however close they had come (Giraud, Langou, Rozloznik, Comput. Math. Appl. 50 (2005)
+/// 1069).
 template <int n, int count, class R, int size, class Stretch>
 MYRIAD_FUNCTION void orthonormalise(vec<R, size>& v, int from, Stretch&& stretch) {
     for (int i = 0; i < count; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reductions of observed quantities along the solution: extrema, their times and integrals over the phase, taken on the
-// interpolant of each committed step. Their current values are in their accessories and nowhere else. Only in kernels
-// of models that declare `reductions`.
+// Reductions of observed quantities along the solution: extrema, their times and integrals over the phase, computed on
+// the interpolant of each committed step. Their current values are stored only in their accessories. Only in kernels of
+// models that declare `reductions`.
 #pragma once
 
 #include "myriad/kernel/scalar/dual.hpp"
@@ -10,17 +10,17 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// A committed step as the reductions see it: its interpolant, with the term that raises a cubic one to order four.
+/// A committed step as the reductions see it: its interpolant, with the term that raises a cubic to order four.
 template <class Method, class S, int n>
 struct observed_step {
-    // The cubic Hermite polynomial is of a lower order than the steps of a method of order five. One more evaluation
+    // The cubic Hermite polynomial is of lower order than the steps of a method of order five. One more evaluation
     // raises it: the state at one point gives a slope there that is accurate to order four.
     static constexpr bool bends = !has_own_interpolant<Method> && (Method::order > 4);
 
     step_data<Method, S, n> data;
     [[no_unique_address]] vec<S, bends ? n : 0> bend;
 
-    /// State at t + theta h, for a dual theta with its derivative.
+    /// State at t + theta h; for a dual theta, with its derivative.
     template <class T>
     MYRIAD_FUNCTION vec<T, n> at(const T& theta) const {
         vec<T, n> y = detail::interpolate(data, theta);
@@ -59,11 +59,11 @@ struct reducer {
         });
     }
 
-    /// Updates the reductions with the accepted trial steps, which end at t1; called before they are committed. Returns
-    /// the lanes in which an accessory has changed.
+    /// Updates the reductions with the accepted trial steps, which end at t1, before they are committed. Returns the
+    /// lanes in which an accessory has changed.
     MYRIAD_FUNCTION mask reduce(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
         const auto before = s.data.accessory;
-        step_type step{{s.now(), s.h, s.data.y, trial, s.slope_end, {}}, {}};
+        step_type step{{s.now(), s.h, s.data.y, trial, s.slopes.end(), {}}, {}};
         if constexpr (interpolates_with_slope_end<Method> ||
                       (seeks_extrema<Model> && interpolates_between_slopes<Method>))
             detail::know_slope_end<Model>(s, step.data, t1, accepted);
@@ -106,7 +106,7 @@ private:
     template <int q, over_phase kind>
     static constexpr bool extreme = reduces<Model>(q, kind);
 
-    /// The quantities, and their slopes along the solution in units of the step, at the given theta.
+    /// The quantities at theta = `end`, with their slopes along the solution per step.
     template <int end>
     MYRIAD_FUNCTION slopes at_end(const step_type& step, const S& t, const vec<S, n>& y) const {
         vec<dual<S>, n> moving;
@@ -134,11 +134,11 @@ private:
         return observe<T>(fma(theta, step.data.h, step.data.t), step.at(theta));
     }
 
-    /// Completes what the interpolant needs inside the step; the slope at its end must be set.
+    /// Computes the stages that the interpolant needs; the slope at the end must be set.
     MYRIAD_FUNCTION void know_interpolant(step_type& step, const mask& lanes) {
         detail::know_inside<Model>(s, step.data, lanes);
         if constexpr (step_type::bends) {
-            // The bump theta^2 (1 - theta)^2 is steepest here, and half as far from the other end.
+            // The bump theta^2 (1 - theta)^2 is steepest here and, by symmetry, at 1 - c.
             constexpr R c = static_cast<R>(0.21132486540518711775L);  // (1 - 1 / sqrt(3)) / 2
             constexpr R steepness =
                 static_cast<R>(2 * 0.21132486540518711775L * 0.78867513459481288225L * 0.57735026918962576451L);
@@ -174,22 +174,22 @@ private:
         }
     }
 
-    /// Whether the cubic polynomial through both ends with their slopes may have an extremum inside. If not, the slopes
-    /// have the sign of its rise, and are at most three times as large: Fritsch and Carlson, SIAM J. Numer. Anal. 17
-    /// (1980) 238.
+    /// Whether the cubic polynomial through both ends with their slopes may have an extremum inside. If not, both
+    /// slopes have the sign of its rise and are at most three times as large: Fritsch and Carlson, SIAM J. Numer. Anal.
+    /// 17 (1980) 238.
     MYRIAD_FUNCTION mask may_turn(const dual<S>& first, const dual<S>& last) const {
         const S rise = last.value - first.value, bound = S(R(3)) * rise * rise;
         const S a = first.derivative * rise, b = last.derivative * rise;
         return !((a >= S(R(0))) & (a <= bound) & (b >= S(R(0))) & (b <= bound));
     }
 
-    /// Out of line, as otherwise its operands would stay live throughout the loop.
+    /// Out of line; otherwise its operands would stay live throughout the loop.
     [[gnu::noinline]] void search_out_of_line(step_type& step, const slopes& first, const slopes& last,
                                               const mask& search) {
         search_inside(step, first, last, search);
     }
 
-    /// One quantity and one sign after the other, with the same code: 1 for its maximum, -1 for its minimum.
+    /// One quantity and sign after the other, with the same code: 1 for the maximum, -1 for the minimum.
     MYRIAD_FUNCTION void search_inside(step_type& step, const slopes& first, const slopes& last, const mask& search) {
         if constexpr (!integrates) know_interpolant(step, search);
         static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
@@ -217,14 +217,14 @@ private:
         return observe_at(step, dual<S>(theta, S(R(1))));
     }
 
-    /// A point between two extrema inside the step, and the slope there.
+    /// A point between two extrema inside the step, with the slope there.
     struct turn {
         mask there;
         S theta, slope;
     };
 
-    /// If both ends slope the same way and the cubic polynomial through them has an interval that slopes the other way:
-    /// the steepest point of that interval.
+    /// If both ends slope the same way but the cubic polynomial through them slopes the other way in between: the
+    /// steepest point of that interval.
     template <int q>
     MYRIAD_FUNCTION turn turn_between(const step_type& step, const mask& lanes, const dual<S>& first,
                                       const dual<S>& last) const {
@@ -242,8 +242,8 @@ private:
         return found;
     }
 
-    /// Finds the largest value (sign 1) or the smallest (sign -1) of quantity q inside the step, where it has one: its
-    /// slope on the interpolant changes sign there.
+    /// Finds the largest (sign 1) or smallest (sign -1) value of quantity q inside the step, if it has one: its slope
+    /// on the interpolant changes sign there.
     template <int q>
     MYRIAD_FUNCTION void find_extremum(const step_type& step, R sign, const mask& lanes, const dual<S>& first,
                                        const dual<S>& last, const turn& middle) {
@@ -252,7 +252,7 @@ private:
         const mask early = middle.there & (d0 > zero) & (d < zero), late = middle.there & (d > zero) & (d1 < zero);
         const bracket<S> b{select(late, middle.theta, zero), select(early, middle.theta, S(R(1))), select(late, d, d0),
                            select(early, d, d1)};
-        // With a slope as small as this, as of a constant quantity, it rises above both ends by less than rounding.
+        // With a slope this small, as of a constant quantity, it rises above both ends by less than rounding.
         const S least = S(epsilon_of<R>) * max(abs(first.value), abs(last.value));
         const mask wanted = lanes & (b.f_low > least) & (b.f_high < -least);
         if (!any(wanted)) return;
@@ -266,7 +266,7 @@ private:
         consider<q>(wanted, value, fma(theta, step.data.h, step.data.t));
     }
 
-    /// Lobatto's rule of five points, exact for polynomials up to degree seven: Abramowitz and Stegun, Handbook of
+    /// Five-point Lobatto rule, exact for polynomials up to degree seven: Abramowitz and Stegun, Handbook of
     /// Mathematical Functions, 25.4.32 and table 25.6.
     MYRIAD_FUNCTION void integrate_step(const step_type& step, const slopes& first, const slopes& last,
                                         const mask& lanes) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Dense output inside the loop: stores chosen states at given times, from the interpolant of each committed step, or at
-// every n-th step. Only in kernels of a method `dense<Method>`; others have none of it.
+// every n-th step. Only in kernels of a method `dense<Method>`; other kernels contain none of it.
 #pragma once
 
 #include "myriad/kernel/state/inside_step.hpp"
@@ -14,8 +14,8 @@ template <class Method, class S>
 struct sample_state<Method, S, true> {
     S next;                           // time of the next sample; infinity: none
     S last;                           // when sampling by steps: time of the last sample
-    S begin, end;                     // the domain of evenly spaced samples; a hook may move the phase's end
-    std::int32_t index[lanes_of<S>];  // number of the next given time in this phase
+    S begin, end;                     // the domain of evenly spaced samples; a hook may move the end of the phase
+    std::int32_t index[lanes_of<S>];  // index of the next given time in this phase
     std::int32_t steps[lanes_of<S>];  // accepted steps since the last sample; -1: this phase is not sampled
 };
 
@@ -29,7 +29,7 @@ struct sampler {
     integration_state<Model, Method, S>& s;
     sample_state<Method, S>& o;
 
-    /// Starts lane i's phase, number `phase` of this call, at its time and state.
+    /// Starts lane i's phase, number `phase` of this call, at its current time and state.
     MYRIAD_FUNCTION void begin(int i, std::int32_t phase) {
         const R t = get_lane(s.data.t, i);
         o.index[i] = 0;
@@ -45,7 +45,7 @@ struct sampler {
         const R end = get_lane(s.data.t_end, i);
         set_lane(o.begin, i, get_lane(s.data.t_begin, i));
         set_lane(o.end, i, end);
-        // If time continues from phase to phase, the previous phase has stored the sample at its end.
+        // If time continues from phase to phase, the previous phase stored the sample at its end.
         const bool has_start = args.carry_time && get_lane(s.data.phase, i) > 0 && ends_with(i, t);
         const auto passed = [&](R time) MYRIAD_LAMBDA {
             return (has_start && time == t) || (end < t ? time > t : end > t && time < t);
@@ -59,7 +59,7 @@ struct sampler {
         }
     }
 
-    /// Stores the samples within the accepted trial steps, which end at t1; called before they are committed.
+    /// Stores the samples within the accepted trial steps, which end at t1, before they are committed.
     MYRIAD_FUNCTION void save(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
         if (args.sample.stored == nullptr) return;
         if (args.sample.every > 0) {
@@ -85,7 +85,7 @@ private:
         const S t0 = s.now();
         mask due = accepted & falls_between(t0, t1);
         if (!any(due)) return;
-        step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slope_end, {}};
+        step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slopes.end(), {}};
         if constexpr (Method::first_same_as_last || interpolates_with_slope_end<Method>)
             detail::know_slope_end<Model>(s, step, t1, due);
         detail::know_inside<Model>(s, step, due);
@@ -104,8 +104,8 @@ private:
         }
     }
 
-    /// Lanes whose next sample falls into the step from t0 to t1. Not one that a hook which turned the phase round left
-    /// behind; but one that the rounding of t put between the end of the last step and t0.
+    /// Lanes whose next sample falls into the step from t0 to t1. Excluded is a sample left behind by a hook that
+    /// reversed the phase; included is one that rounding of t put between the end of the last step and t0.
     MYRIAD_FUNCTION mask falls_between(const S& t0, const S& t1) const {
         const S slack = S(R(4) * epsilon_of<R>) * abs(t0);
         const S ahead = select(s.h < S(R(0)), t0 - o.next, o.next - t0);
@@ -120,7 +120,7 @@ private:
     MYRIAD_FUNCTION void set_next(int i) {
         set_lane(o.next, i, o.index[i] < args.sample.count ? sample_time(i) : never(i));
     }
-    /// Given times, or evenly spaced ones over the domain with which the phase began, both ends included.
+    /// Given times, or evenly spaced ones over the domain at the start of the phase, both ends included.
     MYRIAD_FUNCTION R sample_time(int i) const {
         const std::int32_t k = o.index[i];
         if (args.sample.times != nullptr) return args.sample.times[k];
@@ -131,7 +131,7 @@ private:
         return fma(static_cast<R>(k) / static_cast<R>(args.sample.count - 1), end - begin, begin);
     }
 
-    /// Whether the last sample is that of time t.
+    /// Whether the last sample has time t.
     MYRIAD_FUNCTION bool ends_with(int i, R t) const {
         const std::int32_t stored = args.sample.stored[s.instance[i]];
         return stored > 0 && args.sample.time[static_cast<std::int64_t>(stored - 1) * args.size + s.instance[i]] == t;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What Myriad's own elementary functions need besides + - * /: fused operations, bits, selection and polynomials, under
-// the same names for a plain real, on host and device, and for one SIMD batch (in batch.hpp).
+// Operations beyond + - * / that Myriad's elementary functions need: fused operations, bits, selection and polynomials,
+// under the same names for a plain real, on host and device, and for one SIMD batch (in batch.hpp).
 #pragma once
 
 #include <concepts>
@@ -11,11 +11,11 @@
 #include "myriad/kernel/scalar/select.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
-/// Adding this rounds to an integer and leaves its last bits in the last bits of the sum.
+/// Adding this constant rounds to an integer, whose last bits are then the last bits of the sum.
 template <class T>
 inline constexpr T round_to_whole = sizeof(T) == sizeof(double) ? T(0x1.8p52) : T(0x1.8p23);
 
-/// The elementary functions of one kind of number; every kind specialises it, plain reals in math.hpp.
+/// The elementary functions of one kind of number, specialised for each kind; for plain reals in math.hpp.
 template <class S>
 struct functions;
 
@@ -39,7 +39,7 @@ struct arithmetic<T> {
     static MYRIAD_FUNCTION T from_bits(bits b) { return __builtin_bit_cast(T, b); }
     static MYRIAD_FUNCTION bool is_odd(bits b) { return (b & 1) != 0; }
     static MYRIAD_FUNCTION T reciprocal(T x) { return functions<T>::reciprocal(x); }
-    /// Whether x is at least `least` and finite, both positive: by the bits, to spare the floating-point pipe.
+    /// Whether x is finite and at least `least`, both positive: tested by the bits, to spare the floating-point pipe.
     static MYRIAD_FUNCTION bool is_finite_from(T least, T x) {
         const bits from = to_bits(least), last = to_bits(largest_of<T>);
         return to_bits(x) - from <= last - from;
@@ -56,8 +56,8 @@ MYRIAD_FUNCTION B polynomial(const B& x, typename arithmetic<B>::real c0, More..
     return arithmetic<B>::multiply_add(x, polynomial(x, more...), B(c0));
 }
 
-/// Whether two numbers differ in any bit; an unchanged NaN does not. Cheaper than a comparison of values that handles
-/// NaN, and true for zeros of different sign.
+/// Whether two numbers differ in any bit: true for zeros of different sign, false for an unchanged NaN. Cheaper than a
+/// comparison of values that handles NaN.
 template <class S>
 struct bit_comparison {
     static MYRIAD_FUNCTION bool differs(const S& a, const S& b) {

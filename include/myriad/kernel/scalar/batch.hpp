@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Operations on one SIMD batch that packs need and that xsimd (8 to 13) lacks, does differently from version to
-// version, or gets wrong.
+// Operations on one SIMD batch that packs need and that xsimd (8 to 13) lacks, changes between versions, or gets wrong.
 #pragma once
 
 #include <cstdint>
 #include <limits>
 #include <type_traits>
 
-// g++ 12 warns of the deliberately uninitialised registers in its own AVX-512 intrinsics (GCC bug 105593).
+// g++ 12 warns of deliberately uninitialised registers in its own AVX-512 intrinsics (GCC bug 105593).
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wuninitialized"
@@ -23,7 +22,7 @@
 #include "myriad/kernel/scalar/math.hpp"
 
 // Repeats a statement for i = 0, 1, ... of a pack's batches. Not a loop: g++ unrolls loops after other optimisations,
-// and would then fuse different products and sums in packs of several batches than in those of one.
+// and would then fuse different products and sums depending on the number of batches.
 #define MYRIAD_EACH_BATCH(...)       \
     do {                             \
         {                            \
@@ -50,11 +49,11 @@ using real_of_width = std::conditional_t<sizeof(T) == sizeof(double), double, fl
 template <class T>
 using integer_of_width = std::conditional_t<sizeof(T) == sizeof(double), std::int64_t, std::int32_t>;
 
-// AVX-512 keeps a mask in a register of bits, the other instruction sets in a vector whose lanes are all ones or zero.
+// AVX-512 keeps a mask as bits in a register, other instruction sets as a vector whose lanes are all ones or zero.
 template <class Batch>
 inline constexpr bool has_bit_mask = std::is_integral_v<typename Batch::register_type>;
 
-/// The lanes of a batch_bool as bits, without going through memory if the hardware has an instruction for it.
+/// The lanes of a batch_bool as bits, not through memory if the hardware has an instruction for it.
 template <class T>
 MYRIAD_FUNCTION std::uint64_t bits_of(const xsimd::batch_bool<T>& mask) {
     using batch_bool = xsimd::batch_bool<T>;
@@ -92,7 +91,7 @@ MYRIAD_FUNCTION std::uint64_t bits_of(const xsimd::batch_bool<T>& mask) {
     }
 }
 
-/// The same mask for numbers of another type of the same width. xsimd renamed its own cast between versions.
+/// The same mask for another type of the same width. xsimd's own cast changed its name between versions.
 template <class To, class From>
 MYRIAD_FUNCTION xsimd::batch_bool<To> mask_cast(const xsimd::batch_bool<From>& mask) {
     using from_register = typename xsimd::batch_bool<From>::register_type;
@@ -100,8 +99,8 @@ MYRIAD_FUNCTION xsimd::batch_bool<To> mask_cast(const xsimd::batch_bool<From>& m
     return xsimd::batch_bool<To>(__builtin_bit_cast(to_register, static_cast<from_register>(mask)));
 }
 
-/// Calls f with the registers of masks, as integers that a compiler can compute with and fold. g++ cannot see through
-/// xsimd's operations on vector masks: a negation costs two more instructions, and so does a mask known to be all true.
+/// Calls f with the registers of masks, as integers on which the compiler can compute and fold. g++ cannot see through
+/// xsimd's operations on vector masks: a negation, or a mask known to be all true, costs two more instructions.
 template <int bytes>
 struct register_bits {
     typedef long long type __attribute__((vector_size(bytes)));
@@ -119,7 +118,7 @@ MYRIAD_FUNCTION B join_masks(F&& f, const B& a, const More&... more) {
     }
 }
 
-/// The bits of a batch as numbers of another type of the same width.
+/// Reinterprets the bits of a batch as another type of the same width.
 template <class To, class From>
 MYRIAD_FUNCTION xsimd::batch<To> bits_as(const xsimd::batch<From>& x) {
     using from_register = typename xsimd::batch<From>::register_type;
@@ -127,8 +126,8 @@ MYRIAD_FUNCTION xsimd::batch<To> bits_as(const xsimd::batch<From>& x) {
     return xsimd::batch<To>(__builtin_bit_cast(to_register, static_cast<from_register>(x)));
 }
 
-/// a * b + c, a * b - c and c - a * b with one rounding if the target can (MYRIAD_FUSED). xsimd 8 has none for AVX-512:
-/// it writes a * b + c and leaves the rest to the compiler.
+/// a * b + c, a * b - c and c - a * b with one rounding if the target supports it (MYRIAD_FUSED). xsimd 8 has none for
+/// AVX-512: it writes a * b + c and leaves the fusing to the compiler.
 #if defined(__AVX512F__)
 #define MYRIAD_FUSED_OPERATION(name, xsimd_name, intrinsic)                                  \
     template <class T>                                                                       \
@@ -177,7 +176,7 @@ struct arithmetic<xsimd::batch<T>> {
         if constexpr (has_bit_mask<mask>) {
             return mask_cast<T>((b & bits(unsigned_bits{1})) != bits(unsigned_bits{0}));
         } else {
-            // By the sign bit: a comparison with zero would have to be negated.
+            // By the sign bit: a comparison with zero would need a negation.
             using integer = integer_of_width<T>;
             return mask_cast<T>(bits_as<integer>(b << static_cast<int>(8 * sizeof(T) - 1)) <
                                 xsimd::batch<integer>(integer{0}));

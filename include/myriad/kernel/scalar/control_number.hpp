@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The kind of number that step-size control computes with, and what it compares it with.
+// The number type of step-size control, and its comparisons.
 #pragma once
 
 #include <type_traits>
@@ -10,8 +10,8 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 #if defined(__CUDACC__)
-// The parameter is only used because nvcc 13 crashes if it is not.
-/// The type of the ratio of a step size to the last one: single precision in CUDA threads, where double is slow and
+// The parameter is used only because nvcc 13 crashes otherwise.
+/// The type of the ratio of successive step sizes: single precision in CUDA threads, where double is slow and its
 /// division slowest, and seven digits are more than a step size needs.
 template <class S>
 using control_of = std::conditional_t<true, float, S>;
@@ -20,8 +20,8 @@ template <class S>
 using control_of = S;
 #endif
 
-/// The larger and the smaller of two numbers, the second if one is NaN: one instruction less than max and min on either
-/// backend.
+/// The larger and the smaller of two numbers; the second if one is NaN: one instruction fewer than max and min on both
+/// backends.
 template <class S>
 struct one_of_two {
     static MYRIAD_FUNCTION S larger(const S& a, const S& b) { return select(a > b, a, b); }
@@ -36,7 +36,7 @@ MYRIAD_FUNCTION S smaller(const S& a, const S& b) {
     return one_of_two<S>::smaller(a, b);
 }
 
-/// a clamped to the limits; the lower one if it is NaN.
+/// a clamped to [low, high]; `low` if a is NaN.
 template <class S>
 MYRIAD_FUNCTION S limited(const S& a, const S& low, const S& high) {
 #if defined(__CUDA_ARCH__)
@@ -45,8 +45,7 @@ MYRIAD_FUNCTION S limited(const S& a, const S& low, const S& high) {
     return smaller(larger(a, low), high);
 }
 
-/// a / b and 1 / sqrt(a); in CUDA threads within a few ulps and without code for numbers near the ends of the range,
-/// where a / b is 0.
+/// a / b and 1 / sqrt(a); in CUDA threads within a few ulps, without code for the ends of the range, where a / b is 0.
 template <class S>
 MYRIAD_FUNCTION S quotient(const S& a, const S& b) {
 #if defined(__CUDA_ARCH__)
@@ -68,8 +67,8 @@ MYRIAD_FUNCTION S inverse_root(const S& a) {
 #endif
 }
 
-/// Whether low <= |a| <= high; in CUDA threads compared by the upper halves of their bits, and false if these equal a
-/// limit's.
+/// Whether low <= |a| <= high; in CUDA threads the upper halves of the bits are compared, and equality with a limit's
+/// counts as false.
 template <class S>
 MYRIAD_FUNCTION mask_of<S> clearly_between(const S& low, const S& a, const S& high) {
 #if defined(__CUDA_ARCH__)

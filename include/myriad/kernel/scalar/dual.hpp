@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Dual numbers, a value with one derivative: a model's functions called with them give exact directional derivatives,
-// for the slopes of event functions and for Jacobians.
+// for slopes of event functions and for Jacobians.
 #pragma once
 
 #include <type_traits>
@@ -12,7 +12,7 @@
 namespace myriad::inline MYRIAD_TARGET {
 
 /// value + derivative * e with e * e = 0; S is double, float or a pack. Mixes with S and with plain numbers, which are
-/// constants. Comparisons use only the value.
+/// constants. Comparisons use only the values.
 template <class S>
 struct dual {
     using value_type = real_of<S>;
@@ -88,7 +88,7 @@ template <class S>
 struct dual_part<dual<S>> {
     using type = S;
 };
-/// The S of the dual<S> that is the common type of A and B.
+/// The S of the `dual<S>` that is the common type of A and B.
 template <class A, class B>
 using part_of = typename dual_part<common_kind<A, B>>::type;
 
@@ -106,8 +106,8 @@ MYRIAD_FUNCTION S value_of(const A& a) {
 namespace myriad::inline MYRIAD_TARGET {
 
 // The results are `auto`: clang 14 instantiates a named result type before it checks the constraint, which is an error
-// for foreign types, such as iterators of a vector of this namespace's types. Constants are distinguished from dual
-// numbers, as multiplying by a zero derivative is not free and turns infinities into NaN.
+// for foreign types, such as iterators of a vector of this namespace's types. Constants and dual numbers are told
+// apart, as multiplying by a zero derivative is not free and turns infinities into NaN.
 template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator+(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
@@ -257,7 +257,7 @@ struct functions<dual<S>> {
         return D(f::log10(x.value), constant(log10_e) * x.derivative / x.value);
     }
 
-    // y x^(y - 1) rather than y x^y / x, which is NaN at x = 0; and x^0 is constant there too.
+    // y x^(y - 1), not y x^y / x, which is NaN at x = 0; x^0 has derivative zero there too.
     template <class B>
     static MYRIAD_FUNCTION D pow_of_base(const D& x, const B& exponent) {
         const S y = to_kind<S>(exponent);
@@ -267,7 +267,7 @@ struct functions<dual<S>> {
     template <class B>
     static MYRIAD_FUNCTION D powr(const D& x, const B& exponent) {
         const S y = to_kind<S>(exponent), one = constant(real(1));
-        // x^0 is 1 here, though powr(0, 0) is not
+        // here x^0 is 1, though powr(0, 0) is not
         const S slope = select(y == one, one, y * f::powr(x.value, y - one));
         return D(f::powr(x.value, y), slope * x.derivative);
     }
@@ -279,7 +279,7 @@ struct functions<dual<S>> {
     }
     static MYRIAD_FUNCTION D pow(const D& x, const D& y) {
         const D of_base = pow_of_base(x, y.value);
-        // The logarithm of a base that is not positive must not spoil a constant exponent.
+        // With a constant exponent, the logarithm of a non-positive base must not spoil the result.
         const S of_exponent = of_base.value * f::log(x.value) * y.derivative;
         return D(of_base.value,
                  of_base.derivative + select(y.derivative == constant(real(0)), y.derivative, of_exponent));
@@ -297,7 +297,7 @@ struct functions<dual<S>> {
         const auto kept = f::copysign(one, x.value) == f::copysign(one, sign.value);
         return D(f::copysign(x.value, sign.value), select(kept, x.derivative, -x.derivative));
     }
-    // The same choice as for the values, so that the derivative belongs to the number returned.
+    // Selects as for the values, so that the derivative belongs to the number returned.
     static MYRIAD_FUNCTION D min(const D& a, const D& b) {
         return D(f::min(a.value, b.value), select(b.value != b.value || a.value < b.value, a.derivative, b.derivative));
     }

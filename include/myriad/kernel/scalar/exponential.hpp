@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Exponential, logarithm and power of one SIMD batch or one plain real. Not xsimd's own: its pow is exp(y log x) in
-// working precision, which loses as many ulps as |y log x| is large (30 at x = 1e-10, y = 1.4) and has pow(0, 0) = 0;
-// its log of a subnormal number is wrong; and without AVX-512 its exp and log convert to integers lane by lane, which
-// takes most of their time. CUDA's pow has a slow path that costs a stack frame and half the speed.
+// working precision, whose error in ulps grows with |y log x| (30 at x = 1e-10, y = 1.4), with pow(0, 0) = 0; its log
+// of a subnormal number is wrong; and without AVX-512 its exp and log convert to integers lane by lane, which takes
+// most of their time. CUDA's pow has a slow path that costs a stack frame and half the speed.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 // Polynomials from our own Remez fit, coefficients rounded, errors relative to the function: exp_tail is (e^r - 1 - r)
-// / r^2 for |r| < log(2) / 2; log_tail is (log((1 + s) / (1 - s)) / s - 2) / s^2 in z = s^2 for |s| < 0.1716. Heads of
-// constants have trailing zeros, so that their product with an exponent is exact.
+// / r^2 for |r| < log(2) / 2; log_tail is (log((1 + s) / (1 - s)) / s - 2) / s^2 in z = s^2 for |s| < 0.1716. The heads
+// of split constants have trailing zeros, so that their product with an exponent is exact.
 template <class T>
 struct exponential_constants;
 
@@ -24,13 +24,13 @@ struct exponential_constants<double> {
     static constexpr bits fraction = 0x000fffffffffffff;
     static constexpr bits one = 0x3ff0000000000000;
     static constexpr bits sqrt_half = 0x3fe6a09e667f3bcd;
-    static constexpr bits whole = 0x4330000000000000;  // 2^52, whose last bits count units
+    static constexpr bits whole = 0x4330000000000000;  // 2^52, whose last bit is worth 1
     static constexpr double bias = 0x1p52 + 1023;
     static constexpr double log2_e = 0x1.71547652b82fep+0, log10_e = 0x1.bcb7b1526e50ep-2, ln_2 = 0x1.62e42fefa39efp-1;
     static constexpr double two_log2_e = 0x1.71547652b82fep+1, two_log2_e_rest = 0x1.777d0ffda0d24p-55;
     static constexpr double ln_2_head = 0x1.62e42fefa38p-1, ln_2_rest = 0x1.ef35793c7673p-45;
     static constexpr double log10_2_head = 0x1.34413509f78p-2, log10_2_rest = 0x1.fef311f12b358p-46;
-    static constexpr double exp_smallest = -708.39, exp_largest = 0x1.62e42fefa39efp+9;  // results normal and finite
+    static constexpr double exp_smallest = -708.39, exp_largest = 0x1.62e42fefa39efp+9;  // for normal, finite results
     static constexpr double exp2_smallest = -1022, exp2_largest = 0x1.fffffffffffffp+9;
     static constexpr double split = 0x1p27 + 1;
     static MYRIAD_FUNCTION auto exp_tail(const auto& r) {  // error 2^-57
@@ -77,7 +77,7 @@ struct exponential {
     using mask = typename A::mask;
     using bits = typename A::bits;
 
-    /// e^rest * 2^exponent, the exponent being the last bits of `shifted`; both the result and 2^exponent are normal.
+    /// e^rest * 2^exponent, with the exponent in the last bits of `shifted`; the result and 2^exponent are normal.
     static MYRIAD_FUNCTION B scaled_exp(const B& rest, const B& shifted) {
         const B value = B(T(1)) + A::multiply_add(rest * rest, constants::exp_tail(rest), rest);
         return A::from_bits(A::to_bits(value) + (A::to_bits(shifted) << constants::fraction_bits));
@@ -108,7 +108,7 @@ struct exponential {
         return within(scaled_exp(rest, shifted), x, constants::exp2_smallest, constants::exp2_largest);
     }
 
-    /// x = 2^exponent * fraction with the fraction from sqrt(1/2) to sqrt(2), for positive normal x.
+    /// x = 2^exponent * fraction, sqrt(1/2) <= fraction <= sqrt(2), for positive normal x.
     struct scaled {
         B exponent;
         B fraction;
@@ -148,14 +148,14 @@ struct exponential {
         return finite_or_same(A::multiply_add(parts.exponent, B(constants::log10_2_head), small), x);
     }
 
-    /// The cube root of a positive normal number: one Newton step from an estimate accurate to a few hundred ulps.
+    /// The cube root of a positive normal number: one Newton step from an estimate within a few hundred ulps.
     static MYRIAD_FUNCTION B cbrt(const B& x) {
         const B third = B(T(1) / T(3));
         const B first = exp(log(x) * third);
         return A::subtract_product(first - x / (first * first), third, first);
     }
 
-    /// a * b - product without rounding error, for product = the rounded a * b (Dekker 1971 where nothing is fused).
+    /// a * b - product without rounding error, for product = the rounded a * b (Dekker 1971 without fused operations).
     static MYRIAD_FUNCTION B product_error(const B& a, const B& b, const B& product) {
 #if MYRIAD_FUSED
         return A::multiply_subtract(a, b, product);
@@ -169,7 +169,7 @@ struct exponential {
         return ((a_head * b_head - product) + a_head * b_rest + a_rest * b_head) + a_rest * b_rest;
 #endif
     }
-    /// log(x) as the sum of two numbers, to about 2^-61 absolutely beside the exponent's part (double; float 2^-32).
+    /// log(x) as a sum of two numbers, to about 2^-61 absolutely beside the exponent's part (double; float 2^-32).
     struct sum {
         B head;
         B rest;
@@ -194,7 +194,7 @@ struct exponential {
         return {head, rest + A::multiply_add(parts.exponent, B(constants::ln_2_rest), tail)};
     }
 
-    /// a - s * b for s about a / b.
+    /// a - s * b, for s close to a / b.
     static MYRIAD_FUNCTION B quotient_remainder(const B& s, const B& b, const B& a) {
 #if MYRIAD_FUSED
         return A::subtract_product(s, b, a);
@@ -204,10 +204,9 @@ struct exponential {
 #endif
     }
 
-    /// x to the power y for x >= 0, as in IEEE 754 (NaN for x < 0, powr(0, 0) and powr(inf, 0)), except that numbers
-    /// below the smallest normal one count as zero; without a branch. The exponent's part y * e is exact to twice the
-    /// precision, so that the error is that of y log2(fraction), |log2(fraction)| <= 1/2: it grows with |y|, not with
-    /// x.
+    /// x to the power y for x >= 0, as in IEEE 754 (NaN for x < 0, powr(0, 0) and powr(inf, 0)), except that subnormal
+    /// numbers count as zero; branch-free. The exponent's part y * e is exact to twice the precision, so that the error
+    /// is that of y log2(fraction), |log2(fraction)| <= 1/2: it grows with |y|, not with x.
     static MYRIAD_FUNCTION B powr(const B& x, const B& y) {
         const B one = B(T(1));
         const scaled parts = split(x);
@@ -224,7 +223,7 @@ struct exponential {
         const B of_exponent = y * parts.exponent;
         const B lost = product_error(y, parts.exponent, of_exponent);
         const mask usual = A::is_finite_from(smallest_normal_of<T>, x);
-        // for other x only the sign of the power matters
+        // for other x only the power's sign matters
         const B unusual = A::select(x >= B(T(0)), y * (x - one), B(nan_of<T>));
         const B power = A::select(usual, A::multiply_add(y, logarithm, of_exponent), unusual);
         const B shifted = power + B(round_to_whole<T>);
@@ -236,8 +235,7 @@ struct exponential {
                          beyond);
     }
 
-    /// x to the power y where |x| and the result are normal numbers; returns the other lanes, which the caller must
-    /// handle.
+    /// x to the power y where |x| and the result are normal; returns the other lanes, which the caller must handle.
     static MYRIAD_FUNCTION mask pow(B& result, const B& x, const B& y) {
         const B base = A::abs(x);
         const sum logarithm = precise_log(base);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Operations on single lanes of a mask, per-lane counts, and a test for vectors with only finite components.
+// Operations on single lanes of a mask, per-lane counts, and a test whether all components of a vector are finite.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Counts steps of one lane: an integer for one instance, a real (exact up to its mantissa) per lane of a pack.
+/// A counter of steps: an integer for one instance, a real (exact up to its mantissa) per lane of a pack.
 template <class S>
 using count_of = std::conditional_t<lanes_of<S> == 1, std::int32_t, S>;
 
@@ -25,11 +25,11 @@ MYRIAD_FUNCTION mask_of<S> all_finite(const vec<S, n>& y) {
     return finite;
 }
 
-/// The value of one lane of a count.
+/// The type of one lane of a counter.
 template <class C>
 using lane_of = std::conditional_t<std::is_integral_v<C>, C, decltype(get_lane(std::declval<C>(), 0))>;
 
-/// a + amount where the mask holds.
+/// count + amount where the mask holds.
 template <class C, class M>
 MYRIAD_FUNCTION C count_where(const M& mask, const C& count, int amount = 1) {
     return select(mask, count + C(static_cast<lane_of<C>>(amount)), count);

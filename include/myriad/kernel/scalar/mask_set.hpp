@@ -1,19 +1,30 @@
 // SPDX-License-Identifier: MIT
-// An indexed set of masks, for example one per event. For one instance they are bits of a word, since on a GPU each
-// would otherwise take a register.
+// An indexed set of masks, for example one per event. For one instance they are bits of a word, as on a GPU each would
+// otherwise take a register.
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// `size` masks of kind M.
+/// Words that hold a bit for each of `size` masks.
+constexpr int words_for(int size) { return size > 0 ? (size + 31) / 32 : 1; }
+
+/// `size` masks of kind M. Operators work on all of them at once.
 template <class M, int size>
 class mask_set {
 public:
+    /// In every lane the bits of these words.
+    static MYRIAD_FUNCTION mask_set from_bits(const std::uint32_t* words) {
+        mask_set made;
+        MYRIAD_UNROLL
+        for (int j = 0; j < size; ++j) made.masks_[j] = M(((words[j / 32] >> (j % 32)) & 1u) != 0);
+        return made;
+    }
     MYRIAD_FUNCTION const M& operator[](int j) const { return masks_[j]; }
     MYRIAD_FUNCTION void set(int j, const M& value) { masks_[j] = value; }
     MYRIAD_FUNCTION void clear() {
@@ -27,16 +38,52 @@ public:
         for (int j = 1; j < size; ++j) joined = joined | masks_[j];
         return joined;
     }
+    /// The lanes in which all of the masks hold.
+    MYRIAD_FUNCTION M all_of() const { return !(~*this).any_of(); }
+    /// The masks in these lanes, none elsewhere.
+    MYRIAD_FUNCTION mask_set in(const M& lanes) const {
+        return combined(*this, *this, [&](const M& a, const M&) MYRIAD_LAMBDA { return a & lanes; });
+    }
+    friend MYRIAD_FUNCTION mask_set operator~(const mask_set& a) {
+        return combined(a, a, [](const M& x, const M&) MYRIAD_LAMBDA { return !x; });
+    }
+    friend MYRIAD_FUNCTION mask_set operator&(const mask_set& a, const mask_set& b) {
+        return combined(a, b, [](const M& x, const M& y) MYRIAD_LAMBDA { return x & y; });
+    }
+    friend MYRIAD_FUNCTION mask_set operator|(const mask_set& a, const mask_set& b) {
+        return combined(a, b, [](const M& x, const M& y) MYRIAD_LAMBDA { return x | y; });
+    }
+    friend MYRIAD_FUNCTION mask_set operator^(const mask_set& a, const mask_set& b) {
+        return combined(a, b, [](const M& x, const M& y) MYRIAD_LAMBDA { return (x & (!y)) | ((!x) & y); });
+    }
+    /// x where mask j holds, -x elsewhere.
+    template <class S>
+    MYRIAD_FUNCTION S signed_by(int j, const S& x) const {
+        return select(masks_[j], x, -x);
+    }
     MYRIAD_FUNCTION bool get(int j, int lane) const { return get_lane(masks_[j], lane); }
     MYRIAD_FUNCTION void set(int j, int lane, bool value) { set_lane(masks_[j], lane, value); }
 
 private:
+    template <class Combine>
+    static MYRIAD_FUNCTION mask_set combined(const mask_set& a, const mask_set& b, Combine&& combine) {
+        mask_set made;
+        MYRIAD_UNROLL
+        for (int j = 0; j < size; ++j) made.masks_[j] = combine(a.masks_[j], b.masks_[j]);
+        return made;
+    }
     vec<M, size> masks_;
 };
 
 template <int size>
 class mask_set<bool, size> {
 public:
+    static MYRIAD_FUNCTION mask_set from_bits(const std::uint32_t* words) {
+        mask_set made;
+        MYRIAD_UNROLL
+        for (int k = 0; k < count; ++k) made.words_[k] = words[k];
+        return made;
+    }
     MYRIAD_FUNCTION bool operator[](int j) const { return ((words_[j / 32] >> (j % 32)) & 1u) != 0; }
     MYRIAD_FUNCTION void set(int j, bool value) {
         const std::uint32_t bit = std::uint32_t(1) << (j % 32);
@@ -52,11 +99,50 @@ public:
         for (int k = 1; k < count; ++k) joined |= words_[k];
         return joined != 0;
     }
+    MYRIAD_FUNCTION bool all_of() const { return !(~*this).any_of(); }
+    MYRIAD_FUNCTION mask_set in(bool lane) const {
+        mask_set made;
+        MYRIAD_UNROLL
+        for (int k = 0; k < count; ++k) made.words_[k] = lane ? words_[k] : 0u;
+        return made;
+    }
+    friend MYRIAD_FUNCTION mask_set operator~(const mask_set& a) {
+        mask_set made;
+        MYRIAD_UNROLL
+        for (int k = 0; k < count; ++k) made.words_[k] = ~a.words_[k] & used(k);
+        return made;
+    }
+    friend MYRIAD_FUNCTION mask_set operator&(mask_set a, const mask_set& b) {
+        MYRIAD_UNROLL
+        for (int k = 0; k < count; ++k) a.words_[k] &= b.words_[k];
+        return a;
+    }
+    friend MYRIAD_FUNCTION mask_set operator|(mask_set a, const mask_set& b) {
+        MYRIAD_UNROLL
+        for (int k = 0; k < count; ++k) a.words_[k] |= b.words_[k];
+        return a;
+    }
+    friend MYRIAD_FUNCTION mask_set operator^(mask_set a, const mask_set& b) {
+        MYRIAD_UNROLL
+        for (int k = 0; k < count; ++k) a.words_[k] ^= b.words_[k];
+        return a;
+    }
+    template <class R>
+    MYRIAD_FUNCTION R signed_by(int j, R x) const {
+        using word = std::conditional_t<sizeof(R) == sizeof(std::uint64_t), std::uint64_t, std::uint32_t>;
+        const std::uint32_t sign = (~words_[j / 32] << (31 - j % 32)) & 0x80000000u;
+        return __builtin_bit_cast(R, __builtin_bit_cast(word, x) ^ (static_cast<word>(sign) << (8 * sizeof(R) - 32)));
+    }
     MYRIAD_FUNCTION bool get(int j, int) const { return (*this)[j]; }
     MYRIAD_FUNCTION void set(int j, int, bool value) { set(j, value); }
 
 private:
-    static constexpr int count = size > 0 ? (size + 31) / 32 : 1;
+    static constexpr int count = words_for(size);
+    /// The bits of word k that stand for masks.
+    static MYRIAD_FUNCTION constexpr std::uint32_t used(int k) {
+        const int bits = size - 32 * k;
+        return bits >= 32 ? ~std::uint32_t(0) : (std::uint32_t(1) << bits) - 1;
+    }
     std::uint32_t words_[count];
 };
 

@@ -23,7 +23,7 @@ concept real_kind = (kind_rank<S> > 0) || std::floating_point<S>;
 template <std::floating_point T>
 struct functions<T> {
     static constexpr T pi = T(3.14159265358979323846L);
-    static constexpr T largest = std::numeric_limits<T>::max();  // a constant, as device code may not call max()
+    static constexpr T largest = std::numeric_limits<T>::max();  // a constant, as device code cannot call max()
 
     static MYRIAD_FUNCTION T cbrt(T x) { return std::cbrt(x); }
     static MYRIAD_FUNCTION T abs(T x) { return std::fabs(x); }
@@ -52,14 +52,14 @@ struct functions<T> {
     static MYRIAD_FUNCTION T copysign(T x, T sign) { return std::copysign(x, sign); }
     static MYRIAD_FUNCTION bool is_finite(T x) {
 #if defined(__CUDA_ARCH__)
-        // By the exponent, to spare the floating-point pipe.
+        // Tests the exponent, to spare the floating-point pipe.
         if constexpr (sizeof(T) == sizeof(double)) return (__double2hiint(x) & 0x7ff00000) != 0x7ff00000;
 #endif
         return std::fabs(x) <= largest;
     }
 
-    // In the operand order of the x86 instructions, so that packs and plain reals agree for signed zeros too. On GPUs
-    // CUDA's own take one instruction in single precision, and a few more than this in double.
+    // Operands in the order of the x86 instructions, so that packs and plain reals agree for signed zeros too. On GPUs,
+    // CUDA's own functions take one instruction in single precision, but a few more than this in double.
     static MYRIAD_FUNCTION T min(T a, T b) {
 #if defined(__CUDA_ARCH__)
         if constexpr (sizeof(T) == sizeof(float)) return std::fmin(a, b);
@@ -74,8 +74,8 @@ struct functions<T> {
     }
 
 #if defined(__CUDA_ARCH__)
-    // Correctly rounded, like CUDA's own, but without its branch: one step of third order from the hardware's 20 bits,
-    // and Markstein's correction of the root by its remainder. Small numbers are scaled, as the remainder must not
+    // Correctly rounded, like CUDA's own, but branch-free: one third-order step from the hardware's 20 bits, and
+    // Markstein's correction of the root by its remainder. Small numbers are scaled, as the remainder must not
     // underflow.
     static MYRIAD_FUNCTION T sqrt(T x) {
         if constexpr (sizeof(T) == sizeof(double)) {
@@ -113,7 +113,7 @@ struct functions<T> {
 #if MYRIAD_FUSED
         return std::fma(a, b, c);
 #else
-        return a * b + c;  // std::fma would emulate, 50 times slower and unlike the packs
+        return a * b + c;  // std::fma would be emulated: 50 times slower, and unlike the packs
 #endif
     }
     static MYRIAD_FUNCTION T reciprocal(T x) { return T(1) / x; }
@@ -139,49 +139,70 @@ namespace myriad::inline MYRIAD_TARGET {
     MYRIAD_FUNCTION S name(const S& x) {      \
         return detail::functions<S>::name(x); \
     }
+/// Square root, correctly rounded; NaN of negative numbers.
 MYRIAD_UNARY(sqrt)
+/// Cube root.
 MYRIAD_UNARY(cbrt)
-/// Absolute value, and rounding to integers: down, and to the nearest with halves away from zero.
+/// Absolute value.
 MYRIAD_UNARY(abs)
+/// The largest integer that is not above x.
 MYRIAD_UNARY(floor)
+/// The nearest integer, halves away from zero.
 MYRIAD_UNARY(round)
-/// Angles in radians.
+/// Sine of an angle in radians.
 MYRIAD_UNARY(sin)
+/// Cosine of an angle in radians.
 MYRIAD_UNARY(cos)
+/// Tangent of an angle in radians.
 MYRIAD_UNARY(tan)
+/// Inverse of the sine, from -pi / 2 to pi / 2; NaN outside [-1, 1].
 MYRIAD_UNARY(asin)
+/// Inverse of the cosine, from 0 to pi; NaN outside [-1, 1].
 MYRIAD_UNARY(acos)
+/// Inverse of the tangent, from -pi / 2 to pi / 2.
 MYRIAD_UNARY(atan)
-/// sin(pi x) and cos(pi x): exact at multiples of a half, cheaper than sin and cos for large arguments.
+/// sin(pi x), exact at multiples of a half; cheaper than `sin` for large arguments.
 MYRIAD_UNARY(sinpi)
+/// cos(pi x), exact at multiples of a half.
 MYRIAD_UNARY(cospi)
+/// Hyperbolic sine.
 MYRIAD_UNARY(sinh)
+/// Hyperbolic cosine.
 MYRIAD_UNARY(cosh)
+/// Hyperbolic tangent.
 MYRIAD_UNARY(tanh)
+/// Exponential function.
 MYRIAD_UNARY(exp)
+/// 2 to the power of x.
 MYRIAD_UNARY(exp2)
+/// Natural logarithm; NaN of negative numbers, minus infinity of zero.
 MYRIAD_UNARY(log)
+/// Logarithm to base 2, with the same exceptions as `log`.
 MYRIAD_UNARY(log2)
+/// Logarithm to base 10, with the same exceptions as `log`.
 MYRIAD_UNARY(log10)
-/// 1 / x, on GPUs without the slow path of a division: within 1 ulp for normal x with a normal result; not finite for
-/// zero. For infinity it is NaN in double precision on GPUs, and zero elsewhere.
+/// 1 / x, on GPUs without the slow path of a division: within 1 ulp for normal x and result; not finite for zero. For
+/// infinity it is NaN in double precision on GPUs, and zero elsewhere.
 MYRIAD_UNARY(reciprocal)
 #undef MYRIAD_UNARY
 
+/// What `sincos` and `sincospi` return.
 template <class S>
 struct sine_and_cosine {
-    S sine, cosine;
+    S sine;    ///< of the angle
+    S cosine;  ///< of the same angle
 };
-/// Sine and cosine of the same angle for about the price of one: of x up to 2^30 (float 2^16) in radians (2^20 and 2^13
-/// where the target has no fused multiply-add), `const auto [sine, cosine] = sincos(x)`, and of pi x up to 2^50 (float
-/// 2^21). NaN beyond, so that there is no branch and the rest of a right-hand side can overlap with it; sin and cos
-/// have no such limit. Errors are at most 2.5 and 2 ulps.
+/// Sine and cosine of the same angle for about the price of one: `const auto [sine, cosine] = sincos(x)` for x up to
+/// 2^30 (float 2^16) in radians (2^20 and 2^13 if the target has no fused multiply-add), and sincospi for pi x up to
+/// 2^50 (float 2^21). NaN beyond, so that there is no branch and the rest of a right-hand side can overlap with them;
+/// sin and cos have no such limit. Errors are at most 2.5 and 2 ulps.
 template <detail::real_kind S>
 MYRIAD_FUNCTION sine_and_cosine<S> sincos(const S& x) {
     sine_and_cosine<S> both;
     detail::functions<S>::sincos(x, both.sine, both.cosine);
     return both;
 }
+/// Sine and cosine of pi x; see `sincos`.
 template <detail::real_kind S>
 MYRIAD_FUNCTION sine_and_cosine<S> sincospi(const S& x) {
     sine_and_cosine<S> both;
@@ -189,7 +210,7 @@ MYRIAD_FUNCTION sine_and_cosine<S> sincospi(const S& x) {
     return both;
 }
 
-/// Neither infinite nor NaN, as a mask.
+/// A mask: neither infinite nor NaN.
 template <detail::real_kind S>
 MYRIAD_FUNCTION auto is_finite(const S& x) {
     return detail::functions<S>::is_finite(x);
@@ -202,8 +223,9 @@ MYRIAD_FUNCTION auto is_finite(const S& x) {
         using S = detail::common_kind<A, B>;                                                                           \
         return detail::functions<S>::name(detail::to_kind<S>(a), detail::to_kind<S>(b));                               \
     }
-/// The smaller and the larger; the number where the other argument is NaN.
+/// The smaller of two; the number where the other argument is NaN.
 MYRIAD_BINARY(min)
+/// The larger of two; the number where the other argument is NaN.
 MYRIAD_BINARY(max)
 /// The magnitude of the first with the sign of the second.
 MYRIAD_BINARY(copysign)
@@ -227,7 +249,7 @@ MYRIAD_FUNCTION constexpr T abs(T a) {
     return a < 0 ? -a : a;
 }
 
-/// a * b + c, with one rounding if the target has the instruction and otherwise two, for every kind of number alike.
+/// a * b + c, with one rounding if the target has the instruction and two otherwise, the same for every kind of number.
 template <class A, class B, class C>
 requires detail::real_kind<detail::common_kind<detail::common_kind<A, B>, C>> MYRIAD_FUNCTION auto fma(const A& a,
                                                                                                        const B& b,
@@ -236,9 +258,9 @@ requires detail::real_kind<detail::common_kind<detail::common_kind<A, B>, C>> MY
     return detail::functions<S>::fma(detail::to_kind<S>(a), detail::to_kind<S>(b), detail::to_kind<S>(c));
 }
 
-/// x to the power y for x >= 0, without a branch, in about half of the time of pow: NaN for negative x, and for powr(0,
-/// 0) and powr(inf, 0), as in IEEE 754; numbers below the smallest normal one count as zero. The error is at most 1.2 +
-/// |y| / 5 ulps (1.5 + |y| / 2 where the target has no fused multiply-add). The exponent may not be a dual number.
+/// x to the power y for x >= 0, branch-free, in about half the time of pow: NaN for negative x, and for powr(0, 0) and
+/// powr(inf, 0), as in IEEE 754; subnormal numbers count as zero. The error is at most 1.2 + |y| / 5 ulps (1.5 + |y| /
+/// 2 if the target has no fused multiply-add). The exponent may not be a dual number.
 template <class A, class B>
 requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> powr(const A& x,
                                                                                                      const B& y) {
@@ -251,8 +273,8 @@ requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::co
     }
 }
 
-/// x to the power y. An exponent of type int multiplies, `pow(x, 3)` is x * x * x, with half an ulp of error per
-/// product and any sign of x.
+/// x to the power y. An int exponent is evaluated by multiplication, `pow(x, 3)` as x * x * x, with half an ulp of
+/// error per product and for any sign of x.
 template <class A, class B>
 requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> pow(const A& x,
                                                                                                     const B& y) {

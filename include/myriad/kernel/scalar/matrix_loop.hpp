@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Loops over the rows and columns of a small square matrix, the same code for both cases: unrolled, so that the matrix
-// is held in registers, or left as loops that index it in memory.
+// Loops over the rows and columns of a small square matrix, written once for two cases: unrolled, with the matrix in
+// registers, or as loops that index it in memory.
 #pragma once
 
 #include "myriad/kernel/core/static_for.hpp"
@@ -19,13 +19,13 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Largest matrix held in registers. A GPU thread has 255: factors, stages and right-hand side of a Rosenbrock method
 /// in double precision fit up to 6 (240 registers); pivoted LU alone takes 220 at n = 8, and spills from n = 12. A core
-/// has 16 or 32 for a whole pack: unrolled for n = 4 and 5, rodas_5p runs 1.25 and 1.6 times as fast (AVX-512), but a
-/// kernel of n = 6 takes 69 s to compile instead of 5.
+/// has 16 or 32 for a whole pack: unrolled for n = 4 and 5, rodas_5p is 1.25 and 1.6 times as fast (AVX-512), but a
+/// kernel for n = 6 takes 69 s to compile instead of 5.
 template <class S>
 inline constexpr int largest_matrix_in_registers = lanes_of<S> == 1 ? 6 : 3;
 
-/// Loops over 0 <= i < n, for numbers of kind S. `f` gets the index as a `constant_index` if the loop is unrolled,
-/// otherwise as an int.
+/// Loops over 0 <= i < n, for numbers of kind S. `f` gets the index as a `constant_index` if the loop is unrolled, else
+/// as an int.
 template <class S, int n>
 struct matrix_loop {
     static constexpr bool unrolled = n <= largest_matrix_in_registers<S>;

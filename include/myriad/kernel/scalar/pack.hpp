@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A SIMD pack and its mask, the scalar kind of the OpenMP backend: several independent xsimd batches, because a single
-// batch is bound by latency (measured with Lorenz and RK4: 0.94 ns per step and instance with one, 0.62 with four).
-// Host compilers only: nvcc refuses SIMD types.
+// one is bound by latency (measured with Lorenz and RK4: 0.94 ns per step and instance with one, 0.62 with four). Host
+// compilers only: nvcc refuses SIMD types.
 #pragma once
 
 #include <concepts>
@@ -18,8 +18,8 @@ namespace myriad::inline MYRIAD_TARGET {
 template <class T, int batches>
 class pack;
 
-/// One truth value per lane: what comparing packs gives. `T` is the real type of the same width. Operators work lane by
-/// lane and never short-circuit.
+/// One truth value per lane, the result of comparing packs. `T` is the real type of the same width. Operators work lane
+/// by lane and never short-circuit.
 template <class T, int batches>
 class pack_mask {
 public:
@@ -36,7 +36,7 @@ public:
 
     pack_mask() = default;
     // Batch by batch, as g++ copies trivial arrays of batches in pieces of 16 bytes, on which wider loads then stall;
-    // and by their registers, as it copies whole batches through memory.
+    // and register by register, as it copies whole batches through memory.
     MYRIAD_FUNCTION pack_mask(const pack_mask& other) { MYRIAD_EACH_BATCH(parts[i].data = other.parts[i].data); }
     MYRIAD_FUNCTION pack_mask& operator=(const pack_mask& other) {
         MYRIAD_EACH_BATCH(parts[i].data = other.parts[i].data);
@@ -45,7 +45,7 @@ public:
     /// The same value in every lane.
     MYRIAD_FUNCTION pack_mask(bool value) { MYRIAD_EACH_BATCH(parts[i] = batch_type(value)); }
 
-    /// A mask has no single truth value: this exists only to explain why `if (x < y)` does not compile.
+    /// A mask has no single truth value: this only explains why `if (x < y)` does not compile.
     template <std::same_as<bool> B>
     explicit operator B() const {
         static_assert(
@@ -83,19 +83,19 @@ public:
     MYRIAD_FUNCTION pack_mask& operator|=(const pack_mask& b) { return *this = *this | b; }
     MYRIAD_FUNCTION pack_mask& operator^=(const pack_mask& b) { return *this = *this ^ b; }
 
-    /// Whether some lane holds; the batches are joined first, so that there is one test and one jump per pack.
+    /// Whether the mask holds in some lane. The batches are joined first, so that a pack takes one test and one jump.
     static MYRIAD_FUNCTION bool any(const pack_mask& a) {
         batch_type joined = a.parts[0];
         MYRIAD_EACH_BATCH(if constexpr (i > 0) joined = joined | a.parts[i]);
         return xsimd::any(joined);
     }
-    /// Whether every lane holds.
+    /// Whether the mask holds in every lane.
     static MYRIAD_FUNCTION bool all(const pack_mask& a) {
         batch_type joined = a.parts[0];
         MYRIAD_EACH_BATCH(if constexpr (i > 0) joined = joined & a.parts[i]);
         return xsimd::all(joined);
     }
-    /// Lane i as bit i, to visit the lanes that hold.
+    /// The lanes as bits, lane i as bit i.
     static MYRIAD_FUNCTION std::uint64_t bits(const pack_mask& a) {
         std::uint64_t result = 0;
         MYRIAD_EACH_BATCH(result |= detail::bits_of<T>(a.parts[i]) << (i * lanes_per_batch));
@@ -134,7 +134,7 @@ public:
 };
 
 /// `batches` xsimd batches of `T` (double, float, std::int64_t or std::int32_t), used like one number. Default
-/// construction leaves it unset; a plain number converts to the same value in every lane.
+/// construction leaves it uninitialised; a plain number converts to that value in every lane.
 template <class T, int batches>
 class pack {
 public:
@@ -153,7 +153,7 @@ public:
     batch_type parts[batches];
 
     pack() = default;
-    // Batch by batch, for the reason given for masks.
+    // Batch by batch, for the same reason as masks.
     MYRIAD_FUNCTION pack(const pack& other) { MYRIAD_EACH_BATCH(parts[i].data = other.parts[i].data); }
     MYRIAD_FUNCTION pack& operator=(const pack& other) {
         MYRIAD_EACH_BATCH(parts[i].data = other.parts[i].data);
@@ -193,7 +193,7 @@ public:
     friend MYRIAD_FUNCTION pack operator-(const pack& a) {
         pack result;
         // The compiler's own vector negation: xsimd's is 0 - x on AVX-512, which loses the sign of zero, and a bitwise
-        // one keeps the compiler from folding it into a fused multiply-add.
+        // one cannot be folded into a fused multiply-add.
         if constexpr (is_real) {
             MYRIAD_EACH_BATCH(result.parts[i] =
                                   batch_type(-static_cast<typename batch_type::register_type>(a.parts[i])));
@@ -231,7 +231,7 @@ public:
 
     static MYRIAD_FUNCTION pack blend(const mask_type& mask, const pack& a, const pack& b) {
         pack result;
-        // Integers are selected as reals, since xsimd 8 cannot select them for AVX-512 in builds without optimisation.
+        // Integers are selected as reals, since xsimd 8 cannot select them for AVX-512 in unoptimised builds.
         using detail::bits_as;
         MYRIAD_EACH_BATCH(result.parts[i] = bits_as<T>(
                               xsimd::select(mask.parts[i], bits_as<real>(a.parts[i]), bits_as<real>(b.parts[i]))));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The elementary functions of math.hpp for packs: xsimd's where they are accurate and treat every lane alone, own ones
-// otherwise. Lanes outside a function's vector range (huge angles, subnormal or special values) are redone one by one
-// with the standard library, so that a lane's result never depends on its neighbours. Part of pack.hpp, which includes
-// it.
+// The elementary functions of math.hpp for packs: xsimd's where they are accurate and treat every lane separately, our
+// own otherwise. Lanes outside a function's vector range (huge angles, subnormal or special values) are redone one by
+// one with the standard library, so that a lane's result never depends on its neighbours. Part of pack.hpp, which
+// includes it.
 //
 // Largest errors measured with g++ 12 and xsimd 8.1, in ulp, double / float; 3 million arguments per range, against the
 // next wider type, on AVX-512, on AVX2 with FMA and on SSE2:
@@ -12,7 +12,7 @@
 //   sinh 1.6 / 2.1      cosh 1.3 / 2.0      tanh 1.3 / 1.4
 //   exp 1.0 / 1.0       exp2 1.1 / 1.0      log 0.9 / 0.9       log2 1.8 / 1.9      log10 1.8 / 2.0
 //   pow 1.2 / 1.2 up to |y| = 7, 1.5 / 1.5 at 30, 2.3 / 2.3 at 100, then growing with |y|
-// Results of exp and exp2 below the smallest normal number are 0. What is redone one by one: |x| > 2^30 in sin, cos,
+// Results of exp and exp2 below the smallest normal number are 0. Redone one by one: |x| > 2^30 in sin, cos,
 // tan (float 2^16; without FMA 2^20 and 2^13), NaN and infinities there, arguments of log* below the smallest normal
 // number, zeros and subnormal or non-finite numbers in cbrt and pow, results of pow out of range, zero or extreme
 // hypot.
@@ -41,7 +41,7 @@ template <class Scalar, class S, class... More>
     }
 }
 
-/// Replaces the marked lanes of a result by the function's results for plain reals.
+/// Replaces the marked lanes of a result by the results for plain reals.
 template <class Scalar, class S, class Mask, class... More>
 MYRIAD_FUNCTION S with_lanes_redone(const S& result, const Mask& marked, const More&... arguments) {
     if (MYRIAD_UNLIKELY(any(marked))) {
@@ -83,7 +83,7 @@ struct functions<pack<T, batches>> {
     MYRIAD_UNARY(sqrt, xsimd::sqrt(x.parts[i]))
     MYRIAD_UNARY(abs, xsimd::abs(x.parts[i]))
     MYRIAD_UNARY(reciprocal, xsimd::batch<T>(T(1)) / x.parts[i])
-    // Without SSE4.1, xsimd's loses the sign of zero, which the bit operation restores.
+    // Without SSE4.1, xsimd's floor loses the sign of zero; the bit operation restores it.
     MYRIAD_UNARY(floor, xsimd::floor(x.parts[i]) | (x.parts[i] & xsimd::batch<T>(-T(0))))
     MYRIAD_UNARY(round, xsimd::round(x.parts[i]))
     MYRIAD_UNARY(asin, xsimd::asin(x.parts[i]))
@@ -119,7 +119,7 @@ struct functions<pack<T, batches>> {
         MYRIAD_EACH_BATCH(result.parts[i] = expression);    \
         return result;                                      \
     }
-    // x86 returns the second argument if either is NaN.
+    // x86 returns the second argument if one is NaN.
     MYRIAD_BINARY(min, xsimd::select(xsimd::isnan(b.parts[i]), a.parts[i], xsimd::min(a.parts[i], b.parts[i])))
     MYRIAD_BINARY(max, xsimd::select(xsimd::isnan(b.parts[i]), a.parts[i], xsimd::max(a.parts[i], b.parts[i])))
     MYRIAD_BINARY(copysign, xsimd::copysign(a.parts[i], b.parts[i]))
@@ -169,7 +169,7 @@ struct functions<pack<T, batches>> {
     static MYRIAD_FUNCTION mask is_finite(const S& x) { return abs(x) <= S(std::numeric_limits<T>::max()); }
 
 private:
-    /// Lanes where |x| is above a limit or x is NaN: by the bits, one comparison for both.
+    /// Lanes where |x| exceeds a limit or is NaN: one comparison of the bits for both.
     static MYRIAD_FUNCTION mask beyond(T limit, const S& x) {
         using integer = integer_of_width<T>;
         mask result;
@@ -185,8 +185,8 @@ private:
 };
 
 #if defined(__SSE2__)
-// The general versions in control_number.hpp, a comparison and a selection, are a single x86 instruction, including NaN
-// and signed zeros.
+// The comparison and selection of control_number.hpp are one x86 instruction, with the same results for NaN and signed
+// zeros.
 template <class T, int batches>
 struct one_of_two<pack<T, batches>> {
     using S = pack<T, batches>;

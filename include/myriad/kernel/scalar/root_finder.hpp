@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Roots of a function of one variable in a bracket, for all lanes of a pack at once, each with its own bracket and
-// termination.
+// stopping test.
 #pragma once
 
 #include "myriad/kernel/scalar/math.hpp"
@@ -16,10 +16,9 @@ struct bracket {
 };
 
 /// Finds a root within the bracket by the Illinois variant of regula falsi (Dowell and Jarratt, BIT 11 (1971) 168-174),
-/// with bisection where, because of rounding, the secant gives no point inside. `f(x, close)` returns the value at x
-/// and sets the mask of lanes that are close enough; a lane whose bracket has shrunk to rounding returns its lower end,
-/// where f > 0. Lanes outside `wanted` return `high`. Chosen over Brent and ITP for having the least state and no
-/// branches.
+/// with bisection where rounding puts the secant's point outside. `f(x, close)` returns the value at x and sets the
+/// mask of lanes that are close enough; a lane whose bracket has shrunk to rounding returns its lower end, where f > 0.
+/// Lanes outside `wanted` return `high`. Chosen over Brent and ITP for having the least state and no branches.
 template <class S, class F>
 MYRIAD_FUNCTION S find_root(bracket<S> b, const mask_of<S>& wanted, F&& f) {
     using R = real_of<S>;

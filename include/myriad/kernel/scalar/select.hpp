@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the kernel body needs from a scalar kind besides arithmetic: masks, blending and access to single lanes. Here
-// for plain reals, whose mask is bool and which are a pack of one lane; pack.hpp has the same for SIMD packs.
+// Operations beyond arithmetic that the kernel body needs of a scalar kind: masks, blending and access to single lanes.
+// Here for plain reals, whose mask is bool and which count as packs of one lane; for SIMD packs in pack.hpp.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 #include "myriad/kernel/core/macros.hpp"
 
-// Masks are combined with `&` and `|`, here and in models, since packs have nothing else; for a mask of one lane clang
-// would suggest `&&` and `||` instead.
+// Masks are combined with `&` and `|`, here and in models, as packs have nothing else; for a mask of one lane clang
+// would suggest `&&` and `||`.
 #if defined(__clang__) && __clang_major__ >= 14
 #pragma clang diagnostic ignored "-Wbitwise-instead-of-logical"
 #endif
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Traits of a scalar kind: its real type, the type of its comparisons, its integers and its number of lanes.
+/// Traits of a scalar kind: its real type, its mask, its integer type and its number of lanes.
 template <class S>
 struct scalar_traits {
     static_assert(std::is_floating_point_v<S>, "not a scalar kind: use double, float, pack or dual");
@@ -30,7 +30,7 @@ struct scalar_traits {
 template <class T>
 concept plain_number = std::is_arithmetic_v<T>;
 
-// A number of a higher rank absorbs those of a lower one: 0 plain numbers, 1 packs and masks, 2 dual numbers.
+// The rank of a kind: 0 plain numbers, 1 packs and masks, 2 dual numbers. Mixed arithmetic has the kind of higher rank.
 template <class S>
 inline constexpr int kind_rank = 0;
 
@@ -41,13 +41,13 @@ struct common_kind_of {
 };
 template <plain_number A, plain_number B>
 struct common_kind_of<A, B> : std::common_type<A, B> {};
-// A double together with a float is assumed to be a literal in a float model, whose arithmetic must stay in float.
+// A double next to a float is taken for a literal in a float model, whose arithmetic must stay in float.
 template <>
 struct common_kind_of<float, double> : std::type_identity<float> {};
 template <>
 struct common_kind_of<double, float> : std::type_identity<float> {};
 
-/// The common kind of number of A and B, such as a pack for a pack and a literal.
+/// The common kind of A and B, such as a pack for a pack and a literal.
 template <class A, class B>
 using common_kind = typename common_kind_of<A, B>::type;
 
@@ -61,7 +61,7 @@ requires(!plain_number<Mask>)  // `a & b` of two bools is an int
     using type = std::conditional_t<std::is_same_v<A, bool> && std::is_same_v<B, bool>, Mask, typename Mask::pack_type>;
 };
 
-/// x as an S, narrowed on purpose if a double literal meets a float kind.
+/// x as an S, narrowed deliberately if a double literal meets a float kind.
 template <class S, class A>
 MYRIAD_FUNCTION constexpr S to_kind(const A& x) {
     if constexpr (plain_number<A> && !plain_number<S>) {
@@ -75,33 +75,42 @@ MYRIAD_FUNCTION constexpr S to_kind(const A& x) {
 
 namespace myriad::inline MYRIAD_TARGET {
 
+/// The real type of a kind of number: double or float.
 template <class S>
 using real_of = typename detail::scalar_traits<S>::real;
+/// The type of its comparisons: bool for a plain number, one truth value per lane for a pack.
 template <class S>
 using mask_of = typename detail::scalar_traits<S>::mask;
+/// Its integers: `int32` for a plain number, as many as lanes for a pack.
 template <class S>
 using integer_of = typename detail::scalar_traits<S>::integer;
+/// Its number of lanes: 1 for a plain number.
 template <class S>
 inline constexpr int lanes_of = detail::scalar_traits<S>::lanes;
+/// Whether it is a pack of several lanes.
 template <class S>
 concept is_pack = lanes_of<S> >
 1;
 
-/// Spacing of the numbers next to one, the largest finite and the smallest normal number, infinity and NaN; device code
-/// may not call the functions behind them.
+// Constants, since device code may not call the functions behind them.
+/// Spacing of the numbers next to one.
 template <class R>
 inline constexpr R epsilon_of = std::numeric_limits<R>::epsilon();
+/// The largest finite number.
 template <class R>
 inline constexpr R largest_of = std::numeric_limits<R>::max();
+/// The smallest positive normal number.
 template <class R>
 inline constexpr R smallest_normal_of = std::numeric_limits<R>::min();
+/// Infinity.
 template <class R>
 inline constexpr R infinity_of = std::numeric_limits<R>::infinity();
+/// A quiet NaN.
 template <class R>
 inline constexpr R nan_of = std::numeric_limits<R>::quiet_NaN();
 
-/// a where the mask holds, otherwise b. Both are evaluated. Kinds may be mixed: `select(x > 0.0, x, 0.0)`; the mask may
-/// be a plain bool with packs.
+/// a where the mask holds, otherwise b. Both are evaluated. Kinds may be mixed: `select(x > 0.0, x, 0.0)`; with packs
+/// the mask may be a plain bool.
 template <class Mask, class A, class B>
 MYRIAD_FUNCTION constexpr auto select(const Mask& mask, const A& a, const B& b) {
     using S = typename detail::selected<Mask, A, B>::type;
@@ -115,7 +124,7 @@ MYRIAD_FUNCTION constexpr auto select(const Mask& mask, const A& a, const B& b) 
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Whether some lane of a mask holds, and whether all do.
+/// Whether a mask holds in some lane, and in all.
 MYRIAD_FUNCTION constexpr bool any(bool mask) { return mask; }
 MYRIAD_FUNCTION constexpr bool all(bool mask) { return mask; }
 /// The lanes of a mask as bits, lane i as bit i.
@@ -131,8 +140,8 @@ MYRIAD_FUNCTION constexpr void set_lane(T& value, int, std::type_identity_t<T> l
     value = lane;
 }
 
-// The same for kinds that are classes, as members: a function found by argument-dependent look-up could clash with a
-// model's own of that name.
+// The same for kinds that are classes, by their static members: a function found by argument-dependent look-up could
+// clash with a model's function of that name.
 template <class S>
 requires(!plain_number<S>) MYRIAD_FUNCTION bool any(const S& mask) { return S::any(mask); }
 template <class S>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Sine, cosine and tangent of one SIMD batch or one plain real, in radians and in half turns. Not xsimd's own, because
-// those choose one of five argument reductions for all lanes by the largest of them, so that a lane's last bits depend
-// on its neighbours; nor CUDA's own, whose reduction of large angles is a branch with a stack frame in every call. Here
+// Sine, cosine and tangent of one SIMD batch or one plain real, in radians and in half turns. Not xsimd's own, which
+// choose one of five argument reductions for all lanes by the largest argument, so that a lane's last bits depend on
+// its neighbours; nor CUDA's own, whose reduction of large angles is a branch with a stack frame in every call. Here
 // one reduction serves every lane up to `limit`; the caller handles larger arguments.
 #pragma once
 
@@ -19,8 +19,8 @@ MYRIAD_FUNCTION B less_products(const B& x, const B& q, typename arithmetic<B>::
     return less_products(arithmetic<B>::subtract_product(q, B(c0), x), q, more...);
 }
 
-// pi/2 is given in parts whose products with the number of quarter turns, and the first differences, are exact: with a
-// fused multiply-add any parts are, without one they need trailing zeros, and the arguments a lower limit.
+// pi/2 is split into parts such that their products with the number of quarter turns, and the first differences, are
+// exact: any parts will do with a fused multiply-add; without one they need trailing zeros, and the limit is lower.
 template <class T>
 struct trigonometry_constants;
 
@@ -79,8 +79,8 @@ struct trigonometry {
     using T = typename A::real;
     using constants = trigonometry_constants<T>;
     using bits = typename A::bits;
-    static constexpr int to_sign = static_cast<int>(8 * sizeof(T)) - 2;  // moves bit 1 to the place of the sign
-    /// The most half turns such that twice as many still round to integers.
+    static constexpr int to_sign = static_cast<int>(8 * sizeof(T)) - 2;  // moves bit 1 to the sign bit
+    /// The largest number of half turns whose double still rounds to integers.
     static constexpr T half_turn_limit = sizeof(T) == sizeof(double) ? T(0x1p50) : T(0x1p21);
 
     /// An angle as a number of quarter turns and a remainder in [-pi/4, pi/4].
@@ -111,7 +111,7 @@ struct trigonometry {
         const B z = a.rest * a.rest;
         return A::multiply_add(z, A::multiply_add(z, constants::cosine(z), B(T(-0.5))), B(T(1)));
     }
-    /// Corrected for the rounding of 1 - z / 2, with five more operations: it matters in a tangent (2.9 ulps instead of
+    /// Corrected for the rounding of 1 - z / 2 by five more operations, which matter in a tangent (2.9 ulps instead of
     /// 3.0).
     static MYRIAD_FUNCTION B careful_cosine_of_rest(const angle& a) {
         const B z = a.rest * a.rest;
@@ -149,7 +149,7 @@ struct trigonometry {
         return with_sign(quotient, sign_from_bit_1(a.quarters + a.quarters) ^ sign_of(x));
     }
 
-    /// Both from one reduction, the same numbers as sin and cos; NaN beyond the limit.
+    /// Both from one reduction, with the same results as sin and cos; NaN beyond the limit.
     static MYRIAD_FUNCTION void sincos(const B& x, B& sine_of_x, B& cosine_of_x) {
         const B magnitude = A::abs(x);
         both(reduce(magnitude), magnitude <= B(constants::limit), x, sine_of_x, cosine_of_x);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What looking into an accepted step needs beyond its stages: the slope at its end and the interpolant's own stages,
-// each evaluated where it is not known and counted.
+// Evaluations that looking inside an accepted step takes beyond its stages: the slope at its end and the interpolant's
+// own stages, each computed only where unknown, and counted.
 #pragma once
 
 #include "myriad/kernel/state/integration_state.hpp"
@@ -8,26 +8,19 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Finds the slope at the end of the trial, which ends at t1, in the given lanes. It is the first of the next step,
-/// unless a hook changes the state; locating an event may have it already.
+/// Computes the slope at the end of the trial, at t1, in the given lanes. It is the first of the next step, unless a
+/// hook changes the state; event location may have computed it already.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION void know_slope_end(integration_state<Model, Method, S>& s, step_data<Method, S, n_state<Model>>& step,
                                     const S& t1, const mask_of<S>& lanes) {
     if constexpr (Method::first_same_as_last) {
         step.slope_end = step.trial.slope_end();
     } else {
-        const mask_of<S> needed = lanes & !s.slope_end_known;
-        if (!any(needed)) return;
-        const auto slope = detail::evaluate_rhs<Model>(t1, step.trial.y, s.data);
-        MYRIAD_UNROLL
-        for (int c = 0; c < n_state<Model>; ++c) step.slope_end[c] = select(needed, slope[c], step.slope_end[c]);
-        s.extra_evaluations = count_where(needed, s.extra_evaluations);
-        s.slope_end_known = s.slope_end_known | needed;
-        s.slope_end = step.slope_end;
+        step.slope_end = s.slopes.end(lanes, t1, step.trial.y, s.data, s.extra_evaluations);
     }
 }
 
-/// The stages of the interpolant alone, after the slope at the end.
+/// Computes the interpolant's own stages, after the slope at the end.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION void know_inside(integration_state<Model, Method, S>& s, step_data<Method, S, n_state<Model>>& step,
                                  const mask_of<S>& lanes) {

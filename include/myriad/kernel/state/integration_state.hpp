@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The state of one running pack of lanes, shared by the parts of the loop: the instances' data, and what the loop
-// itself keeps beside them.
+// The state of one running pack of lanes, shared by the parts of the loop: the instances' data and the loop's own
+// variables.
 #pragma once
 
 #include <cstdint>
@@ -8,44 +8,43 @@
 #include <utility>
 
 #include "myriad/kernel/methods/controller_policies.hpp"
-#include "myriad/kernel/methods/dense.hpp"
-#include "myriad/kernel/model/hooks.hpp"
-#include "myriad/kernel/model/reductions.hpp"
 #include "myriad/kernel/scalar/control_number.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
-#include "myriad/kernel/stepper/step.hpp"
+#include "myriad/kernel/state/slope_cache.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// True for methods with an error estimate, whose step size is controlled.
-template <class Method>
-inline constexpr bool is_adaptive = Method::embedded_order > 0;
-
-/// Slopes are kept where a step may be repeated or where its last slope is the first of the next.
-template <class Model, class Method>
-inline constexpr bool stepper_keeps_slope = is_adaptive<Method> || has_events<Model> || samples_trajectory<Method> ||
-                                            has_reductions<Model> || Method::first_same_as_last;
-
-/// Whether the part of the time that rounding takes from t is kept beside it, so that it does not add up: where steps
-/// are too short for the resolution of t, as in single precision and to events. Other steps are rounded to that
-/// resolution.
+/// Whether the rounding error of t is stored beside t, so that it does not accumulate: where steps are too short for
+/// the resolution of t, as in single precision and to events. Other steps are rounded to that resolution.
 template <class Model, class Method, class R>
 inline constexpr bool keeps_time_low = has_events<Model> ||
                                        (is_adaptive<Method> ? std::is_same_v<R, float> : writes_time_domain<Model>);
 
-/// Evaluations of the right-hand side in every trial step; others are counted where they happen.
-template <class Model, class Method>
-inline constexpr int evaluations_per_trial = stepper_keeps_slope<Model, Method> ? Method::stages - 1 : Method::stages;
-
-/// Binary logarithms of the error over the tolerance of the last accepted step and of the one before; for controllers
-/// that look back.
+/// Binary logarithms of error / tolerance of the last accepted step and of the one before, for controllers with memory.
 template <class Method, class S, bool remembers = remembers_errors<Method>>
 struct control_memory {};
 template <class Method, class S>
 struct control_memory<Method, S, true> {
     control_of<S> last, before;
+};
+
+/// What step-size control remembers of earlier trials, and of the instance.
+template <class Method, class S>
+struct control_state {
+    mask_of<S> last_not_finite;        // the lane's last rejection was due to a value that is not finite
+    mask_of<S> last_singular;          // and that value to a singular matrix, if the method solves linear systems
+    mask_of<S> first_step_open;        // the phase's first step is yet to be chosen
+    control_memory<Method, S> errors;  // of earlier steps
+    S tolerance_scale;                 // of the instance, if the method has one
+};
+
+/// The position of fixed steps: t = base + done * step, so that rounding neither accumulates nor adds a step.
+template <class S>
+struct fixed_steps {
+    S base, step;
+    count_of<S> done, left;
 };
 
 template <class Model, class Method, class S>
@@ -54,30 +53,22 @@ struct integration_state {
     using mask = mask_of<S>;
     using count = count_of<S>;
     static constexpr int lanes = lanes_of<S>;
-    // One instance alone counts iterations from each phase's start, in one register.
+    // A single instance counts iterations from the start of each phase, in one register.
     using iteration_number = std::conditional_t<lanes == 1, std::int32_t, std::int64_t>;
     static constexpr int n = n_state<Model>;
 
     lane_data<Model, S> data;
-    mask active;      // lanes that hold an instance
-    vec<S, n> slope;  // f at the committed state, where slope_valid holds
-    mask slope_valid;
-    vec<S, n> slope_end;  // f at the end of the trial, where slope_end_known holds
-    mask slope_end_known;
-    S time_low;  // what rounding took from t, or from base, where keeps_time_low
+    mask active;  // lanes that hold an instance
+    slope_cache<Model, Method, S> slopes;
+    S time_low;  // the rounding error of t, or of the fixed steps' base, where keeps_time_low
 
     // the trial step
-    S h;                               // its length, signed
-    mask final_step;                   // it ends at t_end
-    mask last_not_finite;              // the lane's last rejection was for a value that is not finite
-    mask last_singular;                // and that value came of a singular matrix, if the method solves linear systems
-    mask first_step_open;              // the phase's first step is yet to be chosen
-    control_memory<Method, S> errors;  // of earlier steps
-    S tolerance_scale;                 // of the instance, if the method has it
+    S h;              // its length, signed
+    mask final_step;  // it ends at t_end
 
-    // fixed steps: t = base + done * step, so that no rounding adds up and no step is added
-    S base, step;
-    count done, left;
+    // one of these, depending on the method
+    control_state<Method, S> control;
+    fixed_steps<S> steps;
 
     // lanes whose phase ends in this iteration of the loop, and how
     mask ended;
@@ -85,15 +76,15 @@ struct integration_state {
     bool instance_over[lanes];
 
     // work, per instance
-    iteration_number iteration;  // iterations of the loop; every active lane takes a trial step in each
-    iteration_number next_look;  // iteration at which a phase of a pack is to be looked at: too long, or creeping
+    iteration_number iteration;           // iterations of the loop; every active lane takes a trial step in each
+    iteration_number next_look;           // iteration at which a phase of a pack must be checked: too long, or creeping
     iteration_number phase_start[lanes];  // iteration at which the lane's phase began
-    std::int64_t all_iterations;          // iterations before `iteration` was last set back
+    std::int64_t all_iterations;          // iterations before `iteration` was last reset
     count rejected, located, extra_evaluations;
     std::int64_t instance[lanes];     // index, or -1: the lane is empty
-    std::int32_t phases_left[lanes];  // phases of this call that the instance has before it, this one included
+    std::int32_t phases_left[lanes];  // phases of this call still to do, this one included
 
-    /// Lanes that hold a running instance, inside the loop, which one lane alone only enters with one.
+    /// Lanes that hold a running instance, inside the loop. With one lane, the loop is only entered with an instance.
     MYRIAD_FUNCTION mask running() const {
         if constexpr (lanes == 1) {
             return true;
@@ -106,49 +97,20 @@ struct integration_state {
         if constexpr (is_adaptive<Method>) {
             return data.t;
         } else {
-            return fma(S(done), step, base);
+            return fma(S(steps.done), steps.step, steps.base);
         }
     }
 
-    /// f at the committed state, in the lanes where it is not known.
-    MYRIAD_FUNCTION void renew_slope(const mask& lanes) {
-        const mask needed = lanes & !slope_valid;
-        if (!any(needed)) return;
-        const auto fresh = detail::evaluate_rhs<Model>(now(), data.y, data);
-        MYRIAD_UNROLL
-        for (int c = 0; c < n; ++c) slope[c] = select(needed, fresh[c], slope[c]);
-        extra_evaluations = count_where(needed, extra_evaluations);
-        slope_valid = slope_valid | needed;
-    }
-    /// The same for one lane, to look at. It is not kept: a pack's functions may round otherwise than those of one
-    /// lane.
-    MYRIAD_FUNCTION vec<R, n> slope_of(int i) {
-        if (get_lane(slope_valid, i)) return get_lanes<R>(slope, i);
-        add_to_count(extra_evaluations, i);
-        if constexpr (lanes == 1) {
-            return detail::evaluate_rhs<Model>(now(), data.y, data);
-        } else {
-            const lane_data<Model, R> p = detail::extract_lane(data, i);
-            return detail::evaluate_rhs<Model>(get_lane(now(), i), p.y, static_cast<const inputs<Model, R>&>(p));
-        }
-    }
-    /// The same in every lane, of a method that computes its first slope itself: where it is known, it has the same
-    /// bits.
-    MYRIAD_FUNCTION void renew_slopes() {
-        const mask needed = !slope_valid;
-        if (!any(needed)) return;
-        slope = detail::evaluate_rhs<Model>(now(), data.y, data);
-        extra_evaluations = count_where(needed, extra_evaluations);
-        slope_valid = mask(true);
-    }
+    /// The slope at the committed state of lane i, for inspection.
+    MYRIAD_FUNCTION vec<R, n> slope_of(int i) { return slopes.of_lane(i, now(), data, extra_evaluations); }
 
-    /// Keeps a step that a hook or an earlier call left within the options' limits.
+    /// Limits a step set by a hook or an earlier call to the options' bounds.
     MYRIAD_FUNCTION void bound_step(const kernel_arguments<Model, R>& args, int i) {
         const R wanted = get_lane(data.h_next, i);
         set_lane(data.h_next, i, copysign(min(max(abs(wanted), args.minimum_step), args.maximum_step), wanted));
     }
 
-    /// Ends the phase of lane i with the given status; a failure stands.
+    /// Ends the phase of lane i with the given status; an earlier failure stands.
     MYRIAD_FUNCTION void end_lane(int i, myriad::status why) {
         if (!is_failure(ending[i])) ending[i] = why;
         set_lane(ended, i, true);
@@ -158,7 +120,7 @@ struct integration_state {
         for_each_lane(which, [&](int i) MYRIAD_LAMBDA { end_lane(i, why); });
     }
 
-    /// Takes the step that a hook set; NaN is none, and ends the lane, with the step that it had before.
+    /// Takes the step size set by a hook. NaN is refused: the lane keeps its old step size and ends.
     MYRIAD_FUNCTION void take_step_size(const kernel_arguments<Model, R>& args, int i, R before) {
         if (get_lane(data.h_next, i) == get_lane(data.h_next, i)) return bound_step(args, i);
         set_lane(data.h_next, i, before);

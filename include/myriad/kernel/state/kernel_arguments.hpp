@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a kernel receives: pointers into the ensemble's arrays and the options as plain numbers. Trivially copyable, the
-// same for every backend, and free of Eigen, so that no type with flag-dependent alignment crosses over.
+// The arguments of a kernel: pointers into the ensemble's arrays, and the options as plain numbers. Trivially copyable,
+// the same for every backend, and free of Eigen, so that no type whose alignment depends on flags is exchanged.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,16 @@
 
 namespace myriad {
 
-/// Where a GPU keeps the parameters that all instances share: the constant bank is fastest where all threads read the
-/// same value at once, shared memory where they are many, the cache where nothing else has room. Choosing by itself,
-/// the backend takes the constant bank up to 1 KiB, then shared memory as long as it fits.
-enum class shared_placement : std::uint8_t { automatic, constant_bank, shared_memory, cache };
+/// Where a GPU keeps the parameters that all instances share: the constant bank is fastest if all threads read the same
+/// value at once, shared memory if they are many, the cache if they fit nowhere else. `automatic` takes the constant
+/// bank up to 1 KiB, then shared memory as long as they fit.
+enum class shared_placement : std::uint8_t {
+    automatic,      ///< by their size
+    constant_bank,  ///< with the arguments of the kernel, up to 1 KiB
+    shared_memory,  ///< copied there by each block
+    cache,          ///< read from device memory
+};
+/// The name of a place, as in the code.
 constexpr const char* name_of(shared_placement placement) {
     constexpr const char* names[] = {"automatic", "constant_bank", "shared_memory", "cache"};
     return names[static_cast<int>(placement)];
@@ -23,19 +29,18 @@ constexpr const char* name_of(shared_placement placement) {
 
 namespace myriad::detail {
 
-/// Length of a member array that may hold nothing.
+/// Length of a member array that may be empty.
 constexpr int at_least_one(int n) { return n > 0 ? n : 1; }
 
-/// One event function's options (see `event_options`), as the kernel wants them.
+/// One event function's options (see `event_options`), as the kernel needs them.
 template <class R>
 struct event_arguments {
     R tolerance;              // unit of the event function
-    bool rising, falling;     // the crossings that are asked for
     std::int32_t stop_after;  // detections that end the phase; 0: none
 };
 
-/// Where the records of the phases go: component c of a recorded phase r of instance i is at
-/// `values[(column[c] * phases + r) * size + i]`; a column of -1 is not recorded.
+/// Where the records of the phases go: component c of recorded phase r of instance i is at `values[(column[c] * phases
+/// + r) * size + i]`; a column of -1 is not recorded.
 template <class Model, class R>
 struct record_arguments {
     R* values;
@@ -54,10 +59,10 @@ template <class Model, class R>
 struct sample_arguments {
     R* time;
     R* values;
-    std::int32_t* stored;  // per instance: samples there are
-    const R* times;        // given times, or null: own or evenly spaced ones
+    std::int32_t* stored;  // per instance: number of samples
+    const R* times;        // given times, or null: own or evenly spaced times
     R* own_times;          // given times of each instance, `count` components, or null
-    std::int32_t count;    // number of times per phase
+    std::int32_t count;    // times per phase
     std::int32_t every;    // accepted steps per sample; 0: by time
     std::int32_t capacity;
     std::int32_t from_phase;  // of this call
@@ -65,7 +70,7 @@ struct sample_arguments {
     std::int16_t column[n_state<Model>];
 };
 
-/// The parameters that all instances share, wherever a backend keeps them.
+/// The parameters shared by all instances, wherever a backend keeps them.
 template <class R>
 struct shared_parameters {
     const R* real;
@@ -76,52 +81,54 @@ struct shared_parameters {
 template <class Model, class R>
 struct kernel_arguments {
     std::int64_t size;         // instances, and the distance between two components
-    std::int64_t first_index;  // number of the first instance, for hooks that ask for it
+    std::int64_t first_index;  // number of the first instance, for hooks that read it
 
-    // per instance, read; parameters and times are written only if the model declares it
+    // per instance, read; parameters and times are written only if the model declares that it writes them
     R* parameter;
-    R* t_begin;  // null where all instances have the domain below
+    R* t_begin;  // null if all instances have the common domain below
     R* t_end;
-    R* tolerance_scale;  // null for methods without
+    R* tolerance_scale;  // null if the method has none
     // per instance, read and written
     R* t;
     R* state;
     R* accessory;
     std::int32_t* integer_accessory;
-    // what an instance needs to go on in a later call
-    R* h_next;               // step to try next
+    // what an instance needs to continue in a later call
+    R* h_next;               // the step to try next
     std::int32_t* phase;     // phases done
     std::int8_t* side;       // per event: the side of zero its function was last seen on
     std::uint8_t* ended;     // by action::end_instance or a failure
     myriad::status* status;  // how the last phase ended
-    // work done in all calls, or null when counting is off
+    // work in all calls, or null if counting is off
     std::int64_t* accepted;
     std::int64_t* rejected;     // with adaptive methods
-    std::int64_t* located;      // steps redone to locate an event, in models that have some
+    std::int64_t* located;      // steps redone to locate an event, if the model has events
     std::int64_t* evaluations;  // of the right-hand side
 
     shared_parameters<R> shared;
 
-    // what a schedule by cost needs, or null
-    std::uint32_t* cost;         // trial steps of each instance's last phase, 0 if it has ended; written
-    const std::uint32_t* order;  // the instances in the order in which they are to be taken
+    // data of a schedule by cost, or null
+    std::uint32_t* cost;         // trial steps of each instance's last phase, 0 if the instance has ended; written
+    const std::uint32_t* order;  // the order in which instances are taken
 
     // options
     std::int32_t phases;
-    std::int32_t first_phase;  // phases of this call that are done already
+    std::int32_t first_phase;  // phases of this call already done
     R common_t_begin, common_t_end;
-    R phase_length, phases_per_time;  // and one over it; 0: a phase goes to t_end
-    bool carry_time;                  // a phase goes on from where the last one ended, instead of from t_begin
+    R phase_length, phases_per_time;  // and its reciprocal; 0: a phase goes to t_end
+    bool carry_time;                  // a phase continues from the end of the last one, not from t_begin
     bool carry_step;                  // and with its step size
     std::int32_t max_steps;
     R step;  // fixed step, or first step of an adaptive method
     R minimum_step, maximum_step;
-    float growth_limit, shrink_limit;  // as precise as step-size control is in CUDA threads
+    float growth_limit, shrink_limit;  // in the precision of step-size control in CUDA threads
     R relative_tolerance[n_state<Model>];
     R absolute_tolerance[n_state<Model>];
     event_arguments<R> event[at_least_one(n_event<Model>)];
+    // The crossings that fire: bit j % 32 of word j / 32 for event j.
+    std::uint32_t rising[n_event<Model> / 32 + 1], falling[n_event<Model> / 32 + 1];
     std::int32_t sub_samples;         // points of the interpolant looked at per step
-    std::int32_t accumulation_limit;  // actions of one event without leaving its tolerance
+    std::int32_t accumulation_limit;  // actions of one event without its function leaving the tolerance
     record_arguments<Model, R> record;
     sample_arguments<Model, R> sample;
 };

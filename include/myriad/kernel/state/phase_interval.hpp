@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Phases of a given length: where the one that goes on from some time begins and ends.
+// Phases of a given length: the interval of the phase that starts at a given time.
 #pragma once
 
 #include "myriad/kernel/scalar/math.hpp"
@@ -12,9 +12,9 @@ struct phase_interval {
     R begin, end;
 };
 
-/// The interval between two of the times t_begin + k phase_length that leads on from t, towards t_end and no further.
-/// Each end is computed from t_begin, so that no rounding adds up; t counts as on an end if rounding alone keeps it
-/// from it. A phase that an event or a hook ended early leaves the rest of its interval to the next.
+/// The interval between two of the times t_begin + k phase_length that leads from t towards t_end, and not beyond it.
+/// Both ends are computed from t_begin, so that rounding does not accumulate; t counts as an end if it differs by
+/// rounding alone. A phase ended early by an event or a hook leaves the rest of its interval to the next.
 template <class Model, class R>
 MYRIAD_FUNCTION phase_interval<R> interval_from(const kernel_arguments<Model, R>& args, R t, R t_begin, R t_end) {
     const R length = copysign(args.phase_length, t_end - t);

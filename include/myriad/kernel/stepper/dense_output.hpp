@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The state inside a step: the method's own interpolant where it has one, the cubic Hermite polynomial otherwise.
+// The state inside a step: from the method's own interpolant if it has one, else from the cubic Hermite polynomial.
 #pragma once
 
 #include "myriad/kernel/stepper/step.hpp"
@@ -11,7 +11,7 @@ inline constexpr bool has_own_interpolant = requires {
     Method::interpolant_degree;
 };
 
-/// Stages of the interpolant in addition to those of the step and the slope at its end.
+/// Stages of the interpolant beyond those of the step and the slope at its end.
 template <class Method>
 inline constexpr int extra_stages = [] {
     if constexpr (requires { Method::extra_stages; }) {
@@ -20,7 +20,7 @@ inline constexpr int extra_stages = [] {
         return 0;
     }
 }();
-/// Stages of a method's own interpolant. Stage `stages` is the slope at the end of the step, unless the last stage is.
+/// Stages of a method's own interpolant. Stage `stages` is the slope at the step's end, unless the last stage is it.
 template <class Method>
 inline constexpr int interpolant_stages = Method::stages + (extra_stages<Method> > 0 ? 1 + extra_stages<Method> : 0);
 /// Whether an interpolant needs the slope at the end of the step in addition to the step's stages.
@@ -43,13 +43,13 @@ inline constexpr R extra_node = static_cast<R>(Method::extra_node(i));
 template <class Method, int i, int stage, class R>
 inline constexpr R extra_weight = static_cast<R>(Method::extra_weight(i, stage));
 
-/// Whether the slopes of the solution at both ends of a step are available with its interpolant, and are the
-/// interpolant's. A stiff method's interpolant uses no slopes, as stiffness would spoil it.
+/// Whether a step's interpolant has the solution's slopes at both ends, and these are available. A stiff method's
+/// interpolant uses no slopes, as stiffness would spoil it.
 template <class Method>
 inline constexpr bool interpolates_between_slopes =
     !rosenbrock_method<Method> && (Method::first_same_as_last || interpolates_with_slope_end<Method>);
 
-/// A trial step, with what the interpolants and event functions need.
+/// A trial step with the data that interpolants and event functions need.
 template <class Method, class S, int n>
 struct step_data {
     S t;          // start
@@ -59,7 +59,7 @@ struct step_data {
     vec<S, n> slope_end;                         // f at the end of the step
     vec<vec<S, n>, extra_stages<Method>> extra;  // additional stages, from complete_interpolant
 
-    /// The slope of an interpolant's stage.
+    /// The slope at a stage of the interpolant.
     template <int stage>
     MYRIAD_FUNCTION const vec<S, n>& slope() const {
         if constexpr (stage < Method::stages) {
@@ -72,7 +72,7 @@ struct step_data {
     }
 };
 
-/// Evaluates the stages that only the interpolant needs. The slope at the end of the step must be set.
+/// Evaluates the interpolant's own stages. The slope at the end of the step must be set.
 template <class Model, class Method, class S, int n>
 MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const inputs<Model, S>& p) {
     using R = real_of<S>;
@@ -91,8 +91,8 @@ MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const i
     });
 }
 
-/// The cubic with the values y0, y1 and the slopes k0, k1 at the ends of a step of length h, at the fraction theta of
-/// it; for a dual theta with its derivative. Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7).
+/// The cubic with values y0, y1 and slopes k0, k1 at the ends of a step of length h, at fraction theta; for a dual
+/// theta, with its derivative. Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7).
 template <class S, int n, class T>
 MYRIAD_FUNCTION vec<T, n> hermite_interpolation(const vec<S, n>& y0, const vec<S, n>& y1, const vec<S, n>& k0,
                                                 const vec<S, n>& k1, const S& h, const T& theta) {
@@ -110,7 +110,7 @@ MYRIAD_FUNCTION vec<T, n> hermite_interpolation(const vec<S, n>& y0, const vec<S
     return out;
 }
 
-/// State at t + theta h, 0 <= theta <= 1; for a dual theta with its derivative.
+/// State at t + theta h, 0 <= theta <= 1; for a dual theta, with its derivative.
 template <class Method, class S, int n, class T>
 MYRIAD_FUNCTION vec<T, n> interpolate(const step_data<Method, S, n>& step, const T& theta) {
     using R = real_of<S>;

@@ -20,7 +20,7 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> evaluate_rhs(const S& t, const vec<S, n_s
     return Model::template rhs<S>(t, y, p);
 }
 
-/// Refuses a method whose tableau is not filled.
+/// Refuses a method with an incomplete tableau.
 template <class Method>
 constexpr bool check_tableau() {
     constexpr auto t = Method::tableau();
@@ -45,19 +45,18 @@ constexpr bool check_tableau() {
     return true;
 }
 
-/// What a trial step leaves behind: the slopes of its stages (the first is the slope at its start) and the new state.
+/// The result of a trial step: the slopes of its stages (the first is the slope at its start) and the new state.
 template <class Method, class S, int n>
 struct trial_step {
     static_assert(check_tableau<Method>());
     vec<vec<S, n>, Method::stages> k;
     vec<S, n> y;
 
-    /// Of a method whose last stage is the first of the next step.
+    /// For methods whose last stage is the first of the next step.
     MYRIAD_FUNCTION const vec<S, n>& slope_end() const { return k[Method::stages - 1]; }
 };
 
-/// The order that a method's error estimate falls with, less one: that of the embedded solution, where that is all
-/// there is.
+/// The order with which a method's error estimate decreases, less one: that of the embedded solution, unless given.
 template <class Method>
 inline constexpr int estimate_order = [] {
     if constexpr (requires { Method::estimate_order; }) {
@@ -67,8 +66,8 @@ inline constexpr int estimate_order = [] {
     }
 }();
 
-// A GPU's instruction can carry a number whose lower half is zero; of others it takes two more to load one, and one if
-// the number is in constant memory.
+// A GPU instruction can hold a constant whose lower half is zero; to load any other takes two more instructions, or one
+// from constant memory.
 template <class R>
 constexpr bool is_short(R x) {
     if constexpr (sizeof(R) == sizeof(double)) return (__builtin_bit_cast(std::uint64_t, x) & 0xffffffff) == 0;
@@ -83,7 +82,7 @@ MYRIAD_CONSTANT_MEMORY R kept_weight = relative_weight<Method, row, j, R>;
 template <class Method, int row, class R>
 MYRIAD_CONSTANT_MEMORY R kept_first = first_weight<Method, row, R>;
 
-/// The same numbers as operands.
+/// The same constants as operands.
 template <class Method, int row, int j, class R>
 MYRIAD_FUNCTION R weight_operand() {
     if constexpr (is_short_weight<Method, row, j, R>) {
@@ -101,8 +100,7 @@ MYRIAD_FUNCTION R first_operand() {
     }
 }
 
-/// sum += weight * k with the relative weight of stage j, without the operations that a weight of zero or one does not
-/// need.
+/// sum += weight * k with the relative weight of stage j; zero and one take no multiplication.
 template <class Method, int row, int j, class S>
 MYRIAD_FUNCTION void add_weighted(S& sum, const S& k) {
     using R = real_of<S>;
@@ -113,8 +111,8 @@ MYRIAD_FUNCTION void add_weighted(S& sum, const S& k) {
     }
 }
 
-/// sum_j w_j k_j / w_first for one component. Dividing the weights by the first non-zero one (the compiler does) saves
-/// an operation per component against h * sum: the caller multiplies once by h * w_first.
+/// sum_j w_j k_j / w_first for one component. Dividing the weights by the first non-zero one (at compile time) saves
+/// one operation per component compared with h * sum: the caller multiplies once by h * w_first.
 template <class Method, int row, class S, int n>
 MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int component) {
     constexpr int first = first_stage<Method, row>;
@@ -125,7 +123,7 @@ MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int compon
     return sum;
 }
 
-/// y + h * sum_j w_j k_j with the weights of `row`: a stage's argument or the new state.
+/// y + h * sum_j w_j k_j with the weights of `row`: the argument of a stage, or the new state.
 template <class Method, int row, class S, int n>
 MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<S, n>, Method::stages>& k) {
     const S scale = h * S(detail::first_operand<Method, row, real_of<S>>());
@@ -135,7 +133,7 @@ MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<
     return out;
 }
 
-/// The error estimate h * sum_j e_j k_j of a component is the product of a factor that all components share and a sum.
+/// The error estimate h * sum_j e_j k_j of a component: the product of a factor common to all components and a sum.
 template <class Method, int row = row_of<Method>::error, class S>
 MYRIAD_FUNCTION S error_factor(const S& h) {
     return h * S(detail::first_operand<Method, row, real_of<S>>());
@@ -145,7 +143,7 @@ MYRIAD_FUNCTION S error_sum(const trial_step<Method, S, n>& trial, int component
     return detail::scaled_sum<Method, row>(trial.k, component);
 }
 
-/// Whether neither the new state nor an error estimate contains the slope of a stage.
+/// Whether a stage's slope enters neither the new state nor an error estimate.
 template <class Method, int stage>
 inline constexpr bool is_unseen_stage = [] {
     constexpr int last_row = has_coarse_estimate<Method> ? row_of<Method>::coarse_error : row_of<Method>::error;
@@ -153,8 +151,8 @@ inline constexpr bool is_unseen_stage = [] {
         if (weight_in<Method>(row, stage) != 0) return false;
     return true;
 }();
-/// Makes the slope of a stage NaN where that of an unseen one before it is not finite. Its argument is NaN already, but
-/// a model may give that a finite slope, as select(x > 1, NaN, 1) does. Others keep every bit: minus zero adds nothing.
+/// Makes a stage's slope NaN if that of an unseen stage before it is not finite. Its argument is NaN already, but a
+/// model may return a finite slope for it, as select(x > 1, NaN, 1) does. Others keep every bit: -0 adds nothing.
 template <class Method, int stage, class S, int n>
 MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
     if constexpr (is_unseen_stage<Method, stage - 1>) {
@@ -164,8 +162,8 @@ MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
 }
 
 /// Steps from (t, y) over h to t1; `trial.k[0]`, the slope at the start, is given. A last stage that is the first of
-/// the next step is taken at t1, which may be t + h up to rounding. The new state is summed up stage by stage, so that
-/// slopes which no later stage needs can leave their registers.
+/// the next step is evaluated at t1, which may differ from t + h by rounding. The new state is summed stage by stage,
+/// so that slopes no later stage needs free their registers.
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                       const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {

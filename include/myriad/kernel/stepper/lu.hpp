@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// LU factorisation with partial pivoting of the small matrices of implicit methods, for one lane or a pack whose lanes
+// LU factorisation with partial pivoting for the small matrices of implicit methods, for one lane or a pack whose lanes
 // pivot independently. In place, without allocation.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// The number of a row: an integer for one lane, a real (which compares with reals) in each lane of a pack.
+/// A row number: an integer for one lane, a real (comparable with reals) per lane of a pack.
 template <class S>
 using row_number = std::conditional_t<lanes_of<S> == 1, int, S>;
 template <class S>
@@ -19,16 +19,16 @@ MYRIAD_FUNCTION row_number<S> row_number_of(int i) {
     return row_number<S>(static_cast<std::conditional_t<lanes_of<S> == 1, int, real_of<S>>>(i));
 }
 
-/// The matrix A, and after `factorise` its factors: below the diagonal the multipliers, from it on U, whose diagonal
-/// holds the reciprocals of the pivots. In step k row `pivot[k]` was exchanged with row k from column k on (the
-/// multipliers stay where they are, so `solve_factorised` alternates between exchanging and eliminating).
+/// The matrix A, replaced by its factors in `factorise`: the multipliers below the diagonal; on and above it U, with
+/// the reciprocals of the pivots on the diagonal. In step k row `pivot[k]` was exchanged with row k from column k on
+/// (multipliers stay in place, so `solve_factorised` alternates exchanges and eliminations).
 template <class S, int n>
 struct lu_factors {
     matrix<S, n> a;
     vec<row_number<S>, n> pivot;
 };
 
-/// Calls `swap(i, where)` for the rows i > k that hold the pivot of some lane.
+/// Calls `swap(i, where)` for the rows i > k that contain some lane's pivot.
 template <class S, int n, class K, class Swap>
 MYRIAD_FUNCTION void exchange_rows(K k, const row_number<S>& pivot, Swap&& swap) {
     if constexpr (lanes_of<S> == 1 && !matrix_loop<S, n>::unrolled) {
@@ -36,13 +36,13 @@ MYRIAD_FUNCTION void exchange_rows(K k, const row_number<S>& pivot, Swap&& swap)
     } else {
         matrix_loop<S, n>::after(k, [&](auto i) MYRIAD_LAMBDA {
             const auto where = pivot == row_number_of<S>(i);
-            // Lanes mostly agree. In an unrolled loop, the test would cost as much as it saves.
+            // Lanes mostly agree. In an unrolled loop the test would cost what it saves.
             if (matrix_loop<S, n>::unrolled || any(where)) swap(i, where);
         });
     }
 }
 
-/// Factorises `lu.a`. False in lanes with a pivot that is zero or not finite, whose matrix is singular.
+/// Factorises `lu.a`. Returns false in lanes with a zero or non-finite pivot, whose matrix is singular.
 template <class S, int n>
 MYRIAD_FUNCTION mask_of<S> factorise(lu_factors<S, n>& lu) {
     using R = real_of<S>;
@@ -78,7 +78,7 @@ MYRIAD_FUNCTION mask_of<S> factorise(lu_factors<S, n>& lu) {
     return regular;
 }
 
-/// Solves A x = b with the factors of A; x takes the place of b.
+/// Solves A x = b with the factors of A; x replaces b.
 template <class S, int n>
 MYRIAD_FUNCTION void solve_factorised(const lu_factors<S, n>& lu, vec<S, n>& b) {
     using loop = matrix_loop<S, n>;

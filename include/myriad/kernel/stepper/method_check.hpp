@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Checks a method's claims against its coefficients wherever it is compiled for a model: a wrong claim would only cost
-// digits, unnoticed. Evaluated at compile time only.
+// Checks a method's claims against its coefficients wherever it is compiled for a model: a wrong claim would go
+// unnoticed and cost accuracy. Evaluated only at compile time.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Coefficients of thirteen digits pass; the residual of a wrong claim is far larger.
+/// Coefficients of thirteen digits pass; a wrong claim leaves a far larger residual.
 inline constexpr double rounding_of_coefficients = 1e-12;
 
 constexpr bool nearly_equal(double a, double b) {
@@ -48,7 +48,7 @@ constexpr bool has_order(const Tableau& t, const Row& weights, int order) {
     return satisfies_order_conditions(t, weights, order, rounding_of_coefficients);
 }
 
-/// Whether the argument of every stage has weights, and only for earlier stages.
+/// Whether every stage's argument has weights, and only for earlier stages.
 template <class Tableau>
 constexpr bool stages_are_explicit(const Tableau& t) {
     bool fine = true;
@@ -116,8 +116,7 @@ constexpr auto interpolant_weights_at(double theta) {
     }
 }
 
-/// Whether the interpolant has the stated order at t + theta h: there it is the solution of a method for the step theta
-/// h.
+/// Whether the interpolant has the stated order at t + theta h, where it is the solution of a method with step theta h.
 template <class Method>
 constexpr bool interpolant_has_order(double theta) {
     auto w = interpolant_weights_at<Method>(theta);

@@ -20,8 +20,8 @@ concept rosenbrock_method = requires {
     Method::tableau().coupling;
 };
 
-/// The results of a trial step: the slope at its start (and at its end, if that is the last stage's), the stages u, the
-/// new state, and the lanes whose matrix was singular, in which everything else is invalid.
+/// The results of a trial step: the slope at its start (and at its end, if the last stage computes it), the stages u,
+/// the new state, and the lanes whose matrix was singular, where everything else is invalid.
 template <class Method, class S, int n>
 requires rosenbrock_method<Method>
 struct trial_step<Method, S, n> {
@@ -69,7 +69,7 @@ template <class Method>
 inline constexpr int dense_terms = static_cast<int>(Method::tableau().dense.size());
 
 /// First stage whose weight in the argument of stage `row` differs from that in the previous argument: stiffly accurate
-/// methods repeat a row and add to it, and the repeated sum is reused.
+/// methods repeat a row and extend it, and the repeated sum is reused.
 template <class Method, int row>
 inline constexpr int first_new_stage = [] {
     int j = 0;
@@ -77,7 +77,7 @@ inline constexpr int first_new_stage = [] {
     return j == row - 1 ? j : 0;
 }();
 
-/// The weights of one row of a kind.
+/// One row of weights of the given kind.
 template <class Method>
 constexpr auto rosenbrock_weights(rosenbrock_row kind, std::size_t row) {
     stage_numbers<Method::stages> w{};
@@ -86,7 +86,7 @@ constexpr auto rosenbrock_weights(rosenbrock_row kind, std::size_t row) {
     return w;
 }
 
-/// The row sums of gamma, the response of a stage to a constant slope, as in the tableau and rounded to R.
+/// The row sums of gamma, the response of a stage to a constant slope: exact, and with weights rounded to R.
 template <class Method, class R>
 inline constexpr auto rosenbrock_row_sums = [] {
     constexpr auto stages = static_cast<std::size_t>(Method::stages);
@@ -115,7 +115,7 @@ inline constexpr auto kept_rosenbrock_weights = [] {
     if constexpr (kind == rosenbrock_row::coupling) {
         return sums.coupling[static_cast<std::size_t>(row)];
     } else {
-        // The rows that a stiffly accurate method repeats are summed only once.
+        // A row that a stiffly accurate method repeats is summed only once.
         constexpr int first = [] {
             if constexpr (kind == rosenbrock_row::argument) return first_new_stage<Method, row>;
             return 0;
@@ -127,7 +127,7 @@ inline constexpr auto kept_rosenbrock_weights = [] {
 template <class Method, rosenbrock_row kind, int row, int j, class R>
 inline constexpr R rosenbrock_weight = kept_rosenbrock_weights<Method, kind, row, R>[static_cast<std::size_t>(j)];
 
-/// First stage whose weight is not zero.
+/// First stage with a non-zero weight.
 template <class Method, rosenbrock_row kind, int row>
 inline constexpr int first_weighted_stage = [] {
     int j = 0;
@@ -135,8 +135,7 @@ inline constexpr int first_weighted_stage = [] {
     return j;
 }();
 
-/// sum + sum_j w_j u_j of one component, j from `begin` to `end`, without unnecessary operations for weights of zero
-/// and one.
+/// sum + sum_j w_j u_j for one component, j from `begin` to `end`, without multiplications by zero and one.
 template <class Method, rosenbrock_row kind, int row, int begin, int end, class T, class S, int n>
 MYRIAD_FUNCTION T add_stages(T sum, const vec<vec<S, n>, Method::stages>& u, int component) {
     using R = real_of<S>;
@@ -151,7 +150,7 @@ MYRIAD_FUNCTION T add_stages(T sum, const vec<vec<S, n>, Method::stages>& u, int
     return sum;
 }
 
-/// sum_j w_j u_j of one component, j from 0 to `end`.
+/// sum_j w_j u_j for one component, j from 0 to `end`.
 template <class Method, rosenbrock_row kind, int row, int end, class S, int n>
 MYRIAD_FUNCTION S sum_stages(const vec<vec<S, n>, Method::stages>& u, int component) {
     using R = real_of<S>;
@@ -161,7 +160,7 @@ MYRIAD_FUNCTION S sum_stages(const vec<vec<S, n>, Method::stages>& u, int compon
     return detail::add_stages<Method, kind, row, first + 1, end>(sum, u, component);
 }
 
-/// The error estimate of one component, and its factor.
+/// The error estimate of one component: a sum, and its factor.
 template <rosenbrock_method Method, int row = row_of<Method>::error, class S, int n>
 MYRIAD_FUNCTION S error_sum(const trial_step<Method, S, n>& trial, int component) {
     return detail::sum_stages<Method, rosenbrock_row::error, 0, Method::stages>(trial.u, component);
@@ -171,7 +170,7 @@ MYRIAD_FUNCTION S error_factor(const S&) {
     return S(real_of<S>(1));
 }
 
-/// Factors of I / (h gamma) - J; false in lanes where it is singular.
+/// Factorises I / (h gamma) - J; returns false in lanes where it is singular.
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
                                                   const inputs<Model, S>& p, lu_factors<S, n_state<Model>>& lu) {
@@ -193,15 +192,15 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
     using loop = matrix_loop<S, n>;
-    // Steps to an event may be as short as 1e-320. If 1 / (h gamma) would overflow, the matrix is that of a slightly
-    // longer step, over which nothing changes either.
+    // Steps to an event may be as short as 1e-320. If 1 / (h gamma) would overflow, the matrix of a slightly longer
+    // step is used, over which nothing changes either.
     const S per_h = copysign(S(R(1)) / max(abs(h), S(R(16) / largest_of<R>)), h);
     lu_factors<S, n> lu;
     trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
     const vec<S, n> slope_t = detail::time_derivative<Model>(t, y, p);
 
     vec<S, n> increment, slope = trial.k[0];
-    // The argument of stage `row`, or the new state, into trial.y.
+    // Writes the argument of stage `row`, or the new state, to trial.y.
     const auto advance = [&](auto row) MYRIAD_LAMBDA {
         constexpr int i = decltype(row)::value, begin = first_new_stage<Method, i>;
         loop::all([&](auto c) MYRIAD_LAMBDA {
@@ -235,7 +234,7 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
     advance(constant_index<Method::stages>{});
 }
 
-/// State at t + theta h, 0 <= theta <= 1; for a dual theta with its derivative.
+/// State at t + theta h, 0 <= theta <= 1; for a dual theta, with its derivative.
 template <rosenbrock_method Method, class S, int n, class T>
 MYRIAD_FUNCTION vec<T, n> rosenbrock_interpolation(const vec<S, n>& y, const trial_step<Method, S, n>& trial,
                                                    const T& theta) {

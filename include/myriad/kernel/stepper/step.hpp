@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The loop's interface to a method, explicit or implicit: a trial step, and the lanes in which it could not be taken.
+// The loop's interface to a method, explicit or implicit: a trial step, and the lanes in which it failed.
 #pragma once
 
 #include "myriad/kernel/stepper/explicit_rk.hpp"
@@ -21,7 +21,7 @@ MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const 
     }
 }
 
-/// Whether a method solves linear systems, which may be singular; then its trial steps say in which lanes.
+/// Whether a method solves linear systems, which may be singular; its trial steps then mark the lanes.
 template <class Method>
 inline constexpr bool solves_linear_systems = rosenbrock_method<Method>;
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// One interface to adaptive and fixed steps.
+#pragma once
+
+#include <type_traits>
+
+#include "myriad/kernel/controller/adaptive.hpp"
+#include "myriad/kernel/controller/fixed.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// How the steps of a method follow one another:
+///
+///     load(i), store(i)              what an instance keeps between phases and calls
+///     choose_step(i, phase)          the step that `initialise` sees
+///     begin(i, t)                    a phase of lane i begins at t, after `initialise`
+///     propose()                      the next trial: s.h, s.final_step
+///     end_time()                     the time at which it ends
+///     judge(trial, t1, valid, ...)   accepted lanes; lanes whose step cannot get shorter are ended
+///     advance(accepted, t1, events)  advances time in accepted lanes; sets s.ended at the phase's end
+///     move(i, t)                     a hook has moved the end of the phase of lane i, which is at t
+///     resume(i, h)                   continues with step h after event location
+///     time(i)                        time of the committed state
+///     look_interval, creeps(i)       every so many iterations: will the phase never end? 0: no check
+template <class Model, class Method, class S>
+using stepping =
+    std::conditional_t<is_adaptive<Method>, adaptive_stepping<Model, Method, S>, fixed_stepping<Model, Method, S>>;
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// The earliest crossing within a step: the first guess for the length of the redone step.
+#pragma once
+
+#include <cstdint>
+
+#include "myriad/kernel/event/crossing.hpp"
+#include "myriad/kernel/event/step_ends.hpp"
+#include "myriad/kernel/scalar/mask_set.hpp"
+#include "myriad/kernel/state/kernel_arguments.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// A crossing inside a step.
+template <class R>
+struct located_crossing {
+    R fraction;          // of the step
+    std::int32_t event;  // whose function crosses there
+};
+
+/// The earliest of the events in `crossed`, by the fractions `fraction_of(j)`; of equal ones the first by index.
+template <class R, int m, class Fraction>
+MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, Fraction&& fraction_of) {
+    located_crossing<R> first{R(2), 0};
+    MYRIAD_UNROLL
+    for (int j = 0; j < m; ++j) {
+        if (!crossed[j]) continue;
+        const R x = fraction_of(j);
+        if (x < first.fraction) first = {x, j};
+    }
+    return first;
+}
+
+/// The earliest crossing in a step, from the cubic through each event function's values and slopes at both ends. `side`
+/// is the side of zero each function was on. A function that starts within its tolerance and leaves it crosses where it
+/// returns.
+template <class Model, class R>
+MYRIAD_FUNCTION located_crossing<R> earliest_crossing(const step_ends<Model, R>& step,
+                                                      const vec<R, n_event<Model>>& side,
+                                                      const mask_set<bool, n_event<Model>>& crossed,
+                                                      const event_arguments<R>* event) {
+    const auto slope = step.slopes(), slope1 = step.slopes1();
+    return detail::first_of<R>(crossed, [&](int j) MYRIAD_LAMBDA {
+        const R per_step = side[j] * step.h;
+        const function_ends<R> g{side[j] * step.g[j], per_step * slope[j], side[j] * step.g1[j], per_step * slope1[j]};
+        const bool on_surface = !(g.value > event[j].tolerance);
+        if (on_surface && !(g.slope > R(0))) return R(0);
+        return detail::crossing_fraction(g, on_surface, R(0.01) * event[j].tolerance);
+    });
+}
+
+/// The same for crossings found between the fractions `low` and `high` of a step, by the secants between these points.
+template <class Model, class R>
+MYRIAD_FUNCTION located_crossing<R> earliest_crossing_between(R low, R high, const step_ends<Model, R>& step,
+                                                              const mask_set<bool, n_event<Model>>& crossed,
+                                                              const event_arguments<R>* event) {
+    const auto g = step.values_at(low), g1 = high < R(1) ? step.values_at(high) : step.g1;
+    return detail::first_of<R>(crossed, [&](int j) MYRIAD_LAMBDA {
+        // A function within its tolerance at `low` may be about to leave and return.
+        const bool within = abs(g[j]) <= event[j].tolerance;
+        return fma(high - low, within ? R(0.5) : g[j] / (g[j] - g1[j]), low);
+    });
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: MIT
+// Tracks the side of zero that each event function is on through steps, hooks and phases. It works on one lane, or is
+// rarely called; the check in every step is `event_locator::look`.
+#pragma once
+
+#include <type_traits>
+
+#include "myriad/kernel/event/event_memory.hpp"
+#include "myriad/kernel/event/event_sides.hpp"
+#include "myriad/kernel/event/fired_events.hpp"
+#include "myriad/kernel/event/step_ends.hpp"
+#include "myriad/kernel/state/integration_state.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+template <class R>
+MYRIAD_FUNCTION R sign_of(R x) {
+    return x > R(0) ? R(1) : x < R(0) ? R(-1) : R(0);
+}
+
+/// The sides of a pack's event functions. A crossing is a change of side. The side on which a function was last seen
+/// beyond its tolerance is remembered, so that a function that stays within the tolerance neither fires twice nor is
+/// lost, and one that only touches zero does not fire. Where a step starts within the tolerance, the function's slope
+/// along the solution tells where it is heading.
+template <class Model, class Method, class S>
+struct side_follower {
+    using R = real_of<S>;
+    using mask = mask_of<S>;
+    static constexpr int n = n_state<Model>;
+    static constexpr int m = n_event<Model>;
+    using values = vec<S, m>;  // of the event functions in all lanes
+    using reals = vec<R, m>;   // in one lane
+    using flags = mask_set<bool, m>;
+    using state = vec<R, n>;
+    using fired = fired_events<Model, S>;
+
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
+    event_sides<Model, S>& e;
+    event_memory<Model, R>* memory;  // of each lane
+
+    MYRIAD_FUNCTION event_memory<Model, R>& memory_of(int i) const {
+        auto* own = memory + i;
+        MYRIAD_FORGET(own);  // else nvcc keeps the values it points to in registers
+        return *own;
+    }
+
+    /// Starts a phase with the sides that the previous one left.
+    MYRIAD_FUNCTION void begin(const mask& lanes) {
+        for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA { begin_lane(i); });
+    }
+
+    /// Stores the sides of lane i for its next phase. A phase without a step has not evaluated its event functions.
+    MYRIAD_FUNCTION void keep(int i) const {
+        if (s.iteration == s.phase_start[i]) return;
+        const auto& p = inputs_of(i);
+        const reals g = detail::evaluate_events<Model>(get_lane(s.data.t, i), get_lanes<R>(s.data.y, i), p);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool left = e.left.get(j, i);
+            kept_side kept = left ? kept_side::within : kept_side::unknown;
+            if (abs(g[j]) > args.event[j].tolerance || (e.on_jump.get(j, i) && !left))
+                kept = left ? kept_side::beyond : kept_side::on_jump;
+            const int sign = e.open.get(j, i) ? 0 : e.above.get(j, i) ? 1 : -1;
+            kept_at(j, i) = static_cast<std::int8_t>(sign * static_cast<int>(kept));
+        }
+    }
+    /// Makes the next phase of lane i begin with all sides unknown.
+    MYRIAD_FUNCTION void forget(int i) const {
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) kept_at(j, i) = 0;
+    }
+
+    /// Updates the sides after a hook changed inputs of event functions, whose values were `before`. A function within
+    /// its tolerance keeps its side, unless the hook moved it there: then the slope at the next step decides. One at a
+    /// jump keeps the side beyond it, which its value here does not show, until `settle` looks again.
+    MYRIAD_FUNCTION void restart(const mask& lanes, const values& before, const fired& events) {
+        const values g = detail::evaluate_events<Model>(s.now(), s.data.y, s.data);
+        e.undefined = e.undefined & !lanes;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const S tolerance = S(args.event[j].tolerance);
+            const mask adopted = lanes & !events.which[j] & !e.on_jump[j];
+            const mask beyond = abs(g[j]) > tolerance;
+            e.undefined = e.undefined | (lanes & (g[j] != g[j]));
+            e.open.set(j, (e.open[j] & !(adopted & beyond)) | (adopted & !beyond & (abs(before[j]) > tolerance)));
+            e.above.set(j, (e.above[j] & !(adopted & beyond)) | (adopted & beyond & (g[j] > S(R(0)))));
+        }
+    }
+
+    /// Determines the sides after the actions of events; `before` is the data before them. A function that fired is on
+    /// the side it is heading for. If its slope is zero, it stays on the side it came from if an action changed it, and
+    /// has crossed if none did. If it was still moving away when it fired, as in a flight too short for the resolution
+    /// of the state, an action that reversed it must not send it through the surface. A function with a jump fired
+    /// right before the jump: a look ahead tells whether it is about to pass it. The same holds for one that fired at a
+    /// jump earlier, as this action may have moved the state.
+    MYRIAD_FUNCTION void settle(int i, const fired& events, const lane_data<Model, S>& before) {
+        bool passes = !get_lane(events.changed, i);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool settled = e.left.get(j, i) && !e.open.get(j, i) && !fires_at_jump(j, i, events);
+            passes = passes && !e.on_jump.get(j, i) && (!events.which.get(j, i) || settled);
+        }
+        if (!passes) return settle_with_care(i, events, before);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            if (!events.which.get(j, i)) continue;
+            e.above.set(j, i, !e.above.get(j, i));
+            e.left.set(j, i, false);
+        }
+    }
+
+    /// The inputs of lane i's event functions beside t and y.
+    MYRIAD_FUNCTION decltype(auto) inputs_of(int i) const { return inputs_of(i, s.data); }
+    MYRIAD_FUNCTION decltype(auto) inputs_of(int i, const lane_data<Model, S>& at) const {
+        if constexpr (is_pack<S>) {
+            return detail::extract_lane(at, i);
+        } else {
+            return static_cast<const inputs<Model, S>&>(at);
+        }
+    }
+    /// +1, -1, or 0 if the side is not yet known.
+    MYRIAD_FUNCTION R side_of(int j, int i) const { return e.open.get(j, i) ? R(0) : e.above.get(j, i) ? R(1) : R(-1); }
+    MYRIAD_FUNCTION void put_side(int j, int i, R side) {
+        e.open.set(j, i, side == R(0));
+        e.above.set(j, i, side > R(0));
+    }
+    /// Whether event j fires when its function crosses from the given side.
+    MYRIAD_FUNCTION bool is_asked(int j, R side) const {
+        const std::uint32_t asked = side > R(0) ? args.falling[j / 32] : side < R(0) ? args.rising[j / 32] : 0u;
+        return ((asked >> (j % 32)) & 1u) != 0;
+    }
+    /// Whether a function with value g has crossed from the given side.
+    MYRIAD_FUNCTION bool crosses(int j, R side, R g) const {
+        return is_asked(j, side) && side * g < -args.event[j].tolerance;
+    }
+
+    /// Sets open sides to where the functions are heading.
+    MYRIAD_FUNCTION void settle_open_sides(int i, const step_ends<Model, R>& step) {
+        bool open = false;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) open = open || e.open.get(j, i);
+        if (!open) return;
+        const reals slope = step.slopes();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j)
+            if (e.open.get(j, i)) put_side(j, i, sign_of(slope[j]) * sign_of(step.h));
+    }
+
+    /// Whether event j fired at a jump that a state within `length` of it may not have passed: if another event is
+    /// located right after that one, rounding may leave the state before the jump.
+    MYRIAD_FUNCTION bool is_at_jump(int j, int i, R length) const {
+        if (!e.on_jump.get(j, i)) return false;
+        return abs(length) <=
+               past_jump(i, get_lane(e.locating, i) ? memory_of(i).redo.resume : get_lane(s.data.h_next, i));
+    }
+    /// Whether `length` is within the rounding of t: values that near do not show that a function has left the place
+    /// where it fired.
+    MYRIAD_FUNCTION bool is_timeless(int i, R length) const {
+        return abs(length) <= R(4) * epsilon_of<R> * abs(get_lane(s.now(), i));
+    }
+
+    /// Updates the sides at the end of an accepted trial; `side` holds those before it.
+    MYRIAD_FUNCTION void follow(int i, const step_ends<Model, R>& step, const reals& side) {
+        const bool timeless = is_timeless(i, step.h);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            if (is_at_jump(j, i, step.h)) continue;  // after the trial it is still at the jump where it fired
+            const bool beyond = abs(step.g1[j]) > args.event[j].tolerance;
+            e.on_jump.set(j, i, false);
+            put_side(j, i, beyond ? sign_of(step.g1[j]) : side[j]);
+            e.left.set(j, i, e.left.get(j, i) || (beyond && !timeless));
+        }
+    }
+
+private:
+    MYRIAD_FUNCTION std::int8_t& kept_at(int j, int i) const {
+        return args.side[static_cast<std::int64_t>(j) * args.size + s.instance[i]];
+    }
+    MYRIAD_FUNCTION bool fires_at_jump(int j, int i, const fired& events) const {
+        return events.which.get(j, i) && abs(get_lane(events.value[j], i)) > args.event[j].tolerance;
+    }
+    /// Slopes of the event functions of lane i along the solution, from the data `at`; of a function right before a
+    /// jump, where its slope is zero, a number that tells whether it is heading for the jump. It is not where a flight
+    /// is too short for the resolution of t.
+    MYRIAD_FUNCTION reals headings(int i, const lane_data<Model, S>& at, const fired& events) {
+        const state along = s.slopes.of_lane(i, s.now(), at, s.extra_evaluations);
+        const auto& p = inputs_of(i, at);
+        reals slope = detail::event_slopes<Model>(get_lane(s.now(), i), get_lanes<R>(at.y, i), along, p);
+        bool jumps = false;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) jumps = jumps || fires_at_jump(j, i, events);
+        if (!jumps) return slope;
+        const reals g = look_ahead(i, at, along);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            if (!fires_at_jump(j, i, events)) continue;
+            const R side = side_of(j, i);
+            slope[j] = (g[j] * side > R(0) ? side : -side) * sign_of(get_lane(s.h, i));
+        }
+        return slope;
+    }
+    /// `settle` for a lane in which a hook has changed inputs of the event functions, or a function that fired has a
+    /// jump or had not left its surface before.
+    MYRIAD_FUNCTION void settle_with_care(int i, const fired& events, const lane_data<Model, S>& found) {
+        const R sense = sign_of(get_lane(s.h, i));
+        const reals before = headings(i, found, events);
+        reals g = get_lanes<R>(events.value, i), slope = before;
+        bool known = !get_lane(events.changed, i);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) known = known && !e.on_jump.get(j, i) && !fires_at_jump(j, i, events);
+        state along;  // the slope of the state, where it is needed
+        if (!known) {
+            along = s.slope_of(i);
+            const auto& p = inputs_of(i);
+            const R t = get_lane(s.now(), i);
+            const state y = get_lanes<R>(s.data.y, i);
+            g = detail::evaluate_events<Model>(t, y, p);
+            slope = detail::event_slopes<Model>(t, y, along, p);
+        }
+        flags at_jump;
+        at_jump.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool fires = events.which.get(j, i), waits = !fires && e.on_jump.get(j, i);
+            const bool beyond = abs(g[j]) > args.event[j].tolerance;
+            if (g[j] != g[j]) set_lane(e.undefined, i, true);
+            if (waits) {
+                at_jump.set(j, beyond);
+                e.on_jump.set(j, i, false);
+                put_side(j, i, beyond ? sign_of(g[j]) : R(0));
+            } else if (fires) {
+                const R from = side_of(j, i), ahead = sign_of(slope[j]) * sense;
+                const bool moved = g[j] != get_lane(events.value[j], i);
+                const bool acted = moved || slope[j] != before[j];
+                const bool unresolved = from * sign_of(before[j]) * sense > R(0);
+                const bool rests = ahead == R(0) && !e.left.get(j, i);
+                at_jump.set(j, (moved || !unresolved) && beyond);
+                R side = ahead;
+                if (unresolved || ahead == R(0)) side = acted || rests ? from : -from;
+                if (moved && beyond) side = sign_of(g[j]);
+                e.on_jump.set(j, i, false);
+                e.left.set(j, i, moved && beyond);
+                put_side(j, i, side);
+            } else if (beyond) {
+                e.left.set(j, i, e.left.get(j, i) || g[j] != get_lane(events.value[j], i));
+            }
+        }
+        if (MYRIAD_UNLIKELY(!known && at_jump.any_of())) look_beyond(i, at_jump, g, along);
+    }
+
+    MYRIAD_FUNCTION void begin_lane(int i) {
+        const auto& p = inputs_of(i);
+        const reals g = detail::evaluate_events<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), p);
+        flags at_jump;
+        at_jump.clear();
+        bool undefined = false;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const int kept = kept_at(j, i);
+            const auto kind = static_cast<kept_side>(kept < 0 ? -kept : kept);
+            const bool beyond = abs(g[j]) > args.event[j].tolerance;
+            undefined = undefined || g[j] != g[j];
+            at_jump.set(j, beyond && kind == kept_side::on_jump);
+            e.on_jump.set(j, i, false);
+            e.left.set(j, i, true);
+            put_side(j, i, beyond ? sign_of(g[j]) : kind == kept_side::within ? R(kept) : R(0));
+            memory_of(i).lingered[j] = 0;
+        }
+        set_lane(e.undefined, i, undefined);
+        set_lane(e.locating, i, false);
+        if (MYRIAD_UNLIKELY(at_jump.any_of())) {
+            look_beyond(i, at_jump, g, s.slope_of(i));
+        }
+    }
+
+    /// A time that is sure to pass a jump to which a step was located: longer than the rounding of t and of the state.
+    MYRIAD_FUNCTION R past_jump(int i, R h_next) const {
+        constexpr R fraction = std::is_same_v<R, float> ? R(0x1p-12) : R(0x1p-26);
+        return fma(fraction, abs(h_next), R(64) * epsilon_of<R> * abs(get_lane(s.now(), i)));
+    }
+    /// The event functions a little ahead: beyond the jump to which a step was located, if the state is heading for it.
+    MYRIAD_FUNCTION reals look_ahead(int i, const lane_data<Model, S>& at, const state& slope) const {
+        const R t = get_lane(s.now(), i);
+        const R ahead = copysign(past_jump(i, get_lane(at.h_next, i)), get_lane(at.t_end, i) - t);
+        state y = get_lanes<R>(at.y, i);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) y[c] = fma(ahead, slope[c], y[c]);
+        return detail::evaluate_events<Model>(t + ahead, y, inputs_of(i, at));
+    }
+    /// Sets the sides of functions at a jump, with values g here, to those a little ahead.
+    MYRIAD_FUNCTION void look_beyond(int i, const flags& at_jump, const reals& g, const state& slope) {
+        const reals there = look_ahead(i, s.data, slope);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            if (!at_jump[j] || !(abs(there[j]) > args.event[j].tolerance)) continue;
+            put_side(j, i, sign_of(there[j]));
+            if (g[j] * there[j] < R(0)) {
+                e.left.set(j, i, false);
+                e.on_jump.set(j, i, true);
+            }
+        }
+    }
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

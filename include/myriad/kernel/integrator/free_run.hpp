@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Runs of fixed steps without events, hooks, samples or error estimates.
+#pragma once
+
+#include "myriad/kernel/integrator/phase_watch.hpp"
+#include "myriad/kernel/stepper/step.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+template <class Model, class Method>
+inline constexpr bool runs_freely =
+    !is_adaptive<Method> && !has_events<Model> && !has_after_step<Model> && !samples_trajectory<Method> &&
+    !has_reductions<Model> && !Method::first_same_as_last;
+
+template <class Model, class Method, class S>
+struct free_run {
+    using R = real_of<S>;
+    using count = count_of<S>;
+    using iteration_number = typename integration_state<Model, Method, S>::iteration_number;
+    static constexpr int n = n_state<Model>;
+
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
+
+    /// Takes steps up to the first lane's last step, in registers and with one check per block. A value that is not
+    /// finite stays so: a block that ends with one is undone and halved, and the ordinary step that follows finds the
+    /// lane at fault.
+    MYRIAD_FUNCTION void take_steps() {
+        constexpr iteration_number worthwhile = 4, longest_block = 128;
+        // Not the last one, after which the watch is due.
+        iteration_number run = phase_watch<Model, Method, S>{args, s}.iterations_left() - 1;
+        R lane_step = R(0);
+        for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA {
+            const auto left = static_cast<iteration_number>(get_lane(s.steps.left, i)) - 1;
+            run = left < run ? left : run;
+            lane_step = get_lane(s.steps.step, i);
+        });
+        if (run < worthwhile) return;
+        // One step size for all lanes takes one register; lanes that differ in direction take ordinary steps.
+        const S step = S(lane_step), base = s.steps.base;
+        if (any(s.running() & (s.steps.step != step))) return;
+        const inputs<Model, S> p = s.data;
+        vec<S, n> y = s.data.y;
+        count done = s.steps.done;
+        iteration_number taken = 0, block = longest_block;
+        while (taken < run) {
+            block = block < run - taken ? block : run - taken;
+            vec<S, n> now = y;
+            MYRIAD_UNROLL_BY_FOUR
+            for (iteration_number i = 0; i < block; ++i) {
+                trial_step<Method, S, n> trial;
+                const S t = fma(S(done + count(static_cast<lane_of<count>>(i))), step, base);
+                trial.k[0] = detail::evaluate_rhs<Model>(t, now, p);
+                detail::take_trial_step<Method, Model>(t, step, t + step, now, p, trial);
+                now = trial.y;
+            }
+            if (MYRIAD_UNLIKELY(any(s.running() & !all_finite(now)))) {
+                if (block == 1) break;
+                block /= 2;
+                continue;
+            }
+            y = now;
+            done = done + count(static_cast<lane_of<count>>(block));
+            taken += block;
+        }
+        s.data.y = y;
+        s.steps.left = s.steps.left - (done - s.steps.done);
+        s.steps.done = done;
+        s.iteration += taken;
+    }
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Ends phases that would never end by themselves. Each is checked at intervals, so that a step costs one comparison.
+#pragma once
+
+#include "myriad/kernel/controller/stepping.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+template <class Model, class Method, class S>
+struct phase_watch {
+    using R = real_of<S>;
+    using stepping_type = stepping<Model, Method, S>;
+    using iteration_number = typename integration_state<Model, Method, S>::iteration_number;
+    static constexpr std::int32_t look_interval = stepping_type::look_interval;
+
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
+
+    /// Whether a phase has reached its limit of iterations, or is due for the check whether it creeps.
+    MYRIAD_FUNCTION bool is_due() const {
+        if constexpr (is_pack<S>) {
+            return s.iteration >= s.next_look;
+        } else if constexpr (look_interval > 0) {
+            return s.iteration >= args.max_steps || s.iteration % look_interval == 0;
+        } else {
+            return s.iteration >= args.max_steps;
+        }
+    }
+    /// Ends phases that have reached the limit of trial steps, and those that creep.
+    MYRIAD_FUNCTION void look() {
+        for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA {
+            const iteration_number iterations = s.iteration - s.phase_start[i];
+            if (iterations >= args.max_steps) s.end_lane(i, status::max_steps);
+            if constexpr (look_interval > 0) {
+                if (iterations == 0 || iterations % look_interval != 0) return;
+                const auto* arguments = &args;
+                MYRIAD_FORGET(arguments);  // else the values it points to occupy registers through the loop
+                if (stepping_type{*arguments, s}.creeps(i)) s.end_lane(i, status::not_finite);
+            }
+        });
+    }
+    /// Sets when a pack checks next: when the first of its phases is due. A single instance needs no such counter.
+    MYRIAD_FUNCTION void plan() {
+        if constexpr (is_pack<S>) {
+            s.next_look = s.iteration + args.max_steps;
+            for_each_lane(s.active, [&](int i) MYRIAD_LAMBDA {
+                const iteration_number next = s.iteration + left_after(s.iteration - s.phase_start[i]);
+                s.next_look = next < s.next_look ? next : s.next_look;
+            });
+        }
+    }
+    /// Iterations before the next check.
+    MYRIAD_FUNCTION iteration_number iterations_left() const {
+        if constexpr (is_pack<S>) {
+            return s.next_look - s.iteration;
+        } else {
+            return left_after(s.iteration);
+        }
+    }
+
+private:
+    /// Iterations until the next check of a phase that has taken so many.
+    MYRIAD_FUNCTION iteration_number left_after(iteration_number iterations) const {
+        iteration_number left = args.max_steps - iterations;
+        if constexpr (look_interval > 0) {
+            const iteration_number next = look_interval - iterations % look_interval;
+            left = next < left ? next : left;
+        }
+        return left;
+    }
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
