@@ -5,14 +5,6 @@
 set(MYRIAD_CUDA_ARCHITECTURES "" CACHE STRING "GPUs to compile for, as CMAKE_CUDA_ARCHITECTURES; empty: this machine's")
 get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
 if(NOT CUDA IN_LIST languages)
-    # CMake would say "CMAKE_CUDA_COMPILE_OBJECT not set"
-    if(PROJECT_NAME STREQUAL "myriad" AND NOT PROJECT_IS_TOP_LEVEL)
-        message(FATAL_ERROR
-                "MYRIAD_ENABLE_CUDA is ON, and Myriad is part of project ${CMAKE_PROJECT_NAME}, which has not "
-                "the language "
-                            "CUDA: write project(${CMAKE_PROJECT_NAME} LANGUAGES CXX CUDA), as CMake turns it on for "
-                            "subdirectories alone otherwise")
-    endif()
     if(MYRIAD_CUDA_ARCHITECTURES)
         set(CMAKE_CUDA_ARCHITECTURES "${MYRIAD_CUDA_ARCHITECTURES}")
     elseif(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
@@ -37,5 +29,15 @@ if(NOT CUDA IN_LIST languages)
                             "the PATH, or set the option to OFF")
     endif()
     enable_language(CUDA)
+    # CMake turns a language on for the directory that asks for it and those below. As a part of a project that has not
+    # CUDA, Myriad hands what it found out to the directory that added it, whose targets are compiled with it.
+    if(PROJECT_NAME STREQUAL "myriad" AND NOT PROJECT_IS_TOP_LEVEL)
+        get_cmake_property(variables VARIABLES)
+        list(FILTER variables INCLUDE REGEX "CUDA")
+        list(FILTER variables EXCLUDE REGEX "^MYRIAD_")
+        foreach(variable IN LISTS variables)
+            set(${variable} "${${variable}}" PARENT_SCOPE)
+        endforeach()
+    endif()
 endif()
 find_package(CUDAToolkit REQUIRED)

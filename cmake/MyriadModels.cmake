@@ -169,6 +169,12 @@ function(myriad_add_models target)
             endforeach()
         endif()
         if(TARGET myriad::cuda AND NOT arg_CPU_ONLY)
+            if(NOT CMAKE_CUDA_COMPILE_OBJECT) # CMake would say "_CMAKE_CUDA_WHOLE_FLAG not set", and not where
+                message(FATAL_ERROR
+                        "myriad_add_models(${target} ...): MYRIAD_ENABLE_CUDA is ON, and this directory has not the "
+                        "language CUDA, which Myriad turned on for another: write project(${CMAKE_PROJECT_NAME} "
+                        "LANGUAGES CXX CUDA)")
+            endif()
             # The same file again, under a name that nvcc recognises as CUDA.
             set(twin "${CMAKE_CURRENT_BINARY_DIR}/cuda/${name}.cu")
             file(CONFIGURE OUTPUT "${twin}" CONTENT "#include \"${file}\"\n")

@@ -5,7 +5,10 @@
 # looks for a CMake package. If it does not define the target, myriad_require_report() will say so; UNLESS names the
 # option that switches off the part which needs the package.
 function(myriad_require package debian_package)
-    cmake_parse_arguments(PARSE_ARGV 2 arg "" "TARGET;FOR;UNLESS" "COMPONENTS")
+    cmake_parse_arguments(PARSE_ARGV 2 arg "" "TARGET;FOR;UNLESS;SKIPPED" "COMPONENTS")
+    if(arg_SKIPPED)
+        set(${arg_SKIPPED} FALSE PARENT_SCOPE)
+    endif()
     set(components)
     if(arg_COMPONENTS)
         set(components COMPONENTS ${arg_COMPONENTS})
@@ -19,10 +22,22 @@ function(myriad_require package debian_package)
     endif()
     if(TARGET ${arg_TARGET})
         message(STATUS "${package} ${${package}_VERSION}: found")
+    elseif(arg_SKIPPED AND MYRIAD_SKIP_MISSING)
+        message(NOTICE "Left out: ${arg_FOR}, as ${package} is missing (Debian package ${debian_package})")
+        set(${arg_SKIPPED} TRUE PARENT_SCOPE)
     else()
         myriad_missing(${package} ${debian_package} FOR "${arg_FOR}" UNLESS "${arg_UNLESS}")
     endif()
 endfunction()
+
+# With MYRIAD_SKIP_MISSING such a part is left out instead, with a message. That is a macro's work, as it sets the
+# option.
+macro(myriad_require_for_part option package debian_package)
+    myriad_require(${package} ${debian_package} ${ARGN} UNLESS ${option} SKIPPED myriad_skipped)
+    if(myriad_skipped)
+        set(${option} OFF)
+    endif()
+endmacro()
 
 # myriad_missing(<package> <debian package> FOR <purpose> [UNLESS <option>] [BECAUSE <reason>]) notes a missing package.
 function(myriad_missing package debian_package)

@@ -1,12 +1,19 @@
 # SPDX-License-Identifier: MIT
-# Defines myriad::xsimd, the include directory of xsimd 8.1 or newer. Not xsimd's own target, since the one of Debian 12
-# links xtl, which is neither a library nor needed. Sets myriad_xsimd_FOUND, and a message if it is not found.
+# Defines myriad::xsimd, the include directory of xsimd 8.1 or newer, or nothing where models do without SIMD lanes.
+# Not xsimd's own target, since the one of Debian 12 links xtl, which is neither a library nor needed. Sets
+# myriad_xsimd_FOUND, and a message if it is not found.
+
+set(MYRIAD_SIMD ON CACHE STRING
+    "SIMD lanes, by xsimd: ON, OFF (one instance at a time, several times slower), AUTO (as xsimd is there or not)")
+set_property(CACHE MYRIAD_SIMD PROPERTY STRINGS ON OFF AUTO)
 
 find_path(MYRIAD_XSIMD_INCLUDE_DIR NAMES xsimd/xsimd.hpp DOC "Directory that holds xsimd/xsimd.hpp")
 mark_as_advanced(MYRIAD_XSIMD_INCLUDE_DIR)
 
 set(myriad_xsimd_FOUND FALSE)
-if(NOT MYRIAD_XSIMD_INCLUDE_DIR)
+if(NOT MYRIAD_SIMD AND NOT MYRIAD_SIMD STREQUAL "AUTO")
+    set(myriad_xsimd_NOT_FOUND_MESSAGE "MYRIAD_SIMD is OFF")
+elseif(NOT MYRIAD_XSIMD_INCLUDE_DIR)
     set(myriad_xsimd_NOT_FOUND_MESSAGE "xsimd/xsimd.hpp was not found")
 else()
     set(myriad_xsimd_VERSION)
@@ -30,4 +37,11 @@ else()
             target_include_directories(myriad::xsimd INTERFACE "${MYRIAD_XSIMD_INCLUDE_DIR}")
         endif()
     endif()
+endif()
+if(NOT myriad_xsimd_FOUND AND NOT TARGET myriad::xsimd AND (NOT MYRIAD_SIMD OR MYRIAD_SIMD STREQUAL "AUTO"))
+    message(NOTICE "Myriad: models are compiled without SIMD lanes and take several times as long, as "
+                   "${myriad_xsimd_NOT_FOUND_MESSAGE}: install Debian package libxsimd-dev, and configure anew")
+    set(myriad_xsimd_FOUND TRUE)
+    add_library(myriad::xsimd INTERFACE IMPORTED GLOBAL)
+    target_compile_definitions(myriad::xsimd INTERFACE MYRIAD_WITHOUT_XSIMD)
 endif()

@@ -263,7 +263,7 @@ def check_files(document):
 @functools.cache
 def messages():
     """The text of all string literals of the library and of its CMake files, those that stand in a row joined."""
-    files = [f for f in all_files() if f.startswith(("include/", "backends/", "cmake/"))]
+    files = [f for f in all_files() if f.startswith(("include/", "src/", "backends/", "cmake/"))]
     return "".join(re.findall(r'"((?:[^"\\\n]|\\.)*)"', "\n".join(text_of(f) for f in files)))
 
 

@@ -33,7 +33,7 @@ PAGES = {
                 "`<myriad/options.hpp>`. Checked once per call: `error` names an option that is out of range.",
                 ["host/options/options.hpp", "kernel/state/kernel_arguments.hpp", "host/options/"]),
     "report": ("Reports and statuses", "`<myriad/myriad.hpp>`. How a call went, as a whole and instance by instance.",
-               ["host/report/", "kernel/core/status.hpp", "host/backend/backend.hpp"]),
+               ["host/report/", "kernel/core/status.hpp", "host/backend/facts.hpp"]),
     "model": ("In a model", "`<myriad/model.hpp>`: what the functions of a model are called with, and what they use.",
               ["host/model/", "kernel/core/", "kernel/model/lane.hpp", "kernel/model/reductions.hpp",
                "kernel/scalar/"]),
@@ -50,7 +50,7 @@ PUBLIC_IN_BACKENDS = ("myriad::cuda::kernel_facts",)  # report::kernel
 MACROS = ("MYRIAD_FUNCTION", "MYRIAD_LAMBDA", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT")
 CMAKE_FUNCTIONS = ("myriad_add_models",)
 # A user's project gets the defaults of the modules, before those of the library's own build.
-CMAKE_FILES = ("cmake/MyriadModels.cmake", "cmake/MyriadCuda.cmake", "CMakeLists.txt")
+CMAKE_FILES = ("cmake/MyriadModels.cmake", "cmake/MyriadXsimd.cmake", "cmake/MyriadCuda.cmake", "CMakeLists.txt")
 
 DOXYFILE = """
 QUIET = YES

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "myriad/device.hpp"
+#include "myriad/host/backend/backend.hpp"
 
 namespace examples {
 

@@ -13,3 +13,4 @@
 #include "myriad/kernel/core/language.hpp"
 #include "myriad/methods.hpp"
 #include "myriad/model.hpp"
+#include "myriad/version.hpp"

@@ -53,6 +53,25 @@ class Project:
             levels.append(found[-1] if found else "no -O")
         self.judge(title, sorted(levels) == sorted(expected), f"{' '.join(levels)} (expected {' '.join(expected)})")
 
+    def release_without_packages(self):
+        """The release preset's options on a machine that has Eigen and nothing else."""
+        folder = self.work / "release"
+        done = subprocess.run(["cmake", "-S", str(self.source), "-B", str(folder), "-G", "Ninja",
+                               f"-DCMAKE_CXX_COMPILER={self.compiler}", "-DMYRIAD_SKIP_MISSING=ON",
+                               "-DMYRIAD_SIMD=AUTO",
+                               "-DCMAKE_SYSTEM_IGNORE_PATH=/usr/include;/usr/local/include",
+                               *(f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in ("Catch2", "CLI11", "Boost"))],
+                              capture_output=True, text=True, check=False)
+        said = " ".join((done.stdout + done.stderr).split())
+        left_out = ("without SIMD lanes", "Left out: the tests", "Left out: the examples that read arguments",
+                    "Left out: the benchmarks", "The validation is off")
+        missing = [what for what in left_out if what not in said]
+        examples = folder / "examples"
+        programs = sorted(path.parent.name for path in examples.glob("*/cmake_install.cmake"))
+        right = programs == ["hooks", "moving", "own_method", "quickstart"] and not missing
+        self.judge("release with nothing but Eigen", right,
+                   f"examples {', '.join(programs)}; not said: {missing}" if done.returncode == 0 else said[-600:])
+
     def refuses(self, title, pattern, *definitions, **how):
         _, refusal = self.configure(*definitions, **how)
         self.judge(title, re.search(pattern, refusal) is not None, refusal[-400:] or "configured")
@@ -80,14 +99,17 @@ def main():
     p.compiles("several configurations", ["-O1", "-O3", "-O3", "-O3"],
                "-DCMAKE_CONFIGURATION_TYPES=Debug;Release;MinSizeRel;Profile", generator="Ninja Multi-Config")
     p.compiles("asked not to be optimised", ["-O0"], "-DMYRIAD_MODEL_FLAGS=-g -O0")
+    p.release_without_packages()
     p.refuses("main.cpp named as a model", r"main\.cpp has the function main and no MYRIAD_INSTANTIATE",
               "-DMAIN_IS_A_MODEL=ON")
     if arguments.nvcc:
         without = ("-DMYRIAD_ENABLE_CUDA=ON", f"-DCMAKE_CUDA_COMPILER={arguments.nvcc}",
                    "-DCMAKE_CUDA_ARCHITECTURES=90")
         cuda = (*without, "-DFURTHER_LANGUAGES=CUDA")
-        p.refuses("CUDA in a project without that language", r"write project\(configurations LANGUAGES CXX CUDA\)",
-                  *without)
+        p.compiles("CUDA in a project without that language", ["-O3"], *without, file=r"decay_\w+\.cu")
+        p.refuses("CUDA turned on by Myriad for another directory",
+                  r"write project\(configurations LANGUAGES CXX CUDA\)",
+                  *without, "-DIN_ANOTHER_DIRECTORY=ON")
         p.compiles("nvcc's host part, no build type", ["-O3"], *cuda, file=r"decay_\w+\.cu")
         p.refuses("nvcc's fast arithmetic", "nvcc is given -?-?use_fast_math", *cuda,
                   "-DCMAKE_CUDA_FLAGS=--use_fast_math")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Checks that two models of one name are found: in two files by the linker, in a file and the program by the program.
-# Usage: check.sh COMPILER [FLAG...]
+# Usage: MYRIAD_LIBRARY=FILE check.sh COMPILER [FLAG...]
 set -euo pipefail
 here=$(dirname "$(realpath "$0")")
 work=$(mktemp -d)
@@ -15,7 +15,7 @@ fail() {
 # compile SOURCE OBJECT [FLAG...]: one instance at a time, which takes a fraction of the time.
 compile() { "${command[@]}" -DMYRIAD_SCALAR_LANES -O1 "${@:3}" -c "$here/$1" -o "$work/$2"; }
 # link PROGRAM OBJECT...
-link() { (cd "$work" && "${command[@]}" "${@:2}" -o "$1"); }
+link() { (cd "$work" && "${command[@]}" "${@:2}" "$MYRIAD_LIBRARY" -o "$1"); }
 
 command=("$@")
 compile one.cpp one.o

@@ -17,6 +17,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "myriad/host/threads/parallel.hpp"
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
 #include "tests/host/ensemble/refusal.hpp"

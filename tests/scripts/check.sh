@@ -38,6 +38,28 @@ expect "test.sh refuses an unknown option" 2 "Unknown option '--fast'" scripts/t
 expect "test.sh refuses an unknown step" 2 "no step 'gpu'" scripts/test.sh --only ci,gpu
 expect "test.sh refuses --only without steps" 2 '--only needs steps' scripts/test.sh --only
 expect "test.sh refuses a wrong number of jobs" 2 '--jobs needs' scripts/test.sh --jobs 0
+expect "release.sh --help" 0 'Usage: scripts/release.sh' scripts/release.sh --help
+expect "release.sh refuses an unknown option" 2 "Unknown option '--push'" scripts/release.sh --push
+if git rev-parse --verify --quiet HEAD >/dev/null 2>&1; then
+    # In a copy with what this folder has, committed or not.
+    copied=$work/copy
+    git clone --quiet --no-hardlinks . "$copied"
+    git ls-files -co --exclude-standard | while read -r file; do
+        rm -f "$copied/$file"
+        if [[ -f $file ]]; then install -D --mode="$(stat -c %a "$file")" "$file" "$copied/$file"; fi
+    done
+    copy_git() { git -C "$copied" -c user.name=tester -c user.email=tester@example.invalid "$@"; }
+    copy_git add --all
+    copy_git commit --quiet --allow-empty --message "As it is"
+    expect "release.sh --dry-run checks and packs" 0 'myriad-[0-9.]+\.tar\.gz' "$copied/scripts/release.sh" --dry-run
+    expect "release.sh makes no tag then" 0 '^$' copy_git tag --list 'v*'
+    sed -i 's/^version: .*/version: 99.0.0/' "$copied/CITATION.cff"
+    expect "release.sh refuses what is not committed" 1 'not committed:.*|CITATION.cff' \
+        "$copied/scripts/release.sh" --dry-run
+    copy_git commit --quiet --all --message "Another version"
+    expect "release.sh refuses versions that differ" 1 'CITATION.cff says 99.0.0' "$copied/scripts/release.sh" --dry-run
+fi
+expect "all files agree on the version" 0 'agree on version' scripts/version.py --check
 expect "format.sh --help" 0 'Usage: scripts/format.sh' scripts/format.sh --help
 expect "format.sh refuses an unknown option" 2 "Unknown option '--now'" scripts/format.sh --now
 printf 'int  wrong ( );\n' >"$work/wrong.cpp"

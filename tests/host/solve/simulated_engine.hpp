@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include <myriad/host/threads/worker_thread.hpp>
 #include <myriad/myriad.hpp>
 
 #include "tests/host/solve/simulated_gpu.hpp"

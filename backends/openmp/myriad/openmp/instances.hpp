@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "myriad/host/backend/backend.hpp"
+#include "myriad/host/backend/cpu_backend.hpp"
 #include "myriad/kernel/core/macros.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {

@@ -10,8 +10,10 @@
 
 #include <omp.h>
 
-#include "myriad/host/backend/backend.hpp"
+#include "myriad/host/backend/cpu_backend.hpp"
+#if !defined(MYRIAD_WITHOUT_XSIMD)
 #include "myriad/kernel/scalar/pack.hpp"
+#endif
 // after the packs, whose functions the loop calls
 #include "myriad/kernel/integrator/integrate.hpp"
 #include "myriad/openmp/instances.hpp"
@@ -30,6 +32,9 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// rare_events = true;` or `static constexpr int pack_batches = 2;`.
 template <class Model, class Method>
 constexpr int default_batches() {
+#if defined(MYRIAD_WITHOUT_XSIMD)  // MYRIAD_SIMD
+    return 0;
+#else
 #if defined(MYRIAD_SCALAR_LANES)  // with sanitizers, which take minutes to compile a pack's kernel
     constexpr bool one_by_one = true;
 #else
@@ -50,13 +55,18 @@ constexpr int default_batches() {
         constexpr bool small = n_state<Model> <= 4 && n_state<Model> + n_parameter<Model> <= 8 && Method::stages <= 7;
         return two_fit || !small ? 2 : 3;
     }
+#endif
 }
 
 /// The scalar kind with `batches` batches; 0: one instance at a time.
 template <class R, int batches>
-struct lane_kind {
+struct lane_kind;
+#if !defined(MYRIAD_WITHOUT_XSIMD)
+template <class R, int batches>
+requires(batches > 0) struct lane_kind<R, batches> {
     using type = pack<R, batches>;
 };
+#endif
 template <class R>
 struct lane_kind<R, 0> {
     using type = R;

@@ -7,90 +7,18 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "myriad/host/backend/arrays.hpp"
-#include "myriad/host/core/instruction_set.hpp"
+#include "myriad/host/backend/cpu_backend.hpp"
+#include "myriad/host/backend/facts.hpp"
 #include "myriad/host/core/weak.hpp"
-#include "myriad/host/options/options.hpp"
-#include "myriad/kernel/model/concepts.hpp"
+#include "myriad/host/options/schedule.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 
-namespace myriad::detail {
-
-/// What a backend needs besides the kernel's arguments.
-struct run_options {
-    int threads = 0;  ///< at most; 0: OMP_NUM_THREADS, or all cores
-    /// Called in the calling thread with the number of instances done, the last time with all of them; may be null.
-    bool (*progress)(void* context, std::int64_t done) = nullptr;  ///< returns whether to continue
-    void* context = nullptr;
-    std::int64_t count = 0;  ///< instances to integrate, the first ones; 0: all
-    myriad::schedule schedule = myriad::schedule::automatic;
-    /// Called in the handler of an exception thrown by a function of the model, at most once; may be null.
-    void (*caught)(void* failure) = nullptr;
-    void* failure = nullptr;
-};
-
-/// How a run used its lanes.
-struct run_statistics {
-    std::int64_t lane_turns = 0;       ///< trial steps times lanes, those of idle lanes included; 0: not counted
-    int lanes = 1;                     ///< instances side by side in one pack, or CUDA threads in a block
-    int threads = 1;                   ///< that did some work
-    const char* instruction_set = "";  ///< of the CPU's kernel
-    bool computed_as_written = true;   ///< otherwise nothing was integrated, because of compiler flags: ieee.hpp
-    bool failed = false;               ///< because a function of the model has thrown
-    std::size_t stack = 0;             ///< bytes of stack that the kernel needs per thread,
-    std::size_t least_stack = 0;       ///< and the fewest that a thread has; if too few, nothing was integrated
-};
-
-/// How many components of each kind a model has. Part of the names of its kernels, so that host code compiled with a
-/// different model of the same name does not link to them.
-template <class Model>
-using component_counts =
-    std::integer_sequence<int, n_state<Model>, n_parameter<Model>, n_shared<Model>, n_shared_integer<Model>,
-                          n_accessory<Model>, n_integer_accessory<Model>, n_event<Model>>;
-
-/// Defined by MYRIAD_INSTANTIATE along with the kernels. It is not weak, so that linkers refuse a program with two
-/// models of one name: the kernels of one would run for both.
-template <class Backend, class Model, class Method, class R>
-void instantiated_in_one_file_alone();
-
-}  // namespace myriad::detail
-
+// Weak, as are the functions of the CPU's backend (cpu_backend.hpp).
 namespace myriad {
-
-// Everything below is weak, so that a program that uses a method not instantiated, or a backend it was built without,
-// gets a readable error instead of a linker error.
-namespace openmp {
-
-/// The kernel for one instruction set. A program may contain several (MYRIAD_ARCH as a list), from which host code
-/// chooses one for the CPU it runs on: cpu_kernel.hpp.
-#define MYRIAD_DECLARE_KERNEL(set)                                                                                \
-    template <class Model, class Method, class R, class Counts = component_counts<Model>>                         \
-    __attribute__((weak)) run_statistics run_on(for_set<instruction_set::set>, const kernel_arguments<Model, R>&, \
-                                                const run_options&);
-MYRIAD_DECLARE_KERNEL(avx512)
-MYRIAD_DECLARE_KERNEL(avx2)
-MYRIAD_DECLARE_KERNEL(sse2)
-MYRIAD_DECLARE_KERNEL(generic)
-#undef MYRIAD_DECLARE_KERNEL
-
-}  // namespace openmp
-
 namespace cuda {
-
-/// A CUDA kernel and how it is launched.
-struct kernel_facts {
-    int block_size = 0;             ///< of the last launch; before the first, the size with the best occupancy
-    int registers = 0;              ///< per thread
-    std::int64_t local_bytes = 0;   ///< per thread: stack frame and spilled registers
-    std::int64_t shared_bytes = 0;  ///< of shared memory per block
-    /// Where the kernel read the shared parameters.
-    myriad::shared_placement shared_placement = myriad::shared_placement::constant_bank;
-    myriad::schedule schedule = myriad::schedule::in_order;  ///< of the last call of `integrate`
-    int blocks_per_multiprocessor = 0;  ///< resident at the same time, for the size with the best occupancy
-};
 
 struct engine_options {
     int device = 0;
@@ -117,25 +45,9 @@ protected:
     work& operator=(const work&) = delete;
 };
 
-/// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and
-/// uploads of host memory that is not pinned, return before the work is done; work is done in the order of submission.
-/// Downloaded data are on the host after the next `wait`, not before. Only one thread at a time may use an engine, but
-/// another may call `idle` and `affordable` meanwhile. Arguments are the host's, for the whole ensemble; `first` and
-/// `count` select the instances. Errors of the device, including those of earlier work, are thrown as `error`.
-template <class Model, class R>
-class engine : public work {
+/// What is known of an `engine` without its model.
+class any_engine : public work {
 public:
-    /// Allocates memory for chunks of `count` instances; larger chunks allocate more when they are uploaded.
-    virtual void reserve(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
-    /// Copies the chunk to the device.
-    virtual void upload(const kernel_arguments<Model, R>& host, std::int64_t first, std::int64_t count,
-                        past of_instances = past::kept) = 0;
-    /// Integrates the chunk that was uploaded last, with the options of `host`, which must have the same arrays.
-    virtual void integrate(const kernel_arguments<Model, R>& host) = 0;
-    /// Copies what kernels write back to where it was uploaded from, and the records of the last call into
-    /// `host.record`. Components for which `wanted(kind, component)` is false are left out.
-    virtual void download(const kernel_arguments<Model, R>& host,
-                          bool (*wanted)(void*, array_kind, std::int64_t) = nullptr, void* context = nullptr) = 0;
     virtual void wait() = 0;
     /// Work submitted to this engine from now on begins when all work submitted to the other before is done.
     virtual void wait_for(work& other) = 0;
@@ -157,6 +69,27 @@ public:
 
     /// Frees device memory if it is more than a small part of the device's. No work may be in progress.
     virtual void rest() = 0;
+};
+
+/// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and
+/// uploads of host memory that is not pinned, return before the work is done; work is done in the order of submission.
+/// Downloaded data are on the host after the next `wait`, not before. Only one thread at a time may use an engine, but
+/// another may call `idle` and `affordable` meanwhile. Arguments are the host's, for the whole ensemble; `first` and
+/// `count` select the instances. Errors of the device, including those of earlier work, are thrown as `error`.
+template <class Model, class R>
+class engine : public any_engine {
+public:
+    /// Allocates memory for chunks of `count` instances; larger chunks allocate more when they are uploaded.
+    virtual void reserve(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
+    /// Copies the chunk to the device.
+    virtual void upload(const kernel_arguments<Model, R>& host, std::int64_t first, std::int64_t count,
+                        past of_instances = past::kept) = 0;
+    /// Integrates the chunk that was uploaded last, with the options of `host`, which must have the same arrays.
+    virtual void integrate(const kernel_arguments<Model, R>& host) = 0;
+    /// Copies what kernels write back to where it was uploaded from, and the records of the last call into
+    /// `host.record`. Components for which `wanted(kind, component)` is false are left out.
+    virtual void download(const kernel_arguments<Model, R>& host,
+                          bool (*wanted)(void*, array_kind, std::int64_t) = nullptr, void* context = nullptr) = 0;
 };
 
 /// The engine for a model, method and real type. Throws `error` if the device does not exist or cannot run the kernel.

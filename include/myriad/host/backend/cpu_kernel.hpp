@@ -3,18 +3,13 @@
 // itself compiled for any CPU.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <exception>
-#include <string>
-#include <string_view>
-#include <vector>
+#include <iterator>
 
 #include "myriad/host/backend/backend.hpp"
-#include "myriad/host/backend/cost_order.hpp"
-#include "myriad/host/core/error.hpp"
 #include "myriad/host/core/instruction_set.hpp"
-#include "myriad/host/memory/memory_need.hpp"
 
 namespace myriad {
 namespace host {
@@ -51,82 +46,69 @@ cpu_kernel<Model, R> compiled_kernel(openmp::instruction_set set) {
     return {};
 }
 
-/// The best of the instruction sets that a kernel was compiled for and the CPU has, or the one that the environment
-/// variable MYRIAD_INSTRUCTION_SET names. Throws `error` if the CPU has none of them, or not the one named.
-inline openmp::instruction_set choose_instruction_set(const std::vector<openmp::instruction_set>& compiled) {
-    const char* const variable = std::getenv("MYRIAD_INSTRUCTION_SET");
-    const std::string_view wanted = variable == nullptr ? "" : variable;
-    std::string names;
-    for (const openmp::instruction_set set : compiled) {
-        if (cpu_has(set) && (wanted.empty() || wanted == name_of(set))) return set;
-        names += (names.empty() ? "" : ", ") + std::string(name_of(set));
-    }
-    require(wanted.empty(), "MYRIAD_INSTRUCTION_SET is \"", wanted, "\", but this model was compiled for ", names,
-            ": name one of these that the CPU has, or unset the variable");
-    throw error(
-        message("this model was compiled for ", names,
-                ", which this CPU lacks: build it with -DMYRIAD_ARCH=x86-64-v2, or for several instruction sets with "
-                "-DMYRIAD_ARCH=\"x86-64-v2;x86-64-v3;x86-64-v4\""));
-}
+/// The instruction sets that a kernel was compiled for, in the order of `all_instruction_sets`.
+using compiled_sets = std::array<bool, std::size(all_instruction_sets)>;
+
+/// The best of them that the CPU has, or the one that the environment variable MYRIAD_INSTRUCTION_SET names. Throws
+/// `error` if the CPU has none of them, or not the one named.
+openmp::instruction_set choose_instruction_set(const compiled_sets& compiled);
 
 /// The kernel for the chosen instruction set; null if it was compiled for none.
 template <class Model, class Method, class R>
 cpu_kernel<Model, R> choose_cpu_kernel() {
-    std::vector<openmp::instruction_set> compiled;
-    for (const openmp::instruction_set set : all_instruction_sets)
-        if (compiled_kernel<Model, Method, R>(set).run != nullptr) compiled.push_back(set);
-    if (compiled.empty()) return {};
+    compiled_sets compiled{};
+    bool any = false;
+    for (std::size_t s = 0; s < compiled.size(); ++s)
+        any |= compiled[s] = compiled_kernel<Model, Method, R>(all_instruction_sets[s]).run != nullptr;
+    if (!any) return {};
     return compiled_kernel<Model, Method, R>(choose_instruction_set(compiled));
 }
 
-/// The first phase counts each instance's steps; the other phases take the instances in the order of that count.
-template <class Model, class R>
-run_statistics run_by_cost(const cpu_kernel<Model, R>& kernel, const kernel_arguments<Model, R>& arguments,
-                           const run_options& options) {
-    const std::int64_t count = options.count > 0 ? options.count : arguments.size;
-    memory_need need;
-    need.add("costs", static_cast<double>(arguments.size + count) * sizeof(std::uint32_t));
-    need.check(message("sorting ", count, " instances by cost"),
-               "take another schedule, or integrate the ensemble in smaller parts");
-    std::vector<std::uint32_t> cost(static_cast<std::size_t>(arguments.size));
-    kernel_arguments<Model, R> now = arguments;
-    now.cost = cost.data();
-    now.phases = 1;
-    run_options silent = options;  // no instance is done after its first phase
-    silent.progress = nullptr;
-    const run_statistics first = kernel.run(now, silent);
-    if (first.failed || first.least_stack < first.stack) return first;
-    const std::vector<std::uint32_t> order = order_by_cost(cost.data(), count);
-    now = arguments;
-    now.first_phase = 1;
-    now.order = order.data();
-    run_statistics used = kernel.run(now, options);
-    used.lane_turns += first.lane_turns;
-    return used;
-}
+/// The part of a run that a schedule by cost divides it into.
+struct part_of_run {
+    bool is_first;               ///< the first phase alone; otherwise all others
+    std::uint32_t* cost;         ///< trial steps of each instance, written by the first
+    const std::uint32_t* order;  ///< of the instances in the other phases
+};
+
+/// A kernel and its arguments, without the model's type.
+struct any_run {
+    const void* kernel;
+    const void* arguments;
+    run_statistics (*run)(const any_run&, const run_options&, const part_of_run*);  ///< null: no kernel
+    std::int64_t size, phases;
+    openmp::instruction_set set;
+};
 
 /// Integrates on the CPU. Throws `error` if there is no kernel, or too little stack for it, and rethrows exceptions of
 /// the model's functions.
+run_statistics run_kernel(const any_run& all, const run_options& options);
+
+template <class Model, class R>
+any_run forget_model(const cpu_kernel<Model, R>& kernel, const kernel_arguments<Model, R>& arguments) {
+    any_run all{&kernel, &arguments, nullptr, arguments.size, arguments.phases, kernel.set};
+    if (kernel.run != nullptr) {
+        all.run = [](const any_run& a, const run_options& o, const part_of_run* part) {
+            const auto run = static_cast<const cpu_kernel<Model, R>*>(a.kernel)->run;
+            const auto& whole = *static_cast<const kernel_arguments<Model, R>*>(a.arguments);
+            if (part == nullptr) return run(whole, o);
+            kernel_arguments<Model, R> now = whole;
+            if (part->is_first) {
+                now.cost = part->cost;
+                now.phases = 1;
+            } else {
+                now.first_phase = 1;
+                now.order = part->order;
+            }
+            return run(now, o);
+        };
+    }
+    return all;
+}
 template <class Model, class R>
 run_statistics run_kernel(const cpu_kernel<Model, R>& kernel, const kernel_arguments<Model, R>& arguments,
                           const run_options& options) {
-    require(kernel.run != nullptr, "this model was not instantiated for this method and real type");
-    const bool sorted = options.schedule == schedule::by_cost && arguments.phases > 1 && arguments.size <= most_sorted;
-    std::exception_ptr failure;
-    run_options watched = options;
-    watched.failure = &failure;
-    watched.caught = [](void* kept) { *static_cast<std::exception_ptr*>(kept) = std::current_exception(); };
-    run_statistics used = sorted ? run_by_cost(kernel, arguments, watched) : kernel.run(arguments, watched);
-    require(used.computed_as_written, "the model's file ", not_as_written);
-    require(used.least_stack >= used.stack, "a thread has ", used.least_stack,
-            " bytes of stack, and the kernel of this model and "
-            "method takes about ",
-            used.stack,
-            ": set OMP_STACKSIZE to more, such as 8M, or unset it; a thread of your own that "
-            "solves needs as much");
-    if (failure) std::rethrow_exception(failure);
-    used.instruction_set = name_of(kernel.set);
-    return used;
+    return run_kernel(forget_model(kernel, arguments), options);
 }
 
 }  // namespace host

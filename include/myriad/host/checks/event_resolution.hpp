@@ -77,7 +77,7 @@ functions_within_tolerance<Model> find_functions_within(ensemble<Model, R>& e, c
             ++found.looked_at;
             for (int j = 0; j < n_event<Model>; ++j) {
                 found.within[static_cast<std::size_t>(j)] += std::abs(g[j]) <= static_cast<R>(event_tolerance(o, j));
-                found.fired[static_cast<std::size_t>(j)] += ensemble_access::has_fired_last(e, j, i);
+                found.fired[static_cast<std::size_t>(j)] += ensemble_access::data(e).has_fired_last(j, i);
             }
         });
     }

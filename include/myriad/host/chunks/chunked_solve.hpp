@@ -3,256 +3,73 @@
 // same time.
 #pragma once
 
-#include <algorithm>
-#include <atomic>
 #include <cstdint>
-#include <deque>
-#include <future>
 #include <memory>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "myriad/host/backend/backend.hpp"
-#include "myriad/host/backend/device.hpp"
-#include "myriad/host/checks/input_check.hpp"
+#include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/chunks/chunk_plan.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
-#include "myriad/host/ensemble/ensemble.hpp"
+#include "myriad/host/ensemble/ensemble_data.hpp"
 #include "myriad/host/options/options.hpp"
-#include "myriad/host/report/report.hpp"
-#include "myriad/host/threads/polling_backoff.hpp"
-#include "myriad/host/threads/worker_thread.hpp"
+#include "myriad/host/report/report_of.hpp"
 
 namespace myriad::host {
 
-/// One call of `solve` on a GPU.
-template <class Model, class R>
-class chunked_solve {
-    using engine = cuda::engine<Model, R>;
-    using engines = idle_engines<Model, R>;
-
+/// The engines of one call and the arguments that they work on, without the model's type.
+class chunk_source {
 public:
-    chunked_solve(const device& where, const options& o, engine_maker<Model, R> make, ensemble<Model, R>& instances,
-                  kernel_arguments<Model, R>& arguments, input_check<Model, R>& check, progress_relay& relay,
-                  report<Model, R>& result)
-        : options_(o), make_(make), instances_(instances), arguments_(arguments), check_(check), relay_(relay),
-          result_(result), how_{where.number(), o.block_size, o.shared_placement, o.schedule}, size_(instances.size()),
-          checked_(size_ <= worth_chunks ? size_ : 0),  // `solve` has checked small ensembles
-          past_(ensemble_access::untouched(instances) ? cuda::past::none : cuda::past::kept) {}
+    virtual std::unique_ptr<cuda::any_engine> take() = 0;
+    virtual void give(std::unique_ptr<cuda::any_engine> e) = 0;
+    virtual chunk_plan plan(const options& o, const cuda::any_engine& worker) = 0;
+    virtual void reserve(cuda::any_engine& e, std::int64_t count) = 0;
+    /// Copies a chunk to the device, and integrates it.
+    virtual void begin(cuda::any_engine& e, std::int64_t first, std::int64_t count, cuda::past of_instances) = 0;
+    virtual void download(cuda::any_engine& e) = 0;
 
-    /// Nothing is written to the ensemble before all of its data are checked.
-    void run() {
-        engines_.push_back(engines::take(make_, how_));
-        engine& first = *engines_.front();
-        clock_ = first.start_clock();
-        plan_ = chunk_plan(options_, arguments_, first);
-        first.reserve(arguments_, plan_.largest());
-        check(plan_.count_from(0));
-        if (plan_.has_one_chunk()) {
-            count_earlier_work();
-            ensemble_access::touch(instances_);
-            begin(first, 0, size_);
-            first.download(arguments_);
-            first.wait();
-            take_back(first, size_);
-            sum_up_results();
-        } else {
-            run_chunks();
-        }
-        if (options_.counting == counting::on) set_work(result_, work_before_, work_after_);
-        result_.kernel = first.facts();
-        for (auto& e : engines_) engines::give(make_, how_, std::move(e));
+protected:
+    ~chunk_source() = default;
+};
+
+/// The engines for a model.
+template <class Model, class R>
+class chunks_of final : public chunk_source {
+public:
+    chunks_of(engine_maker<Model, R> make, const cuda::engine_options& how, kernel_arguments<Model, R>& arguments)
+        : make_(make), how_(how), arguments_(arguments) {}
+
+    std::unique_ptr<cuda::any_engine> take() override {
+        auto idle = take_idle_engine(kind(), how_);
+        return idle != nullptr ? std::move(idle) : make_(how_);
     }
+    void give(std::unique_ptr<cuda::any_engine> e) override { give_idle_engine(kind(), how_, std::move(e)); }
+    chunk_plan plan(const options& o, const cuda::any_engine& worker) override { return {o, arguments_, worker}; }
+    void reserve(cuda::any_engine& e, std::int64_t count) override { typed(e).reserve(arguments_, count); }
+    void begin(cuda::any_engine& e, std::int64_t first, std::int64_t count, cuda::past of_instances) override {
+        typed(e).upload(arguments_, first, count, of_instances);
+        typed(e).integrate(arguments_);
+    }
+    void download(cuda::any_engine& e) override { typed(e).download(arguments_); }
 
 private:
-    /// A chunk in flight.
-    struct part {
-        std::int64_t end;
-        engine* worker;
-        std::shared_future<void> asked;  // download submitted
-        std::future<void> back;
-        std::atomic<bool> taken = false;  // by a thread that completes its download
+    /// All engines of this object are its maker's.
+    static cuda::engine<Model, R>& typed(cuda::any_engine& e) { return static_cast<cuda::engine<Model, R>&>(e); }
+    engine_key kind() const { return reinterpret_cast<engine_key>(make_); }
 
-        part(std::int64_t e, engine* w, std::shared_future<void> a) : end(e), worker(w), asked(std::move(a)) {}
-        /// Completes the download of results into the ensemble. False if another thread does so.
-        bool bring_back() {
-            asked.get();
-            if (taken.exchange(true)) return false;
-            worker->wait();
-            return true;
-        }
-    };
-
-    /// This thread submits chunks, and sums up the results of those that have been downloaded. A second one first
-    /// checks the inputs, and then downloads results: it submits the download of a chunk before it completes that of
-    /// the previous one. When all chunks are submitted, this thread helps it.
-    void run_chunks() {
-        // All before the first result is written: if there is no memory for them, the ensemble is unchanged.
-        while (engine_count() < plan_.at_a_time()) add_engine();
-        checking_ =
-            background_
-                ->ask([this] {
-                    while (checked_ < size_)
-                        check(std::min(checked_ + std::max(plan_.count_from(checked_), worth_chunks / 4), size_));
-                    count_earlier_work();
-                    ensemble_access::touch(instances_);
-                })
-                .share();
-        for (std::int64_t first = 0, count = 0; first < size_; first += count) {
-            engine* const worker = &free_engine();
-            if (relay_.failure) break;
-            count = plan_.count_from(first);
-            wait_for_check(first + count);
-            begin(*worker, first, count);
-            auto asked = background_->ask([this, worker] {
-                checking_.get();  // nothing is downloaded if the inputs were refused
-                worker->download(arguments_);
-            });
-            if (!under_way_.empty()) ask_back(under_way_.back());
-            under_way_.emplace_back(first + count, worker, asked.share());
-            sum_up_results();
-        }
-        ask_back(under_way_.back());
-        for (polling_backoff waiting; !under_way_.empty();) {
-            if (waiting.is_over(under_way_.front().back)) {
-                wait_for_oldest();
-                sum_up_results();
-            } else {
-                help_to_bring_back();
-            }
-        }
-    }
-    /// Downloads one chunk that the device has finished, if there is one that the other thread has not taken.
-    void help_to_bring_back() {
-        for (part& p : under_way_) {
-            if (!is_over(p.asked)) return;
-            if (!p.taken && p.worker->idle() && p.bring_back()) return;
-        }
-    }
-    /// Has the second thread complete a chunk's download.
-    void ask_back(part& p) {
-        p.back = background_->ask([&p] { p.bring_back(); });
-    }
-
-    /// An idle engine: one that has finished, or a new one if too few keep the device busy while nothing may be
-    /// downloaded yet.
-    engine& free_engine() {
-        if (under_way_.size() < engines_.size()) return *engines_[under_way_.size()];
-        for (polling_backoff waiting;;) {
-            if (waiting.is_over(under_way_.front().back)) return wait_for_oldest();
-            if (checked_ < size_ && may_hold_more() && keeps_too_few_busy()) {
-                try {
-                    return add_engine();
-                } catch (const error&) {  // another program has taken the memory meanwhile
-                    most_engines_ = engine_count();
-                }
-            }
-        }
-    }
-    engine& add_engine() {
-        auto another = engines::take(make_, how_);
-        another->reserve(arguments_, plan_.largest());
-        engines_.push_back(std::move(another));
-        return *engines_.back();
-    }
-    /// Whether there is memory for more than `chunks_at_a_time`, with half of the device's remaining memory left free.
-    bool may_hold_more() {
-        if (options_.chunk_size > 0) return false;
-        if (!most_engines_) {
-            const std::int64_t fit = engines_.front()->affordable(plan_.bytes_per_instance()) / (2 * plan_.largest());
-            most_engines_ = std::min(most_chunks_held, engine_count() + fit);
-        }
-        return engine_count() < *most_engines_;
-    }
-    bool keeps_too_few_busy() const {
-        const auto idle = std::count_if(engines_.begin(), engines_.end(), [](const auto& e) { return e->idle(); });
-        return engine_count() - idle < chunks_at_a_time;
-    }
-    std::int64_t engine_count() const { return static_cast<std::int64_t>(engines_.size()); }
-
-    /// Ensures that the data of the first `count` instances are valid, or marked.
-    void check(std::int64_t count) {
-        if (checked_ >= count) return;
-        if (check_.passes(checked_, count - checked_)) {
-            checked_ = count;
-            return;
-        }
-        check_.run();
-        past_ = cuda::past::kept;  // some are marked
-        checked_ = size_;
-    }
-    /// Rethrows what the check throws.
-    void wait_for_check(std::int64_t count) const {
-        for (polling_backoff waiting; checked_ < count;)
-            if (waiting.is_over(checking_)) checking_.get();
-    }
-
-    void count_earlier_work() {
-        if (past_ == cuda::past::kept) add_work(work_before_, 0, size_);
-    }
-
-    void begin(engine& worker, std::int64_t first, std::int64_t count) {
-        worker.upload(arguments_, first, count, past_);
-        worker.integrate(arguments_);
-    }
-
-    /// To be called in the order of chunks, when the results up to instance `end` are in the ensemble.
-    void take_back(engine& worker, std::int64_t end) {
-        back_until_ = end;
-        progress_relay::call(&relay_, end);
-        // Kernels may overlap: a new one fills the multiprocessors that the previous one frees.
-        const auto [from, to] = worker.kernel_interval(clock_);
-        result_.kernel_seconds += std::max(0.0, to - std::max(from, kernels_until_));
-        kernels_until_ = std::max(kernels_until_, to);
-    }
-    /// Sums up the results downloaded since the last time.
-    void sum_up_results() {
-        const std::int64_t count = back_until_ - seen_until_;
-        if (count == 0) return;
-        add_work(work_after_, seen_until_, count);
-        add_summary(instances_, result_, seen_until_, count);
-        seen_until_ = back_until_;
-    }
-
-    /// Returns the engine that this frees.
-    engine& wait_for_oldest() {
-        part& p = under_way_.front();
-        p.back.get();
-        engine& worker = *p.worker;
-        take_back(worker, p.end);
-        under_way_.pop_front();
-        return worker;
-    }
-
-    void add_work(work_count& sum, std::int64_t first, std::int64_t count) const {
-        if (options_.counting == counting::off) return;
-        const work_count work = counted_work(instances_, count, first);
-        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += work[c];
-    }
-
-    const options& options_;
     engine_maker<Model, R> make_;
-    ensemble<Model, R>& instances_;
-    kernel_arguments<Model, R>& arguments_;
-    input_check<Model, R>& check_;
-    progress_relay& relay_;
-    report<Model, R>& result_;
     cuda::engine_options how_;
-    std::int64_t size_;
-    chunk_plan plan_{size_};
-    std::int64_t back_until_ = 0, seen_until_ = 0;  // instances downloaded, and summed up
-    std::atomic<std::int64_t> checked_;             // instances found valid, or marked
-    std::atomic<cuda::past> past_;
-    std::shared_future<void> checking_;
-    std::optional<std::int64_t> most_engines_;
-    std::vector<std::unique_ptr<engine>> engines_;
-    std::deque<part> under_way_;
-    void* clock_ = nullptr;
-    double kernels_until_ = 0;
-    work_count work_before_{}, work_after_{};
-    pooled_worker background_;  // destroyed first: it uses all of the above
+    kernel_arguments<Model, R>& arguments_;
 };
+
+/// One call of `solve` on a GPU.
+template <class R>
+void solve_in_chunks(const options& o, chunk_source& source, ensemble_data<R>& instances, data_check<R>& check,
+                     progress_relay& relay, report_of<R>& result);
+extern template void solve_in_chunks(const options&, chunk_source&, ensemble_data<double>&, data_check<double>&,
+                                     progress_relay&, report_of<double>&);
+extern template void solve_in_chunks(const options&, chunk_source&, ensemble_data<float>&, data_check<float>&,
+                                     progress_relay&, report_of<float>&);
 
 }  // namespace myriad::host

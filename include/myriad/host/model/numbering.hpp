@@ -5,12 +5,11 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <ostream>
+#include <iosfwd>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
-#include "myriad/host/core/error.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 
 namespace myriad::host {
@@ -21,12 +20,7 @@ struct component_label {
     int number = -1;
     std::string_view enumerator = {};  ///< empty if the model has none
 
-    friend std::ostream& operator<<(std::ostream& out, const component_label& label) {
-        out << label.what;
-        if (label.number >= 0) out << ' ' << label.number;
-        if (!label.enumerator.empty()) out << " (" << label.enumerator << ')';
-        return out;
-    }
+    friend std::ostream& operator<<(std::ostream& out, const component_label& label);
 };
 
 // Compilers write a template's argument into __PRETTY_FUNCTION__, after "C = " or "value = " and up to the last
@@ -74,6 +68,9 @@ constexpr auto enumerators_of() {
     (std::make_integer_sequence<int, count>{});
 }
 
+/// Throws `error` if there is no component of that number.
+void check_component(std::int64_t number, int count, std::string_view what);
+
 // How the components of a kind are numbered and named. `index` takes an integer, or an enumerator of the enumeration
 // for this kind: any other is a mistake.
 #define MYRIAD_NUMBERING(kind, words)                                                                                 \
@@ -113,8 +110,7 @@ constexpr auto enumerators_of() {
         template <class C>                                                                                            \
         static component_label find(C c) {                                                                            \
             const std::int64_t number = index(c);                                                                     \
-            require(number >= 0 && number < count, what, " ", number, " does not exist: the model has ", count,       \
-                    " (numbered from 0); use the model's enumerators");                                               \
+            check_component(number, count, what);                                                                     \
             return label(static_cast<int>(number));                                                                   \
         }                                                                                                             \
     };

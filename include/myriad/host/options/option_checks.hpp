@@ -2,14 +2,10 @@
 // The checks of options that every call makes once.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/model/numbering.hpp"
@@ -20,22 +16,7 @@
 namespace myriad {
 namespace host {
 
-inline void check_positive(const char* name, double value, const char* advice) {
-    require(value > 0 && std::isfinite(value), name, " is ", value, " (must be positive and finite): ", advice);
-}
-inline void check_count(const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
-    require(value >= least && value <= most, name, " is ", value, " (must be from ", least, " to ", most, ")");
-}
-inline void check_tolerance_count(const char* name, const per_component& t, std::size_t components) {
-    require(t.size() == 1 || t.size() == components, name, " has ", t.size(), " values, but the model has ", components,
-            " state components: give one value for all, or one for each");
-}
-/// Checks an option that is an enumeration of `count` choices, numbered from 0.
-template <class Choice>
-void check_choice(const char* name, Choice chosen, int count, const char* choices) {
-    const int number = static_cast<int>(chosen);
-    require(number >= 0 && number < count, name, " is ", number, ", which is none: choose ", choices);
-}
+void check_count(const char* name, std::int64_t value, std::int64_t least, std::int64_t most);
 
 /// The components of one kind that options may name.
 struct listed_components {
@@ -48,25 +29,7 @@ struct model_components {
     std::array<std::string_view, 7> enumerations;
 
     /// Refuses components of another kind, nonexistent components, and components named twice.
-    void check(const char* what, const component_list& chosen, const listed_components& kind) const {
-        std::vector<bool> seen(static_cast<std::size_t>(kind.count), false);
-        for (std::size_t i = 0; i < chosen.size(); ++i) {
-            const int c = chosen[i];
-            const std::string_view of = chosen.enumeration(i);
-            // If components of this kind have no enumeration, enumerators of the other kinds are wrong nevertheless.
-            const bool fits = of.empty() || of == kind.enumeration ||
-                              (kind.enumeration.empty() &&
-                               std::find(enumerations.begin(), enumerations.end(), of) == enumerations.end());
-            require(fits, what, " names component ", c, " by an enumerator of ", of, ", which numbers other components",
-                    kind.enumeration.empty() ? std::string() : message(" than ", kind.enumeration),
-                    ": give enumerators of the components that are meant, or numbers");
-            require(c >= 0 && c < kind.count, what, " names component ", c, ", but the model has ", kind.count,
-                    " (numbered from 0): use the model's enumerators");
-            require(!seen[static_cast<std::size_t>(c)], what, " names component ", c,
-                    " twice: name each component once");
-            seen[static_cast<std::size_t>(c)] = true;
-        }
-    }
+    void check(const char* what, const component_list& chosen, const listed_components& kind) const;
 };
 template <template <class> class numbering, class Model>
 inline constexpr listed_components listed{numbering<Model>::count, numbering<Model>::enumeration()};
@@ -80,60 +43,6 @@ inline constexpr model_components components_of{
      shared_numbering<Model>::enumeration(), shared_integer_numbering<Model>::enumeration(),
      event_numbering<Model>::enumeration()}};
 
-inline void check_samples(const sample_options& s, const options& o) {
-    const int ways = (s.evenly != 0) + !s.times.empty() + !s.times_of_instances.empty() + (s.every != 0);
-    require(ways == 1, "samples names ", ways, " of evenly, times, times_of_instances and every: choose exactly one");
-    require(s.capacity > 0 && s.capacity < 2'000'000'000, "samples.capacity is ", s.capacity,
-            " (must be positive): give the number of samples to keep per instance");
-    require(s.from_phase >= 0 && s.from_phase < o.phases, "samples.from_phase is ", s.from_phase, ", but the call has ",
-            o.phases, " phases (counted from 0): nothing would be sampled");
-    require(s.minimum_spacing >= 0 && std::isfinite(s.minimum_spacing), "samples.minimum_spacing is ",
-            s.minimum_spacing, " (must not be negative)");
-    if (s.every != 0) {
-        check_count("samples.every", s.every, 1, 2'000'000'000);
-        return;
-    }
-    if (s.evenly != 0) check_count("samples.evenly", s.evenly, 2, 2'000'000'000);
-    bool rising = true, falling = true;
-    for (std::size_t k = 0; k < s.times.size(); ++k) {
-        require(std::isfinite(s.times[k]), "samples.times[", k, "] is ", s.times[k], " (must be finite)");
-        if (k == 0) continue;
-        rising = rising && s.times[k] > s.times[k - 1];
-        falling = falling && s.times[k] < s.times[k - 1];
-        require(rising || falling, "samples.times are not in order at number ", k, " (", s.times[k], " after ",
-                s.times[k - 1], "): give each time once, in the order in which the integration reaches them");
-    }
-    if (!s.times_of_instances.empty()) return;  // checked where the ensemble's size is known
-    const std::int64_t phases = o.phases - s.from_phase;
-    // Phases that continue in time pass each given time once.
-    const std::int64_t wanted = s.evenly != 0
-                                    ? s.evenly * phases
-                                    : static_cast<std::int64_t>(s.times.size()) * (o.phase_length > 0 ? 1 : phases);
-    require(s.capacity >= wanted, "samples.capacity is ", s.capacity, ", but the chosen times give ", wanted,
-            " samples per instance in this call: raise the capacity");
-}
-
-/// Refuses sample options without states: they would be ignored.
-inline void check_no_samples(const sample_options& s) {
-    const char* given = nullptr;
-    if (s.capacity != 0) given = "capacity";
-    if (s.evenly != 0) given = "evenly";
-    if (!s.times.empty()) given = "times";
-    if (!s.times_of_instances.empty()) given = "times_of_instances";
-    if (s.every != 0) given = "every";
-    if (!(s.minimum_spacing == 0)) given = "minimum_spacing";
-    if (s.from_phase != 0) given = "from_phase";
-    require(given == nullptr, "samples.", given,
-            " is given, but samples.states names no state, so that nothing would be "
-            "sampled: name the states to sample, or leave out all of samples");
-}
-
-/// The same for records.
-inline void check_no_records(const record_options& r) {
-    require(r.from_phase == 0, "record.from_phase is ", r.from_phase,
-            ", but record names nothing to record: name states, accessories or the time, or leave out all of record");
-}
-
 /// The properties of a model, a method and a real type that the options must fit.
 struct option_limits {
     const model_components& components;
@@ -143,112 +52,10 @@ struct option_limits {
     double (*rounded)(double);  ///< a number rounded to the real type
 
     /// Refuses numbers that turn into zero or infinity in the ensemble's real type.
-    void check_kept(const char* name, double value) const {
-        require(value == 0 || rounded(value) != 0, name, " is ", value,
-                ", which is zero in single precision: give a larger value or use an ensemble of doubles");
-        require(std::isinf(value) || std::isfinite(rounded(value)), name, " is ", value,
-                ", which is infinite in single precision: give a smaller value or use an ensemble of doubles");
-    }
+    void check_kept(const char* name, double value) const;
     /// Throws `error`. One function for all models and methods, to save compiling it for each.
     void check(const options& o) const;
 };
-
-inline void option_limits::check(const options& o) const {
-    check_count("phases", o.phases, 1, 1'000'000'000);
-    const auto n_state = static_cast<std::size_t>(components.state.count);
-    check_tolerance_count("relative_tolerance", o.relative_tolerance, n_state);
-    check_tolerance_count("absolute_tolerance", o.absolute_tolerance, n_state);
-    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c)
-        check_positive("relative_tolerance", o.relative_tolerance[c],
-                       "give the error you accept per step, such as 1e-9");
-    for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c)
-        require(o.absolute_tolerance[c] >= 0 && std::isfinite(o.absolute_tolerance[c]), "absolute_tolerance is ",
-                o.absolute_tolerance[c],
-                " (must not be negative, and finite): give the error you accept per step, such as "
-                "1e-9, or 0 for that of relative_tolerance alone");
-    if (adaptive) {
-        require(std::isnan(o.step) || (o.step > 0 && std::isfinite(o.step)), "step is ", o.step,
-                " (must be positive and finite): give the length of the first step to try");
-    } else {
-        require(!std::isnan(o.step), "step is not set, but the method takes fixed steps: give options::step");
-        check_positive("step", o.step, "give the length of the fixed step; the direction follows from t_end");
-    }
-    if (!std::isnan(o.step)) check_kept("step", o.step);
-    // Fixed steps do not use tolerances.
-    for (std::size_t c = 0; adaptive && c < o.relative_tolerance.size(); ++c)
-        check_kept("relative_tolerance", o.relative_tolerance[c]);
-    for (std::size_t c = 0; adaptive && c < o.absolute_tolerance.size(); ++c)
-        check_kept("absolute_tolerance", o.absolute_tolerance[c]);
-    require(o.minimum_step >= 0 && std::isfinite(o.minimum_step), "minimum_step is ", o.minimum_step,
-            " (must not be negative): give 0 for the resolution of t");
-    check_kept("minimum_step", o.minimum_step);
-    require(o.maximum_step > 0, "maximum_step is ", o.maximum_step, " (must be positive)");
-    check_kept("maximum_step", o.maximum_step);
-    require(o.minimum_step <= o.maximum_step, "minimum_step ", o.minimum_step, " is above maximum_step ",
-            o.maximum_step, ": no step size is left; exchange them");
-    require(o.growth_limit >= 1 && std::isfinite(o.growth_limit), "growth_limit is ", o.growth_limit,
-            " (must be at least 1): give the largest factor from one step to the next, such as 5");
-    require(o.shrink_limit > 0 && o.shrink_limit < 1, "shrink_limit is ", o.shrink_limit,
-            " (must be between 0 and 1): give the smallest factor from one step to the next, such as 0.1");
-    require(static_cast<float>(o.shrink_limit) < 1, "shrink_limit is ", o.shrink_limit,
-            ", which is 1 in single precision, that of step-size control: give a smaller value, such as 0.1");
-    // Fixed steps are counted in the state's real type, exact up to its mantissa.
-    check_count("max_steps", o.max_steps, 1, digits > 31 ? 2'000'000'000 : 16'000'000);
-    require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), "events has ", o.events.size(),
-            " entries, but the model has ", n_event, " event functions: give one entry for each, or none for defaults");
-    for (const event_options& e : o.events) {
-        check_positive("event tolerance", e.tolerance,
-                       "give the |g| at which an event counts as located, such as 1e-6");
-        check_kept("event tolerance", e.tolerance);
-        check_count("stop_after", e.stop_after, 0, 2'000'000'000);
-        const int d = static_cast<int>(e.direction);
-        require(d >= -1 && d <= 1, "event direction is ", d, " (must be falling, either or rising)");
-    }
-    check_count("sub_samples", o.sub_samples, 1, 10'000);
-    check_choice("schedule", o.schedule, 4, "automatic, in_order, dynamic or by_cost");
-    check_choice("phase_time", o.phase_time, 2, "restart or carry_on");
-    require(o.phase_length >= 0 && std::isfinite(o.phase_length), "phase_length is ", o.phase_length,
-            " (must not be negative, and finite): give the length of a phase, whose direction follows "
-            "from t_end, or 0 for phases that go to t_end");
-    check_kept("phase_length", o.phase_length);
-    require(o.phase_length == 0 || !writes_times, "phase_length is ", o.phase_length,
-            ", but the model declares writes_time_domain, so that its hooks say where phases end: leave "
-            "out phase_length, and set t_end in initialise");
-    check_choice("phase_step", o.phase_step, 2, "restart or carry_on");
-    check_choice("counting", o.counting, 2, "off or on");
-    check_choice("advice", o.advice, 2, "off or on");
-    check_choice("invalid_instances", o.invalid_instances, 2, "refuse or mark");
-    check_choice("shared_placement", o.shared_placement, 4, "automatic, constant_bank, shared_memory or cache");
-    check_count("accumulation_limit", o.accumulation_limit, 1, 1'000'000'000);
-    require(o.block_size >= 0 && o.block_size <= 1024 && o.block_size % 32 == 0, "block_size is ", o.block_size,
-            " (must be a multiple of 32 up to 1024, or 0 for an automatic choice)");
-    require(o.chunk_size >= 0, "chunk_size is ", o.chunk_size,
-            " (must not be negative): give 0 for what the memory allows");
-    if (!o.samples.empty()) {
-        require(samples_trajectory,
-                "samples are requested, but the method has no dense output: use dense<Method>, in solve and in "
-                "MYRIAD_INSTANTIATE");
-        components.check("samples.states", o.samples.states, components.state);
-        check_samples(o.samples, o);
-        const std::vector<double>& times = o.samples.times;
-        for (std::size_t k = 1; k < times.size(); ++k)
-            require(rounded(times[k]) != rounded(times[k - 1]), "samples.times[", k, "] is ", times[k],
-                    ", which is the same as the time before it in single precision: give times further apart or use an "
-                    "ensemble of doubles");
-    } else {
-        check_no_samples(o.samples);
-    }
-    if (!o.record.empty()) {
-        require(o.record.from_phase >= 0 && o.record.from_phase < o.phases, "record.from_phase is ",
-                o.record.from_phase, ", but the call has ", o.phases,
-                " phases (counted from 0): nothing would be recorded");
-        components.check("record.states", o.record.states, components.state);
-        components.check("record.accessories", o.record.accessories, components.accessory);
-        components.check("record.integer_accessories", o.record.integer_accessories, components.integer_accessory);
-    } else {
-        check_no_records(o.record);
-    }
-}
 
 /// Checks everything about the options that does not need the ensemble's data; throws `error`.
 template <class Model, class Method, class R>

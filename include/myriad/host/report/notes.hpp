@@ -20,14 +20,7 @@ namespace myriad::host {
 /// Adds a note if a relative tolerance was below what the precision can reach and the method uses it.
 template <class Method, class Model, class R>
 void note_tolerances(report<Model, R>& r, const options& o) {
-    if (Method::embedded_order == 0) return;
-    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
-        if (static_cast<R>(o.relative_tolerance[c]) >= least_relative_tolerance<R>) continue;
-        r.notes.push_back(message("relative_tolerance ", o.relative_tolerance[c],
-                                  " is below what the precision can reach: ", least_relative_tolerance<R>,
-                                  " was used"));
-        return;
-    }
+    if (Method::embedded_order > 0) note_raised_tolerances<R>(r, o);
 }
 
 /// Adds a note if an event function was within its tolerance in all instances examined, before and after the call, and
@@ -48,16 +41,6 @@ void note_event_tolerances(report<Model, R>& r, ensemble<Model, R>& e, const opt
     }
 }
 
-/// Adds a note if instances that have ended were given new inputs, which `invalid_instances::mark` allows.
-template <class Model, class R>
-void note_ended(report<Model, R>& r, const ensemble<Model, R>& e, std::int64_t count) {
-    const std::int64_t anew = count_given_anew(e, count);
-    if (anew == 0) return;
-    r.notes.push_back(message(anew, anew == 1 ? " instance that" : " instances that",
-                              " ended in earlier calls took no part, though states or parameters were set anew since: "
-                              "restart() starts all instances again"));
-}
-
 /// Adds a note if stability, not accuracy, limited an explicit method's steps in half or more of the instances
 /// examined. Runs of fewer than 200 steps per instance are not worth it.
 template <class Method, class Model, class R>
@@ -67,14 +50,8 @@ void note_stiffness(report<Model, R>& r, ensemble<Model, R>& e, const options& o
         constexpr std::int64_t worthwhile = 200;
         if (o.advice == advice::off) return;
         if (r.accepted_steps + r.rejected_steps < worthwhile * e.size()) return;
-        const stiffness found = find_stiffness<Method>(e, o);
-        if (2 * found.limited < found.looked_at || found.limited == 0) return;
-        r.notes.push_back(
-            message("stability, not accuracy, limits the step in ", found.limited, " of ", found.looked_at,
-                    " instances looked at (step times fastest rate is up to ", found.share,
-                    " of the method's limit, and of rodas_5p, a method for stiff equations, one ", worthwhile_stretch,
-                    " times as long meets the tolerances): if the equations are stiff all "
-                    "along, rodas_5p takes far fewer steps"));
+        const stiffness found = find_stiffness(e, o, real_stability_limit<Method>());
+        add_note(r.notes, found);
     }
 }
 

@@ -10,6 +10,7 @@
 
 #include "myriad/host/ensemble/inputs_of.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/host/report/report_of.hpp"
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/methods/controller_policies.hpp"
 #include "myriad/kernel/methods/rodas_5p.hpp"
@@ -182,16 +183,12 @@ private:
     column y_;
 };
 
-/// How many times longer the steps of a stiff method must be to recommend it: one of them costs as much as several of
-/// an explicit method.
-inline constexpr double worthwhile_stretch = 20;
-
 /// Whether accuracy would allow a stiff method far longer steps than h, the next one of instance i. What the explicit
 /// method has left of the fast modes, and what reversing time excites, decays in first steps of the same length.
-template <class Method, class Model, class R>
+template <class Model, class R>
 bool accuracy_allows_more(ensemble<Model, R>& e, std::int64_t i, double h, const options& o) {
-    double scale = 1;
-    if constexpr (scales_tolerances<Method>) scale = static_cast<double>(e.tolerance_scale()[i]);
+    const auto& scales = ensemble_access::data(e).tolerance_scale;  // none, unless the method has them
+    const double scale = scales.components() > 0 ? static_cast<double>(scales.data()[i]) : 1;
     stiff_trial<Model, R> trial(e, i);
     double error = trial.step(h, o, scale);
     while (!(error <= 1)) {  // still decaying as long as each step halves it
@@ -206,26 +203,20 @@ bool accuracy_allows_more(ensemble<Model, R>& e, std::int64_t i, double h, const
     return true;
 }
 
-struct stiffness {
-    std::int64_t looked_at = 0;
-    std::int64_t limited = 0;  // by stability
-    double share = 0;          // largest h lambda over the stability limit
-};
-
-/// Examines 64 or so instances in their current states. Steps limited by stability stay near that limit; those limited
-/// by accuracy resolve the fastest mode and stay well below. But a step may be near both limits, as in the calm parts
-/// of chaotic motion: then a stiff method gains nothing, which a trial step shows.
-template <class Method, class Model, class R>
-stiffness find_stiffness(ensemble<Model, R>& e, const options& o) {
+/// For an explicit method whose steps are stable up to `limit`, examines 64 or so instances in their current states.
+/// Steps limited by stability stay near that limit; those limited by accuracy resolve the fastest mode and stay well
+/// below. But a step may be near both limits, as in the calm parts of chaotic motion: then a stiff method gains
+/// nothing, which a trial step shows.
+template <class Model, class R>
+stiffness find_stiffness(ensemble<Model, R>& e, const options& o, double limit) {
     stiffness found;
-    const double limit = real_stability_limit<Method>();
     const std::int64_t stride = std::max<std::int64_t>(e.size() / 64, 1);
     for (std::int64_t i = 0; i < e.size(); i += stride) {
         const double h = std::abs(step_of(e, i));
         if (!std::isfinite(h) || h >= o.maximum_step) continue;
         ++found.looked_at;
         const double share = fastest_decay(e, i) / limit;
-        if (!(share > 0.5) || !accuracy_allows_more<Method>(e, i, step_of(e, i), o)) continue;
+        if (!(share > 0.5) || !accuracy_allows_more(e, i, step_of(e, i), o)) continue;
         ++found.limited;
         found.share = std::max(found.share, share);
     }

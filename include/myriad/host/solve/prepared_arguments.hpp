@@ -68,7 +68,7 @@ void describe_options(kernel_arguments<Model, R>& a, const options& o) {
 template <class Model, class R>
 void add_memory_of_call(memory_need& need, std::int64_t size, const ensemble<Model, R>* there, const options& o,
                         const method_traits& method) {
-    if (!o.record.empty()) need.add("records", phase_records<Model, R>::bytes_for(o.record, o.phases, size));
+    if (!o.record.empty()) need.add("records", record_data<R>::bytes_for(o.record, o.phases, size));
     need.add("sample times", static_cast<double>(sizeof(R) * o.samples.times_of_instances.size()));
     ensemble_access::add_memory_of_call<ensemble<Model, R>>(
         need, size, there, o, method.adaptive ? step_sizes::kept : step_sizes::fixed, method.scales_tolerances);
@@ -135,32 +135,15 @@ private:
     component_array<R> own_times_;  // sample times of each instance
 };
 
-/// New values for an instance that takes no further part would be ignored: throws `error`, unless the options say to
-/// skip such instances.
-template <class Model, class R>
-void check_ended(const ensemble<Model, R>& instances, const options& o, std::int64_t count) {
-    if (o.invalid_instances == invalid_instances::mark) return;
-    const std::int64_t anew = count_given_anew(instances, count);
-    if (anew == 0) return;
-    for (const auto& e : ensemble_access::ended_before(instances))
-        require(!ensemble_access::given_anew(instances, e), "instance ", e.index, " ended in an earlier call (",
-                name_of(instances.status(e.index)),
-                ") and takes no further part, but its state or parameters were set anew since",
-                anew == 1 ? std::string() : message(", as were those of ", anew - 1, anew == 2 ? " other" : " others"),
-                ": call restart() to start all instances again, or set invalid_instances = invalid_instances::mark to "
-                "leave those that have ended as they are");
-}
-
 /// Checks the options against the first `count` instances: sample times, event tolerances, and a model's own Jacobian
 /// in builds with assertions. Throws `error`. Returns which event functions are within their tolerances before the
 /// integration.
 template <class Method, class Model, class R>
 functions_within_tolerance<Model> check_uses(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
-    check_ended(instances, o, count);
-    require(scales_tolerances<Method> || !ensemble_access::scales_tolerances(instances),
-            "tolerance_scale is set, but the method has the same tolerances for all instances: use controlled<Method, "
-            "tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE");
-    check_sample_times(instances, o, count);
+    auto& data = ensemble_access::data(instances);
+    check_ended(data, o, count);
+    check_scales(data, scales_tolerances<Method>);
+    check_sample_times(data, o, count);
     check_event_tolerances(instances, o, count);
 #if !defined(NDEBUG)
     check_jacobian(instances, count);

@@ -2,24 +2,24 @@
 // The one-shot call: checks everything once, passes the ensemble to the device's backend, and reports.
 #pragma once
 
-#include <chrono>
-#include <exception>
-#include <memory>
+#include <utility>
 
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"
+#include "myriad/host/checks/input_check.hpp"
 #include "myriad/host/chunks/chunk_plan.hpp"
 #include "myriad/host/chunks/chunked_solve.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
-#include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/option_checks.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/notes.hpp"
 #include "myriad/host/report/report.hpp"
+#include "myriad/host/solve/integrate_all.hpp"
 #include "myriad/host/solve/prepared_arguments.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
+#include "myriad/kernel/model/hooks.hpp"
 
 namespace myriad {
 namespace host {
@@ -42,16 +42,7 @@ device_kernel<Model, R> require_kernel(const device& where) {
     } else {
         found.make_engine = if_defined(&cuda::make_engine<Model, Method, R>);
     }
-    require(on_cpu ? found.cpu.run != nullptr : found.make_engine != nullptr,
-            "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
-            ", or with other numbers of components, or its source file was not linked: write MYRIAD_INSTANTIATE(model, "
-            "method) (MYRIAD_INSTANTIATE_FLOAT for float) in the model's source file, and name that file in "
-            "myriad_add_models for the program or an OBJECT library",
-            on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
-    require(
-        on_cpu || may_use_gpus(),
-        "this process was forked from one that has used a GPU, which a fork cannot: fork before that, use the CPU, or "
-        "start a new program (exec)");
+    check_kernel(where, on_cpu ? found.cpu.run != nullptr : found.make_engine != nullptr);
     return found;
 }
 
@@ -60,34 +51,10 @@ template <class Model, class R>
 void integrate_all(const device& where, const options& o, const device_kernel<Model, R>& kernel,
                    ensemble<Model, R>& instances, detail::kernel_arguments<Model, R>& arguments,
                    input_check<Model, R>& check, report<Model, R>& result) {
-    progress_relay relay{o.progress, instances.size(), nullptr};
-    const auto begin = std::chrono::steady_clock::now();
-    if (where.which() == device::kind::cpu) {
-        const auto work = [&] {
-            return o.counting == counting::on ? counted_work(instances, instances.size()) : work_count{};
-        };
-        const auto work_before = work();
-        host::ensemble_access::touch(instances);
-        detail::run_options how;
-        how.threads = where.threads();
-        how.schedule = o.schedule;
-        how.progress = &progress_relay::call;
-        how.context = &relay;
-        const detail::run_statistics used = run_kernel(kernel.cpu, arguments, how);
-        result.lane_turns = used.lane_turns;
-        result.lanes = used.lanes;
-        result.threads = used.threads;
-        result.instruction_set = used.instruction_set;
-        set_work(result, work_before, work());
-        summarise(instances, result, instances.size());
-    } else {
-        chunked_solve<Model, R>(where, o, kernel.make_engine, instances, arguments, check, relay, result).run();
-    }
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    note_ended(result, instances, instances.size());
-    host::ensemble_access::remember_ended(instances);
-    if (relay.failure) std::rethrow_exception(relay.failure);
-    result.device = where.name();
+    const any_run on_cpu = forget_model(kernel.cpu, arguments);
+    chunks_of<Model, R> on_gpu(kernel.make_engine, {where.number(), o.block_size, o.shared_placement, o.schedule},
+                               arguments);
+    integrate_all<R>(where, o, &on_cpu, &on_gpu, ensemble_access::data(instances), check, result);
 }
 
 }  // namespace host
@@ -103,7 +70,8 @@ void integrate_all(const device& where, const options& o, const device_kernel<Mo
 template <class Method, class Model, class R>
 report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
     const detail::default_arithmetic here;
-    const auto claim = host::ensemble_access::take(instances);
+    auto& data = host::ensemble_access::data(instances);
+    const auto claim = data.take();
     host::check_options<Model, Method, R>(options);
     const auto kernel = host::require_kernel<Model, Method, R>(where);
     const auto before = host::check_uses<Method>(instances, options, instances.size());
@@ -112,7 +80,7 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     // On a GPU the data of large ensembles are checked chunk by chunk, while the GPU works on others.
     host::input_check<Model, R> check(instances, options, instances.size());
     if (where.which() == device::kind::cpu || instances.size() <= host::worth_chunks) check.run();
-    host::ensemble_access::expect_phases(instances, options.phases);
+    data.expect_phases(options.phases);
 
     report<Model, R> result;
     host::prepared_arguments<Model, R> prepared(instances, options, host::traits_of<Method>);

@@ -11,6 +11,7 @@
 
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/backend/device.hpp"
+#include "myriad/host/core/declarations.hpp"
 #include "myriad/host/core/left_behind.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/option_checks.hpp"
@@ -42,7 +43,7 @@ struct components {
 ///     sweep.integrate();
 ///     sweep.download();
 ///     std::cout << sweep.report() << sweep.instances().state(duffing::x).maxCoeff();
-template <class Model, class Method, class R = double>
+template <class Model, class Method, class R>  // R = double
 class solver {
 public:
     /// Allocates all memory, on the host and on the device. Throws `error` if there is too little, if an option is
@@ -74,7 +75,7 @@ public:
         finish();
         require_results("instances");
         uploaded_ = false;
-        if (results_ == held::on_host && !remembered_) host::ensemble_access::remember_ended(instances_);
+        if (results_ == held::on_host && !remembered_) host::ensemble_access::data(instances_).remember_ended();
         remembered_ = remembered_ || results_ == held::on_host;
         return instances_;
     }
@@ -228,9 +229,9 @@ public:
         require_results("report");
         require_memory();
         host::set_work(report_, work_before_, counted_work());
-        host::summarise(instances_, report_, count_);
+        host::summarise(host::ensemble_access::data(instances_), report_, count_);
         report_.notes.clear();
-        host::note_ended(report_, instances_, count_);
+        host::note_ended(report_, host::ensemble_access::data(instances_), count_);
         host::note_tolerances<Method>(report_, options_);
         if (results_ == held::on_host) host::note_event_tolerances(report_, instances_, options_, before_, count_);
         report_.device = where_.name();
@@ -266,7 +267,7 @@ private:
     /// The kernel's arguments point to the memory of the original ensemble.
     void require_memory() const {
         require(
-            host::ensemble_access::identity(instances_) == identity_,
+            host::ensemble_access::data(instances_).identity == identity_,
             "the solver's ensemble was replaced by another or moved away, and its memory with it: set the values of "
             "instances() instead");
     }
@@ -282,14 +283,15 @@ private:
                 "progress is given, but a solver is asynchronous and cannot report it: leave it out, "
                 "and call idle()");
         host::check_options<Model, Method, R>(o);
-        host::memory_need need = host::ensemble_access::memory_of<ensemble<Model, R>>(capacity);
+        host::memory_need need = host::ensemble_data<R>::memory_of(host::shape_of<Model>, capacity);
         host::add_memory_of_call<Model, R>(need, capacity, nullptr, o, host::traits_of<Method>);
         need.check(message("a solver for ", capacity, " instances"),
                    "give it a smaller capacity, and integrate part by part");
         return o;
     }
     host::work_count counted_work() const {
-        return options_.counting == counting::on ? host::counted_work(instances_, count_) : host::work_count{};
+        return options_.counting == counting::on ? host::counted_work(host::ensemble_access::data(instances_), count_)
+                                                 : host::work_count{};
     }
     static bool is_chosen(void* context, detail::array_kind kind, std::int64_t component) {
         const auto& chosen = *static_cast<const components*>(context);
@@ -312,7 +314,7 @@ private:
     options options_;
     ensemble<Model, R> instances_;
     host::prepared_arguments<Model, R> prepared_;
-    std::uint64_t identity_ = host::ensemble_access::identity(instances_);
+    std::uint64_t identity_ = host::ensemble_access::data(instances_).identity;
     host::occupancy occupancy_;
     std::int64_t count_ = 0;
     host::phases_left phases_left_;  // at the upload, and those requested since

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+# The install targets, by components, and the Debian package.
+include(CMakePackageConfigHelpers)
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/myriad")
+
+# myriad_install_component(<component> <target> <headers>...)
+function(myriad_install_component component target)
+    install(TARGETS ${target} EXPORT myriad_${component} ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+                                                                 COMPONENT ${component})
+    install(DIRECTORY ${ARGN} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT ${component}
+            FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cuh")
+    install(EXPORT myriad_${component} NAMESPACE myriad:: DESTINATION "${package_dir}" COMPONENT ${component}
+            FILE myriad-${component}.cmake)
+endfunction()
+
+myriad_install_component(core myriad include/myriad)
+myriad_install_component(openmp myriad_openmp backends/openmp/myriad)
+if(MYRIAD_ENABLE_CUDA)
+    myriad_install_component(cuda myriad_cuda backends/cuda/myriad)
+    install(FILES cmake/MyriadCuda.cmake DESTINATION "${package_dir}" COMPONENT cuda)
+endif()
+
+configure_package_config_file(cmake/myriadConfig.cmake.in myriadConfig.cmake INSTALL_DESTINATION "${package_dir}")
+write_basic_package_version_file(myriadConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/myriadConfig.cmake" "${PROJECT_BINARY_DIR}/myriadConfigVersion.cmake"
+              cmake/MyriadModels.cmake cmake/MyriadXsimd.cmake
+        DESTINATION "${package_dir}" COMPONENT core)
+install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/myriad" COMPONENT core)
+
+# cpack -G DEB makes one package of all components. Dependencies are what programs are compiled with.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME myriad)
+set(CPACK_PACKAGE_VENDOR "The Myriad developers")
+set(CPACK_PACKAGE_CONTACT "The Myriad developers <myriad@example.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEBIAN_PACKAGE_NAME libmyriad-dev)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libxsimd-dev (>= 8.1)")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "g++ (>= 4:12), cmake (>= 3.25)")
+include(CPack)

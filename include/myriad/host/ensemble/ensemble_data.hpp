@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// The data of an ensemble without its model's type, and what the library does with them: compiled once for each real
+// type, in the library, and not in every program for every model. Free of Eigen. Host code only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/host/core/left_behind.hpp"
+#include "myriad/host/ensemble/component_array.hpp"
+#include "myriad/host/ensemble/ended_inputs.hpp"
+#include "myriad/host/memory/memory_need.hpp"
+#include "myriad/host/model/model_shape.hpp"
+#include "myriad/host/options/options.hpp"
+#include "myriad/kernel/core/status.hpp"
+
+namespace myriad::host {
+
+/// Whether instances keep a step size between calls (adaptive methods) or not (fixed steps).
+enum class step_sizes { fixed, kept };
+
+template <class R>
+struct ensemble_data {
+    static constexpr R unset = std::numeric_limits<R>::quiet_NaN();
+
+    /// Throws `error` if size is not positive, or if there is not enough memory.
+    ensemble_data(const model_shape& shape, std::int64_t size);
+    ensemble_data(ensemble_data&&) noexcept = default;
+    ensemble_data& operator=(ensemble_data&&) noexcept = default;
+    ~ensemble_data();
+
+    /// Throws `error` if the ensemble was moved from.
+    void require_present() const;
+    /// Exclusive use for the lifetime of the result. Throws `error` if it is in use, or was moved from.
+    [[nodiscard]] occupancy::claim take();
+
+    /// The same domain for all instances.
+    void set_domain(R t_begin, R t_end);
+    bool has_common_domain() const { return domain.components() == 0; }
+    R t_begin_of(std::int64_t i) const { return has_common_domain() ? common_begin : domain.component(0)[i]; }
+    R t_end_of(std::int64_t i) const { return has_common_domain() ? common_end : domain.component(1)[i]; }
+    /// A domain for each instance, allocated on first use.
+    component_array<R>& own_domains();
+    /// The same for readers, several of which may share a const ensemble.
+    const component_array<R>& read_domains() const;
+
+    bool scales_tolerances() const { return tolerance_scale.components() > 0; }
+    component_array<R>& tolerance_scales();
+    const component_array<R>& next_steps() const;
+
+    myriad::status status_of(std::int64_t i) const;
+    bool counts() const { return counted[0].components() > 0; }
+    /// Accepted, rejected and located steps, evaluations; null where all are zero because there is nothing to count:
+    /// rejected steps with fixed steps, located steps in models without events.
+    std::array<const std::int64_t*, 4> counters() const {
+        return {counted[0].data(), counted[1].data(), counted[2].data(), counted[3].data()};
+    }
+    /// One of them, zeros where there is nothing to count. Throws `error` if no call has counted.
+    const component_array<std::int64_t>& counter(std::size_t c) const;
+    /// Those of a call that counts, allocated; in the order of `counters`.
+    std::array<std::int64_t*, 4> counters_for(step_sizes steps);
+
+    /// Forgets all phases done, but not the samples.
+    void restart();
+    void pin(int gpu);
+    bool pinned() const { return pinned_for >= 0; }
+
+    /// The memory an ensemble allocates on construction.
+    static memory_need memory_of(const model_shape& shape, std::int64_t size);
+    /// Adds the memory that a call allocates for `size` instances, except samples and what `there`, if not null, has
+    /// already.
+    static void add_memory_of_call(memory_need& need, const model_shape& shape, std::int64_t size,
+                                   const ensemble_data* there, const options& o, step_sizes steps, bool scales);
+    /// To be called before integrating `phases` more phases. Throws `error` if their numbers would be too large.
+    void expect_phases(std::int64_t phases);
+    /// Marks an instance as one that cannot be integrated.
+    void mark_invalid(std::int64_t i);
+    /// Whether the last thing that an instance which has taken steps saw of an event may be that it happened: the phase
+    /// then ended within the function's tolerance, which stores no side. An instance at rest at zero has none either.
+    bool has_fired_last(int event, std::int64_t i) const;
+    /// To be called after a kernel has run: remembers the inputs of the instances that have ended.
+    void remember_ended();
+    /// Whether the states or parameters of such an instance were set since.
+    bool given_anew(const ended_instance<R>& e) const { return inputs_digest(e.index) != e.inputs; }
+
+    const model_shape* shape;
+    moved_number<std::int64_t> size;
+    moved_number<std::uint64_t> identity;  // unique; moves with the memory
+    occupancy occupied;
+    std::int64_t phases_asked = 0;  // upper bound over all instances
+    component_array<R> state, parameter, accessory;
+    component_array<std::int32_t> integer_accessory;
+    R common_begin = unset, common_end = unset;
+    component_array<R> domain;                 // t_begin and t_end, allocated on first use
+    mutable component_array<R> common_domain;  // the common ones, expanded for readers
+    component_array<R> t, shared;
+    component_array<std::int32_t> shared_integer;
+    component_array<R> tolerance_scale;  // allocated on first use
+    mutable component_array<R> h_next;   // likewise
+    component_array<std::int32_t> phase;
+    component_array<std::int8_t> side;
+    component_array<std::uint8_t> ended;
+    component_array<myriad::status> status;
+    ended_instances<R> ended_before;                       // what is remembered from earlier calls
+    std::array<component_array<std::int64_t>, 4> counted;  // in the order of `counters`; allocated on first use
+    mutable component_array<std::int64_t> zeros;           // for unused counters; allocated on first access
+    /// Whether no instance was integrated or marked since construction or the last restart, so that what is kept
+    /// between calls (steps, phases, sides, counters, samples) is all zero.
+    bool untouched = true;
+    int pinned_for = -1;  // the GPU for which memory is pinned; -1: none
+
+private:
+    template <class Visit>
+    void for_each_bookkeeping(Visit&& visit);
+    template <class T>
+    component_array<T>& on_demand(component_array<T>& array, T value) const;
+    component_array<R> domains_of_all() const;
+    digest inputs_digest(std::int64_t i) const;
+};
+
+/// Throws `error`: an ensemble that needs that much memory was not pinned.
+[[noreturn]] void refuse_pinning(const memory_need& need, const error& why);
+
+extern template struct ensemble_data<double>;
+extern template struct ensemble_data<float>;
+
+}  // namespace myriad::host

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The samples of an ensemble without its model's type: compiled in the library, free of Eigen. Host code only.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "myriad/host/core/left_behind.hpp"
+#include "myriad/host/ensemble/component_array.hpp"
+#include "myriad/host/options/options.hpp"
+
+namespace myriad::host {
+
+/// `trajectory_samples` of any model.
+template <class R>
+struct sample_data {
+    sample_data() = default;
+    sample_data(int n_state, const sample_options& o, std::int64_t of_instances);
+    /// The memory they take for an ensemble of that size.
+    static double bytes_for(const sample_options& o, std::int64_t size);
+
+    /// The samples of state c. Throws `error` if it was not sampled.
+    const R* component(std::int64_t c) const;
+    void clear();
+    void pin(int device);
+
+    moved_number<std::int64_t> size = 0, capacity = 0;
+    component_list chosen;
+    std::vector<std::int16_t> column;  // of each state; -1: not sampled
+    component_array<std::int32_t> stored;
+    component_array<R> time, values;
+};
+extern template struct sample_data<double>;
+extern template struct sample_data<float>;
+
+}  // namespace myriad::host

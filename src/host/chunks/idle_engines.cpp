@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// The idle engines of all models.
+#include "myriad/host/chunks/idle_engines.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <utility>
+
+#include <unistd.h>
+
+#include "myriad/host/chunks/chunk_plan.hpp"
+#include "myriad/host/threads/object_pool.hpp"
+
+namespace myriad::host {
+
+namespace {
+
+struct use {
+    engine_key kind;
+    cuda::engine_options how;
+    bool operator==(const use& other) const { return kind == other.kind && how == other.how; }
+};
+using idle = object_pool<use, cuda::any_engine>;
+
+}  // namespace
+
+bool may_use_gpus() {
+    static std::atomic<pid_t> user{0};
+    pid_t first = 0;
+    return user.compare_exchange_strong(first, getpid()) || first == getpid();
+}
+
+std::unique_ptr<cuda::any_engine> take_idle_engine(engine_key kind, const cuda::engine_options& how) {
+    return idle::all().take({kind, how});
+}
+void give_idle_engine(engine_key kind, const cuda::engine_options& how, std::unique_ptr<cuda::any_engine> e) {
+    e->rest();
+    idle::all().give({kind, how}, std::move(e));
+    idle::all().keep_at_most(static_cast<std::size_t>(most_chunks_held),
+                             [kind](const use& other) { return other.kind == kind; });
+}
+
+}  // namespace myriad::host
