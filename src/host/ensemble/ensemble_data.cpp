@@ -7,10 +7,18 @@
 #include <mutex>
 #include <utility>
 
+#include "myriad/host/backend/arrays.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
 
 namespace myriad::host {
+
+using detail::array_kind;
+using detail::array_pointer;
+using detail::array_presence;
+using detail::array_properties;
+using detail::for_each_instance_array;
+using detail::instance_arrays;
 
 namespace {
 
@@ -35,11 +43,13 @@ std::int64_t checked(const model_shape& shape, std::int64_t size) {
 
 template <class R>
 ensemble_data<R>::ensemble_data(const model_shape& of_model, std::int64_t n)
-    : shape(&of_model), size(checked<R>(of_model, n)), identity(next_identity()), state(shape->n_state, n, unset),
-      parameter(shape->n_parameter, n, unset), accessory(shape->n_accessory, n, unset),
-      integer_accessory(shape->n_integer_accessory, n, 0), t(1, n, unset), shared(shape->n_shared, 1, unset),
-      shared_integer(shape->n_shared_integer, 1, 0), phase(1, n, 0), side(shape->n_event, n, 0), ended(1, n, 0),
-      status(1, n, myriad::status::not_started) {}
+    : shape(&of_model), size(checked<R>(of_model, n)), identity(next_identity()), shared(shape->n_shared, 1, unset),
+      shared_integer(shape->n_shared_integer, 1, 0) {
+    const auto allocate = [n](const array_properties& of, auto first, auto& array) {
+        if (of.presence == array_presence::always) array = {of.components, n, first};
+    };
+    for_each_instance_array<R>(*shape, allocate, *this);
+}
 template <class R>
 ensemble_data<R>::~ensemble_data() = default;
 
@@ -56,38 +66,27 @@ occupancy::claim ensemble_data<R>::take() {
 }
 
 template <class R>
-void ensemble_data<R>::set_domain(R t_begin, R t_end) {
-    common_begin = t_begin;
-    common_end = t_end;
-    if (common_domain.components() > 0) {
-        common_domain.fill_component(0, t_begin);
-        common_domain.fill_component(1, t_end);
-    }
-    if (has_common_domain()) return;
-    domain.fill_component(0, t_begin);
-    domain.fill_component(1, t_end);
+void ensemble_data<R>::set_domain(R begin, R end) {
+    common_begin = begin;
+    common_end = end;
+    for (auto* const array : {&this->t_begin, &common_begins})
+        if (array->components() > 0) array->fill(begin);
+    for (auto* const array : {&this->t_end, &common_ends})
+        if (array->components() > 0) array->fill(end);
 }
 template <class R>
-component_array<R> ensemble_data<R>::domains_of_all() const {
-    component_array<R> made(2, size, common_begin);
-    made.fill_component(1, common_end);
-    return made;
+typename ensemble_data<R>::arrays& ensemble_data<R>::own_domains() {
+    on_demand(this->t_begin, common_begin);
+    on_demand(this->t_end, common_end);
+    return *this;
 }
 template <class R>
-component_array<R>& ensemble_data<R>::own_domains() {
-    if (has_common_domain()) {
-        component_array<R> made = domains_of_all();
-        if (pinned()) made.pin(pinned_for);
-        domain = std::move(made);
-    }
-    return domain;
+const component_array<R>& ensemble_data<R>::read_begins() const {
+    return has_common_domain() ? on_demand(common_begins, common_begin) : this->t_begin;
 }
 template <class R>
-const component_array<R>& ensemble_data<R>::read_domains() const {
-    if (!has_common_domain()) return domain;
-    const std::lock_guard lock(made_by_readers());
-    if (common_domain.components() == 0) common_domain = domains_of_all();
-    return common_domain;
+const component_array<R>& ensemble_data<R>::read_ends() const {
+    return has_common_domain() ? on_demand(common_ends, common_end) : this->t_end;
 }
 
 /// An array of one component, allocated on first use.
@@ -104,43 +103,63 @@ component_array<T>& ensemble_data<R>::on_demand(component_array<T>& array, T val
 }
 template <class R>
 component_array<R>& ensemble_data<R>::tolerance_scales() {
-    return on_demand(tolerance_scale, R(1));
+    return on_demand(this->tolerance_scale, R(1));
 }
 template <class R>
 const component_array<R>& ensemble_data<R>::next_steps() const {
-    return on_demand(h_next, R(0));
+    return this->h_next.components() > 0 ? this->h_next : on_demand(no_steps, R(0));
 }
 template <class R>
-const component_array<std::int64_t>& ensemble_data<R>::counter(std::size_t c) const {
+const component_array<std::int64_t>& ensemble_data<R>::counter(component_array<std::int64_t> arrays::*which) const {
     require(counts(), "no work was counted: integrate with counting = counting::on");
-    return counted[c].components() > 0 ? counted[c] : on_demand(zeros, std::int64_t{0});
+    const auto& counted = this->*which;
+    return counted.components() > 0 ? counted : on_demand(nothing_counted, std::int64_t{0});
+}
+
+namespace {
+
+/// Whether a call needs an array that is not always there; those that depend on the user's settings are allocated with
+/// them.
+bool is_needed(array_presence presence, counting count, step_sizes steps) {
+    switch (presence) {
+        case array_presence::step_sizes:
+            return steps == step_sizes::kept;
+        case array_presence::counters:
+            return count == counting::on;
+        case array_presence::counters_of_step_sizes:
+            return count == counting::on && steps == step_sizes::kept;
+        default:
+            return false;
+    }
+}
+
+}  // namespace
+
+template <class R>
+void ensemble_data<R>::describe(instance_arrays<array_pointer, R>& pointers, counting count, step_sizes steps) {
+    const auto point = [&](const array_properties& of, auto first, auto*& pointer, auto& array) {
+        const bool needed = is_needed(of.presence, count, steps);
+        if (needed && of.components > 0) on_demand(array, first);
+        const bool depends = of.presence == array_presence::tolerance_scales || of.presence == array_presence::always;
+        pointer = needed || depends ? array.data() : nullptr;
+    };
+    for_each_instance_array<R>(*shape, point, pointers, static_cast<arrays&>(*this));
+    describe_domain(pointers);
 }
 template <class R>
-std::array<std::int64_t*, 4> ensemble_data<R>::counters_for(step_sizes steps) {
-    const auto values = [this](std::size_t c) { return on_demand(counted[c], std::int64_t{0}).data(); };
-    return {values(0), steps == step_sizes::kept ? values(1) : nullptr, shape->n_event > 0 ? values(2) : nullptr,
-            values(3)};
+void ensemble_data<R>::describe_domain(instance_arrays<array_pointer, R>& pointers) {
+    if (shape->writes_time_domain) own_domains();
+    pointers.t_begin = this->t_begin.data();
+    pointers.t_end = this->t_end.data();
 }
 
 template <class R>
 myriad::status ensemble_data<R>::status_of(std::int64_t i) const {
     require_present();
     require(i >= 0 && i < size, "instance ", i, " does not exist: the ensemble has ", std::int64_t{size}, " instances");
-    return status.data()[i];
+    return this->status.data()[i];
 }
 
-/// Calls `visit(array, value)` for the arrays of bookkeeping (host/backend/arrays.hpp), with their values before the
-/// first phase; not for t, which a phase writes before anything reads it.
-template <class R>
-template <class Visit>
-void ensemble_data<R>::for_each_bookkeeping(Visit&& visit) {
-    visit(h_next, R(0));
-    visit(phase, std::int32_t{0});
-    visit(side, std::int8_t{0});
-    visit(ended, std::uint8_t{0});
-    visit(status, myriad::status::not_started);
-    for (auto& one : counted) visit(one, std::int64_t{0});
-}
 template <class R>
 void ensemble_data<R>::restart() {
     phases_asked = 0;
@@ -148,49 +167,57 @@ void ensemble_data<R>::restart() {
     untouched = true;
     // One parallel loop for all arrays, because of the overhead of starting and ending one.
     in_parallel(size, 32'768, [this](std::int64_t first, std::int64_t last) {
-        for_each_bookkeeping([=](auto& array, auto value) { array.fill_instances(first, last, value); });
+        const auto clear = [&](const array_properties& of, auto value, auto& array) {
+            // Not t, whose first value is NaN: a phase writes it before anything reads it.
+            if (of.kind == array_kind::bookkeeping && value == value) array.fill_instances(first, last, value);
+        };
+        for_each_instance_array<R>(*shape, clear, *this);
     });
     ended_before.clear();
 }
 template <class R>
 void ensemble_data<R>::pin(int gpu) {
-    for (auto* const array : {&state, &parameter, &accessory, &t, &domain, &tolerance_scale}) array->pin(gpu);
-    integer_accessory.pin(gpu);
-    for_each_bookkeeping([gpu](auto& array, auto) { array.pin(gpu); });
+    for_each_instance_array<R>(
+        *shape, [gpu](const array_properties&, auto, auto& array) { array.pin(gpu); }, *this);
 }
+
+namespace {
+
+/// Bytes of an array for so many instances.
+template <class T>
+double bytes_of(const array_properties& of, T, std::int64_t size) {
+    return static_cast<double>(of.components) * static_cast<double>(sizeof(T)) * static_cast<double>(size);
+}
+
+}  // namespace
 
 template <class R>
 memory_need ensemble_data<R>::memory_of(const model_shape& shape, std::int64_t size) {
-    const auto n = static_cast<double>(size);
     memory_need need;
-    need.add("states", n * sizeof(R) * shape.n_state);
-    need.add("parameters", n * sizeof(R) * shape.n_parameter);
-    need.add("accessories", n * (static_cast<double>(sizeof(R)) * shape.n_accessory +
-                                 static_cast<double>(sizeof(std::int32_t)) * shape.n_integer_accessory));
-    need.add("times, phases and statuses", n * (sizeof(R) + sizeof(std::int32_t) + 2.0 + shape.n_event));
+    const auto add = [&](const array_properties& of, auto first) {
+        if (of.presence == array_presence::always) need.add(of.name, bytes_of(of, first, size));
+    };
+    for_each_instance_array<R>(shape, add);
     return need;
 }
 template <class R>
 void ensemble_data<R>::add_memory_of_call(memory_need& need, const model_shape& shape, std::int64_t size,
                                           const ensemble_data* there, const options& o, step_sizes steps, bool scales) {
-    const auto values = [&](const auto& array, int count) {
-        return array.components() == 0 ? static_cast<double>(size) * static_cast<double>(sizeof(*array.data())) * count
-                                       : 0;
+    const arrays none{};
+    const auto add = [&](const array_properties& of, auto first, const auto& array) {
+        const bool needed = is_needed(of.presence, o.counting, steps) ||
+                            (scales && of.presence == array_presence::tolerance_scales) ||
+                            (shape.writes_time_domain && of.presence == array_presence::own_domains);
+        if (needed && array.components() == 0) need.add(of.name, bytes_of(of, first, size));
     };
-    const component_array<R> no_reals;
-    const component_array<std::int64_t> no_counters;
-    if (steps == step_sizes::kept) need.add("step sizes", values(there ? there->h_next : no_reals, 1));
-    if (scales) need.add("tolerance scales", values(there ? there->tolerance_scale : no_reals, 1));
-    if (shape.writes_time_domain) need.add("time domains", values(there ? there->domain : no_reals, 2));
-    const int counters = 2 + (steps == step_sizes::kept ? 1 : 0) + (shape.n_event > 0 ? 1 : 0);
-    if (o.counting == counting::on) need.add("counters", values(there ? there->counted[0] : no_counters, counters));
+    for_each_instance_array<R>(shape, add, there != nullptr ? *there : none);
 }
 
 template <class R>
 void ensemble_data<R>::expect_phases(std::int64_t phases) {
     constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
     if (phases_asked + phases > most)  // those that have ended did fewer
-        phases_asked = *std::max_element(phase.data(), phase.data() + size);
+        phases_asked = *std::max_element(this->phase.data(), this->phase.data() + size);
     require(phases_asked + phases <= most, phases, " phases are asked for after ", phases_asked,
             ", and an instance can do ", most, ": call restart() to count from zero");
     phases_asked += phases;
@@ -198,24 +225,24 @@ void ensemble_data<R>::expect_phases(std::int64_t phases) {
 template <class R>
 void ensemble_data<R>::mark_invalid(std::int64_t i) {
     untouched = false;
-    ended.data()[i] = 1;
-    status.data()[i] = myriad::status::invalid_input;
+    this->ended.data()[i] = 1;
+    this->status.data()[i] = myriad::status::invalid_input;
 }
 template <class R>
 bool ensemble_data<R>::has_fired_last(int event, std::int64_t i) const {
-    return status.data()[i] == myriad::status::stopped_by_event ||
-           (side.component(event)[i] == 0 && counts() && counted[0].data()[i] > 0);
+    return this->status.data()[i] == myriad::status::stopped_by_event ||
+           (this->side.component(event)[i] == 0 && counts() && this->accepted.data()[i] > 0);
 }
 template <class R>
 digest ensemble_data<R>::inputs_digest(std::int64_t i) const {
     digest of_all;
-    for (int c = 0; c < shape->n_state; ++c) of_all.add(state.component(c)[i]);
-    for (int c = 0; c < shape->n_parameter; ++c) of_all.add(parameter.component(c)[i]);
+    for (int c = 0; c < shape->n_state; ++c) of_all.add(this->state.component(c)[i]);
+    for (int c = 0; c < shape->n_parameter; ++c) of_all.add(this->parameter.component(c)[i]);
     return of_all;
 }
 template <class R>
 void ensemble_data<R>::remember_ended() {
-    ended_before.add(ended.data(), size, [this](std::int64_t i) {
+    ended_before.add(this->ended.data(), size, [this](std::int64_t i) {
         return ended_instance<R>{i, inputs_digest(i), t_begin_of(i), t_end_of(i)};
     });
 }

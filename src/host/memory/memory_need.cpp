@@ -109,6 +109,17 @@ memory_left available_memory() {
     return least;
 }
 
+void memory_need::add(const char* part, double bytes) {
+    if (!(bytes > 0)) return;
+    for (auto& there : parts_) {
+        if (std::string_view(there.first) == part) {
+            there.second += bytes;
+            return;
+        }
+    }
+    parts_.emplace_back(part, bytes);
+}
+
 void memory_need::check(const std::string& who, const char* advice, memory_left (*available)()) const {
     constexpr double worth_asking = 64e6;
     if (bytes() < worth_asking) return;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The arrays of a kernel's arguments as a list, for backends that have to copy them: how many components each has, and
-// whether a kernel reads or writes it.
+// The arrays of an ensemble and of a kernel's arguments as a list: how many components each has, when it is allocated,
+// what it holds at first, and whether a kernel reads or writes it. Allocating, clearing, pinning and copying them
+// follows from it.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
+#include "myriad/host/model/model_shape.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::detail {
@@ -17,6 +20,66 @@ enum class array_access { read, update, write };
 /// continue in a later call; before the first it is zero, or, for t, never read.
 enum class array_kind { state, accessory, integer_accessory, input, bookkeeping, samples, records };
 
+/// When an ensemble allocates an array.
+enum class array_presence {
+    always,
+    step_sizes,        // for a method with step-size control
+    tolerance_scales,  // once the user sets them
+    own_domains,       // once instances have domains of their own
+    counters,          // for a call that counts work
+    counters_of_step_sizes,
+};
+
+struct array_properties {
+    int components;
+    array_access access;
+    array_kind kind;
+    array_presence presence;
+    const char* name;  // in messages on memory
+};
+
+/// Calls `visit(properties, first value, array of each of the arguments...)` for all arrays of the instances of such a
+/// model; each argument is an `instance_arrays`. The first value is that before the user sets one, or before the first
+/// phase. The order puts arrays that are only read, those that are set and read, and bookkeeping next to each other
+/// where a backend copies them.
+template <class R, class Visit, class... Arrays>
+void for_each_instance_array(const host::model_shape& m, Visit&& visit, Arrays&... a) {
+    using access = array_access;
+    using kind = array_kind;
+    using presence = array_presence;
+    constexpr R unset = std::numeric_limits<R>::quiet_NaN();
+    constexpr const char *domains = "time domains", *accessories = "accessories", *counters = "counters",
+                         *rest = "times, phases and statuses";
+    const access times = m.writes_time_domain ? access::update : access::read;
+    const access parameters = m.writes_parameters ? access::update : access::read;
+    const int with_events = m.n_event > 0 ? 1 : 0;
+    const auto add = [&](int components, access how, kind what, presence when, const char* name, auto first,
+                         auto&... array) {
+        visit(array_properties{components, how, what, when, name}, first, array...);
+    };
+    const auto keep = [&](int components, presence when, const char* name, auto first, auto&... array) {
+        add(components, access::update, kind::bookkeeping, when, name, first, array...);
+    };
+    add(1, access::read, kind::input, presence::tolerance_scales, "tolerance scales", R(1), a.tolerance_scale...);
+    add(1, times, kind::input, presence::own_domains, domains, unset, a.t_begin...);
+    add(1, times, kind::input, presence::own_domains, domains, unset, a.t_end...);
+    add(m.n_parameter, parameters, kind::input, presence::always, "parameters", unset, a.parameter...);
+    add(m.n_state, access::update, kind::state, presence::always, "states", unset, a.state...);
+    add(m.n_accessory, access::update, kind::accessory, presence::always, accessories, unset, a.accessory...);
+    add(m.n_integer_accessory, access::update, kind::integer_accessory, presence::always, accessories, std::int32_t{0},
+        a.integer_accessory...);
+    keep(1, presence::always, rest, unset, a.t...);
+    keep(1, presence::step_sizes, "step sizes", R(0), a.h_next...);
+    keep(1, presence::always, rest, std::int32_t{0}, a.phase...);
+    keep(m.n_event, presence::always, rest, std::int8_t{0}, a.side...);
+    keep(1, presence::always, rest, std::uint8_t{0}, a.ended...);
+    keep(1, presence::always, rest, myriad::status::not_started, a.status...);
+    keep(1, presence::counters, counters, std::int64_t{0}, a.accepted...);
+    keep(1, presence::counters_of_step_sizes, counters, std::int64_t{0}, a.rejected...);
+    keep(with_events, presence::counters, counters, std::int64_t{0}, a.located...);
+    keep(1, presence::counters, counters, std::int64_t{0}, a.evaluations...);
+}
+
 template <int n>
 constexpr int columns_in(const std::int16_t (&column)[n]) {
     int count = 0;
@@ -24,40 +87,23 @@ constexpr int columns_in(const std::int16_t (&column)[n]) {
     return count;
 }
 
-/// Calls `visit(pointer, components, access, kind)` for every array that the ensemble has, the pointer by reference:
-/// component c of instance i is at `pointer[c * size + i]`. Parameters and times are written only if the model declares
-/// it. The order puts arrays that are only read, those that are set and read, and bookkeeping next to each other where
-/// a backend copies them.
+/// Calls `visit(pointer, components, access, kind)` for every array that a kernel's arguments have, the pointer by
+/// reference: component c of instance i is at `pointer[c * size + i]`.
 template <class Model, class R, class Visit>
 void for_each_array(kernel_arguments<Model, R>& a, Visit&& visit) {
-    using access = array_access;
-    using kind = array_kind;
     const auto visit_array = [&](auto*& array, std::int64_t components, array_access how, array_kind what) {
         if (array != nullptr && components > 0) visit(array, components, how, what);
     };
-    constexpr access times = writes_time_domain<Model> ? access::update : access::read;
+    visit_array(a.sample.own_times, a.sample.count, array_access::read, array_kind::input);
+    for_each_instance_array<R>(
+        host::shape_of<Model>,
+        [&](const array_properties& of, auto, auto*& array) { visit_array(array, of.components, of.access, of.kind); },
+        a);
     const std::int64_t capacity = a.sample.capacity;
-    visit_array(a.tolerance_scale, 1, access::read, kind::input);
-    visit_array(a.sample.own_times, a.sample.count, access::read, kind::input);
-    visit_array(a.t_begin, 1, times, kind::input);
-    visit_array(a.t_end, 1, times, kind::input);
-    visit_array(a.parameter, n_parameter<Model>, writes_parameters<Model> ? access::update : access::read, kind::input);
-    visit_array(a.state, n_state<Model>, access::update, kind::state);
-    visit_array(a.accessory, n_accessory<Model>, access::update, kind::accessory);
-    visit_array(a.integer_accessory, n_integer_accessory<Model>, access::update, kind::integer_accessory);
-    visit_array(a.t, 1, access::update, kind::bookkeeping);
-    visit_array(a.h_next, 1, access::update, kind::bookkeeping);
-    visit_array(a.phase, 1, access::update, kind::bookkeeping);
-    visit_array(a.side, n_event<Model>, access::update, kind::bookkeeping);
-    visit_array(a.ended, 1, access::update, kind::bookkeeping);
-    visit_array(a.status, 1, access::update, kind::bookkeeping);
-    visit_array(a.accepted, 1, access::update, kind::bookkeeping);
-    visit_array(a.rejected, 1, access::update, kind::bookkeeping);
-    visit_array(a.located, 1, access::update, kind::bookkeeping);
-    visit_array(a.evaluations, 1, access::update, kind::bookkeeping);
-    visit_array(a.sample.stored, 1, access::update, kind::samples);
-    visit_array(a.sample.time, capacity, access::update, kind::samples);
-    visit_array(a.sample.values, columns_in(a.sample.column) * capacity, access::update, kind::samples);
+    const auto update = array_access::update;
+    visit_array(a.sample.stored, 1, update, array_kind::samples);
+    visit_array(a.sample.time, capacity, update, array_kind::samples);
+    visit_array(a.sample.values, columns_in(a.sample.column) * capacity, update, array_kind::samples);
 }
 
 /// The same for the records of one call, which kernels only write.

@@ -5,6 +5,7 @@
 
 #include "myriad/host/core/host_only.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <type_traits>
 
@@ -138,12 +139,12 @@ public:
 
     /// Time domain of each instance; t_end may be before t_begin, to integrate backwards. The first of these calls
     /// after time_domain allocates memory, even on a const ensemble.
-    map<R> t_begin() & { return view(data_.own_domains(), {"t_begin"}); }
-    const_map<R> t_begin() const& { return view(data_.read_domains(), {"t_begin"}); }
+    map<R> t_begin() & { return view(data_.own_domains().t_begin, {"t_begin"}); }
+    const_map<R> t_begin() const& { return view(data_.read_begins(), {"t_begin"}); }
     /// The end of the time domain of each instance, in the model's unit of time; may be infinite if events or hooks end
     /// the phase. See `t_begin`.
-    map<R> t_end() & { return view(data_.own_domains(), {"t_end"}, 1); }
-    const_map<R> t_end() const& { return view(data_.read_domains(), {"t_end"}, 1); }
+    map<R> t_end() & { return view(data_.own_domains().t_end, {"t_end"}); }
+    const_map<R> t_end() const& { return view(data_.read_ends(), {"t_end"}); }
     /// The same domain for all instances. Unless t_begin or t_end are accessed, it takes no memory and is not copied to
     /// a GPU.
     void time_domain(R t_begin_of_all, R t_end_of_all) { data_.set_domain(t_begin_of_all, t_end_of_all); }
@@ -194,14 +195,14 @@ public:
     /// Accepted steps since the start, per instance. A fixed step is never rejected: one with a non-finite result ends
     /// the instance, and only its evaluations count. Throws `error` if no call has counted. The first access to a
     /// counter that no call has used allocates memory.
-    const_map<std::int64_t> accepted_steps() const& { return counter(0); }
+    const_map<std::int64_t> accepted_steps() const& { return counter(&arrays::accepted); }
     /// Trial steps rejected by the error test since the start, per instance. As for `accepted_steps`.
-    const_map<std::int64_t> rejected_steps() const& { return counter(1); }
+    const_map<std::int64_t> rejected_steps() const& { return counter(&arrays::rejected); }
     /// Trial steps redone to locate events since the start, per instance. As for `accepted_steps`.
-    const_map<std::int64_t> located_steps() const& { return counter(2); }
+    const_map<std::int64_t> located_steps() const& { return counter(&arrays::located); }
     /// Evaluations of `rhs` since the start, per instance; those with dual numbers, for a Jacobian, are not counted. As
     /// for `accepted_steps`.
-    const_map<std::int64_t> rhs_evaluations() const& { return counter(3); }
+    const_map<std::int64_t> rhs_evaluations() const& { return counter(&arrays::evaluations); }
     /// Whether a call has counted steps and evaluations: `options::counting`.
     bool counted() const { return data_.counts(); }
     /// Dense output, if options::samples asked for any.
@@ -271,34 +272,15 @@ private:
     void describe(detail::kernel_arguments<Model, R>& a, counting count,
                   host::step_sizes steps = host::step_sizes::kept) {
         a.size = data_.size;
-        a.parameter = data_.parameter.data();
-        describe_domain(a);
-        a.t = data_.t.data();
-        a.state = data_.state.data();
-        a.accessory = data_.accessory.data();
-        a.integer_accessory = data_.integer_accessory.data();
-        a.tolerance_scale = data_.tolerance_scale.data();
-        if (steps == host::step_sizes::kept) data_.next_steps();  // allocates them
-        a.h_next = steps == host::step_sizes::kept ? data_.h_next.data() : nullptr;
-        a.phase = data_.phase.data();
-        a.side = data_.side.data();
-        a.ended = data_.ended.data();
-        a.status = data_.status.data();
-        if (count == counting::on) {
-            const auto counters = data_.counters_for(steps);
-            a.accepted = counters[0];
-            a.rejected = counters[1];
-            a.located = counters[2];
-            a.evaluations = counters[3];
-        }
+        data_.describe(a, count, steps);
+        a.common_t_begin = data_.common_begin;
+        a.common_t_end = data_.common_end;
         a.shared = {data_.shared.data(), data_.shared_integer.data()};
     }
 
     /// The part of them that may change while the ensemble is in use.
     void describe_domain(detail::kernel_arguments<Model, R>& a) {
-        if (detail::writes_time_domain<Model>) data_.own_domains();
-        a.t_begin = has_common_domain() ? nullptr : data_.domain.component(0);
-        a.t_end = has_common_domain() ? nullptr : data_.domain.component(1);
+        data_.describe_domain(a);
         a.common_t_begin = data_.common_begin;
         a.common_t_end = data_.common_end;
     }
@@ -321,9 +303,9 @@ private:
         return part;
     }
     template <class Array>
-    auto view(Array& array, const host::component_label& label, int component = 0) const {
+    auto view(Array& array, const host::component_label& label) const {
         using T = std::remove_pointer_t<decltype(array.data())>;
-        auto* const values = present(array).component(label.number < 0 ? component : label.number);
+        auto* const values = present(array).component(std::max(label.number, 0));
         if constexpr (std::is_const_v<T>) {
             return const_map<std::remove_const_t<T>>(values, array.length());
         } else {
@@ -331,7 +313,10 @@ private:
         }
     }
 
-    const_map<std::int64_t> counter(std::size_t c) const { return view(data_.counter(c), {"counter"}); }
+    using arrays = typename host::ensemble_data<R>::arrays;
+    const_map<std::int64_t> counter(host::component_array<std::int64_t> arrays::*which) const {
+        return view(data_.counter(which), {"counter"});
+    }
 
     host::ensemble_data<R> data_;
     trajectory_samples<Model, R> samples_;

@@ -15,6 +15,7 @@
 #include "myriad/host/model/model_shape.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/kernel/core/status.hpp"
+#include "myriad/kernel/state/instance_arrays.hpp"
 
 namespace myriad::host {
 
@@ -22,7 +23,8 @@ namespace myriad::host {
 enum class step_sizes { fixed, kept };
 
 template <class R>
-struct ensemble_data {
+struct ensemble_data : detail::instance_arrays<component_array, R> {
+    using arrays = detail::instance_arrays<component_array, R>;
     static constexpr R unset = std::numeric_limits<R>::quiet_NaN();
 
     /// Throws `error` if size is not positive, or if there is not enough memory.
@@ -38,29 +40,33 @@ struct ensemble_data {
 
     /// The same domain for all instances.
     void set_domain(R t_begin, R t_end);
-    bool has_common_domain() const { return domain.components() == 0; }
-    R t_begin_of(std::int64_t i) const { return has_common_domain() ? common_begin : domain.component(0)[i]; }
-    R t_end_of(std::int64_t i) const { return has_common_domain() ? common_end : domain.component(1)[i]; }
-    /// A domain for each instance, allocated on first use.
-    component_array<R>& own_domains();
-    /// The same for readers, several of which may share a const ensemble.
-    const component_array<R>& read_domains() const;
+    bool has_common_domain() const { return this->t_begin.components() == 0; }
+    R t_begin_of(std::int64_t i) const { return has_common_domain() ? common_begin : this->t_begin.data()[i]; }
+    R t_end_of(std::int64_t i) const { return has_common_domain() ? common_end : this->t_end.data()[i]; }
+    /// Gives each instance a domain of its own, if it has none.
+    arrays& own_domains();
+    /// The ends of the domains for readers, several of which may share a const ensemble.
+    const component_array<R>& read_begins() const;
+    const component_array<R>& read_ends() const;
 
-    bool scales_tolerances() const { return tolerance_scale.components() > 0; }
+    bool scales_tolerances() const { return this->tolerance_scale.components() > 0; }
     component_array<R>& tolerance_scales();
     const component_array<R>& next_steps() const;
 
     myriad::status status_of(std::int64_t i) const;
-    bool counts() const { return counted[0].components() > 0; }
+    bool counts() const { return this->accepted.components() > 0; }
     /// Accepted, rejected and located steps, evaluations; null where all are zero because there is nothing to count:
     /// rejected steps with fixed steps, located steps in models without events.
     std::array<const std::int64_t*, 4> counters() const {
-        return {counted[0].data(), counted[1].data(), counted[2].data(), counted[3].data()};
+        return {this->accepted.data(), this->rejected.data(), this->located.data(), this->evaluations.data()};
     }
     /// One of them, zeros where there is nothing to count. Throws `error` if no call has counted.
-    const component_array<std::int64_t>& counter(std::size_t c) const;
-    /// Those of a call that counts, allocated; in the order of `counters`.
-    std::array<std::int64_t*, 4> counters_for(step_sizes steps);
+    const component_array<std::int64_t>& counter(component_array<std::int64_t> arrays::*which) const;
+
+    /// The arrays that a call needs, allocated if they are not there yet; the others are null.
+    void describe(detail::instance_arrays<detail::array_pointer, R>& pointers, counting count, step_sizes steps);
+    /// The part of them that may change while the ensemble is in use.
+    void describe_domain(detail::instance_arrays<detail::array_pointer, R>& pointers);
 
     /// Forgets all phases done, but not the samples.
     void restart();
@@ -90,33 +96,22 @@ struct ensemble_data {
     moved_number<std::uint64_t> identity;  // unique; moves with the memory
     occupancy occupied;
     std::int64_t phases_asked = 0;  // upper bound over all instances
-    component_array<R> state, parameter, accessory;
-    component_array<std::int32_t> integer_accessory;
-    R common_begin = unset, common_end = unset;
-    component_array<R> domain;                 // t_begin and t_end, allocated on first use
-    mutable component_array<R> common_domain;  // the common ones, expanded for readers
-    component_array<R> t, shared;
+    component_array<R> shared;
     component_array<std::int32_t> shared_integer;
-    component_array<R> tolerance_scale;  // allocated on first use
-    mutable component_array<R> h_next;   // likewise
-    component_array<std::int32_t> phase;
-    component_array<std::int8_t> side;
-    component_array<std::uint8_t> ended;
-    component_array<myriad::status> status;
-    ended_instances<R> ended_before;                       // what is remembered from earlier calls
-    std::array<component_array<std::int64_t>, 4> counted;  // in the order of `counters`; allocated on first use
-    mutable component_array<std::int64_t> zeros;           // for unused counters; allocated on first access
+    R common_begin = unset, common_end = unset;
+    ended_instances<R> ended_before;  // what is remembered from earlier calls
+    // for readers of what there is no memory for; allocated by the first one
+    mutable component_array<R> common_begins, common_ends, no_steps;
+    mutable component_array<std::int64_t> nothing_counted;
     /// Whether no instance was integrated or marked since construction or the last restart, so that what is kept
     /// between calls (steps, phases, sides, counters, samples) is all zero.
     bool untouched = true;
     int pinned_for = -1;  // the GPU for which memory is pinned; -1: none
 
 private:
-    template <class Visit>
-    void for_each_bookkeeping(Visit&& visit);
+    /// An array of one component, allocated on first use.
     template <class T>
     component_array<T>& on_demand(component_array<T>& array, T value) const;
-    component_array<R> domains_of_all() const;
     digest inputs_digest(std::int64_t i) const;
 };
 

@@ -53,9 +53,8 @@ memory_left available_memory();
 /// The memory that something is going to allocate, part by part.
 class memory_need {
 public:
-    void add(const char* part, double bytes) {
-        if (bytes > 0) parts_.emplace_back(part, bytes);
-    }
+    /// Parts of the same name are one.
+    void add(const char* part, double bytes);
     double bytes() const {
         double sum = 0;
         for (const auto& part : parts_) sum += part.second;

@@ -10,17 +10,25 @@ namespace myriad::host {
 /// How many components of each kind a model has, and how messages name them.
 struct model_shape {
     int n_state, n_parameter, n_shared, n_shared_integer, n_accessory, n_integer_accessory, n_event;
-    bool writes_time_domain;
+    bool writes_parameters, writes_time_domain;
     component_label (*state)(int);
     component_label (*parameter)(int);
     component_label (*shared)(int);
 };
 template <class Model>
-inline constexpr model_shape shape_of{detail::n_state<Model>,         detail::n_parameter<Model>,
-                                      detail::n_shared<Model>,        detail::n_shared_integer<Model>,
-                                      detail::n_accessory<Model>,     detail::n_integer_accessory<Model>,
-                                      detail::n_event<Model>,         detail::writes_time_domain<Model>,
-                                      &state_numbering<Model>::label, &parameter_numbering<Model>::label,
-                                      &shared_numbering<Model>::label};
+inline constexpr model_shape shape_of{
+    .n_state = detail::n_state<Model>,
+    .n_parameter = detail::n_parameter<Model>,
+    .n_shared = detail::n_shared<Model>,
+    .n_shared_integer = detail::n_shared_integer<Model>,
+    .n_accessory = detail::n_accessory<Model>,
+    .n_integer_accessory = detail::n_integer_accessory<Model>,
+    .n_event = detail::n_event<Model>,
+    .writes_parameters = detail::writes_parameters<Model>,
+    .writes_time_domain = detail::writes_time_domain<Model>,
+    .state = &state_numbering<Model>::label,
+    .parameter = &parameter_numbering<Model>::label,
+    .shared = &shared_numbering<Model>::label,
+};
 
 }  // namespace myriad::host

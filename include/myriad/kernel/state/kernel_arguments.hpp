@@ -7,6 +7,7 @@
 
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/state/instance_arrays.hpp"
 
 namespace myriad {
 
@@ -79,31 +80,9 @@ struct shared_parameters {
 
 /// The arguments of a kernel. Arrays are structures of arrays: component c of instance i is at `array[c * size + i]`.
 template <class Model, class R>
-struct kernel_arguments {
+struct kernel_arguments : instance_arrays<array_pointer, R> {
     std::int64_t size;         // instances, and the distance between two components
     std::int64_t first_index;  // number of the first instance, for hooks that read it
-
-    // per instance, read; parameters and times are written only if the model declares that it writes them
-    R* parameter;
-    R* t_begin;  // null if all instances have the common domain below
-    R* t_end;
-    R* tolerance_scale;  // null if the method has none
-    // per instance, read and written
-    R* t;
-    R* state;
-    R* accessory;
-    std::int32_t* integer_accessory;
-    // what an instance needs to continue in a later call
-    R* h_next;               // the step to try next
-    std::int32_t* phase;     // phases done
-    std::int8_t* side;       // per event: the side of zero its function was last seen on
-    std::uint8_t* ended;     // by action::end_instance or a failure
-    myriad::status* status;  // how the last phase ended
-    // work in all calls, or null if counting is off
-    std::int64_t* accepted;
-    std::int64_t* rejected;     // with adaptive methods
-    std::int64_t* located;      // steps redone to locate an event, if the model has events
-    std::int64_t* evaluations;  // of the right-hand side
 
     shared_parameters<R> shared;
 
