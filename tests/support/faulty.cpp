@@ -11,11 +11,6 @@ MYRIAD_INSTANTIATE(faulty::clock_fault, MOST_METHODS)
 MYRIAD_INSTANTIATE_FLOAT(faulty::clock_fault, MOST_METHODS)
 MYRIAD_INSTANTIATE(faulty::domain_fault, MOST_METHODS)
 MYRIAD_INSTANTIATE(faulty::cliff, MOST_METHODS)
-MYRIAD_INSTANTIATE(faulty::open_cliff, myriad::cash_karp, myriad::tsitouras_5, myriad::dormand_prince_5,
-                   myriad::verner_7, myriad::dormand_prince_8, myriad::rosenbrock_23, myriad::rodas_5p,
-                   faulty::midpoint_rule)
-MYRIAD_INSTANTIATE_FLOAT(faulty::open_cliff, myriad::cash_karp, myriad::dormand_prince_8)
-MYRIAD_INSTANTIATE(faulty::guarded, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(faulty::blow_up, MOST_METHODS)
 MYRIAD_INSTANTIATE_FLOAT(faulty::blow_up, MOST_METHODS)
 MYRIAD_INSTANTIATE(faulty::slope_jump, MOST_METHODS)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiles the kernels of the models with hooks.
+// Compiles the kernels of the models with hooks that read, or write parameters and times.
 #include "tests/support/hooked.hpp"
 
 #include <myriad/instantiate.hpp>
@@ -13,12 +13,3 @@ MYRIAD_INSTANTIATE(hooked::parameter_writer, MOST_METHODS)
 MYRIAD_INSTANTIATE(hooked::domain_writer, MOST_METHODS)
 MYRIAD_INSTANTIATE(hooked::reader, MOST_METHODS)
 MYRIAD_INSTANTIATE_FLOAT(hooked::reader, MOST_METHODS)
-MYRIAD_INSTANTIATE(hooked::kicked_scalar, MOST_METHODS)
-MYRIAD_INSTANTIATE(hooked::kicked_generic, MOST_METHODS)
-MYRIAD_INSTANTIATE(hooked::kicked_scalar, myriad::dense<myriad::runge_kutta_4>, myriad::dense<myriad::tsitouras_5>)
-MYRIAD_INSTANTIATE(hooked::bookkeeper, myriad::tsitouras_5)
-MYRIAD_INSTANTIATE(hooked::declared_bookkeeper, myriad::tsitouras_5)
-MYRIAD_INSTANTIATE(hooked::step_setter, myriad::cash_karp)
-MYRIAD_INSTANTIATE(hooked::step_spoiler, myriad::cash_karp, MOST_METHODS)
-MYRIAD_INSTANTIATE(hooked::step_spoiler_generic, myriad::cash_karp, MOST_METHODS)
-MYRIAD_INSTANTIATE(hooked::breaker, myriad::runge_kutta_4, myriad::cash_karp)

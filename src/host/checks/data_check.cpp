@@ -151,8 +151,8 @@ bool data_check<R>::passes(std::int64_t first, std::int64_t count) const {
     for (int c = 0; c < shape.n_shared; ++c) fine = fine && std::isfinite(e.shared.data()[c]);
     const bool common_domain = e.has_common_domain();
     if (common_domain) fine = fine && std::abs(e.t_begin_of(0)) <= largest && std::abs(e.t_end_of(0)) <= latest;
-    const R* const t_begin = common_domain ? nullptr : e.domain.component(0);
-    const R* const t_end = common_domain ? nullptr : e.domain.component(1);
+    const R* const t_begin = e.t_begin.data();
+    const R* const t_end = e.t_end.data();
     const R* const scale = e.tolerance_scale.data();
     // One parallel loop for all arrays, because of the overhead of starting and ending one.
     return fine && all_parts(count, [&](std::int64_t begin, std::int64_t end) {
@@ -188,8 +188,8 @@ void data_check<R>::run() {
         check({"t_begin"}, begin.data());
         check({"t_end"}, end.data(), endless_ ? limit::endless : limit::end);
     } else {
-        check({"t_begin"}, data_.domain.component(0));
-        check({"t_end"}, data_.domain.component(1), endless_ ? limit::endless : limit::end);
+        check({"t_begin"}, data_.t_begin.data());
+        check({"t_end"}, data_.t_end.data(), endless_ ? limit::endless : limit::end);
     }
 }
 
@@ -255,9 +255,8 @@ void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_
     if (own.empty()) {
         const bool common = e.has_common_domain();
         const R common_begin = e.t_begin_of(0), common_end = e.t_end_of(0);
-        const R *const begin = common ? &common_begin : e.domain.component(0), *const end = common
-                                                                                                ? &common_end
-                                                                                                : e.domain.component(1);
+        const R* const begin = common ? &common_begin : e.t_begin.data();
+        const R* const end = common ? &common_end : e.t_end.data();
         const R from = times.empty() ? R(0) : times.front(), to = times.empty() ? R(0) : times.back();
         const bool evenly = times.empty();
         if (evenly && o.phase_length > 0) return;  // then phases are divided evenly, not the domain
