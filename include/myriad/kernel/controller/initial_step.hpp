@@ -2,6 +2,7 @@
 // The first step of a phase if the user gave none: from the size of the slope and of its change.
 #pragma once
 
+#include "myriad/kernel/controller/fast_power.hpp"
 #include "myriad/kernel/controller/norm.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
