@@ -69,7 +69,7 @@ wants() { [[ " ${steps[*]} " == *" $1 "* ]]; }
 
 packages=(g++ cmake ninja-build python3 libeigen3-dev libxsimd-dev catch2)
 if wants ci || wants cuda || wants clang; then
-    packages+=(libboost-dev libcli11-dev libsundials-dev python3-matplotlib)
+    packages+=(libboost-dev libcli11-dev libsundials-dev python3-matplotlib python3-scipy)
 fi
 if wants ci || wants docs; then packages+=(doxygen); fi
 if wants docs; then packages+=(python3-venv); fi
