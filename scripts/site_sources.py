@@ -15,6 +15,8 @@ import re
 import shutil
 import sys
 
+from version import version
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGES_OF_ROOT = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md", "README.md": "index.md"}
 LANGUAGES = {".hpp": "c++", ".cpp": "c++", ".cu": "cuda", ".cuh": "cuda", ".py": "python", ".sh": "bash",
@@ -116,8 +118,7 @@ def main(arguments):
     for part in ("images", "static"):
         shutil.copytree(ROOT / "docs" / part, folder / part)
     shutil.copy(ROOT / "docs" / "conf.py", folder)
-    version = re.search(r"project\(myriad VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))
-    site.write("version.txt", version[1] + "\n")
+    site.write("version.txt", version() + "\n")
     written = set()
     while site.wanted - written:  # a folder's page leads to its files
         for path in sorted(site.wanted - written):
