@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """The reference of the public interface, from the comments in the sources.
 
-Usage: scripts/reference.py (--check | --write FOLDER) [--doxygen PROGRAM] [--source FOLDER]
+Usage: scripts/reference.py (--check | --write FOLDER) [--source FOLDER]
 
 --check names every public entity without a description, and fails if there is one; --write writes the reference as
 Markdown. Public is: what is in namespace myriad (not detail, host or a backend, but for what a report holds) and has
@@ -468,10 +468,9 @@ def main():
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--check", action="store_true")
     what.add_argument("--write", type=pathlib.Path, metavar="FOLDER")
-    parser.add_argument("--doxygen", default="doxygen", metavar="PROGRAM")
     parser.add_argument("--source", type=pathlib.Path, default=ROOT, metavar="FOLDER")
     arguments = parser.parse_args()
-    doxygen = shutil.which(arguments.doxygen)
+    doxygen = shutil.which("doxygen")
     if doxygen is None:
         print("Reference not checked: there is no doxygen on the PATH (Debian package doxygen)")
         return 77
