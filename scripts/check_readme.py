@@ -180,7 +180,7 @@ def problem_of_command(words, line):
         for flag, value in zip(words, words[1:]):
             if flag == "--preset" and value not in presets():
                 return f"there is no preset {value}"
-            if flag in ("-S",) and value in ("examples/quickstart",) and f"{value}/CMakeLists.txt" not in all_files():
+            if flag == "-S" and value.startswith("examples/") and f"{value}/CMakeLists.txt" not in all_files():
                 return f"there is no {value}"
             if flag == "--target" and not re.search(rf"\b{re.escape(value)}\b|check_\$", "\n".join(
                     text_of(f) for f in all_files() if f.endswith("CMakeLists.txt"))):

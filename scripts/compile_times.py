@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Compiles files of a build again, with the build's own commands, and says what that takes.
 
-    compile_times.py BUILD [--files REGEX] [--slowest N] [--repeat N] [--without REGEX] [--budget FILE]
+    compile_times.py BUILD [--files REGEX] [--slowest N] [--repeat N] [--budget FILE]
 
 CPU seconds (user and system, the least of the repetitions) and peak memory of the compiler. BUILD has a
 compile_commands.json, and with --slowest a finished Ninja build. With --budget a table of limits: a file's seconds are
@@ -67,7 +67,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=Path)
     parser.add_argument("--files", help="regular expression for source files")
-    parser.add_argument("--without", help="and for those to leave out")
     parser.add_argument("--slowest", type=int, default=0)
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--budget", type=Path)
@@ -83,8 +82,6 @@ def main():
         entries = [e for target in targets for e in entries if f" -o {target} " in e["command"]]
     elif arguments.files:
         entries = [e for e in entries if re.search(arguments.files, e["file"])]
-    if arguments.without:
-        entries = [e for e in entries if not re.search(arguments.without, e["file"])]
     if not entries or (arguments.budget and len(entries) != len(rows)):
         print(f"{arguments.build} has {len(entries)} of the files to compile", file=sys.stderr)
         return 2

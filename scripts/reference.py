@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """The reference of the public interface, from the comments in the sources.
 
-Usage: scripts/reference.py (--check | --write FOLDER) [--doxygen PROGRAM] [--source FOLDER]
+Usage: scripts/reference.py (--check | --write FOLDER) [--source FOLDER]
 
 --check names every public entity without a description, and fails if there is one; --write writes the reference as
 Markdown. Public is: what is in namespace myriad (not detail, host or a backend, but for what a report holds) and has
@@ -132,30 +132,39 @@ def description(node):
     return re.sub(r"`[^`]*`|```.*?```", lambda code: code[0].replace("&lt;", "<"), text, flags=re.S)
 
 
+def template_head(node):
+    """The line with the template parameters of a member or class; empty if it has none."""
+    parameters = node.find("templateparamlist")
+    if parameters is None:
+        return ""
+    names = []
+    for p in parameters.findall("param"):
+        text = " ".join(filter(None, [plain(p.find("type")), plain(p.find("declname"))]))
+        default = plain(p.find("defval"))
+        names.append(text + (f" = {default}" if default else ""))
+    return f"template <{', '.join(names)}>\n"
+
+
+def without_detail(text):
+    return re.sub(r"\bdetail::", "", text)
+
+
 def declaration(member):
     """How a member is declared, without its body."""
-    head = ""
-    parameters = member.find("templateparamlist")
-    if parameters is not None:
-        names = []
-        for p in parameters.findall("param"):
-            text = " ".join(filter(None, [plain(p.find("type")), plain(p.find("declname"))]))
-            default = plain(p.find("defval"))
-            names.append(text + (f" = {default}" if default else ""))
-        head = f"template <{', '.join(names)}>\n"
+    head = template_head(member)
     kind, name = member.get("kind"), plain(member.find("name"))
     typename, arguments = plain(member.find("type")), plain(member.find("argsstring"))
-    typename = re.sub(r"\bdetail::", "", typename)
+    typename = without_detail(typename)
     if kind == "typedef":
         definition = plain(member.find("definition"))
-        return head + re.sub(r"\bdetail::", "", re.sub(r"using [\w:< >,]*?(\w+) =", r"using \1 =", definition)) + ";"
+        return head + without_detail(re.sub(r"using [\w:< >,]*?(\w+) =", r"using \1 =", definition)) + ";"
     if kind == "function":
         requirement = plain(member.find("requiresclause"))
         arguments = re.sub(r"\s*=\s*default$", "", arguments)
         prefix = "static " if member.get("static") == "yes" and "static" not in typename else ""
         if requirement:
             head += f"requires {requirement}\n"
-        return re.sub(r"\bdetail::", "", head + prefix + (typename + " " if typename else "") + name + arguments) + ";"
+        return without_detail(head + prefix + (typename + " " if typename else "") + name + arguments) + ";"
     return head + f"{typename} {name}{arguments};"
 
 
@@ -221,33 +230,20 @@ def read_classes(folder):
                     member.text = "Constructors." if entity.text and all(
                         re.search(r"\(\)|const .*&", d) for d in member.declarations) else ""
         entities.append(entity)
-    described = {}
-    for entity in entities:
-        if entity.file.startswith("include/myriad/kernel/methods/"):
-            for member in entity.members:
-                described.setdefault(member.name, member.text or None)
-                described[member.name] = described[member.name] or member.text
-    for entity in entities:
-        if entity.file.startswith("include/myriad/kernel/methods/"):
-            for member in entity.members:
-                member.text = member.text or described[member.name] or ""
+    described = {}  # members of methods by name: the first description serves all
+    members = [m for e in entities if e.file.startswith("include/myriad/kernel/methods/") for m in e.members]
+    for member in members:
+        described[member.name] = described.get(member.name) or member.text
+    for member in members:
+        member.text = member.text or described[member.name]
     return [e for e in entities if not (e.kind == "function" and e.name in ("operator+", "operator-", "operator*",
                                                                             "operator/"))]
 
 
 def declaration_of_class(root, kind, name):
-    head = ""
-    parameters = root.find("templateparamlist")
-    if parameters is not None:
-        names = []
-        for p in parameters.findall("param"):
-            text = " ".join(filter(None, [plain(p.find("type")), plain(p.find("declname"))]))
-            default = plain(p.find("defval"))
-            names.append(text + (f" = {default}" if default else ""))
-        head = f"template <{', '.join(names)}>\n"
     if kind == "concept":
-        return re.sub(r"\bdetail::", "", plain(root.find("initializer"))) + ";"
-    return f"{head}{kind} {name};"
+        return without_detail(plain(root.find("initializer"))) + ";"
+    return f"{template_head(root)}{kind} {name};"
 
 
 def read_macros(source):
@@ -346,7 +342,7 @@ def check(entities):
     for e in homeless:
         print(f"{e.file}:{e.line}: {e.name} is on no page of the reference: name its header in scripts/reference.py")
     count = sum(1 + len(e.values) + sum(1 + len(m.values) for m in e.members) for e in entities)
-    if count < 300:  # of about 470: else something was not read, and nothing was checked
+    if count < 300:  # of about 500: else something was not read, and nothing was checked
         print(f"Only {count} public entities were found: something is wrong with how they are read")
         return 1
     print(f"{count} public entities, {len(missing)} without a description")
@@ -472,10 +468,9 @@ def main():
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--check", action="store_true")
     what.add_argument("--write", type=pathlib.Path, metavar="FOLDER")
-    parser.add_argument("--doxygen", default="doxygen", metavar="PROGRAM")
     parser.add_argument("--source", type=pathlib.Path, default=ROOT, metavar="FOLDER")
     arguments = parser.parse_args()
-    doxygen = shutil.which(arguments.doxygen)
+    doxygen = shutil.which("doxygen")
     if doxygen is None:
         print("Reference not checked: there is no doxygen on the PATH (Debian package doxygen)")
         return 77

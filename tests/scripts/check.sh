@@ -74,6 +74,8 @@ expect "case_studies.sh refuses an unknown program" 2 "no case study 'abacus'" s
 expect "case_studies.sh refuses an unknown device" 2 "no device 'abacus'" scripts/case_studies.sh --device abacus
 expect "docs.sh --help" 0 'Usage: scripts/docs.sh' scripts/docs.sh --help
 expect "docs.sh refuses an unknown option" 2 "Unknown option '--quick'" scripts/docs.sh --quick
+expect "site_sources.py puts the site's sources together" 0 '^$' scripts/site_sources.py "$work/sources"
+expect "site_sources.py gives them the version" 0 "^$(python3 scripts/version.py)$" cat "$work/sources/version.txt"
 mkdir "$work/site"
 printf '<a href="#here">x</a><a href="b.html#gone">y</a><img src="c.png"><p id="here">' >"$work/site/a.html"
 printf '<p id="there">' >"$work/site/b.html"

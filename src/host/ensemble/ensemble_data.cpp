@@ -89,7 +89,6 @@ const component_array<R>& ensemble_data<R>::read_ends() const {
     return has_common_domain() ? on_demand(common_ends, common_end) : this->t_end;
 }
 
-/// An array of one component, allocated on first use.
 template <class R>
 template <class T>
 component_array<T>& ensemble_data<R>::on_demand(component_array<T>& array, T value) const {
@@ -140,8 +139,9 @@ void ensemble_data<R>::describe(instance_arrays<array_pointer, R>& pointers, cou
     const auto point = [&](const array_properties& of, auto first, auto*& pointer, auto& array) {
         const bool needed = is_needed(of.presence, count, steps);
         if (needed && of.components > 0) on_demand(array, first);
-        const bool depends = of.presence == array_presence::tolerance_scales || of.presence == array_presence::always;
-        pointer = needed || depends ? array.data() : nullptr;
+        // Step sizes and counters of an earlier call are left out if this one does not need them.
+        const bool is_kept = of.presence == array_presence::always || of.presence == array_presence::tolerance_scales;
+        pointer = needed || is_kept ? array.data() : nullptr;
     };
     for_each_instance_array<R>(*shape, point, pointers, static_cast<arrays&>(*this));
     describe_domain(pointers);

@@ -17,13 +17,6 @@
 
 namespace myriad {
 
-const char* name_of(status s) {
-    constexpr const char* names[status_count] = {
-        "not_started",    "success",    "stopped_by_event",   "stopped_by_user",   "max_steps",
-        "step_underflow", "not_finite", "event_accumulation", "singular_jacobian", "invalid_input"};
-    return names[static_cast<int>(s)];
-}
-
 namespace {
 
 template <class R>
@@ -136,9 +129,9 @@ work_count counted_work(const ensemble_data<R>& e, std::int64_t count, std::int6
 namespace {
 
 /// Counts of each value among `count` statuses, and the index of the first failure, or `count`.
-class status_count_of {
+class status_tally {
 public:
-    status_count_of(const status* statuses, std::int64_t count) : first_failed_(count) {
+    status_tally(const status* statuses, std::int64_t count) : first_failed_(count) {
         in_parallel(count, 262'144, [&](std::int64_t begin, std::int64_t end) { add(statuses, begin, end); });
     }
     const std::array<std::int64_t, status_count>& by_status() const { return by_status_; }
@@ -179,7 +172,7 @@ private:
 
 template <class R>
 void add_summary(const ensemble_data<R>& e, report_of<R>& r, std::int64_t first, std::int64_t count) {
-    const status_count_of found(e.status.data() + first, count);
+    const status_tally found(e.status.data() + first, count);
     r.instances += count;
     for (std::size_t s = 0; s < r.by_status.size(); ++s) r.by_status[s] += found.by_status()[s];
     if (r.first_failed >= 0 || found.first_failed() == count) return;

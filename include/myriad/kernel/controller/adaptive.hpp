@@ -8,6 +8,8 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
+/// A step is this part of the longest that the error estimate allows, as in the MPGOS package.
+inline constexpr double safety_factor = 0.9;
 /// Binary logarithm of 1e-4, as in Hairer and Wanner's DOPRI5.
 inline constexpr double least_error_remembered = -13.2877;
 
@@ -92,7 +94,8 @@ struct adaptive_stepping {
             // At a few roundings of t, nine tenths of the step may round to the same step.
             const S rounding = S(epsilon_of<R>) * abs(s.data.t);
             if constexpr (!keeps_low)
-                factor = select(rejected & (abs(s.h) <= S(R(16)) * rounding), smaller(factor, C(L(0.45))), factor);
+                factor = select(rejected & (abs(s.h) <= S(R(16)) * rounding), smaller(factor, C(L(safety_factor / 2))),
+                                factor);
             s.rejected = count_where(rejected, s.rejected);
             // A step of length zero does not show why the previous one failed.
             const mask moved = rejected & (s.h != S(R(0)));
@@ -153,12 +156,12 @@ private:
             const C now = fast_log2(worst);
             C sum = fma(C(L(Method::exponent_last)), errors.last, C(L(Method::exponent_now)) * now);
             if constexpr (Method::exponent_before != 0) sum = fma(C(L(Method::exponent_before)), errors.before, sum);
-            factor = C(L(0.9)) * fast_exp2(select(within, sum * C(after_accepted), now * C(after_rejected)));
+            factor = C(L(safety_factor)) * fast_exp2(select(within, sum * C(after_accepted), now * C(after_rejected)));
             // An error of zero counts as 1e-4: a smaller one would shorten the next steps needlessly.
             errors.before = select(accepted, errors.last, errors.before);
             errors.last = select(accepted, larger(now, C(L(least_error_remembered))), errors.last);
         } else {
-            factor = C(L(0.9)) * fast_power(worst, select(within, C(after_accepted), C(after_rejected)));
+            factor = C(L(safety_factor)) * fast_power(worst, select(within, C(after_accepted), C(after_rejected)));
         }
         return limited(factor, C(static_cast<L>(args.shrink_limit)), C(static_cast<L>(args.growth_limit)));
     }

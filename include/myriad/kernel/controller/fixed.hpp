@@ -123,7 +123,8 @@ private:
         const R t_end = get_lane(s.data.t_end, i);
         const R signed_step = copysign(args.step, t_end - t);
         const R ratio = abs(t_end - t) / args.step;
-        const R steps = -floor(R(1e-6) - ratio * (R(1) - R(4) * epsilon_of<R>));
+        constexpr R sliver = R(1e-6);  // of a step: added to the last one
+        const R steps = -floor(sliver - ratio * (R(1) - R(4) * epsilon_of<R>));
         const R bounded = min(max(steps, R(1)), most);
         args.t[s.instance[i]] = t;
         set_lane(s.steps.base, i, t);

@@ -16,8 +16,10 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 ///     begin(i, t)                    a phase of lane i begins at t, after `initialise`
 ///     propose()                      the next trial: s.h, s.final_step
 ///     end_time()                     the time at which it ends
-///     judge(trial, t1, valid, ...)   accepted lanes; lanes whose step cannot get shorter are ended
-///     advance(accepted, t1, events)  advances time in accepted lanes; sets s.ended at the phase's end
+///     judge(trial, t1, valid, may_stick)
+///                                    accepted lanes; lanes whose step cannot get shorter are ended
+///     advance(accepted, t1, at_event)
+///                                    advances time in accepted lanes; sets s.ended at the phase's end
 ///     move(i, t)                     a hook has moved the end of the phase of lane i, which is at t
 ///     resume(i, h)                   continues with step h after event location
 ///     time(i)                        time of the committed state

@@ -236,6 +236,7 @@ private:
         bool others;       // other functions crossed in the trial before
         bool all_left;     // every function has left the surface since its event last fired
 
+        /// A better guess is not worth another trial.
         MYRIAD_FUNCTION bool is_close() const { return abs(gap) <= R(0.1) * tolerance; }
         /// Only the event itself happens here.
         MYRIAD_FUNCTION bool is_plain() const { return is_close() && !others && all_left; }

@@ -3,6 +3,7 @@
 // rarely called; the check in every step is `event_locator::look`.
 #pragma once
 
+#include <cstdint>
 #include <type_traits>
 
 #include "myriad/kernel/event/event_memory.hpp"
@@ -68,7 +69,7 @@ struct side_follower {
     /// Makes the next phase of lane i begin with all sides unknown.
     MYRIAD_FUNCTION void forget(int i) const {
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) kept_at(j, i) = 0;
+        for (int j = 0; j < m; ++j) kept_at(j, i) = static_cast<std::int8_t>(kept_side::unknown);
     }
 
     /// Updates the sides after a hook changed inputs of event functions, whose values were `before`. A function within

@@ -87,7 +87,7 @@ struct hook_driver {
     }
 
 private:
-    /// chosen: the new value in these lanes, the old one elsewhere. changed: the lanes that differ.
+    /// The new value in these lanes, the old one elsewhere.
     template <class T>
     static MYRIAD_FUNCTION T chosen(const mask& lanes, const T& now, const T& before) {
         return select(lanes, now, before);
@@ -99,8 +99,9 @@ private:
         for (int c = 0; c < size; ++c) values[c] = select(lanes, now[c], before[c]);
         return values;
     }
+    /// The lanes in which they differ.
     template <class T, int size>
-    static MYRIAD_FUNCTION mask changed(const vec<T, size>& now, const vec<T, size>& before) {
+    static MYRIAD_FUNCTION mask differing(const vec<T, size>& now, const vec<T, size>& before) {
         mask different = mask(false);
         MYRIAD_UNROLL
         for (int c = 0; c < size; ++c) different = different | differs_in_bits(now[c], before[c]);
@@ -165,7 +166,7 @@ private:
     MYRIAD_FUNCTION mask differs(const lane_data<Model, S>& a, const lane_data<Model, S>& b) const {
         mask different = mask(false);
         const auto compare = [&](auto use, const auto& x, const auto& y) MYRIAD_LAMBDA {
-            if constexpr (use.acts) different = different | changed(x, y);
+            if constexpr (use.acts) different = different | differing(x, y);
         };
         detail::for_each_member<Model>(compare, a, b);
         return different;

@@ -4,6 +4,8 @@
 // the OpenMP backend's inner loop (a pack of lanes).
 #pragma once
 
+#include <cstdint>
+
 #include "myriad/kernel/controller/initial_step.hpp"
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/locator.hpp"
@@ -12,8 +14,8 @@
 #include "myriad/kernel/integrator/phase.hpp"
 #include "myriad/kernel/integrator/phase_watch.hpp"
 #include "myriad/kernel/output/reducer.hpp"
+#include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
-#include "myriad/kernel/stepper/dense_output.hpp"
 #include "myriad/kernel/stepper/step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {

@@ -2,6 +2,8 @@
 // Ends phases that would never end by themselves. Each is checked at intervals, so that a step costs one comparison.
 #pragma once
 
+#include <cstdint>
+
 #include "myriad/kernel/controller/stepping.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {

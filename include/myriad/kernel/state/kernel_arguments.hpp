@@ -40,8 +40,8 @@ struct event_arguments {
     std::int32_t stop_after;  // detections that end the phase; 0: none
 };
 
-/// Where the records of the phases go: component c of recorded phase r of instance i is at `values[(column[c] * phases
-/// + r) * size + i]`; a column of -1 is not recorded.
+/// Where the records of the phases go: component c of recorded phase r of instance i is at
+/// `values[(column[c] * phases + r) * size + i]`; a column of -1 is not recorded.
 template <class Model, class R>
 struct record_arguments {
     R* values;

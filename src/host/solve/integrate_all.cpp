@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 // What every call of `solve` does, for both real types.
+#include "myriad/host/solve/integrate_all.hpp"
+
 #include <chrono>
 #include <exception>
 
-#include "myriad/host/backend/cpu_kernel.hpp"
-#include "myriad/host/backend/device.hpp"
-#include "myriad/host/chunks/chunked_solve.hpp"
+#include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/core/error.hpp"
-#include "myriad/host/solve/integrate_all.hpp"
 
 namespace myriad::host {
 
