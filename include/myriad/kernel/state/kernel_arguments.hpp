@@ -78,12 +78,15 @@ struct shared_parameters {
     const std::int32_t* integer;
 };
 
-/// The arguments of a kernel. Arrays are structures of arrays: component c of instance i is at `array[c * size + i]`.
-template <class Model, class R>
-struct kernel_arguments : instance_arrays<array_pointer, R> {
+/// Which instances a kernel integrates. First in its arguments, which nvcc needs fewer registers to address then.
+struct instance_range {
     std::int64_t size;         // instances, and the distance between two components
     std::int64_t first_index;  // number of the first instance, for hooks that read it
+};
 
+/// The arguments of a kernel.
+template <class Model, class R>
+struct kernel_arguments : instance_range, instance_arrays<array_pointer, R> {
     shared_parameters<R> shared;
 
     // data of a schedule by cost, or null
