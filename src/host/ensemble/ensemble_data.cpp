@@ -117,34 +117,43 @@ const component_array<std::int64_t>& ensemble_data<R>::counter(component_array<s
 
 namespace {
 
-/// Whether a call needs an array that is not always there; those that depend on the user's settings are allocated with
-/// them.
-bool is_needed(array_presence presence, counting count, step_sizes steps) {
-    switch (presence) {
-        case array_presence::step_sizes:
-            return steps == step_sizes::kept;
-        case array_presence::counters:
-            return count == counting::on;
-        case array_presence::counters_of_step_sizes:
-            return count == counting::on && steps == step_sizes::kept;
-        default:
-            return false;
+/// What decides which arrays a call needs.
+struct call_needs {
+    counting count;
+    step_sizes steps;
+    bool scales_tolerances, own_domains;
+
+    bool include(array_presence presence) const {
+        switch (presence) {
+            case array_presence::always:
+                return true;
+            case array_presence::step_sizes:
+                return steps == step_sizes::kept;
+            case array_presence::tolerance_scales:
+                return scales_tolerances;
+            case array_presence::own_domains:
+                return own_domains;
+            case array_presence::counters:
+                return count == counting::on;
+            case array_presence::counters_of_step_sizes:
+                return count == counting::on && steps == step_sizes::kept;
+        }
+        return false;
     }
-}
+};
 
 }  // namespace
 
 template <class R>
 void ensemble_data<R>::describe(instance_arrays<array_pointer, R>& pointers, counting count, step_sizes steps) {
+    if (shape->writes_time_domain) own_domains();
+    const call_needs call{count, steps, scales_tolerances(), !has_common_domain()};
     const auto point = [&](const array_properties& of, auto first, auto*& pointer, auto& array) {
-        const bool needed = is_needed(of.presence, count, steps);
-        if (needed && of.components > 0) on_demand(array, first);
-        // Step sizes and counters of an earlier call are left out if this one does not need them.
-        const bool is_kept = of.presence == array_presence::always || of.presence == array_presence::tolerance_scales;
-        pointer = needed || is_kept ? array.data() : nullptr;
+        const bool needed = of.components > 0 && call.include(of.presence);
+        if (needed) on_demand(array, first);
+        pointer = needed ? array.data() : nullptr;  // even if an earlier call needed it
     };
     for_each_instance_array<R>(*shape, point, pointers, static_cast<arrays&>(*this));
-    describe_domain(pointers);
 }
 template <class R>
 void ensemble_data<R>::describe_domain(instance_arrays<array_pointer, R>& pointers) {
@@ -204,11 +213,10 @@ template <class R>
 void ensemble_data<R>::add_memory_of_call(memory_need& need, const model_shape& shape, std::int64_t size,
                                           const ensemble_data* there, const options& o, step_sizes steps, bool scales) {
     const arrays none{};
+    const call_needs call{o.counting, steps, scales, shape.writes_time_domain};
     const auto add = [&](const array_properties& of, auto first, const auto& array) {
-        const bool needed = is_needed(of.presence, o.counting, steps) ||
-                            (scales && of.presence == array_presence::tolerance_scales) ||
-                            (shape.writes_time_domain && of.presence == array_presence::own_domains);
-        if (needed && array.components() == 0) need.add(of.name, bytes_of(of, first, size));
+        const bool allocates = of.presence != array_presence::always && array.components() == 0;
+        if (allocates && call.include(of.presence)) need.add(of.name, bytes_of(of, first, size));
     };
     for_each_instance_array<R>(shape, add, there != nullptr ? *there : none);
 }

@@ -16,6 +16,10 @@ struct function_ends {
     R end_value, end_slope;
 };
 
+/// A redone step has arrived once the event function is within this part of its tolerance. Guesses for its length aim
+/// closer, since the cubic is not exact.
+inline constexpr double arrival_part = 0.1, guess_part = 0.01;
+
 /// The root, 0 < x < 1, of the cubic a + x (b + x (c + x d)), which is positive at 0 and negative at 1: Newton's
 /// method, safeguarded by bisection, until the value is within `close` of zero. Six iterations are enough for a guess.
 /// Returns 1/2 if the coefficients are not finite.

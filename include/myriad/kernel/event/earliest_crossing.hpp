@@ -45,7 +45,7 @@ MYRIAD_FUNCTION located_crossing<R> earliest_crossing(const step_ends<Model, R>&
         const function_ends<R> g{side[j] * step.g[j], per_step * slope[j], side[j] * step.g1[j], per_step * slope1[j]};
         const bool on_surface = !(g.value > event[j].tolerance);
         if (on_surface && !(g.slope > R(0))) return R(0);
-        return detail::crossing_fraction(g, on_surface, R(0.01) * event[j].tolerance);
+        return detail::crossing_fraction(g, on_surface, R(guess_part) * event[j].tolerance);
     });
 }
 

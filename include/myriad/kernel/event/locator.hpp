@@ -237,7 +237,7 @@ private:
         bool all_left;     // every function has left the surface since its event last fired
 
         /// A better guess is not worth another trial.
-        MYRIAD_FUNCTION bool is_close() const { return abs(gap) <= R(0.1) * tolerance; }
+        MYRIAD_FUNCTION bool is_close() const { return abs(gap) <= R(arrival_part) * tolerance; }
         /// Only the event itself happens here.
         MYRIAD_FUNCTION bool is_plain() const { return is_close() && !others && all_left; }
     };
