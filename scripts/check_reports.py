@@ -75,9 +75,11 @@ def unknown_commits():
 def main(arguments):
     """Looks at all reports."""
     if arguments not in ([], ["--list"]):
-        sys.exit(__doc__.strip())
-    shallow = git("rev-parse", "--is-shallow-repository")
-    if shallow is None or shallow.strip() == "true":
+        print(__doc__.strip())
+        return 0 if arguments in (["-h"], ["--help"]) else 2
+    top = git("rev-parse", "--show-toplevel")
+    if top is None or pathlib.Path(top.strip()).resolve() != ROOT.resolve() or \
+            git("rev-parse", "--is-shallow-repository").strip() == "true":
         print("skipped: the history is not there")
         return 77
     messages = unknown_commits()

@@ -32,6 +32,7 @@ version=$(python3 scripts/version.py)
 tag=v$version
 say "Release of version $version"
 
+[[ $(git rev-parse --show-toplevel 2>/dev/null) == "$PWD" ]] || fail "This is no checkout of Myriad: clone it first."
 changed=$(git status --porcelain)
 [[ -z $changed ]] || fail "These files are not committed:
 $changed

@@ -28,7 +28,23 @@ struct record_options;
 struct sample_options;
 
 enum class action : std::uint8_t;
+enum class advice;
+enum class counting;
+enum class direction;
+enum class invalid_instances;
+enum class phase_step;
+enum class phase_time;
 enum class schedule : std::uint8_t;
+enum class shared_placement : std::uint8_t;
 enum class status : std::uint8_t;
+
+struct cash_karp;
+struct dormand_prince_5;
+struct dormand_prince_8;
+struct rodas_5p;
+struct rosenbrock_23;
+struct runge_kutta_4;
+struct tsitouras_5;
+struct verner_7;
 
 }  // namespace myriad
