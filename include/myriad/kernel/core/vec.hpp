@@ -31,8 +31,10 @@ MYRIAD_FUNCTION constexpr int checked_index(int i) {
 
 // clang++ does not report where such a call was inlined; this makes it warn where the index is written.
 #if defined(__clang__) && !defined(__CUDACC__)
-#define MYRIAD_WARN_OF_INDEX(i, size) \
-    __attribute__((diagnose_if((i) < 0 || (i) >= (size), "there is no component of this number", "warning")))
+#define MYRIAD_WARN_OF_INDEX(i, size)                                                                             \
+    _Pragma("clang diagnostic push") _Pragma("clang diagnostic ignored \"-Wgcc-compat\"")                         \
+        __attribute__((diagnose_if((i) < 0 || (i) >= (size), "there is no component of this number", "warning"))) \
+        _Pragma("clang diagnostic pop")
 #else
 #define MYRIAD_WARN_OF_INDEX(i, size)
 #endif
