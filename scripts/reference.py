@@ -70,7 +70,7 @@ MACRO_EXPANSION = YES
 EXPAND_ONLY_PREDEF = YES
 PREDEFINED = "MYRIAD_FUNCTION=" "MYRIAD_LAMBDA=" "__attribute__(x)=" "MYRIAD_WARN_OF_INDEX(i,n)="
 EXPAND_AS_DEFINED = MYRIAD_UNARY MYRIAD_BINARY
-FILTER_PATTERNS = *.hpp="sed -E 's/::inline MYRIAD_TARGET//; s/inline namespace MYRIAD_TARGET/namespace target/'"
+FILTER_PATTERNS = *.hpp="sed -E 's/::inline MYRIAD_(TARGET|ABI)//; s/inline namespace MYRIAD_TARGET/namespace target/'"
 """
 
 

@@ -8,13 +8,14 @@
 #include MYRIAD_BACKEND_HEADER
 #include "myriad/kernel/stepper/method_check.hpp"
 #include "myriad/methods.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// An undefined macro expands to its own name.
 constexpr bool is_number(const char* text) { return *text >= '0' && *text <= '9'; }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI
 #define MYRIAD_TEXT_OF(macro) MYRIAD_TEXT(macro)
 #define MYRIAD_TEXT(text) #text
 #define MYRIAD_REFUSE_EIGEN                                                                                          \

@@ -11,8 +11,9 @@
 #include "myriad/host/backend/cost_order.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/memory/memory_need.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 openmp::instruction_set choose_instruction_set(const compiled_sets& compiled) {
     const char* const variable = std::getenv("MYRIAD_INSTRUCTION_SET");
@@ -73,4 +74,4 @@ run_statistics run_kernel(const any_run& all, const run_options& options) {
     return used;
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -13,8 +13,9 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/host/threads/parallel.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 bool events_may_stop(const options& o) {
     return std::any_of(o.events.begin(), o.events.end(), [](const event_options& e) { return e.stop_after > 0; });
@@ -335,4 +336,4 @@ template std::int64_t count_given_anew(const ensemble_data<float>&, std::int64_t
 template void check_ended(const ensemble_data<float>&, const options&, std::int64_t);
 template void check_scales(const ensemble_data<float>&, bool);
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

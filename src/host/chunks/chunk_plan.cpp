@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
-namespace myriad::host {
+#include "myriad/version.hpp"
+
+namespace myriad::host::inline MYRIAD_ABI {
 
 void chunk_plan::cut(const options& o, const cuda::any_engine& worker, std::int64_t copied) {
     if (o.chunk_size > 0) {
@@ -33,4 +35,4 @@ std::int64_t chunk_plan::count_from(std::int64_t first) const {
     return left - count < smallest_ && left <= largest_ ? left : count;
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

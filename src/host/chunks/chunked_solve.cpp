@@ -14,8 +14,9 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/polling_backoff.hpp"
 #include "myriad/host/threads/worker_thread.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 namespace {
 
@@ -251,4 +252,4 @@ template void solve_in_chunks(const options&, chunk_source&, ensemble_data<doubl
 template void solve_in_chunks(const options&, chunk_source&, ensemble_data<float>&, data_check<float>&, progress_relay&,
                               report_of<float>&);
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

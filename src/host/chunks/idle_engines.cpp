@@ -10,8 +10,9 @@
 
 #include "myriad/host/chunks/chunk_plan.hpp"
 #include "myriad/host/threads/object_pool.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 namespace {
 
@@ -40,4 +41,4 @@ void give_idle_engine(engine_key kind, const cuda::engine_options& how, std::uni
                              [kind](const use& other) { return other.kind == kind; });
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

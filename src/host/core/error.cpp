@@ -6,7 +6,9 @@
 #include <ostream>
 #include <sstream>
 
-namespace myriad::host {
+#include "myriad/version.hpp"
+
+namespace myriad::host::inline MYRIAD_ABI {
 
 std::ostream& operator<<(std::ostream& out, const message_part& part) {
     switch (part.kind_) {
@@ -36,4 +38,4 @@ std::string join(std::initializer_list<message_part> parts) {
 
 void refuse(std::initializer_list<message_part> parts) { throw error(join(parts)); }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

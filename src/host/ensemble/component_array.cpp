@@ -9,8 +9,9 @@
 #include "myriad/host/memory/memory_need.hpp"
 #include "myriad/host/memory/pinned.hpp"
 #include "myriad/host/threads/parallel.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 template <class T>
 component_array<T>::component_array(int components, std::int64_t size, T value)
@@ -71,4 +72,4 @@ template class component_array<std::int8_t>;
 template class component_array<std::uint8_t>;
 template class component_array<status>;
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -10,8 +10,9 @@
 #include "myriad/host/backend/arrays.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 using detail::array_kind;
 using detail::array_pointer;
@@ -262,4 +263,4 @@ void refuse_pinning(const memory_need& need, const error& why) {
 template struct ensemble_data<double>;
 template struct ensemble_data<float>;
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -5,8 +5,9 @@
 #include <limits>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 template <class R>
 sample_data<R>::sample_data(int n_state, const sample_options& o, std::int64_t of_instances)
@@ -49,4 +50,4 @@ void sample_data<R>::pin(int device) {
 template struct sample_data<double>;
 template struct sample_data<float>;
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

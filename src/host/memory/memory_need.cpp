@@ -11,8 +11,9 @@
 #include <unistd.h>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 std::string bytes_text(double bytes, int digits) {
     const char* const units[] = {" bytes", " kB", " MB", " GB"};
@@ -133,4 +134,4 @@ void memory_need::check(const std::string& who, const char* advice, memory_left 
                         " are left: ", advice));
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -5,8 +5,9 @@
 #include <ostream>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 std::ostream& operator<<(std::ostream& out, const component_label& label) {
     out << label.what;
@@ -20,4 +21,4 @@ void check_component(std::int64_t number, int count, std::string_view what) {
             " (numbered from 0); use the model's enumerators");
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

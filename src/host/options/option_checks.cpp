@@ -6,7 +6,9 @@
 #include <cmath>
 #include <vector>
 
-namespace myriad::host {
+#include "myriad/version.hpp"
+
+namespace myriad::host::inline MYRIAD_ABI {
 
 void check_count(const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
     require(value >= least && value <= most, name, " is ", value, " (must be from ", least, " to ", most, ")");
@@ -207,4 +209,4 @@ void option_limits::check(const options& o) const {
     }
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

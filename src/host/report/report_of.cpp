@@ -14,6 +14,7 @@
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
+#include "myriad/version.hpp"
 
 namespace myriad {
 
@@ -63,7 +64,7 @@ std::ostream& print(std::ostream& stream, const report_of<R>& r) {
 std::ostream& operator<<(std::ostream& stream, const report_of<double>& r) { return print(stream, r); }
 std::ostream& operator<<(std::ostream& stream, const report_of<float>& r) { return print(stream, r); }
 
-namespace host {
+namespace host::inline MYRIAD_ABI {
 
 template <class R>
 record_data<R>::record_data(const model_shape& shape, const record_options& o, std::int64_t of_phases,
@@ -239,5 +240,5 @@ template void summarise(const ensemble_data<float>&, report_of<float>&, std::int
 template void note_ended(report_of<float>&, const ensemble_data<float>&, std::int64_t);
 template void note_raised_tolerances(report_of<float>&, const options&);
 
-}  // namespace host
+}  // namespace host::inline MYRIAD_ABI
 }  // namespace myriad

@@ -8,8 +8,9 @@
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/core/error.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 void check_kernel(const device& where, bool exists) {
     const bool on_cpu = where.which() == device::kind::cpu;
@@ -60,4 +61,4 @@ template void integrate_all(const device&, const options&, const any_run*, chunk
 template void integrate_all(const device&, const options&, const any_run*, chunk_source*, ensemble_data<float>&,
                             data_check<float>&, report_of<float>&);
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

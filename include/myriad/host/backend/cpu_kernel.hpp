@@ -10,9 +10,10 @@
 
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/core/instruction_set.hpp"
+#include "myriad/version.hpp"
 
 namespace myriad {
-namespace host {
+namespace host::inline MYRIAD_ABI {
 
 /// A kernel for the CPU; null if it was not compiled.
 template <class Model, class R>
@@ -111,7 +112,7 @@ run_statistics run_kernel(const cpu_kernel<Model, R>& kernel, const kernel_argum
     return run_kernel(forget_model(kernel, arguments), options);
 }
 
-}  // namespace host
+}  // namespace host::inline MYRIAD_ABI
 
 namespace openmp {
 

@@ -11,8 +11,9 @@
 
 #include "myriad/host/ensemble/ensemble_data.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Whether an event ends a phase.
 bool events_may_stop(const options& o);
@@ -90,4 +91,4 @@ void check_scales(const ensemble_data<R>& e, bool method_scales);
 extern template void check_scales(const ensemble_data<double>&, bool);
 extern template void check_scales(const ensemble_data<float>&, bool);
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

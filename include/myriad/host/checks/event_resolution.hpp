@@ -13,8 +13,9 @@
 #include "myriad/host/ensemble/inputs_of.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// What one instance says about the resolution of event functions, in their units.
 template <class Model, class R>
@@ -116,4 +117,4 @@ void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_
     }
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -8,8 +8,9 @@
 #include "myriad/host/checks/phase_check.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Checks the data of an ensemble (data_check.hpp).
 template <class Model, class R>
@@ -25,4 +26,4 @@ void check_sample_times(const ensemble<Model, R>& e, const options& o, std::int6
     check_sample_times(ensemble_access::data(e), o, count);
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

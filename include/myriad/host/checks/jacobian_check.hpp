@@ -10,8 +10,9 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/ensemble/inputs_of.hpp"
 #include "myriad/kernel/model/jacobian.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Throws `error` if an entry of the Jacobian differs from the derivative of `rhs` in the first half of the digits,
 /// relative to its row: cancellation may cost the other half, and a wrong formula is wrong by more. Checks the initial
@@ -44,4 +45,4 @@ void check_jacobian(ensemble<Model, R>& e, std::int64_t count) {
     }
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

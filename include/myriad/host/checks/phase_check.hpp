@@ -11,8 +11,9 @@
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/kernel/model/hooks.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Whether a hook's return value can end a phase.
 template <class Model, class R>
@@ -42,4 +43,4 @@ phases_left find_phases_left(const ensemble<Model, R>& e, const options& o, std:
     return find_phases_left(ensemble_access::data(e), o, count, may_end_early<Model, R>(o));
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -8,8 +8,9 @@
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Chunks in flight at a time: one is uploaded, one is integrated, one is downloaded by a separate thread.
 inline constexpr std::int64_t chunks_at_a_time = 3;
@@ -55,4 +56,4 @@ private:
     std::int64_t size_, largest_, smallest_, at_a_time_ = 1, bytes_ = 0;
 };
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -15,8 +15,9 @@
 #include "myriad/host/ensemble/ensemble_data.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report_of.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// The engines of one call and the arguments that they work on, without the model's type.
 class chunk_source {
@@ -72,4 +73,4 @@ extern template void solve_in_chunks(const options&, chunk_source&, ensemble_dat
 extern template void solve_in_chunks(const options&, chunk_source&, ensemble_data<float>&, data_check<float>&,
                                      progress_relay&, report_of<float>&);
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -6,8 +6,9 @@
 #include <memory>
 
 #include "myriad/host/backend/backend.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Whether this process is the first to use GPUs, and not a fork of one that has: a fork would wait for driver threads
 /// and engines that it does not have.
@@ -25,4 +26,4 @@ std::unique_ptr<cuda::any_engine> take_idle_engine(engine_key kind, const cuda::
 /// Only for engines that have finished without an error. For each method as many are kept as a call may use.
 void give_idle_engine(engine_key kind, const cuda::engine_options& how, std::unique_ptr<cuda::any_engine> e);
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

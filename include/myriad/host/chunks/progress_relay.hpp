@@ -6,7 +6,9 @@
 #include <exception>
 #include <functional>
 
-namespace myriad::host {
+#include "myriad/version.hpp"
+
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Forwards progress from a backend, which must not see exceptions, to the user's function, which may throw.
 struct progress_relay {
@@ -27,4 +29,4 @@ struct progress_relay {
     }
 };
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -13,6 +13,7 @@
 #include <type_traits>
 
 #include "myriad/kernel/core/ieee.hpp"
+#include "myriad/version.hpp"
 
 namespace myriad {
 
@@ -22,7 +23,7 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-namespace host {
+namespace host::inline MYRIAD_ABI {
 
 /// A part of a message: a number, text, or what else a stream prints. It refers to the value.
 class message_part {
@@ -72,7 +73,7 @@ private:
 std::string join(std::initializer_list<message_part> parts);
 [[noreturn, gnu::cold]] void refuse(std::initializer_list<message_part> parts);
 
-}  // namespace host
+}  // namespace host::inline MYRIAD_ABI
 
 /// Joins its arguments into one message, independently of the program's locale, since device names are parsed again.
 template <class... Parts>

@@ -4,6 +4,8 @@
 
 #include <type_traits>
 
+#include "myriad/version.hpp"
+
 namespace myriad {
 namespace openmp {
 
@@ -17,7 +19,7 @@ using for_set = std::integral_constant<instruction_set, set>;
 
 }  // namespace openmp
 
-namespace host {
+namespace host::inline MYRIAD_ABI {
 
 inline constexpr openmp::instruction_set all_instruction_sets[] = {
     openmp::instruction_set::avx512, openmp::instruction_set::avx2, openmp::instruction_set::sse2,
@@ -55,5 +57,5 @@ inline bool cpu_has(openmp::instruction_set set) {
 #endif
 }
 
-}  // namespace host
+}  // namespace host::inline MYRIAD_ABI
 }  // namespace myriad

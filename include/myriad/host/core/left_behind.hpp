@@ -6,8 +6,9 @@
 #include <utility>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// A number that is zero after it was moved from.
 template <class T>
@@ -54,4 +55,4 @@ private:
     std::atomic<bool> taken_{false};
 };
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

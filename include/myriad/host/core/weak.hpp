@@ -2,7 +2,9 @@
 // Tests whether a weak function was linked: a backend's functions exist only in programs built with it.
 #pragma once
 
-namespace myriad::host {
+#include "myriad/version.hpp"
+
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// A weak function's address, null if it is not defined. (g++ assumes that the address of a function is never null.)
 template <class F>
@@ -11,4 +13,4 @@ F* if_defined(F* function) {
     return function;
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -9,8 +9,9 @@
 
 #include "myriad/host/core/left_behind.hpp"
 #include "myriad/kernel/core/status.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// `components` arrays of `size` values each, one after the other; component c of instance i is at `[c * size + i]`.
 /// Compiled in the library, for the types below.
@@ -60,4 +61,4 @@ extern template class component_array<std::int8_t>;
 extern template class component_array<std::uint8_t>;
 extern template class component_array<status>;
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

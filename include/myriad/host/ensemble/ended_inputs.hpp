@@ -10,7 +10,9 @@
 #include <type_traits>
 #include <vector>
 
-namespace myriad::host {
+#include "myriad/version.hpp"
+
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// A digest of numbers by their bits.
 class digest {
@@ -68,4 +70,4 @@ private:
     std::vector<ended_instance<R>> all_;
 };
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -22,10 +22,11 @@
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
+#include "myriad/version.hpp"
 
 namespace myriad {
 
-namespace host {
+namespace host::inline MYRIAD_ABI {
 
 /// The library's internal access to an ensemble, which users need not see.
 struct ensemble_access {
@@ -71,7 +72,7 @@ struct ensemble_access {
     }
 };
 
-}  // namespace host
+}  // namespace host::inline MYRIAD_ABI
 
 /// `size` independent instances of a model, with real type R (double or float). Every accessor returns an Eigen map of
 /// one component over all instances, contiguous and writable; nothing is copied and nothing is checked per element, but

@@ -16,8 +16,9 @@
 #include "myriad/host/options/options.hpp"
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/state/instance_arrays.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Whether instances keep a step size between calls (adaptive methods) or not (fixed steps).
 enum class step_sizes { fixed, kept };
@@ -121,4 +122,4 @@ private:
 extern template struct ensemble_data<double>;
 extern template struct ensemble_data<float>;
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

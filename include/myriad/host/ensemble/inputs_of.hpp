@@ -6,8 +6,9 @@
 
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/kernel/model/lane.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// The argument p of instance i. It points into the ensemble.
 template <class Model, class R>
@@ -32,4 +33,4 @@ void for_sampled_instances(const ensemble<Model, R>& e, std::int64_t count, Visi
         if (!e.ended(i)) visit(i);
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

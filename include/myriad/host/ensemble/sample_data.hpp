@@ -8,8 +8,9 @@
 #include "myriad/host/core/left_behind.hpp"
 #include "myriad/host/ensemble/component_array.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// `trajectory_samples` of any model.
 template <class R>
@@ -33,4 +34,4 @@ struct sample_data {
 extern template struct sample_data<double>;
 extern template struct sample_data<float>;
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

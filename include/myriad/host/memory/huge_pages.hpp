@@ -8,9 +8,11 @@
 
 #if defined(__linux__)
 #include <sys/mman.h>
+
+#include "myriad/version.hpp"
 #endif
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 constexpr std::size_t page_size(std::size_t bytes) {
     constexpr std::size_t page = 4096, huge = std::size_t{2} << 20;
@@ -32,4 +34,4 @@ inline void delete_pages(void* memory, std::size_t bytes) {
     ::operator delete (memory, std::align_val_t{page_size(bytes)});
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

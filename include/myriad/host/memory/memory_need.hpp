@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
-namespace myriad::host {
+#include "myriad/version.hpp"
+
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Bytes in human-readable form: "1.53 GB".
 std::string bytes_text(double bytes, int digits = 3);
@@ -68,4 +70,4 @@ private:
     std::vector<std::pair<const char*, double>> parts_;
 };
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -6,6 +6,7 @@
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/core/weak.hpp"
+#include "myriad/version.hpp"
 
 namespace myriad {
 
@@ -17,7 +18,7 @@ __attribute__((weak)) void pin_memory(int device, void* memory, std::size_t byte
 __attribute__((weak)) void unpin_memory(void* memory);
 }  // namespace cuda
 
-namespace host {
+namespace host::inline MYRIAD_ABI {
 
 /// The memory must be unpinned before it is released.
 inline void pin_memory(int device, void* memory, std::size_t bytes) {
@@ -27,5 +28,5 @@ inline void pin_memory(int device, void* memory, std::size_t bytes) {
 }
 inline void unpin_memory(void* memory) { if_defined (&cuda::unpin_memory)(memory); }
 
-}  // namespace host
+}  // namespace host::inline MYRIAD_ABI
 }  // namespace myriad

@@ -4,8 +4,9 @@
 
 #include "myriad/host/model/numbering.hpp"
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// How many components of each kind a model has, and how messages name them.
 struct model_shape {
@@ -31,4 +32,4 @@ inline constexpr model_shape shape_of{
     .shared = &shared_numbering<Model>::label,
 };
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -11,8 +11,9 @@
 #include <utility>
 
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// A component's name in messages: "state 1 (v)", or "t_end", which has no number.
 struct component_label {
@@ -123,4 +124,4 @@ MYRIAD_NUMBERING(shared_integer, "shared integer")
 MYRIAD_NUMBERING(event, "event")
 #undef MYRIAD_NUMBERING
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -12,9 +12,10 @@
 #include "myriad/host/options/options.hpp"
 #include "myriad/kernel/methods/dense.hpp"
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/version.hpp"
 
 namespace myriad {
-namespace host {
+namespace host::inline MYRIAD_ABI {
 
 void check_count(const char* name, std::int64_t value, std::int64_t least, std::int64_t most);
 
@@ -71,5 +72,5 @@ void check_options(const options& o) {
     limits.check(o);
 }
 
-}  // namespace host
+}  // namespace host::inline MYRIAD_ABI
 }  // namespace myriad

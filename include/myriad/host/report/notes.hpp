@@ -14,8 +14,9 @@
 #include "myriad/host/report/report.hpp"
 #include "myriad/host/report/stiffness.hpp"
 #include "myriad/kernel/model/tangent.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Adds a note if a relative tolerance was below what the precision can reach and the method uses it.
 template <class Method, class Model, class R>
@@ -110,4 +111,4 @@ void note_exponents(report<Model, R>& r, ensemble<Model, R>& e, const options& o
     }
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

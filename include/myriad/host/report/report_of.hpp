@@ -16,6 +16,7 @@
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/kernel/core/status.hpp"
+#include "myriad/version.hpp"
 
 namespace myriad {
 
@@ -69,7 +70,7 @@ struct report_of {
 std::ostream& operator<<(std::ostream& stream, const report_of<double>& r);
 std::ostream& operator<<(std::ostream& stream, const report_of<float>& r);
 
-namespace host {
+namespace host::inline MYRIAD_ABI {
 
 /// `phase_records` of any model.
 template <class R>
@@ -143,5 +144,5 @@ extern template void summarise(const ensemble_data<float>&, report_of<float>&, s
 extern template void note_ended(report_of<float>&, const ensemble_data<float>&, std::int64_t);
 extern template void note_raised_tolerances(report_of<float>&, const options&);
 
-}  // namespace host
+}  // namespace host::inline MYRIAD_ABI
 }  // namespace myriad

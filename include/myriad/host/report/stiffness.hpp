@@ -16,8 +16,9 @@
 #include "myriad/kernel/methods/rodas_5p.hpp"
 #include "myriad/kernel/stepper/lu.hpp"
 #include "myriad/kernel/stepper/step.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// The stability function of an explicit method at a real z: the factor of one step for y' = z y / h. Hairer, Wanner,
 /// Solving ODE II, IV.2, eq. (2.9).
@@ -223,4 +224,4 @@ stiffness find_stiffness(ensemble<Model, R>& e, const options& o, double limit) 
     return found;
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -9,8 +9,9 @@
 #include "myriad/host/ensemble/ensemble_data.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report_of.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Throws `error` if the program has no kernel for the device, or may not use it.
 void check_kernel(const device& where, bool exists);
@@ -24,4 +25,4 @@ extern template void integrate_all(const device&, const options&, const any_run*
 extern template void integrate_all(const device&, const options&, const any_run*, chunk_source*, ensemble_data<float>&,
                                    data_check<float>&, report_of<float>&);
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

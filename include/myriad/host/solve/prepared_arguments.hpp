@@ -17,8 +17,9 @@
 #include "myriad/host/report/report.hpp"
 #include "myriad/kernel/methods/controller_policies.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// The properties of a method that a kernel's arguments depend on.
 struct method_traits {
@@ -151,4 +152,4 @@ functions_within_tolerance<Model> check_uses(ensemble<Model, R>& instances, cons
     return find_functions_within(instances, o, count, [&](std::int64_t i) { return instances.t_begin_of(i); });
 }
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

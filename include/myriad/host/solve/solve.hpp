@@ -20,9 +20,10 @@
 #include "myriad/host/solve/prepared_arguments.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
 #include "myriad/kernel/model/hooks.hpp"
+#include "myriad/version.hpp"
 
 namespace myriad {
-namespace host {
+namespace host::inline MYRIAD_ABI {
 
 /// What integrates a model with one method on one device.
 template <class Model, class R>
@@ -57,7 +58,7 @@ void integrate_all(const device& where, const options& o, const device_kernel<Mo
     integrate_all<R>(where, o, &on_cpu, &on_gpu, ensemble_access::data(instances), check, result);
 }
 
-}  // namespace host
+}  // namespace host::inline MYRIAD_ABI
 
 /// Takes every instance of the ensemble through `options.phases` integration phases with the given method, in place,
 /// and reports. A further call continues with the next phases; instances that failed or ended themselves stay as they

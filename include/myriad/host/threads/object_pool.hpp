@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
-namespace myriad::host {
+#include "myriad/version.hpp"
+
+namespace myriad::host::inline MYRIAD_ABI {
 
 /// Idle objects of one type, each with a key that says what it can be used for. Thread-safe.
 template <class Key, class T>
@@ -50,4 +52,4 @@ private:
     std::vector<entry> idle_;
 };
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

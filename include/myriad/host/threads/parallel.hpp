@@ -10,6 +10,7 @@
 
 #include "myriad/host/core/instruction_set.hpp"
 #include "myriad/host/core/weak.hpp"
+#include "myriad/version.hpp"
 
 namespace myriad {
 namespace openmp {
@@ -39,7 +40,7 @@ MYRIAD_DECLARE_THREADS(generic)
 
 }  // namespace openmp
 
-namespace host {
+namespace host::inline MYRIAD_ABI {
 
 /// Enough to keep up with a GPU's bus.
 inline constexpr std::int64_t most_threads = 5;
@@ -96,5 +97,5 @@ void in_parallel(std::int64_t size, std::int64_t grain, Body&& body) {
     threads.in_parts(members);
 }
 
-}  // namespace host
+}  // namespace host::inline MYRIAD_ABI
 }  // namespace myriad

@@ -13,8 +13,9 @@
 #include <variant>
 
 #include "myriad/host/threads/object_pool.hpp"
+#include "myriad/version.hpp"
 
-namespace myriad::host {
+namespace myriad::host::inline MYRIAD_ABI {
 
 class worker_thread {
 public:
@@ -96,4 +97,4 @@ private:
     std::unique_ptr<worker_thread> taken_;
 };
 
-}  // namespace myriad::host
+}  // namespace myriad::host::inline MYRIAD_ABI

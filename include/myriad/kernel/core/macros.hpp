@@ -5,6 +5,7 @@
 #pragma once
 
 #include "myriad/kernel/core/ieee.hpp"
+#include "myriad/version.hpp"
 
 #if defined(__CUDACC__)
 // A function without MYRIAD_FUNCTION is host code: nvcc would only warn if a kernel calls it, and leave the call out.
@@ -84,7 +85,7 @@ namespace detail {
 inline namespace MYRIAD_TARGET {}
 }  // namespace detail
 // The host side and the backends may use internal names. Argument-dependent look-up ignores using-directives.
-namespace host {
+namespace host::inline MYRIAD_ABI {
 using namespace detail;
 }
 namespace openmp {
