@@ -25,7 +25,7 @@ def version():
     numbers = [found("include/myriad/version.hpp", rf"MYRIAD_VERSION_{part} (\d+)$") for part in
                ("MAJOR", "MINOR", "PATCH")]
     text = found("include/myriad/version.hpp", r'MYRIAD_VERSION "(.*)"$')
-    space = found("include/myriad/version.hpp", r"MYRIAD_ABI v(.*)$")
+    space = found("include/myriad/kernel/core/abi.hpp", r"MYRIAD_ABI v(.*)$")
     if len(text) != 1 or text[0] != ".".join(sum(numbers, [])) or space != [text[0].replace(".", "_")]:
         sys.exit(f"include/myriad/version.hpp: MYRIAD_VERSION is {text}, its numbers are {numbers}, and MYRIAD_ABI is {space}")
     return text[0]

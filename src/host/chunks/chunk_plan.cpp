@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

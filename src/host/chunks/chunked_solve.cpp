@@ -14,7 +14,7 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/polling_backoff.hpp"
 #include "myriad/host/threads/worker_thread.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -10,7 +10,7 @@
 
 #include "myriad/host/chunks/chunk_plan.hpp"
 #include "myriad/host/threads/object_pool.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -6,7 +6,7 @@
 #include <ostream>
 #include <sstream>
 
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

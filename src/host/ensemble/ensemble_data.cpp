@@ -10,7 +10,7 @@
 #include "myriad/host/backend/arrays.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

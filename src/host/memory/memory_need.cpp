@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "myriad/host/core/error.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

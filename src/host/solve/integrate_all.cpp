@@ -8,7 +8,7 @@
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/core/error.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

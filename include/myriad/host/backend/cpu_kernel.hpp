@@ -10,7 +10,7 @@
 
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/core/instruction_set.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad {
 namespace host::inline MYRIAD_ABI {

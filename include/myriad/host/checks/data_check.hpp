@@ -11,7 +11,7 @@
 
 #include "myriad/host/ensemble/ensemble_data.hpp"
 #include "myriad/host/options/options.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

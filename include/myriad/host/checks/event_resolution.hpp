@@ -12,8 +12,8 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/ensemble/inputs_of.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -8,7 +8,7 @@
 #include "myriad/host/checks/phase_check.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/options.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

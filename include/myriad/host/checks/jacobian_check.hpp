@@ -9,8 +9,8 @@
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/ensemble/inputs_of.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/jacobian.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -10,8 +10,8 @@
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/hooks.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -7,8 +7,8 @@
 #include "myriad/host/backend/arrays.hpp"
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

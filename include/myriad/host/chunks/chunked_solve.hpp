@@ -15,7 +15,7 @@
 #include "myriad/host/ensemble/ensemble_data.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report_of.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "myriad/host/backend/backend.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

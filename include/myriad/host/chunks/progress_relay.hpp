@@ -6,7 +6,7 @@
 #include <exception>
 #include <functional>
 
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/ieee.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad {
 

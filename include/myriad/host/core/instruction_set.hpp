@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad {
 namespace openmp {

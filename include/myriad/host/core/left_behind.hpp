@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "myriad/host/core/error.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -2,7 +2,7 @@
 // Tests whether a weak function was linked: a backend's functions exist only in programs built with it.
 #pragma once
 
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "myriad/host/core/left_behind.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/status.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

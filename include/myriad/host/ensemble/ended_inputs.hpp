@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

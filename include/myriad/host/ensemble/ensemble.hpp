@@ -19,10 +19,10 @@
 #include "myriad/host/ensemble/trajectory_samples.hpp"
 #include "myriad/host/model/model_shape.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad {
 

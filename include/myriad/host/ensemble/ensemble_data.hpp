@@ -14,9 +14,9 @@
 #include "myriad/host/memory/memory_need.hpp"
 #include "myriad/host/model/model_shape.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/state/instance_arrays.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "myriad/host/ensemble/ensemble.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/lane.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

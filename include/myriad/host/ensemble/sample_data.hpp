@@ -8,7 +8,7 @@
 #include "myriad/host/core/left_behind.hpp"
 #include "myriad/host/ensemble/component_array.hpp"
 #include "myriad/host/options/options.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

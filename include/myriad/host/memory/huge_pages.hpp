@@ -9,7 +9,7 @@
 #if defined(__linux__)
 #include <sys/mman.h>
 
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #endif
 
 namespace myriad::host::inline MYRIAD_ABI {

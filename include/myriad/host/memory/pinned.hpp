@@ -6,7 +6,7 @@
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/core/weak.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad {
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "myriad/host/model/numbering.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/concepts.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -10,8 +10,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/concepts.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -10,9 +10,9 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/model/numbering.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/methods/dense.hpp"
 #include "myriad/kernel/model/concepts.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad {
 namespace host::inline MYRIAD_ABI {

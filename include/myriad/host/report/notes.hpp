@@ -13,8 +13,8 @@
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report.hpp"
 #include "myriad/host/report/stiffness.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/tangent.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -15,8 +15,8 @@
 #include "myriad/host/ensemble/ensemble_data.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/status_names.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/status.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad {
 

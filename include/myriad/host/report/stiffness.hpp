@@ -11,12 +11,12 @@
 #include "myriad/host/ensemble/inputs_of.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report_of.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/methods/controller_policies.hpp"
 #include "myriad/kernel/methods/rodas_5p.hpp"
 #include "myriad/kernel/stepper/lu.hpp"
 #include "myriad/kernel/stepper/step.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

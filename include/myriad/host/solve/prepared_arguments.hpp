@@ -15,9 +15,9 @@
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/methods/controller_policies.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -19,8 +19,8 @@
 #include "myriad/host/solve/integrate_all.hpp"
 #include "myriad/host/solve/prepared_arguments.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/hooks.hpp"
-#include "myriad/version.hpp"
 
 namespace myriad {
 namespace host::inline MYRIAD_ABI {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -10,7 +10,7 @@
 
 #include "myriad/host/core/instruction_set.hpp"
 #include "myriad/host/core/weak.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad {
 namespace openmp {

@@ -6,7 +6,7 @@
 #include <future>
 #include <thread>
 
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -13,7 +13,7 @@
 #include <variant>
 
 #include "myriad/host/threads/object_pool.hpp"
-#include "myriad/version.hpp"
+#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

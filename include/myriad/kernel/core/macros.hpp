@@ -4,8 +4,8 @@
 // fast_power.hpp and norm.hpp).
 #pragma once
 
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/ieee.hpp"
-#include "myriad/version.hpp"
 
 #if defined(__CUDACC__)
 // A function without MYRIAD_FUNCTION is host code: nvcc would only warn if a kernel calls it, and leave the call out.
