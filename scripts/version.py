@@ -37,6 +37,7 @@ def disagreements(now, release):
     for path, pattern, expected in (
             ("CITATION.cff", r"^version: (.*)$", now),
             ("README.md", r"find_package\(myriad (\S+) REQUIRED", short),
+            ("README.md", r"^Version ([\d.]+) ", now),
             ("packaging/spack/package.py", r'^    version\("([\d.]+)"', now)):
         said = found(path, pattern)
         if not said or said[0] != expected:
