@@ -41,17 +41,18 @@ has_clang_openmp() {
     has_command clang++ && printf '#include <omp.h>\n' | clang++ -fopenmp=libomp -E -x c++ - >/dev/null 2>&1
 }
 
-# A Python that has matplotlib: the first on the PATH may not be the one that Debian's packages are for.
-plotting_python() {
+# A Python that has a module: the first on the PATH may not be the one that Debian's packages are for.
+python_with() {
     local python
     for python in python3 /usr/bin/python3; do
-        if "$python" -c 'import matplotlib' >/dev/null 2>&1; then
+        if "$python" -c "import $1" >/dev/null 2>&1; then
             printf '%s' "$python"
             return
         fi
     done
     return 1
 }
+plotting_python() { python_with matplotlib; }
 
 # has_package NAME: whether the contents of the Debian package are there, from it or from elsewhere.
 has_package() {
@@ -66,7 +67,7 @@ has_package() {
         catch2) has_header catch2/catch.hpp || has_header catch2/catch_test_macros.hpp ;;
         libomp-dev) has_clang_openmp ;;
         libclang-rt-dev) has_clang_runtime ;;
-        python3-matplotlib) plotting_python >/dev/null ;;
+        python3-matplotlib | python3-scipy) python_with "${1#python3-}" >/dev/null ;;
         python3-venv) python3 -c 'import ensurepip, venv' >/dev/null 2>&1 ;;
         doxygen) has_command doxygen ;;
         *) return 1 ;;
