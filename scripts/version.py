@@ -27,7 +27,8 @@ def version():
     text = found("include/myriad/version.hpp", r'MYRIAD_VERSION "(.*)"$')
     space = found("include/myriad/kernel/core/abi.hpp", r"MYRIAD_ABI v(.*)$")
     if len(text) != 1 or text[0] != ".".join(sum(numbers, [])) or space != [text[0].replace(".", "_")]:
-        sys.exit(f"include/myriad/version.hpp: MYRIAD_VERSION is {text}, its numbers are {numbers}, and MYRIAD_ABI is {space}")
+        sys.exit(f"include/myriad/version.hpp: MYRIAD_VERSION is {text}, its numbers are {numbers}, and MYRIAD_ABI is "
+                 f"{space}")
     return text[0]
 
 
