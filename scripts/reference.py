@@ -7,7 +7,9 @@ Usage: scripts/reference.py (--check | --write FOLDER) [--source FOLDER]
 --check names every public entity without a description, and fails if there is one; --write writes the reference as
 Markdown. Public is: what is in namespace myriad (not detail, host or a backend, but for what a report holds) and has
 public access; macros and CMake functions that users write; CMake options. Of overloads one must be described, and a
-member that several methods have in one of them. Exit status 77, "skipped" for ctest, if there is no doxygen.
+member that several methods have in one of them. What the sources look for by name in a model or a method of the
+user's, and the environment variables that they read, must have entries on the pages of MEMBER_PAGES. A warning of
+Doxygen's is an error. Exit status 77, "skipped" for ctest, if there is no doxygen.
 """
 
 import argparse
@@ -28,7 +30,7 @@ PAGES = {
                  ["host/ensemble/ensemble.hpp", "host/ensemble/component_map.hpp",
                   "host/ensemble/trajectory_samples.hpp"]),
     "solve": ("Devices, solve and solver", "`<myriad/myriad.hpp>`, or `<myriad/device.hpp>` and `<myriad/solve.hpp>`.",
-              ["host/backend/device.hpp", "host/solve/", "host/core/error.hpp"]),
+              ["host/backend/device.hpp", "host/solve/", "host/core/error.hpp", "version.hpp"]),
     "options": ("Options",
                 "`<myriad/options.hpp>`. Checked once per call: `error` names an option that is out of range.",
                 ["host/options/options.hpp", "kernel/state/kernel_arguments.hpp", "host/options/"]),
@@ -47,14 +49,20 @@ PAGES = {
 # Classes whose objects a model handles as R, masks or expressions, without naming their members.
 OPAQUE = ("pack", "pack_mask", "dual", "vec_values", "shared_values", "component_map::list")
 PUBLIC_IN_BACKENDS = ("myriad::cuda::kernel_facts",)  # report::kernel
-MACROS = ("MYRIAD_FUNCTION", "MYRIAD_LAMBDA", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT")
+MACROS = ("MYRIAD_FUNCTION", "MYRIAD_LAMBDA", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT", "MYRIAD_VERSION",
+          "MYRIAD_VERSION_MAJOR", "MYRIAD_VERSION_MINOR", "MYRIAD_VERSION_PATCH")
 CMAKE_FUNCTIONS = ("myriad_add_models",)
 # A user's project gets the defaults of the modules, before those of the library's own build.
 CMAKE_FILES = ("cmake/MyriadModels.cmake", "cmake/MyriadXsimd.cmake", "cmake/MyriadCuda.cmake", "CMakeLists.txt")
 
+# Pages of docs/ with an entry, a heading or the first cell of a row, for each name that the sources look for: in a type
+# of that name, or in the environment. With the fewest names that there must be, else they were not read.
+MEMBER_PAGES = {"Model": ("model_members", 35), "Method": ("method_members", 15), "environment": ("environment", 1)}
+MEMBER_SOURCES = ("include", "backends", "src")
+
 DOXYFILE = """
 QUIET = YES
-WARNINGS = NO
+WARNINGS = YES
 INPUT = "{source}/include/myriad"
 RECURSIVE = YES
 FILE_PATTERNS = *.hpp
@@ -307,16 +315,78 @@ def read(source, doxygen):
     with tempfile.TemporaryDirectory() as folder:
         doxyfile = pathlib.Path(folder, "Doxyfile")
         doxyfile.write_text(DOXYFILE.format(source=source, output=folder), encoding="utf-8")
-        subprocess.run([doxygen, str(doxyfile)], check=True, stdout=subprocess.DEVNULL)
+        done = subprocess.run([doxygen, str(doxyfile)], check=True, capture_output=True, text=True)
+        if done.stderr.strip():
+            raise SystemExit(done.stderr.strip().replace(f"{source}/", "") + "\nDoxygen warns of comments: mend them")
         classes = read_classes(pathlib.Path(folder, "xml"))
     return classes, read_macros(source), read_cmake(source)
 
 
+def names_looked_for(source, owner):
+    """What the sources look for by name in a template parameter `owner`, as `owner::name`, with its first place.
+
+    Names that a macro puts together from its arguments, as `owner::n_##kind`, are those of all its uses."""
+    texts = {}
+    for folder in MEMBER_SOURCES:
+        for file in sorted((source / folder).rglob("*")):
+            if file.suffix in (".hpp", ".cpp", ".cu", ".cuh"):
+                text = re.sub(r"//.*|/\*.*?\*/", "", file.read_text(encoding="utf-8"))
+                texts[str(file.relative_to(source))] = text.replace("\\\n", " ")
+    found = {}
+    if owner == "environment":
+        for file, text in texts.items():
+            for match in re.finditer(r"\bgetenv\(\"(\w+)\"\)", text):
+                found.setdefault(match[1], file)
+        return found
+    member = re.compile(rf"\b{owner}>?::(?:template\s+)?(\w+(?:\s*##\s*\w+)*)")
+    for file, text in texts.items():
+        for line in text.splitlines():
+            macro = re.match(r"\s*#\s*define (\w+)\(([^)]*)\)(.*)", line)
+            if not macro:
+                for match in re.finditer(rf"\b{owner}::(?:template\s+)?(\w+)", line):
+                    found.setdefault(match[1], file)
+                continue
+            parameters = [p.strip() for p in macro[2].split(",")]
+            for match in member.finditer(macro[3]):
+                parts = re.split(r"\s*##\s*", match[1])
+                if not any(p in parameters for p in parts):
+                    if not match[0].startswith(f"{owner}>"):
+                        found.setdefault(match[1], file)
+                    continue
+                for user, used in texts.items():
+                    for call in re.finditer(rf"^(?!\s*#).*?\b{macro[1]}\((\w+)[^)]*\)", used, flags=re.M):
+                        arguments = [a.strip() for a in call[0][call[0].index("(") + 1:-1].split(",")]
+                        values = dict(zip(parameters, arguments))
+                        found.setdefault("".join(values.get(p, p) for p in parts), user)
+    return found
+
+
+def check_members(source):
+    """Names that the sources look for without an entry on their page, and headings that nothing looks for."""
+    wrong = 0
+    for owner, (page, fewest) in MEMBER_PAGES.items():
+        file = source / "docs" / f"{page}.md"
+        text = re.sub(r"^```.*?^```$", "", file.read_text(encoding="utf-8"), flags=re.M | re.S)
+        wanted = names_looked_for(source, owner)
+        headings = set(re.findall(r"`(\w+)`", "\n".join(re.findall(r"^### .*", text, flags=re.M))))
+        cells = set(re.findall(r"`(\w+)`", "\n".join(re.findall(r"^\|[^|]*\|", text, flags=re.M))))
+        for name in sorted(wanted.keys() - headings - cells):
+            print(f"{wanted[name]}: {name} is looked for by name and has no entry in docs/{page}.md")
+            wrong += 1
+        for name in sorted(headings - wanted.keys()):
+            print(f"docs/{page}.md: nothing looks for {name}")
+            wrong += 1
+        if len(wanted) < fewest:
+            print(f"Only {len(wanted)} names in {owner} were found: something is wrong with how they are read")
+            wrong += 1
+        print(f"docs/{page}.md: {len(wanted)} names")
+    return wrong
+
+
 def page_of(entity):
     below = entity.file.removeprefix("include/myriad/")
-    if entity.kind == "macro":
-        return "model"
-    return next((page for page, (_, _, files) in PAGES.items() if below.startswith(tuple(files))), None)
+    found = next((page for page, (_, _, files) in PAGES.items() if below.startswith(tuple(files))), None)
+    return "model" if found is None and entity.kind == "macro" else found
 
 
 def undocumented(entities):
@@ -334,7 +404,8 @@ def undocumented(entities):
                     yield m, f"{e.name}::{m.name}::{value}"
 
 
-def check(entities):
+def check(entities, source):
+    wrong_members = check_members(source)
     missing = list(undocumented(entities))
     for entity, name in missing:
         print(f"{entity.file}:{entity.line}: {name} has no description: write a comment that begins with ///")
@@ -346,7 +417,7 @@ def check(entities):
         print(f"Only {count} public entities were found: something is wrong with how they are read")
         return 1
     print(f"{count} public entities, {len(missing)} without a description")
-    return 1 if missing or homeless else 0
+    return 1 if missing or homeless or wrong_members else 0
 
 
 # On their pages before all others.
@@ -438,8 +509,18 @@ def write(entities, folder):
             write_entity(out, e)
         (folder / f"{page}.md").write_text("\n".join(out), encoding="utf-8")
     out = ["# CMake\n",
-           "What `find_package(myriad)`, `add_subdirectory` and `FetchContent` provide. The targets of the library are",
-           "`myriad::openmp` and, with `MYRIAD_ENABLE_CUDA`, `myriad::cuda`; `myriad_add_models` links them.\n"]
+           "What `find_package(myriad)`, `add_subdirectory` and `FetchContent` provide.\n",
+           "## Targets and components\n",
+           "`find_package(myriad REQUIRED COMPONENTS openmp cuda)` asks for components; one that is not installed is",
+           "an error. Without `COMPONENTS` all that are installed are found. `cmake --install --component` installs",
+           "one.\n",
+           "| component | target | what |\n|---|---|---|",
+           "| `core`, always found | `myriad::myriad` | the headers, and a static library of what depends on no model: "
+           "for code that uses no backend itself |",
+           "| `openmp` | `myriad::openmp` | the CPU backend, with `myriad_add_models`; needs OpenMP, and "
+           "xsimd unless `MYRIAD_SIMD` is `OFF` |",
+           "| `cuda` | `myriad::cuda` | the GPU backend, in builds with `MYRIAD_ENABLE_CUDA` |",
+           "\n`myriad_add_models` links the backends to the target that it is given.\n"]
     for e in entities:
         if e.kind == "CMake function":
             write_entity(out, e)
@@ -458,7 +539,11 @@ def write(entities, folder):
         names = [f"`{e.name}`" for e in entities_of(page, entities)]
         shown = list(dict.fromkeys(names))
         out.append(f"| [{title}]({page}.md) | {', '.join(shown[:8])}{', ...' if len(shown) > 8 else ''} |")
-    out.append("| [CMake](cmake.md) | `myriad_add_models`, options |")
+    out.append("| [CMake](cmake.md) | targets, components, `myriad_add_models`, options |")
+    out.append("\nWhat is found by name, and not declared in a header:\n\n| page | what |\n|---|---|")
+    out.append("| [Members of a model](../model_members.md) | components, functions, hooks, declarations |")
+    out.append("| [Members of a method](../method_members.md) | those of an integration method of your own |")
+    out.append("| [Environment variables](../environment.md) | those that are read when a program runs |")
     out.append("\n```{toctree}\n:hidden:\n" + "\n".join(PAGES) + "\ncmake\n```")
     (folder / "index.md").write_text("\n".join(out) + "\n", encoding="utf-8")
 
@@ -477,7 +562,7 @@ def main():
     classes, macros, cmake = read(arguments.source.resolve(), doxygen)
     entities = macros + classes + cmake
     if arguments.check:
-        return check(entities)
+        return check(entities, arguments.source.resolve())
     write(entities, arguments.write)
     return 0
 

@@ -84,7 +84,7 @@ class ensemble {
     static_assert(std::is_same_v<R, double> || std::is_same_v<R, float>, "an ensemble's real type is double or float");
 
 public:
-    /// The model.
+    /// The struct that the instances are of; its enumerations are what the accessors take.
     using model = Model;
     /// The type of states, parameters, accessories and times.
     using real = R;

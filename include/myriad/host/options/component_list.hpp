@@ -19,7 +19,7 @@ namespace myriad {
 /// enumeration are refused by the call that receives the options.
 class component_list {
 public:
-    /// One of them.
+    /// A component in a list, which converts from an enumerator or a number.
     class component {
     public:
         /// From an enumerator, or a number counted from 0.

@@ -18,7 +18,8 @@ struct cash_karp {
     /// Whether the last stage of an accepted step is the first of the next, which saves an evaluation.
     static constexpr bool first_same_as_last = false;
 
-    /// The coefficients.
+    /// The coefficients, computed at compile time in double precision: the nodes, and the weights of the stages in each
+    /// other, in the solution and in the error estimate. A method of your own gives its own here.
     static constexpr explicit_tableau<stages> tableau() {
         explicit_tableau<stages> t{};
         t.c = {0, 1.0 / 5, 3.0 / 10, 3.0 / 5, 1, 7.0 / 8};
