@@ -25,8 +25,8 @@ REPORTS = {
     "docs/validation.md": (r"^\* sources: (\w+)", NUMERICS, 12, "scripts/validate.sh"),
     "docs/methods.md": (r"The figures are for commit (\w+)", ON_GPUS, 20, "scripts/method_registers.py"),
     "validation/gpu/results.csv": (r"^# sources: (\w+)", ON_GPUS, 30, "scripts/validate.sh --device cuda"),
-    "benchmarks/results/h200.csv": (r"^# commit: (\w+)", ON_GPUS, 30, "scripts/gpu.sh --bench"),
-    "benchmarks/results/cpu.csv": (r"^# commit: (\w+)", ON_CPUS, 20, "scripts/bench.sh"),
+    "benchmarks/results/h200.csv": (r"^# commit: (\w+)", ON_GPUS, 40, "scripts/gpu.sh --bench"),
+    "benchmarks/results/cpu.csv": (r"^# commit: (\w+)", ON_CPUS, 40, "scripts/bench.sh"),
 }
 CODE = re.compile(r"\.(hpp|cuh)$")
 
