@@ -34,4 +34,45 @@ TEST_CASE("masks of a pack are set lane by lane, and joined lane by lane") {
     CHECK_FALSE(masks.get(1, 0));
 }
 
+TEST_CASE("operators work on all masks at once, and on no bits beyond them") {
+    mask_set<bool, 70> even, high;
+    even.clear();
+    high.clear();
+    for (int j = 0; j < 70; j += 2) even.set(j, true);
+    for (int j = 32; j < 70; ++j) high.set(j, true);
+    const auto both = even & high, either = even | high, one = even ^ high, odd = ~even;
+    for (int j = 0; j < 70; ++j) {
+        CAPTURE(j);
+        CHECK(both[j] == (j % 2 == 0 && j >= 32));
+        CHECK(either[j] == (j % 2 == 0 || j >= 32));
+        CHECK(one[j] == (either[j] && !both[j]));
+        CHECK(odd[j] == (j % 2 == 1));
+        CHECK(even.signed_by(j, 1.5) == (j % 2 == 0 ? 1.5 : -1.5));
+        CHECK(even.signed_by(j, 1.5f) == (j % 2 == 0 ? 1.5f : -1.5f));
+    }
+    CHECK((even | odd).all_of());
+    CHECK_FALSE(either.all_of());
+    CHECK_FALSE((~(even | odd)).any_of());
+    CHECK_FALSE(even.in(false).any_of());
+    CHECK(even.in(true)[2]);
+}
+
+TEST_CASE("operators work on each lane of a pack by itself") {
+    using mask = myriad::mask_of<myriad::pack<double, 1>>;
+    const std::uint32_t bits[] = {0b01};
+    auto first = mask_set<mask, 2>::from_bits(bits);
+    CHECK(first.get(0, 0));
+    CHECK_FALSE(first.get(1, 0));
+    CHECK(myriad::detail::get_lane((first | ~first).all_of(), 0));
+    CHECK_FALSE(myriad::detail::get_lane((first & ~first).any_of(), 0));
+    CHECK_FALSE((first ^ first).get(0, 0));
+    CHECK(myriad::detail::get_lane(first.signed_by(1, myriad::pack<double, 1>(2.0)), 0) == -2.0);
+    if (myriad::lanes_of < myriad::pack < double, 1 >>> 1) {
+        first.set(1, 1, true);
+        CHECK(first.get(1, 1));
+        CHECK_FALSE(first.in(!first[1]).get(0, 1));
+        CHECK(first.in(!first[1]).get(0, 0));
+    }
+}
+
 }  // namespace

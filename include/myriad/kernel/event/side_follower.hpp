@@ -181,9 +181,9 @@ private:
     MYRIAD_FUNCTION bool fires_at_jump(int j, int i, const fired& events) const {
         return events.which.get(j, i) && abs(get_lane(events.value[j], i)) > args.event[j].tolerance;
     }
-    /// Slopes of the event functions of lane i along the solution, from the data `at`; of a function right before a
-    /// jump, where its slope is zero, a number that tells whether it is heading for the jump. It is not where a flight
-    /// is too short for the resolution of t.
+    /// Slopes of the event functions of lane i along the solution, from the data `at`. For a function right before a
+    /// jump, where the slope is zero, a number of the sign that it would have: towards the jump if the function is past
+    /// it a little ahead.
     MYRIAD_FUNCTION reals headings(int i, const lane_data<Model, S>& at, const fired& events) {
         const state along = s.slopes.of_lane(i, s.now(), at, s.extra_evaluations);
         const auto& p = inputs_of(i, at);
