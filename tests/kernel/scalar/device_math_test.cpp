@@ -86,6 +86,15 @@ TEMPLATE_TEST_CASE("sincos and sincospi err by at most 2.5 and 2 ulps on the dev
     }
 }
 
+TEST_CASE("sin and cos err by at most 2.1 ulps on the device, at any angle") {
+    for (const double range : {0.8, 60.0, 8000.0, 1e9, 1e12, 1e15, 1e22}) {
+        CAPTURE(range);
+        const auto all = evaluate<double>(spread<double>(-range, range, false), 1);
+        CHECK(worst(all, values::sine_alone, [](long double x) { return std::sin(x); }) <= 2.1);
+        CHECK(worst(all, values::cosine_alone, [](long double x) { return std::cos(x); }) <= 2.1);
+    }
+}
+
 TEMPLATE_TEST_CASE("sqrt is rounded correctly on the device, and special values are those of the standard", "", double,
                    float) {
     using R = TestType;

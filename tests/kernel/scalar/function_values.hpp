@@ -9,7 +9,20 @@ namespace function_values {
 struct values {
     enum state { unused, n_state };
     enum parameter { x, y, n_parameter };
-    enum accessory { power, inverse, sine, cosine, sine_pi, cosine_pi, root, smaller, larger, n_accessory };
+    enum accessory {
+        power,
+        inverse,
+        sine,
+        cosine,
+        sine_alone,
+        cosine_alone,
+        sine_pi,
+        cosine_pi,
+        root,
+        smaller,
+        larger,
+        n_accessory
+    };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto&) {
@@ -22,6 +35,8 @@ struct values {
         lane.accessory[inverse] = myriad::reciprocal(angle);
         lane.accessory[sine] = both.sine;
         lane.accessory[cosine] = both.cosine;
+        lane.accessory[sine_alone] = myriad::sin(angle);
+        lane.accessory[cosine_alone] = myriad::cos(angle);
         lane.accessory[sine_pi] = both_pi.sine;
         lane.accessory[cosine_pi] = both_pi.cosine;
         lane.accessory[root] = myriad::sqrt(angle);

@@ -487,6 +487,34 @@ TEST_CASE("sincos and sincospi are accurate to the documented ulps, in packs and
     of_type(float{});
 }
 
+TEST_CASE("the sine and cosine of GPUs err by at most 2.1 ulps, near their zeros too, and keep the sign of zero") {
+    using gpu = myriad::detail::half_wave<double>;
+    double worst = 0;
+    const auto compare = [&](double x) {
+        worst = std::fmax(worst, error_in_ulp<double>(gpu::sin(x), std::sin(static_cast<long double>(x))));
+        worst = std::fmax(worst, error_in_ulp<double>(gpu::cos(x), std::cos(static_cast<long double>(x))));
+    };
+    std::mt19937_64 random(43);
+    for (const double range : {0.8, 3.0, 60.0, 1e4, 1e9, gpu::limit}) {
+        CAPTURE(range);
+        std::uniform_real_distribution<double> distribution(-range, range);
+        worst = 0;
+        for (int k = 0; k < 20000; ++k) compare(distribution(random));
+        CHECK(worst <= 2.1);
+    }
+    worst = 0;
+    for (double quarters = 1; quarters < gpu::limit / 2; quarters = std::floor(quarters * 1.01) + 1) {
+        const auto root = static_cast<double>(quarters * (std::acos(-1.0L) / 2));
+        for (const double x : {std::nextafter(root, 0), root, std::nextafter(root, 2 * root)}) compare(x);
+    }
+    CHECK(worst <= 2.1);
+    CHECK(gpu::sin(0) == 0);
+    CHECK(std::signbit(gpu::sin(-0.0)));
+    CHECK(gpu::cos(0) == 1);
+    CHECK(std::isnan(gpu::sin(std::numeric_limits<double>::quiet_NaN())));
+    CHECK(std::isnan(gpu::cos(std::numeric_limits<double>::infinity())));
+}
+
 TEST_CASE("sincos and sincospi are NaN, and not wrong, beyond their range") {
     const auto of_type = []<class T>(T) {
         const T angle = std::is_same_v<T, double> ? T(0x1.0p31) : T(0x1.0p17);

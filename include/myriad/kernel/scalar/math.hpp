@@ -20,6 +20,12 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class S>
 concept real_kind = (kind_rank<S> > 0) || std::floating_point<S>;
 
+#if defined(__CUDACC__)
+/// For large angles and those that are not finite: one copy, out of line, as the call is rare and its code long.
+inline __device__ __noinline__ double sin_of_large(double x) { return std::sin(x); }
+inline __device__ __noinline__ double cos_of_large(double x) { return std::cos(x); }
+#endif
+
 template <std::floating_point T>
 struct functions<T> {
     static constexpr T pi = T(3.14159265358979323846L);
@@ -29,8 +35,6 @@ struct functions<T> {
     static MYRIAD_FUNCTION T abs(T x) { return std::fabs(x); }
     static MYRIAD_FUNCTION T floor(T x) { return std::floor(x); }
     static MYRIAD_FUNCTION T round(T x) { return std::round(x); }
-    static MYRIAD_FUNCTION T sin(T x) { return std::sin(x); }
-    static MYRIAD_FUNCTION T cos(T x) { return std::cos(x); }
     static MYRIAD_FUNCTION T tan(T x) { return std::tan(x); }
     static MYRIAD_FUNCTION T asin(T x) { return std::asin(x); }
     static MYRIAD_FUNCTION T acos(T x) { return std::acos(x); }
@@ -94,6 +98,22 @@ struct functions<T> {
         }
     }
     static MYRIAD_FUNCTION T fma(T a, T b, T c) { return std::fma(a, b, c); }
+    static MYRIAD_FUNCTION T sin(T x) {
+        if constexpr (sizeof(T) == sizeof(double)) {
+            const bool large = !(std::fabs(x) <= half_wave<T>::limit);
+            return MYRIAD_UNLIKELY(large) ? sin_of_large(x) : half_wave<T>::sin(x);
+        } else {
+            return std::sin(x);
+        }
+    }
+    static MYRIAD_FUNCTION T cos(T x) {
+        if constexpr (sizeof(T) == sizeof(double)) {
+            const bool large = !(std::fabs(x) <= half_wave<T>::limit);
+            return MYRIAD_UNLIKELY(large) ? cos_of_large(x) : half_wave<T>::cos(x);
+        } else {
+            return std::cos(x);
+        }
+    }
     static MYRIAD_FUNCTION T sinpi(T x) { return ::sinpi(x); }
     static MYRIAD_FUNCTION T cospi(T x) { return ::cospi(x); }
     static MYRIAD_FUNCTION T reciprocal(T x) {
@@ -108,6 +128,8 @@ struct functions<T> {
         }
     }
 #else
+    static MYRIAD_FUNCTION T sin(T x) { return std::sin(x); }
+    static MYRIAD_FUNCTION T cos(T x) { return std::cos(x); }
     static MYRIAD_FUNCTION T sqrt(T x) { return std::sqrt(x); }
     static MYRIAD_FUNCTION T fma(T a, T b, T c) {
 #if MYRIAD_FUSED
@@ -149,9 +171,9 @@ MYRIAD_UNARY(abs)
 MYRIAD_UNARY(floor)
 /// The nearest integer, halves away from zero.
 MYRIAD_UNARY(round)
-/// Sine of an angle in radians.
+/// Sine of an angle in radians; on GPUs, in double precision, within 2.1 ulps.
 MYRIAD_UNARY(sin)
-/// Cosine of an angle in radians.
+/// Cosine of an angle in radians; on GPUs, in double precision, within 2.1 ulps.
 MYRIAD_UNARY(cos)
 /// Tangent of an angle in radians.
 MYRIAD_UNARY(tan)
