@@ -147,11 +147,17 @@ private:
         return static_cast<unsigned>(per_multiprocessor * multiprocessors_);
     }
 
-    /// Ensembles too small to fill the GPU are spread over all its multiprocessors, down to one warp per block.
+    /// Ensembles too small to fill the GPU are spread over all its multiprocessors, down to one warp per block. With
+    /// still fewer instances than warps have threads, a warp gets only some of its threads to run, as long as each has
+    /// a scheduler for itself: then fewer threads wait for what only one of them does.
     int block_for(std::int64_t size) const {
         int block = chosen_block_;
         if (chosen_by_user_) return block;
         while (block > 32 && size <= static_cast<std::int64_t>(multiprocessors_) * block / 2) block /= 2;
+        if constexpr (costs_differ<Model, Method>) {
+            const std::int64_t schedulers = least_threads() / 32;
+            while (block > 1 && block <= 32 && size <= schedulers * (block / 2)) block /= 2;
+        }
         return block;
     }
 
