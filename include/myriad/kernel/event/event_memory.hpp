@@ -12,6 +12,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class R>
 struct event_memory {
     redone_step<R, n_event<Model>> redo;
+    std::int32_t waited;                         // turns that it has waited for other threads' events
     vec<std::int32_t, n_event<Model>> lingered;  // how often in a row the event has fired without its function leaving
 };
 

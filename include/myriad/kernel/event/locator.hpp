@@ -12,8 +12,19 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// What happens to an accepted trial.
-enum class trial_outcome : bool { stands, is_redone };
+/// What happens to an accepted trial: it is redone; or it stands, and the sides of the event functions are up to date,
+/// or still those at its start.
+enum class trial_outcome { is_redone, stands, stands_before_sides };
+
+/// The event functions at the end of a trial, compared with the sides they were on.
+template <class S, int events>
+struct event_sight {
+    vec<S, events> g1;
+    mask_set<mask_of<S>, events> crossed, beyond;  // its tolerance, on the other side and on the one it was on
+    mask_of<S> busy;                               // an accepted trial has to be looked at more closely
+};
+template <class S>
+struct event_sight<S, 0> {};
 
 template <class Model, class Method, class S>
 struct event_locator {
@@ -29,6 +40,7 @@ struct event_locator {
     using ends_of_step = step_ends<Model, R>;
     using trial_type = trial_step<Method, S, n>;
     using fired = fired_events<Model, S>;
+    using sight = event_sight<S, m>;
 
     follower sides;
 
@@ -41,11 +53,28 @@ struct event_locator {
         s.final_step = s.final_step & !locating;
     }
 
-    /// Checks an accepted trial that ends at t1 with event functions g1. Lanes that crossed, or stopped short of their
-    /// target, are set up for a redone step and removed from `accepted`. `events` then holds those that fired: at the
-    /// end of the trial or, in lanes removed from `accepted`, at its start.
-    MYRIAD_FUNCTION void look(const trial_type& trial, const S& t1, const values& g1, mask& accepted, fired& events) {
+    /// What the event functions g1 at the end of a trial show of it, whether it will be accepted or not.
+    MYRIAD_FUNCTION sight watch(const values& g1) const {
         const auto& args = sides.args;
+        const auto& e = sides.e;
+        sight seen{g1, {}, {}, mask(false)};
+        seen.crossed.clear();
+        seen.beyond.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const S g = e.above.signed_by(j, g1[j]), tolerance = S(args.event[j].tolerance);
+            seen.crossed.set(j, g < -tolerance);
+            seen.beyond.set(j, g > tolerance);
+        }
+        seen.busy = e.locating | (e.open | e.on_jump | (seen.crossed & asked())).any_of() | mask(args.sub_samples > 1) |
+                    (sides.s.final_step & !(seen.crossed | seen.beyond).all_of());
+        return seen;
+    }
+
+    /// Checks an accepted trial that ends at t1. Lanes that crossed, or stopped short of their target, are set up for a
+    /// redone step and removed from `accepted`. `events` then holds those that fired: at the end of the trial or, in
+    /// lanes removed from `accepted`, at its start.
+    MYRIAD_FUNCTION void look(const trial_type& trial, const S& t1, const sight& seen, mask& accepted, fired& events) {
         auto& e = sides.e;
         e.locating = e.locating & accepted;  // a trial that failed its error test gets its length from the controller
         if constexpr (is_pack<S>) {
@@ -54,32 +83,23 @@ struct event_locator {
         } else {
             events.clear();
         }
-        masks crossed, beyond;  // its tolerance, on the other side and on the one that the function was on
-        crossed.clear();
-        beyond.clear();
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            const S g = e.above.signed_by(j, g1[j]), tolerance = S(args.event[j].tolerance);
-            crossed.set(j, g < -tolerance);
-            beyond.set(j, g > tolerance);
-        }
-        const masks asked = (e.above & masks::from_bits(args.falling)) | (~e.above & masks::from_bits(args.rising));
-        mask busy = e.locating | (e.open | e.on_jump | (crossed & asked)).any_of() | mask(args.sub_samples > 1);
-        busy = accepted & (busy | (sides.s.final_step & !(crossed | beyond).all_of()));
-        const mask follow = accepted & !busy;
+        const mask busy = accepted & seen.busy;
+        mask follow = accepted & !busy;
         if (MYRIAD_UNLIKELY(any(busy))) {
+            const trial_ends ends = ends_of(trial, t1, seen.g1);
             if constexpr (is_pack<S>) {
                 // Copies, so that only these need an address and the caller's variables stay in registers.
-                const trial_ends ends = ends_of(trial, t1, g1);
                 mask still_accepted = accepted;
-                look_out_of_line(busy, ends, still_accepted, events);
+                look_out_of_line(busy, ends, seen, still_accepted, events);
                 accepted = still_accepted;
             } else {
-                if (look_closer(0, ends_of(trial, t1, g1), events) == trial_outcome::is_redone) accepted = false;
+                const trial_outcome outcome = look_closer(0, ends, seen, events);
+                accepted = outcome != trial_outcome::is_redone;
+                follow = outcome == trial_outcome::stands_before_sides;
             }
         }
-        e.above = e.above ^ crossed.in(follow);
-        e.left = e.left | (crossed | beyond).in(follow);
+        e.above = e.above ^ seen.crossed.in(follow);
+        e.left = e.left | (seen.crossed | seen.beyond).in(follow);
     }
 
 private:
@@ -94,14 +114,15 @@ private:
         if constexpr (Method::first_same_as_last) ends.slope_end = trial.slope_end();
         return ends;
     }
-    [[gnu::noinline]] void look_out_of_line(const mask& busy, const trial_ends& ends, mask& accepted, fired& events) {
+    [[gnu::noinline]] void look_out_of_line(const mask& busy, const trial_ends& ends, const sight& seen, mask& accepted,
+                                            fired& events) {
         for_each_lane(busy, [&](int i) MYRIAD_LAMBDA {
-            if (look_closer(i, ends, events) == trial_outcome::is_redone) set_lane(accepted, i, false);
+            if (look_closer(i, ends, seen, events) == trial_outcome::is_redone) set_lane(accepted, i, false);
         });
     }
 
     /// Checks the trial of one lane in which an event may have fired.
-    MYRIAD_FUNCTION trial_outcome look_closer(int i, const trial_ends& ends, fired& events) {
+    MYRIAD_FUNCTION trial_outcome look_closer(int i, const trial_ends& ends, const sight& seen, fired& events) {
         const auto& args = sides.args;
         auto& s = sides.s;
         auto& e = sides.e;
@@ -113,23 +134,36 @@ private:
         step.y = get_lanes<R>(s.data.y, i);
         step.y1 = get_lanes<R>(ends.y, i);
         step.slope = get_lanes<R>(ends.slope_start, i);
-        // Not the pack's values, which may round differently from those they are compared with.
-        step.g1 = is_pack<S> ? detail::evaluate_events<Model>(step.t1, step.y1, p) : get_lanes<R>(ends.g, i);
-        sides.settle_open_sides(i, step);
-
         const bool scans = args.sub_samples > 1;
+        bool sides_are_known = false;
+        if constexpr (!is_pack<S>) sides_are_known = !scans && !(e.open | e.on_jump).any_of();
         reals side;
         flags crossed;
-        crossed.clear();
         bool within = false;
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            side[j] = sides.side_of(j, i);
-            within = within || abs(step.g1[j]) <= args.event[j].tolerance;
-            crossed.set(j, sides.crosses(j, side[j], step.g1[j]) && !sides.is_at_jump(j, i, step.h));
+        if (sides_are_known) {
+            if constexpr (!is_pack<S>) {
+                step.g1 = ends.g;
+                crossed = seen.crossed & asked();
+                within = !(seen.crossed | seen.beyond).all_of();
+            }
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) side[j] = e.above.get(j, i) ? R(1) : R(-1);
+        } else {
+            // Not the pack's values, which may round differently from those they are compared with.
+            step.g1 = is_pack<S> ? detail::evaluate_events<Model>(step.t1, step.y1, p) : get_lanes<R>(ends.g, i);
+            sides.settle_open_sides(i, step);
+            crossed.clear();
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) {
+                side[j] = sides.side_of(j, i);
+                within = within || abs(step.g1[j]) <= args.event[j].tolerance;
+                crossed.set(j, sides.crosses(j, side[j], step.g1[j]) && !sides.is_at_jump(j, i, step.h));
+            }
         }
         const bool locating = get_lane(e.locating, i), is_last = get_lane(s.final_step, i) && within;
-        if (scans || crossed.any_of() || (locating ? !arrival_of(i, step, side).is_plain() : is_last)) {
+        arrival reached{};
+        if (locating) reached = arrival_of(i, step, side);
+        if (scans || crossed.any_of() || (locating ? !reached.is_plain() : is_last)) {
             if constexpr (Method::first_same_as_last) {
                 step.slope1 = get_lanes<R>(ends.slope_end, i);
             } else {
@@ -138,20 +172,41 @@ private:
             }
         }
         R low = R(0), high = R(1);
-        if (MYRIAD_UNLIKELY(scans)) crossed = scan(i, step, side, low, high);
+        if (MYRIAD_UNLIKELY(scans)) {
+            crossed = scan(i, step, side, low, high);
+            if (locating) reached = arrival_of(i, step, side);
+        }
         if (crossed.any_of()) {
             know_start(i, step, side);
             begin_or_shorten(i, step, side, crossed, low, high, events);
             return trial_outcome::is_redone;
         }
         if (locating) {
-            if (arrive(i, step, side, events) == trial_outcome::is_redone) return trial_outcome::is_redone;
+            if (sides_are_known && reached.is_plain()) {
+                const auto& redo = sides.memory_of(i).redo;
+                MYRIAD_UNROLL
+                for (int j = 0; j < m; ++j) events.put(j, i, redo.target == j, step.g1[j]);
+                end_location(i);
+                return trial_outcome::stands_before_sides;
+            }
+            if (arrive(i, step, side, reached, events) == trial_outcome::is_redone) return trial_outcome::is_redone;
         } else if (is_last) {
             know_start(i, step, side);
             end_on_root(i, step, side, events);
         }
         sides.follow(i, step, side);
         return trial_outcome::stands;
+    }
+
+    /// The crossings that are events, from where the functions are.
+    MYRIAD_FUNCTION masks asked() const {
+        const auto& above = sides.e.above;
+        return (above & masks::from_bits(sides.args.falling)) | (~above & masks::from_bits(sides.args.rising));
+    }
+    /// The event to which the step was redone is reached.
+    MYRIAD_FUNCTION void end_location(int i) {
+        set_lane(sides.e.locating, i, false);
+        stepping<Model, Method, S>{sides.args, sides.s}.resume(i, sides.memory_of(i).redo.resume);
     }
 
     /// Evaluates the event functions at the start of the step. A function at a jump that no step has passed yet counts
@@ -259,11 +314,11 @@ private:
 
     /// Handles a redone step that ended before its crossing: within the tolerance its events fire; else it is
     /// lengthened.
-    MYRIAD_FUNCTION trial_outcome arrive(int i, const ends_of_step& step, const reals& side, fired& events) {
+    MYRIAD_FUNCTION trial_outcome arrive(int i, const ends_of_step& step, const reals& side, const arrival& reached,
+                                         fired& events) {
         const auto& args = sides.args;
         auto& e = sides.e;
         auto& redo = sides.memory_of(i).redo;
-        const arrival reached = arrival_of(i, step, side);
         const bool narrow = redo.is_between(step.h);
         reals slope = step.g1, middle = step.g1;
         if (!reached.is_plain()) {
@@ -298,8 +353,7 @@ private:
             events.put(j, i, happens, step.g1[j]);
             if (!reached.all_left && !timeless && !e.on_jump.get(j, i) && abs(middle[j]) > near) e.left.set(j, i, true);
         }
-        set_lane(e.locating, i, false);
-        stepping<Model, Method, S>{args, sides.s}.resume(i, redo.resume);
+        end_location(i);
         return trial_outcome::stands;
     }
 

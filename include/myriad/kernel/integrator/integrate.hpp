@@ -9,6 +9,7 @@
 #include "myriad/kernel/controller/initial_step.hpp"
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/locator.hpp"
+#include "myriad/kernel/integrator/company.hpp"
 #include "myriad/kernel/integrator/free_run.hpp"
 #include "myriad/kernel/integrator/hook_driver.hpp"
 #include "myriad/kernel/integrator/phase.hpp"
@@ -30,6 +31,7 @@ struct integrator {
     using trial_type = trial_step<Method, S, n>;
     using stepping_type = stepping<Model, Method, S>;
     using event_locator_type = event_locator<Model, Method, S>;
+    using sight_type = event_sight<S, m>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S> s;
@@ -52,7 +54,12 @@ struct integrator {
             trial_type trial;
             propose_step(locator);
             take_step(trial);
-            mask accepted = judge(trial, locator, events);
+            sight_type seen;
+            if constexpr (has_events<Model>) {
+                seen = locator.watch(detail::evaluate_events<Model>(end_time(), trial.y, s.data));
+                if (waits(seen)) continue;
+            }
+            mask accepted = judge(trial, seen, locator, events);
             if constexpr (samples) sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted);
             mask reduced;
             if constexpr (has_reductions<Model>)
@@ -124,21 +131,35 @@ struct integrator {
         detail::take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
     }
 
+    /// Whether the trial, in which an event may begin, is to be taken again when more threads of the warp have one.
+    MYRIAD_FUNCTION bool waits(const sight_type& seen) {
+        if constexpr (is_pack<S>) {
+            return false;
+        } else {
+            constexpr auto interval = stepping_type::look_interval;
+            // The watch over long phases must not see an iteration twice.
+            const bool watched = interval > 0 && s.iteration % (interval > 0 ? interval : 1) == 1;
+            const bool waits = detail::waits_for_company(seen.busy && !e.locating, watched, memory->waited);
+            if (waits) --s.iteration;
+            return waits;
+        }
+    }
+
     /// Accepts or rejects the trial by its error, its finiteness, and its not crossing an event.
-    MYRIAD_FUNCTION mask judge(const trial_type& trial, event_locator_type& locator, fired_events<Model, S>& events) {
+    MYRIAD_FUNCTION mask judge(const trial_type& trial, const sight_type& seen, event_locator_type& locator,
+                               fired_events<Model, S>& events) {
         const S t1 = end_time();
         s.slopes.forget_end();
         stepping_type steps{args, s};
         if constexpr (!has_events<Model>) {
             return steps.judge(trial, t1, mask(true), s.running());
         } else {
-            const auto g1 = detail::evaluate_events<Model>(t1, trial.y, s.data);
             mask defined = !e.undefined;
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) defined = defined & (g1[j] == g1[j]);
+            for (int j = 0; j < m; ++j) defined = defined & (seen.g1[j] == seen.g1[j]);
             const mask may_stick = s.running() & !e.locating;  // a flight may be shorter than the resolution of t
             mask accepted = steps.judge(trial, t1, defined, may_stick);
-            locator.look(trial, t1, g1, accepted, events);
+            locator.look(trial, t1, seen, accepted, events);
             return accepted;
         }
     }
