@@ -133,8 +133,8 @@ struct adaptive_stepping {
     /// Whether lane i creeps towards a point where its right-hand side has no value: at the pace of its last
     /// `look_interval` iterations, `max_steps` of them would take t neither to t_end, nor on by the time since t_begin
     /// or by the first step. Where t is finer than the state, a step too short to change the state succeeds and the
-    /// next, longer one fails, for ever. To be called after that many iterations each time: the ensemble's array of
-    /// times, unused within a phase, holds t at the last check.
+    /// next, longer one fails, for ever. To be called after that many iterations each time, or fewer before the first:
+    /// the ensemble's array of times, unused within a phase, holds t at the last check.
     MYRIAD_FUNCTION bool creeps(int i) {
         const std::int64_t index = s.instance[i];
         const R t = get_lane(s.data.t, i), gained = abs(t - args.t[index]);

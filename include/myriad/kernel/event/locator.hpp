@@ -379,7 +379,7 @@ private:
         const auto& args = sides.args;
         const auto& s = sides.s;
         const R t_begin = args.t_begin != nullptr ? args.t_begin[s.instance[i]] : args.common_t_begin;
-        const R steps = static_cast<R>(s.iteration - s.phase_start[i]);
+        const R steps = static_cast<R>(s.iterations_of(args, i));
         const R rounding = R(2) * epsilon_of<R> * steps * max(abs(step.t1), abs(t_begin));
         return min(rounding, R(1.0 / 64) * abs(step.h));
     }

@@ -53,7 +53,7 @@ struct side_follower {
 
     /// Stores the sides of lane i for its next phase. A phase without a step has not evaluated its event functions.
     MYRIAD_FUNCTION void keep(int i) const {
-        if (s.iteration == s.phase_start[i]) return;
+        if (s.iterations_of(args, i) == 0) return;
         const auto& p = inputs_of(i);
         const reals g = detail::evaluate_events<Model>(get_lane(s.data.t, i), get_lanes<R>(s.data.y, i), p);
         MYRIAD_UNROLL

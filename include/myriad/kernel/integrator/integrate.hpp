@@ -28,6 +28,7 @@ struct integrator {
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
     static constexpr bool samples = samples_trajectory<Method>;
+    using watch_type = phase_watch<Model, Method, S>;
     using trial_type = trial_step<Method, S, n>;
     using stepping_type = stepping<Model, Method, S>;
     using event_locator_type = event_locator<Model, Method, S>;
@@ -48,7 +49,7 @@ struct integrator {
             events.clear();
             e.clear();
         }
-        while (fill_lanes(source, locator)) {
+        while (!(any(s.ended) || watch_type{args, s}.is_due()) || fill_lanes(source, locator)) {
             MYRIAD_REJOIN;
             if constexpr (runs_freely<Model, Method>) free_run<Model, Method, S>{args, s}.take_steps();
             trial_type trial;
@@ -80,9 +81,7 @@ struct integrator {
         s.data.shared_integer = shared.integer;
         s.active = mask(false);
         s.ended = mask(true);
-        s.iteration = 0;
-        s.next_look = 0;
-        s.all_iterations = 0;
+        s.clear_iterations(args);
         MYRIAD_UNROLL
         for (int i = 0; i < lanes_of<S>; ++i) s.instance[i] = -1;
     }
@@ -90,16 +89,11 @@ struct integrator {
     /// Moves lanes whose phase has ended to their next phase or instance. Returns false when no lane is running.
     template <class Source>
     MYRIAD_FUNCTION bool fill_lanes(Source& source, event_locator_type& locator) {
-        phase_watch<Model, Method, S> watch{args, s};
+        watch_type watch{args, s};
+        if (is_pack<S> || !any(s.ended)) watch.look();
         if (!any(s.ended)) {
-            if (!watch.is_due()) return true;
-            watch.look();
-            if (!any(s.ended)) {
-                watch.plan();
-                return true;
-            }
-        } else if constexpr (is_pack<S>) {
-            watch.look();  // checks the other lanes
+            watch.plan();
+            return true;
         }
         mask begun = mask(false);
         for_each_lane(s.ended, [&](int i) MYRIAD_LAMBDA {
@@ -192,7 +186,7 @@ MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>
     event_memory<Model, real_of<S>> memory[lanes_of<S>] = {};  // outside the loop's own state, which is in registers
     integrator<Model, Method, S> loop{args, {}, {}, {}, memory};
     loop.run(source, shared);
-    return loop.s.all_iterations + loop.s.iteration;
+    return loop.s.all_iterations_of(args);
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

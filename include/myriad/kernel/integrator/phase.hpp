@@ -122,7 +122,7 @@ private:
     /// Adds the work of the phase to the instance's counters.
     MYRIAD_FUNCTION void count_work(int i) const {
         const std::int64_t index = s.instance[i];
-        const auto trials = static_cast<std::int64_t>(s.iteration - s.phase_start[i]);
+        const auto trials = static_cast<std::int64_t>(s.iterations_of(args, i));
         const auto rejected = static_cast<std::int64_t>(get_lane(s.rejected, i));
         const auto located = static_cast<std::int64_t>(get_lane(s.located, i));
         args.accepted[index] += trials - rejected - located;
@@ -178,11 +178,7 @@ private:
         set_count(s.rejected, i, 0);
         set_count(s.located, i, 0);
         set_count(s.extra_evaluations, i, 0);
-        if constexpr (lanes_of<S> == 1) {
-            s.all_iterations += s.iteration;
-            s.iteration = 0;
-        }
-        s.phase_start[i] = s.iteration;
+        s.begin_iterations(args, i);
         return s.ending[i] == status::success && t != get_lane(s.data.t_end, i);
     }
 
@@ -224,7 +220,7 @@ private:
             args.phase[index] += 1;
         }
         --s.phases_left[i];
-        if (args.cost != nullptr) args.cost[index] = static_cast<std::uint32_t>(s.iteration - s.phase_start[i]);
+        if (args.cost != nullptr) args.cost[index] = static_cast<std::uint32_t>(s.iterations_of(args, i));
         if (failed || s.instance_over[i]) {
             args.ended[index] = 1;
             s.phases_left[i] = 0;

@@ -23,21 +23,23 @@ struct phase_watch {
         if constexpr (is_pack<S>) {
             return s.iteration >= s.next_look;
         } else if constexpr (look_interval > 0) {
-            return s.iteration >= args.max_steps || s.iteration % look_interval == 0;
+            return s.iteration % look_interval == 0;  // at zero, the limit, too
         } else {
-            return s.iteration >= args.max_steps;
+            return s.iteration >= 0;
         }
     }
     /// Ends phases that have reached the limit of trial steps, and those that creep.
     MYRIAD_FUNCTION void look() {
         for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA {
-            const iteration_number iterations = s.iteration - s.phase_start[i];
-            if (iterations >= args.max_steps) s.end_lane(i, status::max_steps);
+            const auto* arguments = &args;
+            MYRIAD_FORGET(arguments);  // else the values it points to occupy registers through the loop
+            const iteration_number iterations = s.iterations_of(*arguments, i),
+                                   left = arguments->max_steps - iterations;
+            if (left <= 0) s.end_lane(i, status::max_steps);
             if constexpr (look_interval > 0) {
-                if (iterations == 0 || iterations % look_interval != 0) return;
-                const auto* arguments = &args;
-                MYRIAD_FORGET(arguments);  // else the values it points to occupy registers through the loop
-                if (stepping_type{*arguments, s}.creeps(i)) s.end_lane(i, status::not_finite);
+                if (iterations == 0 || left % look_interval != 0) return;
+                const bool creeps = stepping_type{*arguments, s}.creeps(i);
+                if (creeps && iterations >= look_interval) s.end_lane(i, status::not_finite);
             }
         });
     }
@@ -46,7 +48,7 @@ struct phase_watch {
         if constexpr (is_pack<S>) {
             s.next_look = s.iteration + args.max_steps;
             for_each_lane(s.active, [&](int i) MYRIAD_LAMBDA {
-                const iteration_number next = s.iteration + left_after(s.iteration - s.phase_start[i]);
+                const iteration_number next = s.iteration + left_after(s.iterations_of(args, i));
                 s.next_look = next < s.next_look ? next : s.next_look;
             });
         }
@@ -56,7 +58,7 @@ struct phase_watch {
         if constexpr (is_pack<S>) {
             return s.next_look - s.iteration;
         } else {
-            return left_after(s.iteration);
+            return left_after(s.iterations_of(args, 0));
         }
     }
 
@@ -65,8 +67,8 @@ private:
     MYRIAD_FUNCTION iteration_number left_after(iteration_number iterations) const {
         iteration_number left = args.max_steps - iterations;
         if constexpr (look_interval > 0) {
-            const iteration_number next = look_interval - iterations % look_interval;
-            left = next < left ? next : left;
+            const iteration_number next = left % look_interval;
+            left = next > 0 ? next : left < look_interval ? left : look_interval;
         }
         return left;
     }

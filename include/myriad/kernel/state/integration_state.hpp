@@ -53,7 +53,8 @@ struct integration_state {
     using mask = mask_of<S>;
     using count = count_of<S>;
     static constexpr int lanes = lanes_of<S>;
-    // A single instance counts iterations from the start of each phase, in one register.
+    // A single instance counts iterations from the start of each phase, in one register, up to zero: so that the check
+    // for the last one needs no other number.
     using iteration_number = std::conditional_t<lanes == 1, std::int32_t, std::int64_t>;
     static constexpr int n = n_state<Model>;
 
@@ -99,6 +100,29 @@ struct integration_state {
         } else {
             return fma(S(steps.done), steps.step, steps.base);
         }
+    }
+
+    MYRIAD_FUNCTION void clear_iterations(const kernel_arguments<Model, R>& args) {
+        iteration = lanes == 1 ? -args.max_steps : 0;
+        next_look = 0;
+        all_iterations = 0;
+    }
+    /// The phase of lane i begins.
+    MYRIAD_FUNCTION void begin_iterations(const kernel_arguments<Model, R>& args, int i) {
+        if constexpr (lanes == 1) {
+            all_iterations = all_iterations_of(args);
+            iteration = -args.max_steps;
+        } else {
+            phase_start[i] = iteration;
+        }
+    }
+    /// Iterations in which the phase of lane i has taken a trial step.
+    MYRIAD_FUNCTION iteration_number iterations_of(const kernel_arguments<Model, R>& args, int i) const {
+        return lanes == 1 ? iteration + args.max_steps : iteration - phase_start[i];
+    }
+    /// Iterations of all phases of the pack.
+    MYRIAD_FUNCTION std::int64_t all_iterations_of(const kernel_arguments<Model, R>& args) const {
+        return all_iterations + (lanes == 1 ? iteration + args.max_steps : iteration);
     }
 
     /// The slope at the committed state of lane i, for inspection.

@@ -82,6 +82,11 @@ MYRIAD_CONSTANT_MEMORY R kept_weight = relative_weight<Method, row, j, R>;
 template <class Method, int row, class R>
 MYRIAD_CONSTANT_MEMORY R kept_first = first_weight<Method, row, R>;
 
+template <class Method, int stage, class R>
+inline constexpr bool is_short_node = is_short(node<Method, stage, R>);
+template <class Method, int stage, class R>
+MYRIAD_CONSTANT_MEMORY R kept_node = node<Method, stage, R>;
+
 /// The same constants as operands.
 template <class Method, int row, int j, class R>
 MYRIAD_FUNCTION R weight_operand() {
@@ -97,6 +102,15 @@ MYRIAD_FUNCTION R first_operand() {
         return first_weight<Method, row, R>;
     } else {
         return kept_first<Method, row, R>;
+    }
+}
+
+template <class Method, int stage, class R>
+MYRIAD_FUNCTION R node_operand() {
+    if constexpr (is_short_node<Method, stage, R>) {
+        return node<Method, stage, R>;
+    } else {
+        return kept_node<Method, stage, R>;
     }
 }
 
@@ -190,7 +204,8 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
             trial.y = argument;
             trial.k[stage] = detail::evaluate_rhs<Model>(t1, argument, p);
         } else {
-            trial.k[stage] = detail::evaluate_rhs<Model>(fma(S(node<Method, stage, R>), h, t), argument, p);
+            trial.k[stage] =
+                detail::evaluate_rhs<Model>(fma(S(detail::node_operand<Method, stage, R>()), h, t), argument, p);
         }
         detail::see_stage_before<Method, stage>(trial.k);
         if constexpr (!Method::first_same_as_last) add_stage(i);
