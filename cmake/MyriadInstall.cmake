@@ -3,18 +3,30 @@
 include(CMakePackageConfigHelpers)
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/myriad")
 
-# myriad_install_component(<component> <target> <headers>...)
+# myriad_install_component(<component> <target> <headers>... [EXCEPT <folder>])
 function(myriad_install_component component target)
+    cmake_parse_arguments(PARSE_ARGV 2 arg "" "EXCEPT" "")
+    set(except)
+    if(arg_EXCEPT)
+        set(except PATTERN ${arg_EXCEPT} EXCLUDE)
+    endif()
     install(TARGETS ${target} EXPORT myriad_${component} ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
                                                                  COMPONENT ${component})
-    install(DIRECTORY ${ARGN} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT ${component}
-            FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cuh")
+    install(DIRECTORY ${arg_UNPARSED_ARGUMENTS} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT ${component}
+            FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cuh" ${except})
     install(EXPORT myriad_${component} NAMESPACE myriad:: DESTINATION "${package_dir}" COMPONENT ${component}
             FILE myriad-${component}.cmake)
 endfunction()
 
-myriad_install_component(core myriad include/myriad)
+myriad_install_component(core myriad include/myriad EXCEPT study)
 myriad_install_component(openmp myriad_openmp backends/openmp/myriad)
+if(MYRIAD_BUILD_STUDY)
+    install(TARGETS myriad_study EXPORT myriad_study ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT study)
+    install(DIRECTORY include/myriad/study DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/myriad" COMPONENT study)
+    install(EXPORT myriad_study NAMESPACE myriad:: DESTINATION "${package_dir}" COMPONENT study
+            FILE myriad-study.cmake)
+    install(FILES cmake/MyriadNetcdf.cmake DESTINATION "${package_dir}" COMPONENT study)
+endif()
 if(MYRIAD_ENABLE_CUDA)
     myriad_install_component(cuda myriad_cuda backends/cuda/myriad)
     install(FILES cmake/MyriadCuda.cmake DESTINATION "${package_dir}" COMPONENT cuda)
@@ -39,5 +51,8 @@ set(CPACK_DEBIAN_PACKAGE_NAME libmyriad-dev)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libxsimd-dev (>= 8.1)")
+if(MYRIAD_BUILD_STUDY)
+    string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", libnetcdf-dev")
+endif()
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "g++ (>= 4:12), cmake (>= 3.25)")
 include(CPack)

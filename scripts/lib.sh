@@ -62,12 +62,15 @@ has_package() {
         libeigen3-dev) has_header eigen3/Eigen/Core ;;
         libxsimd-dev) has_header xsimd/xsimd.hpp ;;
         libcli11-dev) has_header CLI/CLI.hpp ;;
+        libnetcdf-dev) has_header netcdf.h ;;
+        nlohmann-json3-dev) has_header nlohmann/json.hpp ;;
         libboost-dev) has_header boost/numeric/odeint.hpp ;;
         libsundials-dev) has_header cvode/cvode.h ;;
         catch2) has_header catch2/catch.hpp || has_header catch2/catch_test_macros.hpp ;;
         libomp-dev) has_clang_openmp ;;
         libclang-rt-dev) has_clang_runtime ;;
-        python3-matplotlib | python3-scipy) python_with "${1#python3-}" >/dev/null ;;
+        python3-matplotlib | python3-scipy | python3-xarray) python_with "${1#python3-}" >/dev/null ;;
+        python3-netcdf4) python_with netCDF4 >/dev/null ;;
         python3-venv) python3 -c 'import ensurepip, venv' >/dev/null 2>&1 ;;
         doxygen) has_command doxygen ;;
         *) return 1 ;;
