@@ -43,6 +43,7 @@ public:
     const std::vector<double>& listed() const { return list_; }
 
 private:
+    friend class axes;
     friend axis_values linspace(double, double, std::int64_t);
     friend axis_values logspace(double, double, std::int64_t);
     friend axis_values values(std::vector<double>);
