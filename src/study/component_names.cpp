@@ -3,12 +3,19 @@
 #include "myriad/study/component_names.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <iterator>
 #include <utility>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
+
+std::string exact_text(double value) {
+    char text[32];
+    return {text, std::to_chars(text, std::end(text), value).ptr};
+}
 
 const char* name_of(component_kind kind) {
     constexpr const char* names[] = {"state",  "parameter",      "accessory", "integer_accessory",
@@ -55,7 +62,7 @@ const component& component_names::find(std::string_view name, std::initializer_l
             choices(kinds));
     if (found.size() > 1) {
         std::string all;
-        for (const component* c : found) all += (all.empty() ? "" : " or ") + c->full_name();
+        for (const component* c : found) all += message(all.empty() ? "" : " or ", c->full_name());
         throw error(message('"', name, "\" names several components of ", model_, ": write ", all));
     }
     return *found[0];
@@ -85,10 +92,10 @@ std::string component_names::choices(std::initializer_list<component_kind> kinds
         std::string of_kind;
         for (const component& c : all_) {
             if (c.kind != kind || ++named > most) continue;
-            of_kind += (of_kind.empty() ? "" : ", ") + (c.name.empty() ? std::to_string(c.number) : c.name);
+            of_kind += message(of_kind.empty() ? "" : ", ", c.name.empty() ? std::to_string(c.number) : c.name);
         }
         if (of_kind.empty()) continue;
-        text += (text.empty() ? "" : "; ") + (is_time(kind) ? of_kind : message(name_of(kind), ' ', of_kind));
+        text += message(text.empty() ? "" : "; ", is_time(kind) ? "" : name_of(kind), is_time(kind) ? "" : " ", of_kind);
     }
     return text + (named > most ? ", ..." : "");
 }

@@ -3,10 +3,8 @@
 #include "myriad/study/study_plan.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -20,11 +18,6 @@ namespace myriad::studies::inline MYRIAD_ABI {
 
 using json = nlohmann::json;
 using enum component_kind;
-
-std::string exact_text(double value) {
-    char text[32];
-    return {text, std::to_chars(text, std::end(text), value).ptr};
-}
 
 std::string partial_name(const reduction& r) { return r.definition().name + "_partial"; }
 

@@ -12,6 +12,9 @@
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
+/// Text that reads back as exactly that number.
+std::string exact_text(double value);
+
 /// What a named value of an instance is.
 enum class component_kind {
     state,

@@ -89,8 +89,5 @@ study_plan plan_study(const study_request& asked);
 /// The name under which the store keeps a reduction's partial results.
 std::string partial_name(const reduction& r);
 
-/// Text that reads back as exactly that number.
-std::string exact_text(double value);
-
 }  // namespace studies::inline MYRIAD_ABI
 }  // namespace myriad
