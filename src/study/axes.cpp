@@ -147,7 +147,7 @@ void axes::zip(const std::vector<std::pair<std::string, axis_values>>& paired) {
         require(all.size() == first.size(), "paired axes have different lengths: ", made.empty() ? c.full_name() : made[0].what.full_name(), " has ",
                 first.size(), " values, ", c.full_name(), " has ", all.size());
         for (const entry& e : made) require(!(e.what == c), c.full_name(), " is given twice: give it one axis");
-        joined += (joined.empty() ? "" : "_") + names_.initial_variable(c);
+        joined += message(joined.empty() ? "" : "_", names_.initial_variable(c));
         made.push_back({c, all, static_cast<int>(dimensions_.size())});
     }
     add_dimension(std::move(joined), paired.front().second.size());

@@ -41,9 +41,8 @@ template <class R>
 void chunk_solver_of<R>::prepare(std::int64_t first, std::int64_t count) {
     if (instances_ != nullptr && instances_->data().size != count) instances_.reset();
     if (instances_ == nullptr) instances_ = make_(count);
-    auto& data = instances_->data();
-    data.restart();
-    first_ = data.first_index = first;
+    instances_->restart();
+    first_ = instances_->data().first_index = first;
     set_components();
     set_domains();
     instances_->generate(first);

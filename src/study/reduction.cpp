@@ -223,7 +223,7 @@ variable result(std::string name, element type, std::vector<studies::dimension> 
 
 /// A reduction with one result that has the inner dimensions of what it reduces.
 template <class State, class... More>
-reduction one_value(std::string_view of, const char* what, std::int64_t partial_values, More... more) {
+ensemble_reduction one_value(std::string_view of, const char* what, std::int64_t partial_values, More... more) {
     studies::reduction_definition made;
     made.name = message(of, '_', what);
     made.inputs = {std::string(of)};
@@ -235,12 +235,12 @@ reduction one_value(std::string_view of, const char* what, std::int64_t partial_
                               {},
                               [=] { return std::make_unique<State>(of, size, more...); }};
     };
-    return reduction(std::move(made));
+    return ensemble_reduction(std::move(made));
 }
 
 }  // namespace
 
-reduction histogram_of(std::string_view of, const axis_values& edges) {
+ensemble_reduction histogram_of(std::string_view of, const axis_values& edges) {
     require(!edges.random() && edges.size() >= 2, "a histogram of ", of, " needs two or more edges of bins");
     std::vector<double> all;
     for (std::int64_t i = 0; i < edges.size(); ++i) {
@@ -266,13 +266,13 @@ reduction histogram_of(std::string_view of, const axis_values& edges) {
             {studies::with_values(dimension, dimension, middles, {{"long_name", "middle of the bin"}})},
             [=] { return std::make_unique<histogram_state>(of, all); }};
     };
-    return reduction(std::move(made));
+    return ensemble_reduction(std::move(made));
 }
-reduction minimum_of(std::string_view of) { return one_value<extremum_state>(of, "minimum", 1, -1.0); }
-reduction maximum_of(std::string_view of) { return one_value<extremum_state>(of, "maximum", 1, 1.0); }
-reduction mean_of(std::string_view of) { return one_value<mean_state>(of, "mean", exact_sum::digits + 1); }
+ensemble_reduction minimum_of(std::string_view of) { return one_value<extremum_state>(of, "minimum", 1, -1.0); }
+ensemble_reduction maximum_of(std::string_view of) { return one_value<extremum_state>(of, "maximum", 1, 1.0); }
+ensemble_reduction mean_of(std::string_view of) { return one_value<mean_state>(of, "mean", exact_sum::digits + 1); }
 
-reduction sum_of(std::string name, std::vector<std::string> of, std::int64_t size, user_function function) {
+ensemble_reduction sum_of(std::string name, std::vector<std::string> of, std::int64_t size, user_function function) {
     require(!name.empty(), "a reduction needs a name");
     require(size > 0, "the reduction ", name, " has ", size, " sums (must be positive)");
     require(function != nullptr, "the reduction ", name, " has no function");
@@ -288,7 +288,7 @@ reduction sum_of(std::string name, std::vector<std::string> of, std::int64_t siz
                               {},
                               [=] { return std::make_unique<user_state>(function, size); }};
     };
-    return reduction(std::move(made));
+    return ensemble_reduction(std::move(made));
 }
 
 }  // namespace myriad

@@ -120,8 +120,8 @@ void any_study::time_domain(double t_begin, double t_end) {
     set("t_end", t_end);
 }
 
-void any_study::reduce(reduction r) {
-    for (const reduction& there : reductions_)
+void any_study::reduce(ensemble_reduction r) {
+    for (const ensemble_reduction& there : reductions_)
         require(there.definition().name != r.definition().name, "the reduction ", r.definition().name,
                 " is given twice");
     reductions_.push_back(std::move(r));

@@ -19,7 +19,7 @@ namespace myriad::studies::inline MYRIAD_ABI {
 using json = nlohmann::json;
 using enum component_kind;
 
-std::string partial_name(const reduction& r) { return r.definition().name + "_partial"; }
+std::string partial_name(const ensemble_reduction& r) { return r.definition().name + "_partial"; }
 
 std::int64_t study_plan::bytes_per_instance() const {
     std::int64_t bytes = 0;
@@ -145,7 +145,7 @@ std::string describe(const study_request& asked, const study_plan& plan) {
     json kept = json::array(), reductions = json::object();
     for (const quantity& q : plan.quantities)
         if (q.stored) kept.push_back(q.as.name);
-    for (const reduction& r : asked.reductions)
+    for (const ensemble_reduction& r : asked.reductions)
         reductions[r.definition().name] = {{"of", r.definition().inputs}, {"what", r.definition().description}};
     json made{{"model", names.model()},
               {"components", components},
@@ -177,7 +177,7 @@ public:
         for (const std::string& name : asked_.keep.end) add_end(name, true);
         add_work();
         add_status();
-        for (const reduction& r : asked_.reductions) add(r);
+        for (const ensemble_reduction& r : asked_.reductions) add(r);
         for (const quantity& q : plan_.quantities)
             if (q.stored) plan_.content.variables.push_back(q.as);
         for (const variable& v : plan_.content.variables) {
@@ -237,13 +237,6 @@ private:
                 for (std::size_t i = 0; i < values.size(); ++i) values[i] = all[first + static_cast<std::int64_t>(i)];
             };
             content.coordinates.push_back({name, along, write, unit_of(e.what)});
-        }
-        for (std::size_t d = 0; d < content.axes.size(); ++d) {
-            const auto& entries = asked_.axes.entries();
-            const bool is_repetition = std::none_of(entries.begin(), entries.end(), [&](const axes::entry& e) {
-                return e.dimension == static_cast<int>(d);
-            });
-            if (is_repetition) add_numbers(content.axes[d].name, 0);
         }
     }
     /// A coordinate that counts.
@@ -330,7 +323,7 @@ private:
                             all.empty() ? "" : ", ", "and the last values of components, as ",
                             names_.variable(names_.all().front()), "_end"));
     }
-    void add(const reduction& r) {
+    void add(const ensemble_reduction& r) {
         const studies::reduction_definition& d = r.definition();
         for (const std::string& name : d.inputs) find(name);  // which may add some
         std::vector<const variable*> inputs;

@@ -98,7 +98,7 @@ public:
     /// Paired components, which vary together along one axis. Throws `error` as `add`, and unless they have equally
     /// many values, none of them random.
     void zip(const std::vector<std::pair<std::string, axis_values>>& paired);
-    /// `count` instances for each point of the other axes, as for random draws. Throws `error` unless `count` is
+    /// `count` instances for each point of the other axes, as for random draws: a dimension without a coordinate. Throws `error` unless `count` is
     /// positive.
     void repeat(std::int64_t count, std::string_view name = "draw");
     /// A value for all instances; may be given again. Throws `error` if it is not finite (t_end may be infinite), if

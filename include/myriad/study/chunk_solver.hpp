@@ -47,6 +47,8 @@ class model_instances {
 public:
     virtual ~model_instances() = default;
     virtual host::ensemble_data<R>& data() = 0;
+    /// Forgets what was integrated, and the samples.
+    virtual void restart() = 0;
     /// Lets the user's generator set them; `first` is the number of the first one in the study.
     virtual void generate(std::int64_t first) = 0;
     /// Integrates them and keeps the records.

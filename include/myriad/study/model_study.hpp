@@ -60,13 +60,14 @@ public:
         : instances_(size), generate_(std::move(generate)) {}
 
     host::ensemble_data<R>& data() override { return host::ensemble_access::data(instances_); }
+    void restart() override { instances_.restart(); }
     void generate(std::int64_t first) override {
         if (generate_->function) generate_->function(first, instances_);
     }
     report_of<R> solve(const device& where, const options& o) override {
         report<Model, R> made = myriad::solve<Method>(where, instances_, o);
         records_ = std::move(made.records);
-        return std::move(made);
+        return made;
     }
     const R* recorded(component_kind kind, int number) const override {
         return kind == component_kind::state ? records_.state(number).data() : records_.accessory(number).data();

@@ -53,9 +53,9 @@ struct reduction_definition {
 /// A reduction of a variable over all instances that have not failed; values that are not finite are left out. Made by
 /// the functions below; variables are named as in results: "x" at recorded phases, "x_end", "x_sample". Its result does
 /// not depend on chunks, devices or their order, bit for bit.
-class reduction {
+class ensemble_reduction {
 public:
-    explicit reduction(studies::reduction_definition what)
+    explicit ensemble_reduction(studies::reduction_definition what)
         : what_(std::make_shared<const studies::reduction_definition>(std::move(what))) {}
 
     /// What it is; used by the library.
@@ -69,18 +69,18 @@ private:
 /// numpy.histogram: variable "x_end_histogram" with dimension "x_end_bin"; and "x_end_outside", how many lie below, above,
 /// and are not finite. All phases or samples of an instance are counted. Throws `error` unless there are two or more edges,
 /// and they increase.
-[[nodiscard]] reduction histogram_of(std::string_view variable, const axis_values& edges);
+[[nodiscard]] ensemble_reduction histogram_of(std::string_view variable, const axis_values& edges);
 /// The smallest value, for each phase or sample: "x_end_minimum"; NaN if there is none.
-[[nodiscard]] reduction minimum_of(std::string_view variable);
+[[nodiscard]] ensemble_reduction minimum_of(std::string_view variable);
 /// The largest value, for each phase or sample: "x_end_maximum"; NaN if there is none.
-[[nodiscard]] reduction maximum_of(std::string_view variable);
+[[nodiscard]] ensemble_reduction maximum_of(std::string_view variable);
 /// The mean, for each phase or sample: "x_end_mean"; NaN if there is no value. The sum is exact and rounded once.
-[[nodiscard]] reduction mean_of(std::string_view variable);
+[[nodiscard]] ensemble_reduction mean_of(std::string_view variable);
 /// The sum of what a function computes of each chunk of instances: a variable `name` of `size` numbers. The function adds
 /// to `sums`, which are zero at first, and is called by several threads at a time. Partial sums are added exactly; what the
 /// function itself rounds depends on the chunks. `name` stands for the function in the study's description: give another
 /// one when it changes. `inputs` are the variables that it asks for.
-[[nodiscard]] reduction sum_of(std::string name, std::vector<std::string> inputs, std::int64_t size,
+[[nodiscard]] ensemble_reduction sum_of(std::string name, std::vector<std::string> inputs, std::int64_t size,
                                std::function<void(const chunk_columns& chunk, std::span<double> sums)> function);
 
 }  // namespace myriad

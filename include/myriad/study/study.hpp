@@ -109,7 +109,7 @@ public:
     myriad::options options{.invalid_instances = invalid_instances::mark};
     kept_values keep;  ///< what is kept of every instance
     /// A reduction over all instances.
-    void reduce(reduction r);
+    void reduce(ensemble_reduction r);
     /// The unit of a component, or of time, "t": the attribute "units" of variables.
     void unit(std::string_view component, std::string unit);
     /// A title for exported files.
@@ -145,7 +145,7 @@ private:
 
     std::shared_ptr<const studies::any_model> model_;
     axes axes_;
-    std::vector<reduction> reductions_;
+    std::vector<ensemble_reduction> reductions_;
     std::map<std::string, std::string> notes_, units_;
     std::string title_, folder_;
     studies::store_options store_options_;

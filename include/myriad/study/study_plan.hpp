@@ -65,7 +65,7 @@ struct study_request {
     myriad::axes axes;
     myriad::options options;
     kept_values keep;
-    std::vector<reduction> reductions;
+    std::vector<ensemble_reduction> reductions;
     std::string generator;                     ///< stands for the function that generates instances; empty: none
     std::map<std::string, std::string> notes;  ///< further things that tell studies apart
     std::map<std::string, std::string> units;  ///< by component, and "t"
@@ -87,7 +87,7 @@ struct study_plan {
 study_plan plan_study(const study_request& asked);
 
 /// The name under which the store keeps a reduction's partial results.
-std::string partial_name(const reduction& r);
+std::string partial_name(const ensemble_reduction& r);
 
 }  // namespace studies::inline MYRIAD_ABI
 }  // namespace myriad
