@@ -17,8 +17,7 @@ namespace myriad {
 using studies::component;
 using studies::component_kind;
 
-axis_values::axis_values(axis_values::kind kind, double first, double last, std::int64_t size,
-                         std::vector<double> list)
+axis_values::axis_values(axis_values::kind kind, double first, double last, std::int64_t size, std::vector<double> list)
     : kind_(kind), first_(first), last_(last), size_(size), list_(std::move(list)) {}
 
 double axis_values::operator[](std::int64_t i) const {
@@ -84,9 +83,7 @@ namespace {
 bool is_integer(component_kind kind) {
     return kind == component_kind::integer_accessory || kind == component_kind::shared_integer;
 }
-bool is_shared(component_kind kind) {
-    return kind == component_kind::shared || kind == component_kind::shared_integer;
-}
+bool is_shared(component_kind kind) { return kind == component_kind::shared || kind == component_kind::shared_integer; }
 /// Refuses what the component cannot have.
 void check_values(const component& c, const axis_values& all) {
     if (!is_integer(c.kind)) return;
@@ -104,8 +101,8 @@ void check_values(const component& c, const axis_values& all) {
 
 const component& axes::find_free(std::string_view name) const {
     using enum component_kind;
-    const component& c = names_.find(
-        name, {state, parameter, accessory, integer_accessory, shared, shared_integer, t_begin, t_end});
+    const component& c =
+        names_.find(name, {state, parameter, accessory, integer_accessory, shared, shared_integer, t_begin, t_end});
     for (const entry& e : entries_)
         require(!(e.what == c), c.full_name(), " is given twice: give it one axis or one value");
     require(!is_shared(c.kind), c.full_name(),
@@ -144,8 +141,9 @@ void axes::zip(const std::vector<std::pair<std::string, axis_values>>& paired) {
         check_values(c, all);
         require(!all.random(), c.full_name(), " is random, and so cannot be paired: give it by itself");
         const axis_values& first = paired.front().second;
-        require(all.size() == first.size(), "paired axes have different lengths: ", made.empty() ? c.full_name() : made[0].what.full_name(), " has ",
-                first.size(), " values, ", c.full_name(), " has ", all.size());
+        require(all.size() == first.size(),
+                "paired axes have different lengths: ", made.empty() ? c.full_name() : made[0].what.full_name(),
+                " has ", first.size(), " values, ", c.full_name(), " has ", all.size());
         for (const entry& e : made) require(!(e.what == c), c.full_name(), " is given twice: give it one axis");
         joined += message(joined.empty() ? "" : "_", names_.initial_variable(c));
         made.push_back({c, all, static_cast<int>(dimensions_.size())});
@@ -162,8 +160,8 @@ void axes::repeat(std::int64_t count, std::string_view name) {
 
 void axes::set(std::string_view name, double value) {
     using enum component_kind;
-    const component& c = names_.find(
-        name, {state, parameter, accessory, integer_accessory, shared, shared_integer, t_begin, t_end});
+    const component& c =
+        names_.find(name, {state, parameter, accessory, integer_accessory, shared, shared_integer, t_begin, t_end});
     require(std::isfinite(value) || (c.kind == t_end && std::isinf(value)), c.full_name(), " is set to ", value,
             ", and needs a finite value");
     axis_values one(axis_values::kind::linear, value, value, 1);

@@ -117,8 +117,8 @@ void chunk_solver_of<R>::copy(const quantity& what, std::byte* to) const {
     switch (what.from) {
         case origin::axis: {
             const auto& entries = plan_.asked.axes.entries();
-            const auto e = std::find_if(entries.begin(), entries.end(),
-                                        [&](const axes::entry& entry) { return entry.what == c; });
+            const auto e =
+                std::find_if(entries.begin(), entries.end(), [&](const axes::entry& entry) { return entry.what == c; });
             return plan_.asked.axes.fill(*e, first_, size, reinterpret_cast<R*>(to));
         }
         case origin::record:

@@ -95,7 +95,8 @@ std::string component_names::choices(std::initializer_list<component_kind> kinds
             of_kind += message(of_kind.empty() ? "" : ", ", c.name.empty() ? std::to_string(c.number) : c.name);
         }
         if (of_kind.empty()) continue;
-        text += message(text.empty() ? "" : "; ", is_time(kind) ? "" : name_of(kind), is_time(kind) ? "" : " ", of_kind);
+        text +=
+            message(text.empty() ? "" : "; ", is_time(kind) ? "" : name_of(kind), is_time(kind) ? "" : " ", of_kind);
     }
     return text + (named > most ? ", ..." : "");
 }

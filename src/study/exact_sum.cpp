@@ -21,7 +21,8 @@ constexpr std::int64_t most_added = std::int64_t{1} << 30;
 void exact_sum::add(double value) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
     const auto exponent = static_cast<int>(bits >> 52 & 0x7ff);
-    const std::uint64_t fraction = (bits & ((std::uint64_t{1} << 52) - 1)) | (exponent > 0 ? std::uint64_t{1} << 52 : 0);
+    const std::uint64_t fraction =
+        (bits & ((std::uint64_t{1} << 52) - 1)) | (exponent > 0 ? std::uint64_t{1} << 52 : 0);
     const int place = exponent > 0 ? exponent - 1 : 0;  // of the lowest bit, above 2^-1074
     const auto first = static_cast<std::size_t>(place / 32);
     const int shift = place % 32;

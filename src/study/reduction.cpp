@@ -230,10 +230,9 @@ ensemble_reduction one_value(std::string_view of, const char* what, std::int64_t
     made.description = message(what, " of ", of);
     made.plan = [name = made.name, of = std::string(of), partial_values, more...](const inputs& in) {
         const std::int64_t size = in[0]->values_per_item();
-        return reduction_plan{size * partial_values,
-                              {result(name, element::f64, in[0]->inner)},
-                              {},
-                              [=] { return std::make_unique<State>(of, size, more...); }};
+        return reduction_plan{size * partial_values, {result(name, element::f64, in[0]->inner)}, {}, [=] {
+                                  return std::make_unique<State>(of, size, more...);
+                              }};
     };
     return ensemble_reduction(std::move(made));
 }
@@ -245,8 +244,11 @@ ensemble_reduction histogram_of(std::string_view of, const axis_values& edges) {
     std::vector<double> all;
     for (std::int64_t i = 0; i < edges.size(); ++i) {
         all.push_back(edges[i]);
-        require(i == 0 || all[all.size() - 2] < all.back(), "the edges of the bins of a histogram of ", of,
-                " do not increase: ", i > 0 ? all[all.size() - 2] : 0.0, " is followed by ", all.back());
+        require(i == 0 || all[all.size() -
+                              2]<all.back(), "the edges of the bins of a histogram of ", of, " do not increase: ", i> 0
+                    ? all[all.size() - 2]
+                    : 0.0,
+                " is followed by ", all.back());
     }
     studies::reduction_definition made;
     made.name = message(of, "_histogram");
@@ -283,10 +285,9 @@ ensemble_reduction sum_of(std::string name, std::vector<std::string> of, std::in
     made.plan = [name, size, function = std::move(function)](const inputs&) {
         std::vector<studies::dimension> inner;
         if (size > 1) inner.push_back({name + "_number", size});
-        return reduction_plan{size * exact_sum::digits,
-                              {result(name, element::f64, inner)},
-                              {},
-                              [=] { return std::make_unique<user_state>(function, size); }};
+        return reduction_plan{size * exact_sum::digits, {result(name, element::f64, inner)}, {}, [=] {
+                                  return std::make_unique<user_state>(function, size);
+                              }};
     };
     return ensemble_reduction(std::move(made));
 }

@@ -44,8 +44,8 @@ public:
     void read(std::string_view name, std::int64_t first, std::int64_t count, void* to) const override {
         const std::size_t number = content_.find(name);
         const variable& v = content_.variables[number];
-        require(first >= 0 && count >= 0 && first + count <= items(v), "items ", first, " to ", first + count - 1, " of ",
-                name, " are asked for: there are ", items(v));
+        require(first >= 0 && count >= 0 && first + count <= items(v), "items ", first, " to ", first + count - 1,
+                " of ", name, " are asked for: there are ", items(v));
         const std::lock_guard lock(mutex_);
         std::memcpy(to, &values_[number][static_cast<std::size_t>(first) * item_bytes(v)],
                     static_cast<std::size_t>(count) * item_bytes(v));

@@ -33,10 +33,10 @@ struct used_device {
     explicit used_device(const device& d) : where(d) {}
 
     const device where;
-    std::mutex turn;                     // of the thread that integrates
+    std::mutex turn;  // of the thread that integrates
     std::atomic<bool> failed{false};
-    std::string why;  // it failed
-    std::atomic<double> per_second{0};   // instances, in its last chunk
+    std::string why;                    // it failed
+    std::atomic<double> per_second{0};  // instances, in its last chunk
 };
 
 /// Instances that a thread has finished of its chunk.
@@ -68,9 +68,9 @@ public:
 
 private:
     static constexpr int threads_per_device = 2;
-    static constexpr auto look_every = std::chrono::milliseconds(100);    // for signals, and to show progress
-    static constexpr auto ask_every = std::chrono::milliseconds(500);     // for chunks of other processes
-    static constexpr auto count_every = std::chrono::seconds(5);          // what other processes have done
+    static constexpr auto look_every = std::chrono::milliseconds(100);  // for signals, and to show progress
+    static constexpr auto ask_every = std::chrono::milliseconds(500);   // for chunks of other processes
+    static constexpr auto count_every = std::chrono::seconds(5);        // what other processes have done
 
     // -- The calling thread -------------------------------------------------------------------------------------------
 
@@ -154,7 +154,8 @@ private:
         } catch (const std::exception& e) {
             if (!d.failed) {
                 fail(std::current_exception());
-            } else if (std::all_of(devices_.begin(), devices_.end(), [](const used_device& u) { return u.failed.load(); })) {
+            } else if (std::all_of(devices_.begin(), devices_.end(),
+                                   [](const used_device& u) { return u.failed.load(); })) {
                 fail(std::make_exception_ptr(error(message("no device is left: the last one failed with: ", d.why))));
             }
         } catch (...) {
@@ -235,7 +236,8 @@ private:
                 for (std::size_t q = 0; q < values.size(); ++q)
                     values[q].resize(static_cast<std::size_t>(range.count) * bytes_of(plan_.quantities[q]));
                 solver.prepare(range.first + at, count);
-                add(sum, integrate(d, solver, [&](std::int64_t done) { mine = at + done; }, seconds));
+                add(sum, integrate(
+                             d, solver, [&](std::int64_t done) { mine = at + done; }, seconds));
                 for (std::size_t q = 0; q < values.size(); ++q)
                     solver.copy(plan_.quantities[q],
                                 &values[q][static_cast<std::size_t>(at) * bytes_of(plan_.quantities[q])]);
@@ -319,7 +321,8 @@ private:
     void drop(used_device& d, const std::string& why) {
         d.why = why;
         d.failed = true;
-        warn(message("device ", d.where.name(), " is left out, and its chunks are done by others, as it failed: ", why));
+        warn(
+            message("device ", d.where.name(), " is left out, and its chunks are done by others, as it failed: ", why));
     }
     void warn(std::string text) {
         const std::lock_guard lock(mutex_);

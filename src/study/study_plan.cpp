@@ -212,14 +212,13 @@ private:
     std::vector<attribute> unit_of(const component& c) const {
         return unit_of(c.kind == t_begin || c.kind == t_end ? "t" : c.full_name());
     }
-    element type_of(const component& c) const {
-        return c.kind == integer_accessory ? element::i32 : asked_.real;
-    }
+    element type_of(const component& c) const { return c.kind == integer_accessory ? element::i32 : asked_.real; }
     quantity& add(origin from, std::string name, element type, bool stored, std::vector<dimension> inner = {},
                   std::vector<attribute> attributes = {}, const component& what = {}) {
         for (const quantity& q : plan_.quantities)
             require(q.as.name != name, "two variables are called ", name, ": keep it once");
-        plan_.quantities.push_back({from, what, {std::move(name), type, std::move(inner), std::move(attributes)}, stored});
+        plan_.quantities.push_back(
+            {from, what, {std::move(name), type, std::move(inner), std::move(attributes)}, stored});
         return plan_.quantities.back();
     }
 
@@ -312,8 +311,8 @@ private:
         };
         if (known() == nullptr && name == "t_last") add_end("t", false);
         for (const component& c : names_.all()) {
-            const bool has_end = c.kind == state || c.kind == accessory || c.kind == integer_accessory ||
-                                 c.kind == parameter;
+            const bool has_end =
+                c.kind == state || c.kind == accessory || c.kind == integer_accessory || c.kind == parameter;
             if (known() == nullptr && has_end && name == names_.variable(c) + "_end") add_end(c.full_name(), false);
         }
         if (const quantity* const found = known()) return found->as;

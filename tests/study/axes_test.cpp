@@ -54,7 +54,8 @@ std::string message_of(Function&& function) {
 }  // namespace
 
 TEST_CASE("linspace has the values of numpy.linspace, and both ends", "[axes]") {
-    CHECK(all_of(linspace(0.2, 0.3, 4)) == std::vector{0.2, 0.2 + 1 * (0.3 - 0.2) / 3, 0.2 + 2 * ((0.3 - 0.2) / 3), 0.3});
+    CHECK(all_of(linspace(0.2, 0.3, 4)) ==
+          std::vector{0.2, 0.2 + 1 * (0.3 - 0.2) / 3, 0.2 + 2 * ((0.3 - 0.2) / 3), 0.3});
     CHECK(all_of(linspace(7, 9, 1)) == std::vector{7.0});
     CHECK(all_of(linspace(1, -1, 3)) == std::vector{1.0, 0.0, -1.0});
     const axis_values many = linspace(0, 0.1, 1'000'003);
@@ -181,13 +182,18 @@ TEST_CASE("Mistakes with axes are refused with what is wrong", "[axes]") {
     CHECK_THAT(message_of([&] { a.add("k", linspace(0, 1, 5)); }), Contains("parameter.k is given twice"));
     CHECK_THAT(message_of([&] { a.set("k", 1); }), Contains("parameter.k has an axis"));
     CHECK_THAT(message_of([&] { a.add("B", linspace(0, 1, 5)); }), Contains("shared.B is the same in all instances"));
-    CHECK_THAT(message_of([&] { a.add("count", linspace(0, 1, 5)); }), Contains("an integer of 32 bits, but is given 0.25"));
+    CHECK_THAT(message_of([&] { a.add("count", linspace(0, 1, 5)); }),
+               Contains("an integer of 32 bits, but is given 0.25"));
     CHECK_THAT(message_of([&] { a.add("count", random_uniform(0, 1)); }), Contains("which random values are not"));
     CHECK_THAT(message_of([&] { a.set("power", 1e10); }), Contains("an integer of 32 bits"));
     CHECK_THAT(message_of([&] { a.set("v", std::nan("")); }), Contains("state.v is set to nan"));
-    CHECK_THAT(message_of([&] { a.zip({{"v", linspace(0, 1, 5)}, {"state.x", linspace(0, 1, 6)}}); }),
+    CHECK_THAT(message_of([&] {
+                   a.zip({{"v", linspace(0, 1, 5)}, {"state.x", linspace(0, 1, 6)}});
+               }),
                Contains("state.v has 5 values, state.x has 6"));
-    CHECK_THAT(message_of([&] { a.zip({{"v", linspace(0, 1, 5)}, {"state.v", linspace(0, 1, 5)}}); }),
+    CHECK_THAT(message_of([&] {
+                   a.zip({{"v", linspace(0, 1, 5)}, {"state.v", linspace(0, 1, 5)}});
+               }),
                Contains("state.v is given twice"));
     CHECK_THAT(message_of([&] { a.zip({{"v", random_uniform(0, 1)}}); }), Contains("cannot be paired"));
     CHECK_THAT(message_of([&] { a.zip({}); }), Contains("no axes"));

@@ -38,7 +38,7 @@ TEST_CASE("A sum has no rounding error but the last", "[exact_sum]") {
 }
 TEST_CASE("A sum is rounded to nearest, ties to even", "[exact_sum]") {
     const double one = 1, half = 0x1p-53, tiny = 0x1p-1000;
-    CHECK(sum_of({one, half}) == one);                         // a tie, to the even neighbour
+    CHECK(sum_of({one, half}) == one);  // a tie, to the even neighbour
     CHECK(sum_of({one, half, tiny}) == std::nextafter(one, 2));
     CHECK(sum_of({one, half, -tiny}) == one);
     CHECK(sum_of({-one, -half, -tiny}) == -std::nextafter(one, 2));
@@ -61,7 +61,8 @@ TEST_CASE("Sums of integers are those of integers", "[exact_sum]") {
 TEST_CASE("A sum does not depend on the order, nor on how it is divided", "[exact_sum]") {
     std::mt19937_64 random(2);
     std::vector<double> all(1000);
-    for (double& value : all) value = std::ldexp(static_cast<double>(random()), static_cast<int>(random() % 2000) - 1100);
+    for (double& value : all)
+        value = std::ldexp(static_cast<double>(random()), static_cast<int>(random() % 2000) - 1100);
     for (std::size_t i = 0; i < all.size(); i += 3) all[i] = -all[i];
     const double expected = sum_of(all);
     std::shuffle(all.begin(), all.end(), random);
@@ -72,7 +73,8 @@ TEST_CASE("A sum does not depend on the order, nor on how it is divided", "[exac
         for (std::size_t i = first; i < std::min(first + 37, all.size()); ++i) part.add(all[i]);
         std::int64_t stored[exact_sum::digits];
         part.store(stored);
-        for (std::size_t d = 0; d + 1 < exact_sum::digits; ++d) REQUIRE((stored[d] >= 0 && stored[d] < std::int64_t{1} << 32));
+        for (std::size_t d = 0; d + 1 < exact_sum::digits; ++d)
+            REQUIRE((stored[d] >= 0 && stored[d] < std::int64_t{1} << 32));
         together.add(stored);
     }
     CHECK(together.value() == expected);

@@ -94,8 +94,8 @@ TEST_CASE("Reductions have the same bits whatever the chunks are", "[reduction]"
         for (const double value : x) sums[0] += std::floor(std::fabs(value) / 1e18);
         sums[1] += static_cast<double>(chunk.size());
     });
-    for (const ensemble_reduction& r : {histogram_of("x", linspace(-1e3, 1e19, 50)), minimum_of("x"), maximum_of("x"),
-                               mean_of("x"), user}) {
+    for (const ensemble_reduction& r :
+         {histogram_of("x", linspace(-1e3, 1e19, 50)), minimum_of("x"), maximum_of("x"), mean_of("x"), user}) {
         const auto whole = data.reduce(r, 1000);
         for (const std::size_t chunk : {1, 7, 512, 999}) CHECK(data.reduce(r, chunk) == whole);
     }
@@ -116,9 +116,8 @@ TEST_CASE("Mistakes with reductions are refused with what is wrong", "[reduction
     CHECK_THAT(message_of([] { (void)sum_of("s", {}, 1, nullptr); }), Contains("no function"));
     const made_up data({1, 2});
     const auto asks = [&](auto read) {
-        return message_of([&] {
-            data.first_of(sum_of("s", {}, 1, [&](const chunk_columns& c, std::span<double>) { read(c); }));
-        });
+        return message_of(
+            [&] { data.first_of(sum_of("s", {}, 1, [&](const chunk_columns& c, std::span<double>) { read(c); })); });
     };
     CHECK_THAT(asks([](const chunk_columns& c) { c.values<double>("y"); }),
                Contains("no variable \"y\" is computed; there are x, status"));

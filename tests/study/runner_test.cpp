@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The run of a study whose model costs nothing: devices that fail, memory that is short, results that cannot be kept. GPUs
-// are simulated.
+// The run of a study whose model costs nothing: devices that fail, memory that is short, results that cannot be kept.
+// GPUs are simulated.
 #include <algorithm>
 #include <atomic>
 #include <cstring>
@@ -98,10 +98,9 @@ struct test_run {
         plan.content.chunk = chunk;
         const auto keeper = keep_in_memory(plan.content);
         before(*keeper);
-        const run_outcome outcome = run_study(
-            model, plan, *keeper, {.devices = devices, .warning = [this](const std::string& text) {
-                                       warnings.push_back(text);
-                                   }});
+        const run_outcome outcome =
+            run_study(model, plan, *keeper,
+                      {.devices = devices, .warning = [this](const std::string& text) { warnings.push_back(text); }});
         if (outcome.complete) {
             std::vector<double> x(1000);
             keeper->kept()->read("x_end", 0, 1000, x.data());
@@ -242,9 +241,10 @@ TEST_CASE("A study on a GPU that is lost has the same bits as on the CPU", "[run
         s.set("power", 3);
         s.time_domain(0, 1);
         s.keep.end = {"x", "my_number"};
-        s.chunk = 10;
+        s.chunk = 1;
         s.devices = std::move(devices);
         s.warning = {};
+        s.generate("slow", [](std::int64_t, auto&) { std::this_thread::sleep_for(std::chrono::microseconds(200)); });
         if (chunks_before >= 0) simulated::the_gpu.fail(simulated::call::kernel, chunks_before);
         study_result r = s.run();
         CHECK(r.complete);
@@ -255,5 +255,5 @@ TEST_CASE("A study on a GPU that is lost has the same bits as on the CPU", "[run
     };
     const auto expected = run({device::cpu(1)}, -1);
     CHECK(run({device::cuda()}, -1) == expected);
-    CHECK(run({device::cuda(), device::cpu(1)}, 3) == expected);
+    CHECK(run({device::cuda(), device::cpu(1)}, 1) == expected);
 }

@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <myriad/host/core/error.hpp>
 #include <myriad/study/study_plan.hpp>
+#include <nlohmann/json.hpp>
 
 #include "tests/catch.hpp"
 
@@ -64,8 +63,7 @@ TEST_CASE("A study keeps records, last values and statuses along its axes", "[st
 
     std::vector<std::string> coordinates;
     for (const coordinate& c : content.coordinates) coordinates.push_back(c.name + '(' + c.dimension + ')');
-    CHECK(coordinates ==
-          std::vector<std::string>{"k(k)", "x_begin()", "B()", "t_begin()", "t_end()", "phase(phase)"});
+    CHECK(coordinates == std::vector<std::string>{"k(k)", "x_begin()", "B()", "t_begin()", "t_end()", "phase(phase)"});
     std::vector<double> phase(2);
     content.coordinates.back().values(1, phase);
     CHECK(phase == std::vector<double>{7, 8});
@@ -77,9 +75,9 @@ TEST_CASE("What only a reduction needs is computed, and not kept", "[study_plan]
     study_plan plan = plan_study(asked);
     plan.content.chunk = 5;
     plan.content.check();
-    CHECK(names_of(plan.content) ==
-          std::vector<std::string>{"x_mean_partial", "x_mean", "a_end_maximum_partial", "a_end_maximum",
-                                   "t_last_histogram_partial", "t_last_histogram", "t_last_outside"});
+    CHECK(names_of(plan.content) == std::vector<std::string>{"x_mean_partial", "x_mean", "a_end_maximum_partial",
+                                                             "a_end_maximum", "t_last_histogram_partial",
+                                                             "t_last_histogram", "t_last_outside"});
     CHECK(plan.quantities.size() == 5);  // x, t, status, a_end, t_last
     CHECK(plan.bytes_per_instance() == 4 * 8 + 4 * 8 + 1 + 8 + 8);
     CHECK(plan.content.variables[1].inner == std::vector<dimension>{{"phase", 4}});
@@ -116,11 +114,12 @@ TEST_CASE("Descriptions differ exactly where results may", "[study_plan]") {
         description([](study_request& s) { s.reductions = {histogram_of("x", linspace(0, 1, 3))}; }),
         description([](study_request& s) { s.reductions = {histogram_of("x", linspace(0, 2, 3))}; }),
         description([](study_request& s) { s.generator = "first"; }),
-        description([](study_request& s) { s.notes = {{"model", "2"}}; }),
+        description([](study_request& s) {
+            s.notes = {{"model", "2"}};
+        }),
         plain,
     };
-    for (const std::string& one : others)
-        CHECK(std::count(std::begin(others), std::end(others), one) == 1);
+    for (const std::string& one : others) CHECK(std::count(std::begin(others), std::end(others), one) == 1);
     CHECK(plain == description([](study_request& s) {
               s.options.schedule = schedule::by_cost;
               s.options.chunk_size = 100;

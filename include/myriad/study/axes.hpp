@@ -34,8 +34,9 @@ public:
     bool random() const { return kind_ == kind::uniform || kind_ == kind::normal; }
     /// The number of values; 1 for random ones.
     std::int64_t size() const { return size_; }
-    /// The first and the last value, the bounds, or mean and standard deviation; 0 for a list.
+    /// The first value, the lower bound or the mean; 0 for a list.
     double first() const { return first_; }
+    /// The last value, the upper bound or the standard deviation; 0 for a list.
     double last() const { return last_; }
     /// Value i of `size()`; not for random ones.
     double operator[](std::int64_t i) const;
@@ -58,16 +59,16 @@ private:
     double first_log_ = 0, log_step_ = 0;
 };
 
-/// `size` evenly spaced values from `first` to `last`, both included, as numpy.linspace; a single one is `first`. Throws
-/// `error` unless both are finite and `size` is positive.
+/// `size` evenly spaced values from `first` to `last`, both included, as numpy.linspace; a single one is `first`.
+/// Throws `error` unless both are finite and `size` is positive.
 [[nodiscard]] axis_values linspace(double first, double last, std::int64_t size);
 /// `size` values from `first` to `last`, both included, with a constant ratio between neighbours, as numpy.geomspace.
 /// Throws `error` unless both are finite and of one sign, not zero, and `size` is positive.
 [[nodiscard]] axis_values logspace(double first, double last, std::int64_t size);
 /// These values. Throws `error` if there is none, or one that is not finite.
 [[nodiscard]] axis_values values(std::vector<double> list);
-/// A random value for each instance, evenly distributed between two bounds: see `axes::seed`. Throws `error` unless both
-/// are finite.
+/// A random value for each instance, evenly distributed between two bounds: see `axes::seed`. Throws `error` unless
+/// both are finite.
 [[nodiscard]] axis_values random_uniform(double from, double to);
 /// A random value for each instance, normally distributed. Throws `error` unless both are finite and the deviation is
 /// positive.
@@ -79,17 +80,18 @@ class axes {
 public:
     /// A component that a study sets, along an axis or to one value.
     struct entry {
-        studies::component what;     ///< the component
-        axis_values values;          ///< its values
+        studies::component what;            ///< the component
+        axis_values values;                 ///< its values
         std::optional<int> dimension = {};  ///< along which they vary; none: random, or one for all
     };
     /// A dimension of the grid of instances.
     struct dimension {
-        std::string name;          ///< that of its component, or of all that are paired: "k", "x_v"
-        std::int64_t length;       ///< the number of its values
-        std::int64_t stride = 1;   ///< instances from one value to the next
+        std::string name;         ///< that of its component, or of all that are paired: "k", "x_v"
+        std::int64_t length;      ///< the number of its values
+        std::int64_t stride = 1;  ///< instances from one value to the next
     };
 
+    /// No axes of a model with these components.
     explicit axes(studies::component_names names) : names_(std::move(names)) {}
 
     /// An axis, or a random value in each instance. Throws `error` if there is no such component, if it has been given,
@@ -98,8 +100,8 @@ public:
     /// Paired components, which vary together along one axis. Throws `error` as `add`, and unless they have equally
     /// many values, none of them random.
     void zip(const std::vector<std::pair<std::string, axis_values>>& paired);
-    /// `count` instances for each point of the other axes, as for random draws: a dimension without a coordinate. Throws `error` unless `count` is
-    /// positive.
+    /// `count` instances for each point of the other axes, as for random draws: a dimension without a coordinate.
+    /// Throws `error` unless `count` is positive.
     void repeat(std::int64_t count, std::string_view name = "draw");
     /// A value for all instances; may be given again. Throws `error` if it is not finite (t_end may be infinite), if
     /// there is no such component, or if it has an axis.

@@ -24,6 +24,7 @@ public:
         std::span<const std::byte> bytes;  ///< the values
     };
 
+    /// Made by the library.
     chunk_columns(std::int64_t first, std::int64_t size, std::span<const column> columns)
         : first_(first), size_(size), columns_(columns), status_(values<std::uint8_t>("status")) {}
 

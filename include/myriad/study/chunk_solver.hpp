@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Computes a chunk of a study's instances: fills an ensemble from the axes, integrates it, and copies what is kept. Only
-// the few functions of `model_instances` depend on the model. Host code only.
+// Computes a chunk of a study's instances: fills an ensemble from the axes, integrates it, and copies what is kept.
+// Only the few functions of `model_instances` depend on the model. Host code only.
 #pragma once
 
 #include <array>

@@ -136,13 +136,14 @@ class study : public any_study {
 public:
     study() : study(std::make_shared<studies::model_of<Model, Method, R>>()) {}
 
-    /// Instances are set by a function, too, after the axes, which it sees and may change: all of `instances`, which are
-    /// a part of the study and begin with its instance `first`. What it sets must depend on the number of an instance
-    /// alone; it is called by several threads at a time, for different parts. How many instances there are, axes say, or
-    /// `repeat`. `name` stands for the function in the study's description: give another one when it changes.
-    void generate(std::string name,
-                  std::function<void(std::int64_t first, ensemble<Model, R>& instances)> function) {
-        require(!name.empty() && function != nullptr, "a generator needs a name, which changes with it, and a function");
+    /// Instances are set by a function, too, after the axes, which it sees and may change: all of `instances`, which
+    /// are a part of the study and begin with its instance `first`. What it sets must depend on the number of an
+    /// instance alone; it is called by several threads at a time, for different parts. How many instances there are,
+    /// axes say, or `repeat`. `name` stands for the function in the study's description: give another one when it
+    /// changes.
+    void generate(std::string name, std::function<void(std::int64_t first, ensemble<Model, R>& instances)> function) {
+        require(!name.empty() && function != nullptr,
+                "a generator needs a name, which changes with it, and a function");
         model_->set_generator({std::move(name), std::move(function)});
     }
 

@@ -55,6 +55,7 @@ struct reduction_definition {
 /// not depend on chunks, devices or their order, bit for bit.
 class ensemble_reduction {
 public:
+    /// Made by `histogram_of` and its like.
     explicit ensemble_reduction(studies::reduction_definition what)
         : what_(std::make_shared<const studies::reduction_definition>(std::move(what))) {}
 
@@ -66,9 +67,9 @@ private:
 };
 
 /// How many values lie in each bin between neighbouring edges, the upper edge of the last bin included, as
-/// numpy.histogram: variable "x_end_histogram" with dimension "x_end_bin"; and "x_end_outside", how many lie below, above,
-/// and are not finite. All phases or samples of an instance are counted. Throws `error` unless there are two or more edges,
-/// and they increase.
+/// numpy.histogram: variable "x_end_histogram" with dimension "x_end_bin"; and "x_end_outside", how many lie below,
+/// above, and are not finite. All phases or samples of an instance are counted. Throws `error` unless there are two or
+/// more edges, and they increase.
 [[nodiscard]] ensemble_reduction histogram_of(std::string_view variable, const axis_values& edges);
 /// The smallest value, for each phase or sample: "x_end_minimum"; NaN if there is none.
 [[nodiscard]] ensemble_reduction minimum_of(std::string_view variable);
@@ -76,11 +77,12 @@ private:
 [[nodiscard]] ensemble_reduction maximum_of(std::string_view variable);
 /// The mean, for each phase or sample: "x_end_mean"; NaN if there is no value. The sum is exact and rounded once.
 [[nodiscard]] ensemble_reduction mean_of(std::string_view variable);
-/// The sum of what a function computes of each chunk of instances: a variable `name` of `size` numbers. The function adds
-/// to `sums`, which are zero at first, and is called by several threads at a time. Partial sums are added exactly; what the
-/// function itself rounds depends on the chunks. `name` stands for the function in the study's description: give another
-/// one when it changes. `inputs` are the variables that it asks for.
-[[nodiscard]] ensemble_reduction sum_of(std::string name, std::vector<std::string> inputs, std::int64_t size,
-                               std::function<void(const chunk_columns& chunk, std::span<double> sums)> function);
+/// The sum of what a function computes of each chunk of instances: a variable `name` of `size` numbers. The function
+/// adds to `sums`, which are zero at first, and is called by several threads at a time. Partial sums are added exactly;
+/// what the function itself rounds depends on the chunks. `name` stands for the function in the study's description:
+/// give another one when it changes. `inputs` are the variables that it asks for.
+[[nodiscard]] ensemble_reduction sum_of(
+    std::string name, std::vector<std::string> inputs, std::int64_t size,
+    std::function<void(const chunk_columns& chunk, std::span<double> sums)> function);
 
 }  // namespace myriad

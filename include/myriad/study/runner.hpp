@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs a study: chunks are handed out to all devices, computed, reduced and stored, each device working on one chunk while
-// the next is prepared and the last one stored. Host code only.
+// Runs a study: chunks are handed out to all devices, computed, reduced and stored, each device working on one chunk
+// while the next is prepared and the last one stored. Host code only.
 #pragma once
 
 #include <array>
@@ -22,10 +22,10 @@ namespace myriad::studies::inline MYRIAD_ABI {
 /// How a study is run.
 struct run_settings {
     std::vector<device> devices;
-    std::int64_t piece = 0;                                     ///< most instances to integrate at a time; 0: a chunk
-    std::function<bool()> stops = {};                           ///< whether to end after the chunks under way
-    std::function<void(const work_progress&)> progress = {};    ///< may be empty
-    std::function<void(const std::string&)> warning = {};       ///< may be empty
+    std::int64_t piece = 0;                                   ///< most instances to integrate at a time; 0: a chunk
+    std::function<bool()> stops = {};                         ///< whether to end after the chunks under way
+    std::function<void(const work_progress&)> progress = {};  ///< may be empty
+    std::function<void(const std::string&)> warning = {};     ///< may be empty
 };
 
 /// How a run went.
@@ -37,9 +37,9 @@ struct run_outcome {
     std::vector<std::string> notes, warnings;
 };
 
-/// Computes all chunks that are not done, and then the reductions. Callbacks are called in this thread. A GPU that fails is
-/// dropped with a warning, and its chunk is done elsewhere; where memory is too short, fewer instances are integrated at a
-/// time. Throws `error` if all devices fail, and what the CPU throws.
+/// Computes all chunks that are not done, and then the reductions. Callbacks are called in this thread. A GPU that
+/// fails is dropped with a warning, and its chunk is done elsewhere; where memory is too short, fewer instances are
+/// integrated at a time. Throws `error` if all devices fail, and what the CPU throws.
 run_outcome run_study(const any_model& model, const study_plan& plan, result_keeper& keeper,
                       const run_settings& settings);
 

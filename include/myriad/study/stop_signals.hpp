@@ -8,8 +8,8 @@
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
-/// During its lifetime the first of these signals is remembered; a second one of the same kind ends the program as it would
-/// have before. One at a time.
+/// During its lifetime the first of these signals is remembered; a second one of the same kind ends the program as it
+/// would have before. One at a time.
 class stop_signals {
 public:
     stop_signals();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The study that users see, but for its model: what its instances are, what is kept, on which devices it runs, where the
-// results go. Host code only.
+// The study that users see, but for its model: what its instances are, what is kept, on which devices it runs, where
+// the results go. Host code only.
 #pragma once
 
 #include <array>
@@ -39,8 +39,8 @@ public:
     explicit study_result(std::shared_ptr<const studies::results> results) : results_(std::move(results)) {}
 
     /// All values of a variable as doubles, the instance outermost: those of a chunk that was not computed are NaN. The
-    /// last value for the grid is that of the last axis, then of the phase or sample. Throws `error` for an unknown name,
-    /// and if there is not enough memory.
+    /// last value for the grid is that of the last axis, then of the phase or sample. Throws `error` for an unknown
+    /// name, and if there is not enough memory.
     std::vector<double> values(std::string_view variable) const;
     /// The values of instances [first, first + count) in the variable's own type. Throws `error` if it has another one.
     template <class T>
@@ -54,9 +54,9 @@ public:
     /// The results themselves, for exports.
     const studies::results& results() const { return *results_; }
 
-    bool complete = false;      ///< whether all instances are done; not if the run was stopped
+    bool complete = false;       ///< whether all instances are done; not if the run was stopped
     std::int64_t instances = 0;  ///< that this run has finished
-    double seconds = 0;         ///< that it took
+    double seconds = 0;          ///< that it took
     /// Instances of this run with each status.
     std::array<std::int64_t, status_count> by_status{};
     std::vector<std::string> notes;     ///< of the reports of `solve`, each once
@@ -73,18 +73,19 @@ private:
     std::shared_ptr<const studies::results> results_;
 };
 
-/// A parameter study of any model; see `study`. An instance's result depends on its own values and the options alone: not
-/// on chunks, devices of one kind, their order, nor on how often the study was stopped and started again.
+/// A parameter study of any model; see `study`. An instance's result depends on its own values and the options alone:
+/// not on chunks, devices of one kind, their order, nor on how often the study was stopped and started again.
 class any_study {
 public:
+    /// Made by `study`.
     explicit any_study(std::shared_ptr<const studies::any_model> model);
     any_study(const any_study&) = delete;
     any_study& operator=(const any_study&) = delete;
     ~any_study();
 
     // -- Instances ----------------------------------------------------------------------------------------------------
-    // Components are named as in the model, "k", or where several have that name with their kind, "parameter.k"; without
-    // enumerators by number, "parameter.0". The ends of the time domain are "t_begin" and "t_end".
+    // Components are named as in the model, "k", or where several have that name with their kind, "parameter.k";
+    // without enumerators by number, "parameter.0". The ends of the time domain are "t_begin" and "t_end".
 
     /// An axis of the grid, the last one varying fastest, or a random value for each instance. Throws `error` as
     /// `axes::add`.
@@ -104,8 +105,8 @@ public:
 
     // -- Integration and results --------------------------------------------------------------------------------------
 
-    /// As for `solve`; instances whose inputs are not finite are marked, however, and not refused. `progress` is that of
-    /// the study.
+    /// As for `solve`; instances whose inputs are not finite are marked, however, and not refused. `progress` is that
+    /// of the study.
     myriad::options options{.invalid_instances = invalid_instances::mark};
     kept_values keep;  ///< what is kept of every instance
     /// A reduction over all instances.
@@ -114,8 +115,8 @@ public:
     void unit(std::string_view component, std::string unit);
     /// A title for exported files.
     void title(std::string text) { title_ = std::move(text); }
-    /// Something that tells this study from others, such as the version of the model: a store that was made with another
-    /// value is refused.
+    /// Something that tells this study from others, such as the version of the model: a store that was made with
+    /// another value is refused.
     void note(std::string key, std::string value) { notes_[std::move(key)] = std::move(value); }
     /// Keeps the results in a folder, in which the study goes on if it is started again, instead of in memory. Several
     /// processes may run the study with one folder, and share the work. See `store`.
@@ -134,8 +135,8 @@ public:
     /// error.
     std::function<void(const std::string&)> warning;
 
-    /// Computes what is not there yet. Throws `error` if something is wrong with the study, if the store is of another one
-    /// or fails, or if all devices fail; what is in the store stays there.
+    /// Computes what is not there yet. Throws `error` if something is wrong with the study, if the store is of another
+    /// one or fails, or if all devices fail; what is in the store stays there.
     study_result run();
     /// Ends the run when the chunks under way are done, for other threads and for callbacks.
     void stop() { stopped_ = true; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a study computes and keeps, worked out from what its user asked for: the variables, where their values come from,
-// the layout of the results, and the description that tells studies apart. Host code only.
+// What a study computes and keeps, worked out from what its user asked for: the variables, where their values come
+// from, the layout of the results, and the description that tells studies apart. Host code only.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@
 
 namespace myriad {
 
-/// What is kept of every instance. What `options::record` and `options::samples` choose is kept too: a recorded state x as
-/// variable "x" with dimension "phase", the time of the records as "t"; samples as "x_sample" and "t_sample" with dimension
-/// "sample", their number as "samples_stored".
+/// What is kept of every instance. What `options::record` and `options::samples` choose is kept too: a recorded state x
+/// as variable "x" with dimension "phase", the time of the records as "t"; samples as "x_sample" and "t_sample" with
+/// dimension "sample", their number as "samples_stored".
 struct kept_values {
     /// Components whose last values are kept, as "x_end"; "t" for the time at which the last phase ended, "t_last".
     std::vector<std::string> end = {};

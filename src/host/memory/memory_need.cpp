@@ -130,8 +130,8 @@ void memory_need::check(const std::string& who, const char* advice, memory_left 
     std::string parts;
     for (const auto& [part, size] : parts_) parts += message(parts.empty() ? "" : ", ", part, ' ', bytes_text(size));
     throw out_of_memory(message("out of memory: ", who, " would take ", needed,
-                        parts_.size() > 1 ? " (" + parts + ')' : std::string(), ", and ", there, " of ", left.of,
-                        " are left: ", advice));
+                                parts_.size() > 1 ? " (" + parts + ')' : std::string(), ", and ", there, " of ",
+                                left.of, " are left: ", advice));
 }
 
 }  // namespace myriad::host::inline MYRIAD_ABI

@@ -52,9 +52,9 @@ std::int64_t work_progress::failed() const {
 }
 
 std::ostream& operator<<(std::ostream& stream, const work_progress& p) {
-    const auto percent = p.total > 0 ? static_cast<std::int64_t>(100.0 * static_cast<double>(p.done) /
-                                                                 static_cast<double>(p.total))
-                                     : 100;
+    const auto percent =
+        p.total > 0 ? static_cast<std::int64_t>(100.0 * static_cast<double>(p.done) / static_cast<double>(p.total))
+                    : 100;
     std::string text = message(percent, " %, ", grouped(p.done), " of ", grouped(p.total), " instances");
     if (p.rate() > 0) text += message(", ", rounded(p.rate()), "/s");
     // The first instances come late, when all lanes have been busy for a while.

@@ -31,10 +31,10 @@ TEST_CASE("Progress counts finished instances, their rate, the time left and fai
     p.by_status[index(status::max_steps)] = 8;
     p.by_status[index(status::not_finite)] = 2;
     CHECK(p.failed() == 10);
-    CHECK(text_of(p) ==
-          "37 %, 17 152 of 46 080 instances, 1 200/s, 24 s left, 10 failed (max_steps 8, not_finite 2)");
+    CHECK(text_of(p) == "37 %, 17 152 of 46 080 instances, 1 200/s, 24 s left, 10 failed (max_steps 8, not_finite 2)");
     CHECK(text_of({.done = 0, .total = 10}) == "0 %, 0 of 10 instances");
-    CHECK(text_of({.done = 1, .total = 100'000, .seconds = 8}) == "0 %, 1 of 100 000 instances, 0.13/s, 222 h 13 min left");
+    CHECK(text_of({.done = 1, .total = 100'000, .seconds = 8}) ==
+          "0 %, 1 of 100 000 instances, 0.13/s, 222 h 13 min left");
     CHECK(text_of({.done = 10, .total = 10, .seconds = 2}) == "100 %, 10 of 10 instances, 5/s");
 }
 TEST_CASE("Progress goes to one line on a terminal, which is removed", "[progress]") {

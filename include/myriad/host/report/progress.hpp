@@ -45,9 +45,10 @@ enum class progress_style {
 class progress_line {
 public:
     explicit progress_line(progress_style how = progress_style::automatic);
-    /// The same on another stream, which must outlive it; `pause` is the least time between two texts, by default that of
-    /// the style.
-    progress_line(std::ostream& to, progress_style how, std::chrono::milliseconds pause = std::chrono::milliseconds(-1));
+    /// The same on another stream, which must outlive it; `pause` is the least time between two texts, by default that
+    /// of the style.
+    progress_line(std::ostream& to, progress_style how,
+                  std::chrono::milliseconds pause = std::chrono::milliseconds(-1));
 
     /// For `options::progress`.
     void operator()(std::int64_t done, std::int64_t total);
