@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <random>
 #include <string>
 #include <vector>
 
 #include <myriad/myriad.hpp>
 #include <myriad/study.hpp>
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -325,11 +327,12 @@ TEST_CASE("SIGINT and SIGTERM end a study after the chunks under way, if it was 
 // What the next case kills: the program with this case alone.
 TEST_CASE("A study that is to be killed", "[.child]") {
     study<duffing, method> s;
-    describe_in_folder(s, std::getenv("STUDY_TEST_FOLDER"), [] { usleep(2000); });
+    describe_in_folder(s, std::getenv("STUDY_TEST_FOLDER"), [] { usleep(10'000); });
     CHECK(s.run().complete);
 }
 TEST_CASE("A study that is killed at any time goes on and has the same bits", "[study]") {
     const auto expected = undisturbed();
+    std::random_device random;
     for (int round = 0; round < 5; ++round) {
         const folder here;
         setenv("STUDY_TEST_FOLDER", here.store().c_str(), 1);
@@ -338,14 +341,20 @@ TEST_CASE("A study that is killed at any time goes on and has the same bits", "[
         for (int p = 0; p < processes; ++p) {
             const pid_t child = fork();
             if (child == 0) {
+                const int nowhere = open("/dev/null", O_WRONLY);
+                dup2(nowhere, STDOUT_FILENO);
                 execl("/proc/self/exe", "study_test", "A study that is to be killed", nullptr);
                 _exit(1);
             }
             children.push_back(child);
         }
-        usleep(static_cast<useconds_t>(20'000 + 15'000 * round));
+        usleep(random() % 100'000);  // undisturbed it takes 130 ms or more
         for (const pid_t child : children) kill(child, SIGKILL);
-        for (const pid_t child : children) waitpid(child, nullptr, 0);
+        for (const pid_t child : children) {
+            int status = 0;
+            waitpid(child, &status, 0);
+            CHECK(WIFSIGNALED(status));
+        }
         study<duffing, method> s;
         describe_in_folder(s, here.store(), [] {});
         const study_result r = s.run();

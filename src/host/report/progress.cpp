@@ -58,7 +58,7 @@ std::ostream& operator<<(std::ostream& stream, const work_progress& p) {
     std::string text = message(percent, " %, ", grouped(p.done), " of ", grouped(p.total), " instances");
     if (p.rate() > 0) text += message(", ", rounded(p.rate()), "/s");
     // The first instances come late, when all lanes have been busy for a while.
-    if (p.rate() > 0 && p.seconds >= 1 && p.done < p.total) text += ", " + duration(p.seconds_left()) + " left";
+    if (p.rate() > 0 && p.seconds >= 1 && p.done < p.total) text += message(", ", duration(p.seconds_left()), " left");
     if (p.failed() > 0) {
         text += message(", ", grouped(p.failed()), " failed (");
         bool first = true;
