@@ -131,8 +131,9 @@ void read_coordinate(file_system& files, const std::string& folder, const stored
 // The layout of a folder with a store, or nothing if there is none yet. An error if there is something else.
 std::optional<layout> stored_layout(file_system& files, const std::string& folder) {
     const std::string path = folder + "/zarr.json";
-    if (const std::optional<std::string> text = read_text(files, path)) return layout_of(*text, path);
+    // In this order, since another process may be about to make one.
     std::vector<std::string> names = names_in(files, folder).value_or(std::vector<std::string>{});
+    if (const std::optional<std::string> text = read_text(files, path)) return layout_of(*text, path);
     // A start that was interrupted early leaves this.
     std::erase(names, "myriad");
     if (names.empty()) return std::nullopt;
@@ -203,9 +204,9 @@ struct store::implementation {
         require(self != nullptr, "the store ", folder, " was opened for reading: use store::create_or_resume");
     }
 
-    // ------------------------------------------------------------------------------------------------------------------
+    // -----------------------------------------------------------------------------------------------------------------
     // Making
-    // ------------------------------------------------------------------------------------------------------------------
+    // -----------------------------------------------------------------------------------------------------------------
 
     void write_coordinate_file(std::size_t c, std::int64_t file) {
         const array_shape& shape = coordinates[c].shape;
@@ -251,9 +252,9 @@ struct store::implementation {
         throw file_error("looking for", path, errno);
     }
 
-    // ------------------------------------------------------------------------------------------------------------------
+    // -----------------------------------------------------------------------------------------------------------------
     // What is done
-    // ------------------------------------------------------------------------------------------------------------------
+    // -----------------------------------------------------------------------------------------------------------------
 
     void refresh() {
         {
@@ -338,9 +339,9 @@ struct store::implementation {
         if (counted[bytes_of(chunk)]) forget_counts();
     }
 
-    // ------------------------------------------------------------------------------------------------------------------
+    // -----------------------------------------------------------------------------------------------------------------
     // What is damaged
-    // ------------------------------------------------------------------------------------------------------------------
+    // -----------------------------------------------------------------------------------------------------------------
 
     void check_chunks(bool checksums, std::vector<damage>& problems) {
         for (std::int64_t chunk = 0; chunk < content.chunks(); ++chunk) {
@@ -421,9 +422,9 @@ struct store::implementation {
                 " has ", have, " free: free space, give a folder on a larger disk, or keep less");
     }
 
-    // ------------------------------------------------------------------------------------------------------------------
+    // -----------------------------------------------------------------------------------------------------------------
     // Writing
-    // ------------------------------------------------------------------------------------------------------------------
+    // -----------------------------------------------------------------------------------------------------------------
 
     std::span<const std::byte> bytes_for(std::size_t v, std::span<const column> columns, std::int64_t items) const {
         const variable& wanted = content.variables[v];

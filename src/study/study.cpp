@@ -9,6 +9,7 @@
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/memory/memory_need.hpp"
+#include "myriad/host/report/status_names.hpp"
 #include "myriad/study/chunk_solver.hpp"
 #include "myriad/study/result_keeper.hpp"
 #include "myriad/study/runner.hpp"
@@ -60,6 +61,21 @@ std::int64_t study_result::failed() const {
     for (int s = 0; s < status_count; ++s)
         if (is_failure(static_cast<status>(s))) sum += by_status[static_cast<std::size_t>(s)];
     return sum;
+}
+
+std::ostream& operator<<(std::ostream& stream, const study_result& r) {
+    std::string text = message(r.instances, " of ", r.content().instances(), " instances: ");
+    bool first = true;
+    for (int s = 0; s < status_count; ++s) {
+        const std::int64_t count = r.count(static_cast<status>(s));
+        if (count == 0) continue;
+        text += message(first ? "" : ", ", count, ' ', name_of(static_cast<status>(s)));
+        first = false;
+    }
+    text += message(first ? "" : "; ", r.seconds, " s", r.complete ? "" : "; stopped before all were done", '\n');
+    for (const std::string& note : r.notes) text += message("note: ", note, '\n');
+    for (const std::string& warning : r.warnings) text += message("warning: ", warning, '\n');
+    return stream << text;
 }
 
 std::size_t study_result::size_of(std::string_view name, element type, std::int64_t count) const {

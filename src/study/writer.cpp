@@ -6,6 +6,7 @@
 #include <charconv>
 #include <locale>
 #include <optional>
+#include <set>
 #include <span>
 #include <sstream>
 #include <utility>
@@ -48,13 +49,40 @@ std::string host_name() {
     return ::gethostname(name, sizeof name - 1) == 0 ? name : "";
 }
 
-// Numbers of processes mean something only within one run of a machine and one namespace.
+// One run of this machine.
 std::string boot_id() {
     std::string id = read_text(file_system::real(), "/proc/sys/kernel/random/boot_id").value_or("");
     while (!id.empty() && id.back() == '\n') id.pop_back();
-    char space[64] = {};
-    if (::readlink("/proc/self/ns/pid", space, sizeof space - 1) > 0) id.append("/").append(space);
     return id;
+}
+
+// Among whom numbers of processes mean something.
+std::string process_space() {
+    char space[64] = {};
+    return ::readlink("/proc/self/ns/pid", space, sizeof space - 1) > 0 ? space : "";
+}
+
+// The writers of this process.
+struct writer_list {
+    std::mutex mutex;
+    std::set<std::string> ids;
+    bool has(const std::string& id) {
+        const std::lock_guard lock(mutex);
+        return ids.contains(id);
+    }
+};
+writer_list& here() {
+    static writer_list list;
+    return list;
+}
+
+// For a name of a file, whose parts '~' separates.
+std::string part_of_name(std::string text) {
+    for (char& c : text) {
+        const bool kept = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.';
+        if (!kept) c = '-';
+    }
+    return text.substr(0, 64);
 }
 
 std::int64_t number(const std::string& text) {
@@ -66,57 +94,50 @@ std::int64_t number(const std::string& text) {
 }  // namespace
 
 process_identity process_identity::own() {
-    process_identity self;
     std::uint64_t random = 0;
     if (::getrandom(&random, sizeof random, 0) != sizeof random)
         random = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
-    self.process = ::getpid();
-    std::ostringstream id;
-    id.imbue(std::locale::classic());
-    id << self.process << '-' << std::hex << random;
-    self.id = id.str();
-    self.host = host_name();
-    self.boot = boot_id();
-    self.start = start_of(self.process).value_or(0);
-    return self;
-}
-
-std::string process_identity::text() const {
-    return message("id ", id, "\nhost ", host, "\nboot ", boot, "\nprocess ", process, "\nstart ", start, '\n');
+    return of(message(part_of_name(host_name()), '~', part_of_name(boot_id()), '~', part_of_name(process_space()), '~',
+                      ::getpid(), '~', start_of(::getpid()).value_or(0), '~', random));
 }
 
 process_identity process_identity::of(std::string_view text) {
-    process_identity read;
-    std::istringstream lines{std::string(text)};
-    for (std::string key, value; lines >> key && std::getline(lines >> std::ws, value);) {
-        // Part of a path.
-        if (key == "id" && value.find_first_not_of("0123456789abcdef-") == std::string::npos) read.id = value;
-        if (key == "host") read.host = value;
-        if (key == "boot") read.boot = value;
-        if (key == "process") read.process = number(value);
-        if (key == "start") read.start = number(value);
+    std::vector<std::string> parts(1);
+    for (const char c : text) {
+        if (c == '~')
+            parts.emplace_back();
+        else
+            parts.back() += c;
     }
+    process_identity read;
+    if (parts.size() != 6) return read;
+    // It is part of a path.
+    for (const std::string& part : parts)
+        if (part != part_of_name(part)) return read;
+    read = {std::string(text), parts[0], parts[1], parts[2], number(parts[3]), number(parts[4])};
     return read;
 }
 
 bool process_identity::ended_here() const {
-    if (process <= 0 || start <= 0 || boot.empty() || host != host_name()) return false;
-    static const std::string here = boot_id();
-    if (boot != here) {
-        // The same machine, started anew since; another namespace is one that cannot be looked into.
-        return boot.substr(boot.find('/') + 1) == here.substr(here.find('/') + 1) &&
-               boot.substr(0, boot.find('/')) != here.substr(0, here.find('/'));
-    }
+    if (process <= 0 || start <= 0 || boot.empty() || host != part_of_name(host_name())) return false;
+    // Numbers of processes that cannot be looked up, as those of a container.
+    if (space != part_of_name(process_space())) return false;
+    if (boot != part_of_name(boot_id())) return true;
+    if (process == ::getpid()) return !here().has(id);
     const std::optional<std::int64_t> now = start_of(process);
     return !now || (*now != 0 && *now != start);
 }
 
 writer::writer(file_system& files, std::string folder, std::chrono::milliseconds expiry)
     : files_(files), folder_(std::move(folder)), expiry_(expiry), self_(process_identity::own()), owner_(::getpid()) {
+    {
+        const std::lock_guard lock(here().mutex);
+        here().ids.insert(self_.id);
+    }
     try {
         appear();
     } catch (...) {
-        remove_writer(self_.id);
+        leave();
         throw;
     }
     heartbeat_ = std::thread([this] { stay_alive(); });
@@ -135,7 +156,13 @@ writer::~writer() {
     heartbeat_.join();
     const std::set<std::int64_t> held = std::exchange(held_, {});
     for (const std::int64_t chunk : held) release(chunk);
+    leave();
+}
+
+void writer::leave() noexcept {
     remove_writer(self_.id);
+    const std::lock_guard lock(here().mutex);
+    here().ids.erase(self_.id);
 }
 
 std::string writer::temporary() {
@@ -151,7 +178,7 @@ void writer::appear() {
             make_folder(files_, own);
             // Not durable: it says that this process runs.
             open_file alive(files_, own + "/alive", O_WRONLY | O_CREAT);
-            alive.write(std::as_bytes(std::span(std::string_view(self_.text()))));
+            alive.write(std::as_bytes(std::span(std::string_view(self_.id))));
             alive.close();
             return;
         } catch (const file_error& failure) {
@@ -253,11 +280,8 @@ void writer::remove_dead() {
     }
     for (const std::string& id : names_in(files_, folder_ + "/writers").value_or(std::vector<std::string>{})) {
         if (id == self_.id) continue;
-        const std::string other = folder_ + "/writers/" + id;
-        // One that died before it had its file has no other either; one that is about to make it makes the folder
-        // again.
-        files_.rmdir(other);
-        if (is_dead(other + "/alive")) remove_writer(id);
+        const process_identity identity = process_identity::of(id);
+        if (identity.ended_here() || is_dead(folder_ + "/writers/" + id + "/alive")) remove_writer(identity.id);
     }
 }
 

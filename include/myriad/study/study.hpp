@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iosfwd>
 #include <map>
 #include <memory>
 #include <string>
@@ -72,6 +73,9 @@ private:
 
     std::shared_ptr<const studies::results> results_;
 };
+
+/// Prints how many instances ended in which way, the time, notes and warnings.
+std::ostream& operator<<(std::ostream& stream, const study_result& r);
 
 /// A parameter study of any model; see `study`. An instance's result depends on its own values and the options alone:
 /// not on chunks, devices of one kind, their order, nor on how often the study was stopped and started again.

@@ -2,7 +2,7 @@
 // One process among those that fill a store: the sign that it is alive, its temporary files, and its claims on chunks.
 //
 // In the folder, all in myriad/:
-//   writers/<id>/alive   host, boot, process and its start; its time of modification is renewed by a thread
+//   writers/<id>/alive   its time of modification is renewed by a thread; the id says which process it is
 //   writers/<id>/...     temporary files, before they get their names
 //   claims/<chunk>       a hard link to a writer's file alive, so made by one atomic call, and renewed with it
 // A claim of a process that is dead is renamed to a name of the one who takes it over, which only one can do.
@@ -22,21 +22,21 @@
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
-/// Who a file `alive` belongs to.
+/// Which process a writer is.
 struct process_identity {
-    std::string id;    ///< of the writer, unique
-    std::string host;  ///< its name
-    std::string boot;  ///< of the host, changes when it starts anew, with the namespace of process numbers
+    std::string id;     ///< all of it, and a random number: the name of the writer's folder, and the text of its file
+    std::string host;   ///< the name of the machine
+    std::string boot;   ///< changes when it starts anew
+    std::string space;  ///< among whom numbers of processes mean something: a container has its own
     std::int64_t process = 0;
     std::int64_t start = 0;  ///< of the process, in the system's ticks
 
     /// This process, as a new writer.
     static process_identity own();
-    /// As it is in the file.
-    std::string text() const;
-    /// Something incomplete if the text is no identity.
-    static process_identity of(std::string_view text);
-    /// Whether it ran on this machine and does no longer. False if that cannot be known.
+    /// From its id; empty if the text is none.
+    static process_identity of(std::string_view id);
+    /// Whether it ran on this machine and does no longer, or is a writer that this process had before. False if that
+    /// cannot be known.
     bool ended_here() const;
 };
 
@@ -68,6 +68,7 @@ private:
     bool is_dead(const std::string& path, process_identity* who = nullptr);
     bool take_away(const std::string& claim);
     void remove_writer(const std::string& id) noexcept;
+    void leave() noexcept;
     void stay_alive();
 
     file_system& files_;
