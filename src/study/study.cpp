@@ -6,6 +6,7 @@
 #include <iostream>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/memory/memory_need.hpp"
@@ -162,10 +163,12 @@ void any_study::store(std::string folder, const studies::store_options& how) {
 studies::study_request any_study::request() const {
     require(!options.progress, "options.progress is for solve: set the study's own progress instead");
     require(chunk >= 0, "chunk is ", chunk, " (must be positive, or 0 for a choice by memory)");
+    myriad::options how = options;
+    how.invalid_instances = invalid_instances::mark;
     return {.method = model_->method(),
             .real = model_->real(),
             .axes = axes_,
-            .options = options,
+            .options = std::move(how),
             .keep = keep,
             .reductions = reductions_,
             .generator = model_->generator(),

@@ -116,8 +116,7 @@ json describe(const options& o, const component_names& names) {
               {"phase_step", o.phase_step == phase_step::restart ? "restart" : "carry_on"},
               {"events", events},
               {"sub_samples", o.sub_samples},
-              {"accumulation_limit", o.accumulation_limit},
-              {"invalid_instances", o.invalid_instances == invalid_instances::refuse ? "refuse" : "mark"}};
+              {"accumulation_limit", o.accumulation_limit}};
     if (!o.record.empty()) {
         made["record"] = {{"from_phase", o.record.from_phase},
                           {"states", names_of(names, state, o.record.states)},
@@ -155,6 +154,7 @@ std::string describe(const study_request& asked, const study_plan& plan) {
               {"axes", describe(asked.axes)},
               {"options", describe(asked.options, names)},
               {"kept", kept}};
+    if (!asked.title.empty()) made["title"] = asked.title;
     if (!reductions.empty()) made["reductions"] = reductions;
     if (!asked.generator.empty()) made["generator"] = asked.generator;
     if (!asked.notes.empty()) made["notes"] = asked.notes;

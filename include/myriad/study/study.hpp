@@ -109,15 +109,15 @@ public:
 
     // -- Integration and results --------------------------------------------------------------------------------------
 
-    /// As for `solve`; instances whose inputs are not finite are marked, however, and not refused. `progress` is that
-    /// of the study.
-    myriad::options options{.invalid_instances = invalid_instances::mark};
+    /// As for `solve`, but that instances whose inputs are not finite are always marked, and not refused, and that
+    /// `progress` is that of the study.
+    myriad::options options;
     kept_values keep;  ///< what is kept of every instance
     /// A reduction over all instances.
     void reduce(ensemble_reduction r);
     /// The unit of a component, or of time, "t": the attribute "units" of variables.
     void unit(std::string_view component, std::string unit);
-    /// A title for exported files.
+    /// A title for exported files, which is part of the study's description.
     void title(std::string text) { title_ = std::move(text); }
     /// Something that tells this study from others, such as the version of the model: a store that was made with
     /// another value is refused.
