@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <myriad/study.hpp>
-#include <myriad/study/export.hpp>
 
 #include "../common/command_line.hpp"
 #include "../common/csv_file.hpp"
