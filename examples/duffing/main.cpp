@@ -20,15 +20,16 @@ using namespace duffing_sweep;
 
 std::string folder;  // for results that are kept while it runs; empty: they are in memory
 
-// snippet: study
 /// One instance per damping; a phase is one period of the forcing.
 void describe(myriad::any_study& sweep, std::int64_t instances, std::int64_t transient, std::int64_t phases) {
+    // snippet: study
     sweep.axis("k", myriad::linspace(k_first, k_last, instances));
     sweep.set("B", forcing);
     sweep.set("x", x_start);
     sweep.set("v", v_start);
     sweep.time_domain(0, 2 * std::numbers::pi);
     sweep.title("Duffing oscillator x'' + k x' - x + x^3 = B cos t, v = x'; all quantities are dimensionless");
+    // end of snippet
     sweep.options = {
         .phases = transient + phases,
         .relative_tolerance = tolerance,
@@ -46,7 +47,6 @@ void describe(myriad::any_study& sweep, std::int64_t instances, std::int64_t tra
                    .accessories = {duffing::x_local_max, duffing::v_second_zero, duffing::x_global_max},
                    .integer_accessories = {duffing::zeros}}};
 }
-// end of snippet
 
 // A row for each instance and recorded phase. Nothing here depends on the time, machine or number of threads: equal results
 // give equal files.
