@@ -18,10 +18,11 @@ function(myriad_install_component component target)
             FILE myriad-${component}.cmake)
 endfunction()
 
-myriad_install_component(core myriad include/myriad EXCEPT study)
+myriad_install_component(core myriad include/myriad EXCEPT study*)
 myriad_install_component(openmp myriad_openmp backends/openmp/myriad)
 if(MYRIAD_BUILD_STUDY)
     install(TARGETS myriad_study EXPORT myriad_study ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT study)
+    install(FILES include/myriad/study.hpp DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/myriad" COMPONENT study)
     install(DIRECTORY include/myriad/study DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/myriad" COMPONENT study)
     install(EXPORT myriad_study NAMESPACE myriad:: DESTINATION "${package_dir}" COMPONENT study
             FILE myriad-study.cmake)

@@ -150,10 +150,12 @@ then run this again."
 # Steps
 # ----------------------------------------------------------------------------------------------------------------------
 
-# dependency_options DIR: CMake's options for the dependencies in DIR, one per line: DIR/xsimd, DIR/CLI, DIR/sundials.
+# dependency_options DIR: CMake's options for the dependencies in DIR, one per line: DIR/xsimd, DIR/CLI, DIR/json,
+# DIR/sundials.
 dependency_options() {
     if [[ -d $1/xsimd ]]; then printf -- '-DMYRIAD_XSIMD_INCLUDE_DIR=%s\n' "$PWD/$1"; fi
     if [[ -d $1/CLI ]]; then printf -- '-DMYRIAD_CLI11_INCLUDE_DIR=%s\n' "$PWD/$1"; fi
+    if [[ -d $1/json ]]; then printf -- '-DCMAKE_PREFIX_PATH=%s\n' "$PWD/$1/json"; fi
     if [[ -d $1/sundials ]]; then printf -- '-DSUNDIALS_ROOT=%s\n' "$PWD/$1/sundials"; fi
 }
 

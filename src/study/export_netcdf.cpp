@@ -1,5 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Results as netCDF-4, by netCDF's C library, with the conventions of CF.
+#if defined(MYRIAD_WITHOUT_NETCDF)
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/study/export.hpp"
+
+namespace myriad {
+
+void export_netcdf(const studies::results&, const std::string& path, const netcdf_options&) {
+    throw error(message(path, " is not written, as the library was built without netCDF: install it (Debian package "
+                              "libnetcdf-dev) and build again, or use export_csv or export_npy"));
+}
+
+}  // namespace myriad
+
+#else
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -374,3 +390,5 @@ void export_netcdf(const results& from, const std::string& path, const netcdf_op
 }
 
 }  // namespace myriad
+
+#endif

@@ -41,7 +41,7 @@ BELOW = {
     "study": {"study", "public", "host", "kernel"},
     "openmp": {"openmp", "host", "kernel"},
     "cuda": {"cuda", "host", "kernel"},
-    "public": {"public", "host", "kernel"},
+    "public": {"public", "study", "host", "kernel"},
 }
 
 
