@@ -232,6 +232,8 @@ struct store::implementation {
             for (std::int64_t file = 0; file < coordinates[c].shape.files(); ++file) write_coordinate_file(c, file);
             sync_folder(files, folder + '/' + coordinates[c].name);
         }
+        // A group of its own, so that readers which look at every folder know what it is.
+        write_text(files, self->temporary(), own("zarr.json"), "{\"zarr_format\": 3, \"node_type\": \"group\"}\n");
         make_folder(files, own("claims"));
         sync_folder(files, folder);
         // The last, as the sign that all this is there.
