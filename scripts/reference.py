@@ -5,9 +5,9 @@
 Usage: scripts/reference.py (--check | --write FOLDER) [--source FOLDER]
 
 --check names every public entity without a description, and fails if there is one; --write writes the reference as
-Markdown. Public is: what is in namespace myriad (not detail, host, studies or a backend, but for what a report holds) and
-has public access; macros and CMake functions that users write; CMake options. Of overloads one must be described, and a
-member that several methods have in one of them. What the sources look for by name in a model or a method of the
+Markdown. Public is: what is in namespace myriad (not detail, host, studies or a backend, but for what a report holds)
+and has public access; macros and CMake functions that users write; CMake options. Of overloads one must be described,
+and a member that several methods have in one of them. What the sources look for by name in a model or a method of the
 user's, and the environment variables that they read, must have entries on the pages of MEMBER_PAGES. A warning of
 Doxygen's is an error. Exit status 77, "skipped" for ctest, if there is no doxygen.
 """
@@ -42,7 +42,7 @@ PAGES = {
     "random": ("Random numbers", "`<myriad/random.hpp>`.", ["kernel/model/random.hpp"]),
     "tangent": ("Tangents and Lyapunov exponents", "`<myriad/tangent.hpp>`.",
                 ["kernel/model/tangent.hpp", "host/ensemble/exponents.hpp"]),
-    "study": ("Studies", "`<myriad/study.hpp>`, target `myriad::study`. Axes, what is kept, the run, and results on disk.",
+    "study": ("Studies", "`<myriad/study.hpp>`, target `myriad::study`. Axes, what is kept, the run, results on disk.",
               ["study/study.hpp", "study/model_study.hpp", "study/axes.hpp", "study/reduction.hpp", "study/"]),
     "methods": ("Methods", "`<myriad/methods.hpp>`, and `<myriad/tableau.hpp>` for a method of your own.",
                 ["kernel/methods/"]),

@@ -89,9 +89,7 @@ int run_sweep(int argc, const char* const* argv, const study& offered, Sweep&& s
     sweep_options options;
     options.output = offered.output;
     app.add_option("--device", options.device, device_help())->type_name("NAME")->capture_default_str();
-    app.add_option("--output", options.output, offered.output_help)
-        ->type_name("FILE")
-        ->capture_default_str();
+    app.add_option("--output", options.output, offered.output_help)->type_name("FILE")->capture_default_str();
     CLI::Option* const plot = app.add_option("--plot", options.picture, "Draw a picture of it too (default: FILE.png)")
                                   ->type_name("PNG")
                                   ->expected(0, 1);

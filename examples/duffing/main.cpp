@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The first example: a bifurcation diagram of the Duffing oscillator over its damping, as in the MPGOS paper, as a study
-// whose results are one file.
+// The first example: a bifurcation diagram of the Duffing oscillator over its damping, as in the MPGOS paper, as a
+// study whose results are one file.
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -30,26 +30,25 @@ void describe(myriad::any_study& sweep, std::int64_t instances, std::int64_t tra
     sweep.time_domain(0, 2 * std::numbers::pi);
     sweep.title("Duffing oscillator x'' + k x' - x + x^3 = B cos t, v = x'; all quantities are dimensionless");
     // end of snippet
-    sweep.options = {
-        .phases = transient + phases,
-        .relative_tolerance = tolerance,
-        .absolute_tolerance = tolerance,
-        .step = 1e-2,
-        .minimum_step = 1e-12,
-        .maximum_step = 1e6,
-        .phase_step = myriad::phase_step::restart,
-        // snippet: events
-        .events = {{.direction = myriad::direction::falling, .tolerance = event_tolerance},
-                   {.direction = myriad::direction::either, .tolerance = event_tolerance}},
-        // end of snippet
-        .record = {.from_phase = transient,
-                   .states = {duffing::x, duffing::v},
-                   .accessories = {duffing::x_local_max, duffing::v_second_zero, duffing::x_global_max},
-                   .integer_accessories = {duffing::zeros}}};
+    sweep.options = {.phases = transient + phases,
+                     .relative_tolerance = tolerance,
+                     .absolute_tolerance = tolerance,
+                     .step = 1e-2,
+                     .minimum_step = 1e-12,
+                     .maximum_step = 1e6,
+                     .phase_step = myriad::phase_step::restart,
+                     // snippet: events
+                     .events = {{.direction = myriad::direction::falling, .tolerance = event_tolerance},
+                                {.direction = myriad::direction::either, .tolerance = event_tolerance}},
+                     // end of snippet
+                     .record = {.from_phase = transient,
+                                .states = {duffing::x, duffing::v},
+                                .accessories = {duffing::x_local_max, duffing::v_second_zero, duffing::x_global_max},
+                                .integer_accessories = {duffing::zeros}}};
 }
 
-// A row for each instance and recorded phase. Nothing here depends on the time, machine or number of threads: equal results
-// give equal files.
+// A row for each instance and recorded phase. Nothing here depends on the time, machine or number of threads: equal
+// results give equal files.
 void write(examples::csv_file& file, const myriad::study_result& result, std::int64_t transient, std::int64_t phases) {
     using myriad::message;
     const std::int64_t instances = result.content().instances();
@@ -112,8 +111,8 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
     }
     if (!chosen.quiet) std::cout << "Written to " << chosen.output << '\n';
     if (result.failed() == 0) return 0;
-    std::cerr << result.failed() << " of " << result.instances << " instances failed; what they did not complete is nan in "
-              << chosen.output << '\n';
+    std::cerr << result.failed() << " of " << result.instances
+              << " instances failed; what they did not complete is nan in " << chosen.output << '\n';
     return 1;
 }
 

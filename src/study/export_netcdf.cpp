@@ -8,8 +8,9 @@
 namespace myriad {
 
 void export_netcdf(const studies::results&, const std::string& path, const netcdf_options&) {
-    throw error(message(path, " is not written, as the library was built without netCDF: install it (Debian package "
-                              "libnetcdf-dev) and build again, or use export_csv or export_npy"));
+    throw error(message(path,
+                        " is not written, as the library was built without netCDF: install it (Debian package "
+                        "libnetcdf-dev) and build again, or use export_csv or export_npy"));
 }
 
 }  // namespace myriad

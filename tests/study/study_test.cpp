@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <myriad/myriad.hpp>
 #include <myriad/study.hpp>
-#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

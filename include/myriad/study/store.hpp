@@ -104,7 +104,9 @@ public:
     /// or is empty. Throws `error` if there is something else.
     static std::optional<studies::layout> content_of(const std::string& folder);
 
+    /// Moved-from stores can only be destroyed or assigned to.
     store(store&& other) noexcept;
+    /// The same.
     store& operator=(store&& other) noexcept;
     /// Gives claims back, and removes the traces of this process but its results.
     ~store() override;
