@@ -42,7 +42,7 @@ TEST_CASE("a new file has its name when it is whole, and is gone if it never is"
 
 TEST_CASE("texts are read as a whole, and what there is not is nothing") {
     tests::temporary_folder folder;
-    for (const std::size_t size : {0, 1, 65535, 65536, 65537, 200000}) {
+    for (const std::size_t size : std::vector<std::size_t>{0, 1, 65535, 65536, 65537, 200000}) {
         const std::string text(size, 'x');
         write_text(disk(), folder / "temporary", folder / "text", text);
         CHECK((read_text(disk(), folder / "text") == text));
