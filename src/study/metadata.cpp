@@ -86,7 +86,9 @@ double as_double(const json& value) {
 std::vector<attribute> attributes_from(const json& all) {
     std::vector<attribute> attributes;
     for (const auto& [name, value] : all.items()) {
-        const auto every = [&](auto condition) { return std::all_of(value.begin(), value.end(), condition); };
+        const auto every = [&items = value](auto condition) {
+            return std::all_of(items.begin(), items.end(), condition);
+        };
         if (value.is_number_integer()) {
             attributes.push_back({name, value.get<std::int64_t>()});
         } else if (is_number(value)) {

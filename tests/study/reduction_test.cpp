@@ -97,7 +97,7 @@ TEST_CASE("Reductions have the same bits whatever the chunks are", "[reduction]"
     for (const ensemble_reduction& r :
          {histogram_of("x", linspace(-1e3, 1e19, 50)), minimum_of("x"), maximum_of("x"), mean_of("x"), user}) {
         const auto whole = data.reduce(r, 1000);
-        for (const std::size_t chunk : {1, 7, 512, 999}) CHECK(data.reduce(r, chunk) == whole);
+        for (const std::size_t chunk : std::vector<std::size_t>{1, 7, 512, 999}) CHECK(data.reduce(r, chunk) == whole);
     }
     CHECK(data.reduce(user, 10)[0][1] == 1000);
 }
