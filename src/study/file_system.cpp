@@ -39,6 +39,10 @@ std::string advice(int code) {
         case EPERM:
         case EROFS:
             return ": give a folder that you may write to";
+        case ENOTDIR:
+        case ENAMETOOLONG:
+        case ELOOP:
+            return ": give the path of a folder";
         case EMLINK:
         case ENOTSUP:
             return ": give a folder on a file system with hard links, as those of Linux and NFS";

@@ -287,7 +287,7 @@ TEST_CASE("a folder with other files is refused, and nothing is written there") 
     std::ofstream(folder / "full/zarr.json") << R"({"zarr_format": 3, "attribu)";
     CHECK_THROWS_WITH(store::create_or_resume(folder / "full", synthetic_layout()), Contains("is no JSON"));
     CHECK_THROWS_WITH(store::create_or_resume(folder / "full/thesis.tex", synthetic_layout()),
-                      Contains("Not a directory"));
+                      Contains("Not a directory: give the path of a folder"));
     CHECK_THROWS_WITH(store::open(folder / "none"), Contains("there is no folder"));
     std::filesystem::create_directories(folder / "empty");
     CHECK_THROWS_WITH(store::open(folder / "empty"), Contains("is empty"));
