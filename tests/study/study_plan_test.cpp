@@ -6,8 +6,6 @@
 
 #include <myriad/host/core/error.hpp>
 #include <myriad/study/study_plan.hpp>
-#include <nlohmann/json.hpp>
-
 #include "tests/catch.hpp"
 
 namespace {
@@ -89,7 +87,7 @@ TEST_CASE("Descriptions differ exactly where results may", "[study_plan]") {
         return plan_study(asked).content.description;
     };
     const std::string plain = description([](study_request&) {});
-    CHECK(nlohmann::json::parse(plain)["axes"]["dimensions"][0]["components"]["parameter.k"] == "linspace(0, 1, 5)");
+    CHECK_THAT(plain, Contains("\"parameter.k\": \"linspace(0, 1, 5)\""));
     const std::string others[] = {
         description([](study_request& s) { s.options.relative_tolerance = 1e-9; }),
         description([](study_request& s) { s.options.absolute_tolerance = {1e-9}; }),
