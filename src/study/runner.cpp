@@ -195,7 +195,7 @@ private:
     /// The next chunk for this device; nothing if it is to end.
     std::optional<std::int64_t> next_chunk(used_device& d) {
         for (;;) {
-            if (stopping_ || d.failed) return {};
+            if (stopping_ || d.failed || (settings_.stops && settings_.stops())) return {};
             if (is_worthwhile(d)) {
                 if (const auto chunk = keeper_.claim_next()) return chunk;
             }

@@ -6,6 +6,7 @@
 
 #include <myriad/host/core/error.hpp>
 #include <myriad/study/study_plan.hpp>
+
 #include "tests/catch.hpp"
 
 namespace {

@@ -22,8 +22,8 @@ namespace myriad::studies::inline MYRIAD_ABI {
 /// How a study is run.
 struct run_settings {
     std::vector<device> devices;
-    std::int64_t piece = 0;                                   ///< most instances to integrate at a time; 0: a chunk
-    std::function<bool()> stops = {};                         ///< whether to end after the chunks under way
+    std::int64_t piece = 0;            ///< most instances to integrate at a time; 0: a chunk
+    std::function<bool()> stops = {};  ///< whether to end after the chunks under way; called by all threads
     std::function<void(const work_progress&)> progress = {};  ///< may be empty
     std::function<void(const std::string&)> warning = {};     ///< may be empty
 };
