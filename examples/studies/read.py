@@ -10,5 +10,6 @@ FILE = sys.argv[1] if len(sys.argv) > 1 else "duffing_study.nc"
 data = xarray.open_dataset(FILE)
 print(data)
 print(data.x.sel(k=0.25, method="nearest").isel(phase=-1).values)
-print((data.status == 0).all().item(), data.attrs["options.relative_tolerance"])
+flag = dict(zip(data.status.flag_meanings.split(), data.status.flag_values))
+print((data.status == flag["success"]).all().item(), data.attrs["options.relative_tolerance"])
 # end of snippet
