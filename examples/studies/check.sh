@@ -20,5 +20,7 @@ with xarray.open_dataset("first.nc") as first, xarray.open_dataset("duffing_stud
     assert first.x_histogram.sum() + first.x_outside.sum() == first.x.size
     assert abs(first.v_begin.mean()) < 0.01 and abs(first.v_begin.std() - 0.1) < 0.01
 END
+    "$python" "$(dirname "$(realpath "$0")")/read.py" >read.txt || fail 'the file is not read as docs/studies.md says'
+    grep -q '^True 1e-09$' read.txt || fail 'the statuses or the attributes are not as they should be'
 fi
 echo 'All checks passed.'
