@@ -327,7 +327,7 @@ TEST_CASE("SIGINT and SIGTERM end a study after the chunks under way, if it was 
 // What the next case kills: the program with this case alone.
 TEST_CASE("A study that is to be killed", "[.child]") {
     study<duffing, method> s;
-    describe_in_folder(s, std::getenv("STUDY_TEST_FOLDER"), [] { usleep(10'000); });
+    describe_in_folder(s, std::getenv("STUDY_TEST_FOLDER"), [] { usleep(30'000); });
     CHECK(s.run().complete);
 }
 TEST_CASE("A study that is killed at any time goes on and has the same bits", "[study]") {
@@ -348,7 +348,7 @@ TEST_CASE("A study that is killed at any time goes on and has the same bits", "[
             }
             children.push_back(child);
         }
-        usleep(random() % 100'000);  // undisturbed it takes 130 ms or more
+        usleep(random() % 100'000);  // undisturbed two processes take 180 ms
         for (const pid_t child : children) kill(child, SIGKILL);
         for (const pid_t child : children) {
             int status = 0;
