@@ -54,6 +54,8 @@ failed=()
 
 mapfile -t options < <(dependency_options "$deps")
 options+=(-DMYRIAD_BUILD_VALIDATION=OFF -DMYRIAD_CUDA_COMPILE_CHECK=OFF)
+# Nothing here tests studies.
+has_package libnetcdf-dev && has_package nlohmann-json3-dev || options+=(-DMYRIAD_BUILD_STUDY=OFF)
 say "Building in build/cuda"
 cmake --preset cuda "${options[@]}" >"$output/configure.log" 2>&1 || { tail -30 "$output/configure.log"; exit 1; }
 targets=()

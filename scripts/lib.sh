@@ -62,12 +62,15 @@ has_package() {
         libeigen3-dev) has_header eigen3/Eigen/Core ;;
         libxsimd-dev) has_header xsimd/xsimd.hpp ;;
         libcli11-dev) has_header CLI/CLI.hpp ;;
+        libnetcdf-dev) has_header netcdf.h ;;
+        nlohmann-json3-dev) has_header nlohmann/json.hpp ;;
         libboost-dev) has_header boost/numeric/odeint.hpp ;;
         libsundials-dev) has_header cvode/cvode.h ;;
         catch2) has_header catch2/catch.hpp || has_header catch2/catch_test_macros.hpp ;;
         libomp-dev) has_clang_openmp ;;
         libclang-rt-dev) has_clang_runtime ;;
-        python3-matplotlib | python3-scipy) python_with "${1#python3-}" >/dev/null ;;
+        python3-matplotlib | python3-scipy | python3-xarray) python_with "${1#python3-}" >/dev/null ;;
+        python3-netcdf4) python_with netCDF4 >/dev/null ;;
         python3-venv) python3 -c 'import ensurepip, venv' >/dev/null 2>&1 ;;
         doxygen) has_command doxygen ;;
         *) return 1 ;;
@@ -147,10 +150,12 @@ then run this again."
 # Steps
 # ----------------------------------------------------------------------------------------------------------------------
 
-# dependency_options DIR: CMake's options for the dependencies in DIR, one per line: DIR/xsimd, DIR/CLI, DIR/sundials.
+# dependency_options DIR: CMake's options for the dependencies in DIR, one per line: DIR/xsimd, DIR/CLI, DIR/json,
+# DIR/sundials.
 dependency_options() {
     if [[ -d $1/xsimd ]]; then printf -- '-DMYRIAD_XSIMD_INCLUDE_DIR=%s\n' "$PWD/$1"; fi
     if [[ -d $1/CLI ]]; then printf -- '-DMYRIAD_CLI11_INCLUDE_DIR=%s\n' "$PWD/$1"; fi
+    if [[ -d $1/json ]]; then printf -- '-DCMAKE_PREFIX_PATH=%s\n' "$PWD/$1/json"; fi
     if [[ -d $1/sundials ]]; then printf -- '-DSUNDIALS_ROOT=%s\n' "$PWD/$1/sundials"; fi
 }
 

@@ -11,7 +11,7 @@ usage() {
 Usage: scripts/quickstart.sh [--help]
 
 Installs the packages that are missing (as root or with sudo), builds the example as a release in
-build/release, integrates the Duffing sweep to results/duffing.csv and draws its bifurcation diagram,
+build/release, integrates the Duffing sweep to results/duffing.nc and draws its bifurcation diagram,
 results/duffing.png. Takes a few minutes on two cores.
 END
 }
@@ -24,7 +24,8 @@ while (($#)); do
 done
 
 started=$SECONDS
-require_packages g++ cmake ninja-build libeigen3-dev libxsimd-dev libcli11-dev python3-matplotlib
+require_packages g++ cmake ninja-build libeigen3-dev libxsimd-dev libcli11-dev libnetcdf-dev \
+    nlohmann-json3-dev python3-matplotlib python3-netcdf4
 
 say "Building the example in build/release"
 # The other parts need further packages; 'cmake --preset release' switches them on again.
@@ -34,11 +35,11 @@ quietly build/release/configure.log cmake --preset release \
 quietly build/release/build.log cmake --build --preset release --parallel "$(nproc)" --target duffing ||
     fail "The build failed, see above."
 
-say "Integrating the Duffing sweep to results/duffing.csv"
+say "Integrating the Duffing sweep to results/duffing.nc"
 mkdir -p results
-build/release/examples/duffing/duffing --output results/duffing.csv
+build/release/examples/duffing/duffing --output results/duffing.nc
 
 say "Drawing results/duffing.png"
-"$(plotting_python)" examples/duffing/plot.py results/duffing.csv results/duffing.png
+"$(plotting_python)" examples/duffing/plot.py results/duffing.nc results/duffing.png
 
-say "Done after $(duration $((SECONDS - started))): results/duffing.csv and results/duffing.png"
+say "Done after $(duration $((SECONDS - started))): results/duffing.nc and results/duffing.png"

@@ -5,9 +5,9 @@
 Usage: scripts/reference.py (--check | --write FOLDER) [--source FOLDER]
 
 --check names every public entity without a description, and fails if there is one; --write writes the reference as
-Markdown. Public is: what is in namespace myriad (not detail, host or a backend, but for what a report holds) and has
-public access; macros and CMake functions that users write; CMake options. Of overloads one must be described, and a
-member that several methods have in one of them. What the sources look for by name in a model or a method of the
+Markdown. Public is: what is in namespace myriad (not detail, host, studies or a backend, but for what a report holds)
+and has public access; macros and CMake functions that users write; CMake options. Of overloads one must be described,
+and a member that several methods have in one of them. What the sources look for by name in a model or a method of the
 user's, and the environment variables that they read, must have entries on the pages of MEMBER_PAGES. A warning of
 Doxygen's is an error. Exit status 77, "skipped" for ctest, if there is no doxygen.
 """
@@ -42,6 +42,8 @@ PAGES = {
     "random": ("Random numbers", "`<myriad/random.hpp>`.", ["kernel/model/random.hpp"]),
     "tangent": ("Tangents and Lyapunov exponents", "`<myriad/tangent.hpp>`.",
                 ["kernel/model/tangent.hpp", "host/ensemble/exponents.hpp"]),
+    "study": ("Studies", "`<myriad/study.hpp>`, target `myriad::study`. Axes, what is kept, the run, results on disk.",
+              ["study/study.hpp", "study/model_study.hpp", "study/axes.hpp", "study/reduction.hpp", "study/"]),
     "methods": ("Methods", "`<myriad/methods.hpp>`, and `<myriad/tableau.hpp>` for a method of your own.",
                 ["kernel/methods/"]),
 }
@@ -74,6 +76,7 @@ GENERATE_XML = YES
 XML_PROGRAMLISTING = NO
 EXTRACT_ALL = YES
 AUTOLINK_SUPPORT = NO
+HAVE_DOT = NO
 MACRO_EXPANSION = YES
 EXPAND_ONLY_PREDEF = YES
 PREDEFINED = "MYRIAD_FUNCTION=" "MYRIAD_LAMBDA=" "__attribute__(x)=" "MYRIAD_WARN_OF_INDEX(i,n)="
@@ -211,7 +214,7 @@ def read_classes(folder):
         kind, name = entry.get("kind"), plain(entry.find("name"))
         if kind not in ("namespace", "class", "struct", "concept") or not re.match(r"myriad(::|$)", name):
             continue
-        if re.match(r"myriad::(detail|host|openmp|cuda|target)\b", name) and name not in PUBLIC_IN_BACKENDS:
+        if re.match(r"myriad::(detail|host|studies|openmp|cuda|target)\b", name) and name not in PUBLIC_IN_BACKENDS:
             continue
         root = ElementTree.parse(folder / (entry.get("refid") + ".xml")).getroot().find("compounddef")
         if root.get("prot", "public") != "public":

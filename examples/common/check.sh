@@ -60,17 +60,18 @@ check_small() {
     check_table small.csv "$@"
 }
 
-# A Python that has matplotlib.
-plotting_python() {
+# A Python that has a module.
+python_with() {
     local python
     for python in python3 /usr/bin/python3; do
-        if "$python" -c 'import matplotlib' 2>/dev/null; then
+        if "$python" -c "import $1" 2>/dev/null; then
             printf '%s' "$python"
             return
         fi
     done
     return 1
 }
+plotting_python() { python_with matplotlib; }
 
 # check_plot TABLE [SCRIPT]: the example's script (default plot.py) draws the table, and refuses what is no such table.
 check_plot() {

@@ -48,6 +48,7 @@ struct study {
     std::string output;  // file to write if none is named
     std::string instances_help = "Number of instances";
     std::string phases_help = "Phases to record after the transient ones";
+    std::string output_help = "File to write, as comma-separated values";
     bool has_transient = true;
     std::function<void(CLI::App&)> add_options = {};  // further options of this program
 };
@@ -88,9 +89,7 @@ int run_sweep(int argc, const char* const* argv, const study& offered, Sweep&& s
     sweep_options options;
     options.output = offered.output;
     app.add_option("--device", options.device, device_help())->type_name("NAME")->capture_default_str();
-    app.add_option("--output", options.output, "File to write, as comma-separated values")
-        ->type_name("FILE")
-        ->capture_default_str();
+    app.add_option("--output", options.output, offered.output_help)->type_name("FILE")->capture_default_str();
     CLI::Option* const plot = app.add_option("--plot", options.picture, "Draw a picture of it too (default: FILE.png)")
                                   ->type_name("PNG")
                                   ->expected(0, 1);

@@ -92,6 +92,8 @@ public:
         created_ = false;
         any_is_there_ = true;
     }
+    /// A file was put in place otherwise.
+    static void set_any_is_there() { any_is_there_ = true; }
     /// Whether the program has put any file in place.
     static bool any_is_there() { return any_is_there_; }
 

@@ -96,12 +96,37 @@ def read_table(numpy, path, program, columns):
                         f"run the program `{program}` first") from error
     except (ValueError, IndexError) as error:
         raise PlotError(f"{path} cannot be read as a table: {error}") from error
-    missing = int((~numpy.isfinite(table)).any(axis=1).sum())
-    if missing == len(table):
+    check_finite(numpy, table.T)
+    return {name: table[:, column] for column, name in enumerate(wanted)}, "\n".join(comments)
+
+
+def check_finite(numpy, columns):
+    """Says how many rows have values that are not finite; an error if all have."""
+    rows = len(columns[0])
+    missing = rows - int(numpy.logical_and.reduce([numpy.isfinite(column) for column in columns]).sum())
+    if missing == rows:
         raise PlotError("The file has no finite rows to draw: every instance failed")
     if missing:
-        print(f"{missing} of {len(table)} rows have values that are not finite, which are not drawn", file=sys.stderr)
-    return {name: table[:, column] for column, name in enumerate(wanted)}, "\n".join(comments)
+        print(f"{missing} of {rows} rows have values that are not finite, which are not drawn", file=sys.stderr)
+
+
+def open_netcdf(path, program, variables):
+    """The netCDF file that a program has written, an object of netCDF4, after a look for these variables in it."""
+    try:
+        import netCDF4  # pylint: disable=import-outside-toplevel
+    except ImportError as error:
+        raise PlotError(f"{error.name} is missing for {sys.executable}: install it (Debian, Ubuntu: apt-get install "
+                        "python3-netcdf4), or let the program write a table: --output FILE.csv") from error
+    try:
+        data = netCDF4.Dataset(path)
+    except OSError as error:
+        raise PlotError(f"{path} cannot be read: {error.strerror or error}; "
+                        f"run the program `{program}` first") from error
+    data.set_auto_mask(False)
+    missing = [name for name in variables if name not in data.variables]
+    if missing:
+        raise PlotError(f"{path} has no variable {missing[0]}: it is not from the program `{program}`")
+    return data
 
 
 def limits(numpy, values):
@@ -185,10 +210,10 @@ def exit_with(documentation, run, takes=("CSV", "PNG")):
         sys.exit(2)
 
 
-def main(documentation, program, columns, draw, dpi=200, colours=None):
-    """Runs an example's plot.py with the arguments CSV and PNG."""
+def main(documentation, program, columns, draw, dpi=200, colours=None, read=read_table):
+    """Runs an example's plot.py with the arguments CSV and PNG; `read` reads the file in place of read_table."""
     def run(source, target):
         pyplot, numpy = import_libraries()
-        table, comments = read_table(numpy, source, program, columns)
+        table, comments = read(numpy, source, program, columns)
         save(draw(pyplot, numpy, table, comments), target, dpi, colours)
     exit_with(documentation, run)

@@ -4,11 +4,9 @@
 
 #include <cstdint>
 #include <iostream>
-#include <utility>
 
 #include "command_line.hpp"
-#include "myriad/solve.hpp"
-#include "progress.hpp"
+#include "myriad/myriad.hpp"
 
 namespace examples {
 
@@ -21,10 +19,8 @@ myriad::report<Model, R> integrate(const sweep_options& chosen, const myriad::de
         if (chosen.transient > 0) std::cerr << chosen.transient << " + ";
         std::cerr << options.phases - chosen.transient << " phases\n";
     }
-    progress shown(chosen.quiet ? progress::style::none : progress::style::automatic);
-    options.progress = [&shown](std::int64_t done, std::int64_t total) { shown(done, total); };
-    auto report = myriad::solve<Method>(device, sweep, std::move(options));
-    shown.finish();
+    if (!chosen.quiet) options.progress = myriad::progress_line();
+    auto report = myriad::solve<Method>(device, sweep, options);
     if (!chosen.quiet) std::cout << report;
     return report;
 }

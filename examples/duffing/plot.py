@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: MIT
 """Draws the bifurcation diagram that the program `duffing` computed: Poincare sections and maxima against the damping.
 
-Usage: plot.py CSV PNG
+Usage: plot.py FILE PNG
 
-Needs matplotlib, and numpy, which comes with it (Debian: python3-matplotlib). Exit status 2, and no picture, if
-something is missing or wrong.
+FILE is the netCDF file of the program, or its table, FILE.csv. Needs matplotlib, numpy, which comes with it (Debian:
+python3-matplotlib), and for netCDF netCDF4 (Debian: python3-netcdf4). Exit status 2, and no picture, if something is
+missing or wrong.
 """
 
 import pathlib
@@ -27,6 +28,24 @@ PANELS = (
 )
 K_LABEL = r"damping $k$ (–)"
 INK = "#10305a"
+
+
+def read(numpy, path, program, columns):
+    """Columns with a row for each instance and recorded phase, and the text that a table has at its top."""
+    if path.endswith(".csv"):
+        return figures.read_table(numpy, path, program, columns)
+    names = [name for name, _ in PANELS]
+    with figures.open_netcdf(path, program, names + ["k", "B", "x_begin", "v_begin", "phase"]) as data:
+        table = {name: data[name][:].ravel() for name in names}
+        k, phases = data["k"][:], data["phase"][:]
+        table["k"] = numpy.repeat(k, phases.size)
+        table["B"] = numpy.full(1, data["B"][...])
+        comments = (f"x(0) = {data['x_begin'][...]}, v(0) = {data['v_begin'][...]}\n"
+                    f"linspace({k[0]}, {k[-1]}, {k.size})\n"
+                    f"{int(phases[0])} transient, {phases.size} recorded\n"
+                    f"absolute tolerance {numpy.max(data.getncattr('options.absolute_tolerance'))}")
+    figures.check_finite(numpy, [table[name] for name in names])
+    return table, comments
 
 
 def describe(table, comments):
@@ -75,4 +94,4 @@ def draw(pyplot, numpy, table, comments):
 
 
 if __name__ == "__main__":
-    figures.main(__doc__, "duffing", COLUMNS, draw, dpi=150, colours=16)
+    figures.main(__doc__, "duffing", COLUMNS, draw, dpi=150, colours=16, read=read)

@@ -8,6 +8,7 @@
 #include <deque>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -17,7 +18,6 @@
 #include <myriad/myriad.hpp>
 
 #include "../common/command_line.hpp"
-#include "../common/progress.hpp"
 #include "sweep.hpp"
 #include "timeline.hpp"
 #include "turns.hpp"
@@ -31,8 +31,8 @@ public:
     chunked_sweep(const examples::sweep_options& chosen, const std::vector<myriad::device>& devices,
                   std::int64_t solvers, std::int64_t chunks)
         : instances_(chosen.instances), chunks_(std::min(chunks, instances_)), all_(instances_),
-          tables_(std::filesystem::path(chosen.output).replace_extension().string() + "_chunks/"),
-          shown_(chosen.quiet ? examples::progress::style::none : examples::progress::style::automatic) {
+          tables_(std::filesystem::path(chosen.output).replace_extension().string() + "_chunks/") {
+        if (!chosen.quiet) show_ = myriad::progress_line();
         for (const myriad::device& where : devices) {
             turns_[where.name()];
             for (std::int64_t i = 0; i < solvers; ++i)
@@ -59,7 +59,6 @@ public:
         }
         for (const auto& failure : failures)
             if (failure) std::rethrow_exception(failure);
-        shown_.finish();
         return times.sorted();
     }
     const duffing_sweep::results& results() const { return all_; }
@@ -99,7 +98,8 @@ private:
             times.set_kernel_seconds(number, chunk, report.kernel_seconds);
             failed_ += report.failed();
             const std::lock_guard lock(showing_);
-            shown_(++done_, chunks_);
+            done_ += count;
+            if (show_) show_(done_, instances_);
         }
     }
     std::string table_of(std::int64_t chunk) const {
@@ -114,5 +114,5 @@ private:
     std::atomic<std::int64_t> next_{0}, failed_{0};
     std::mutex showing_;
     std::int64_t done_ = 0;
-    examples::progress shown_;
+    std::function<void(std::int64_t done, std::int64_t total)> show_;
 };

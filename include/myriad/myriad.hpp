@@ -7,6 +7,7 @@
 #include "myriad/host/ensemble/exponents.hpp"
 #include "myriad/host/model/describe.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/host/report/progress.hpp"
 #include "myriad/host/report/report.hpp"
 #include "myriad/host/solve/solve.hpp"
 #include "myriad/host/solve/solver.hpp"

@@ -29,18 +29,19 @@ def read_headers(roots):
 
 
 def layer(header):
-    """kernel, host, openmp, cuda, or public: what users include."""
+    """kernel, host, study, openmp, cuda, or public: what users include."""
     folder = header.split("/")[1:-1]
-    return folder[0] if folder and folder[0] in ("kernel", "host", "openmp", "cuda") else "public"
+    return folder[0] if folder and folder[0] in ("kernel", "host", "study", "openmp", "cuda") else "public"
 
 
 # The layers that a header of each layer may include.
 BELOW = {
     "kernel": {"kernel"},
     "host": {"host", "kernel"},
+    "study": {"study", "public", "host", "kernel"},
     "openmp": {"openmp", "host", "kernel"},
     "cuda": {"cuda", "host", "kernel"},
-    "public": {"public", "host", "kernel"},
+    "public": {"public", "study", "host", "kernel"},
 }
 
 

@@ -59,8 +59,9 @@ typename component_array<T>::memory component_array<T>::allocate(std::size_t com
     need.check(message(components, " components of ", size, " values"), advice);
     const std::size_t bytes = components * size * sizeof(T);
     void* const found = wanted > 9e18 ? nullptr : new_pages(bytes);
-    require(found != nullptr, "out of memory: ", bytes_text(wanted), " are wanted for ", components, " components of ",
-            size, " values: ", advice);
+    if (found == nullptr)
+        throw out_of_memory(message("out of memory: ", bytes_text(wanted), " are wanted for ", components,
+                                    " components of ", size, " values: ", advice));
     return memory(static_cast<T*>(found), release{bytes});
 }
 

@@ -129,9 +129,9 @@ void memory_need::check(const std::string& who, const char* advice, memory_left 
     const auto [needed, there] = bytes_texts(bytes(), left.bytes);
     std::string parts;
     for (const auto& [part, size] : parts_) parts += message(parts.empty() ? "" : ", ", part, ' ', bytes_text(size));
-    throw error(message("out of memory: ", who, " would take ", needed,
-                        parts_.size() > 1 ? " (" + parts + ')' : std::string(), ", and ", there, " of ", left.of,
-                        " are left: ", advice));
+    throw out_of_memory(message("out of memory: ", who, " would take ", needed,
+                                parts_.size() > 1 ? " (" + parts + ')' : std::string(), ", and ", there, " of ",
+                                left.of, " are left: ", advice));
 }
 
 }  // namespace myriad::host::inline MYRIAD_ABI

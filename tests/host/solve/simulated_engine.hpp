@@ -203,7 +203,7 @@ private:
         const std::size_t bytes = walk(host, count, [](auto&&...) {});
         if (bytes <= bytes_) return;
         const auto more = static_cast<std::int64_t>(bytes - bytes_);
-        myriad::require(the_gpu.used + more <= the_gpu.memory, "out of device memory: simulated");
+        if (the_gpu.used + more > the_gpu.memory) throw myriad::out_of_memory("out of device memory: simulated");
         the_gpu.used += more;
         memory_ = std::make_unique_for_overwrite<std::byte[]>(bytes);
         bytes_ = bytes;

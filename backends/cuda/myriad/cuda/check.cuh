@@ -44,8 +44,10 @@ inline const char* advice_for(cudaError_t status) {
 inline void check(cudaError_t status, const char* call) {
     if (status == cudaSuccess) return;
     cudaGetLastError();  // so that the next call does not report this error, if non-sticky, again
-    throw error(message(call, " failed: ", cudaGetErrorString(status), " (", cudaGetErrorName(status),
-                        "): ", advice_for(status)));
+    const std::string text = message(call, " failed: ", cudaGetErrorString(status), " (", cudaGetErrorName(status),
+                                     "): ", advice_for(status));
+    if (status == cudaErrorMemoryAllocation) throw out_of_memory(text);
+    throw error(text);
 }
 
 }  // namespace myriad::cuda

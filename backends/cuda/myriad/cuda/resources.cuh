@@ -52,9 +52,9 @@ public:
                                  " or, as solve works on three chunks at a time, an options::chunk_size of at most ",
                                  fits / 3);
             }
-            throw error(message("out of device memory: ", static_cast<double>(bytes) / 1e9, " GB are wanted and ",
-                                static_cast<double>(free) / 1e9, " of ", static_cast<double>(total) / 1e9,
-                                " GB are free", advice));
+            throw out_of_memory(message("out of device memory: ", static_cast<double>(bytes) / 1e9,
+                                        " GB are wanted and ", static_cast<double>(free) / 1e9, " of ",
+                                        static_cast<double>(total) / 1e9, " GB are free", advice));
         }
         check(status, "cudaMalloc");
         bytes_ = bytes;

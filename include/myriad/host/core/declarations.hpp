@@ -19,6 +19,7 @@ class solver;
 
 class device;
 class error;
+class out_of_memory;
 class component_list;
 class per_component;
 struct components;

@@ -23,6 +23,12 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// Thrown where there is too little memory, on the host or on a GPU: fewer instances at a time may fit.
+class out_of_memory : public error {
+public:
+    using error::error;
+};
+
 namespace host::inline MYRIAD_ABI {
 
 /// A part of a message: a number, text, or what else a stream prints. It refers to the value.

@@ -273,6 +273,7 @@ private:
     void describe(detail::kernel_arguments<Model, R>& a, counting count,
                   host::step_sizes steps = host::step_sizes::kept) {
         a.size = data_.size;
+        a.first_index = data_.first_index;
         data_.describe(a, count, steps);
         a.common_t_begin = data_.common_begin;
         a.common_t_end = data_.common_end;

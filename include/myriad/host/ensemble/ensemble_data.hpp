@@ -94,6 +94,7 @@ struct ensemble_data : detail::instance_arrays<component_array, R> {
 
     const model_shape* shape;
     moved_number<std::int64_t> size;
+    std::int64_t first_index = 0;          // of instance 0 in hooks, for an ensemble that is a part of a larger one
     moved_number<std::uint64_t> identity;  // unique; moves with the memory
     occupancy occupied;
     std::int64_t phases_asked = 0;  // upper bound over all instances

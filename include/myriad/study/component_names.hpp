@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The components of a model by name, and what else of an instance a study sets or keeps: without the model's type, so
+// that all of a study but one adapter is compiled once. Host code only.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "myriad/kernel/core/abi.hpp"
+
+namespace myriad::studies::inline MYRIAD_ABI {
+
+/// Text that reads back as exactly that number.
+std::string exact_text(double value);
+
+/// What a named value of an instance is.
+enum class component_kind {
+    state,
+    parameter,
+    accessory,
+    integer_accessory,
+    shared,
+    shared_integer,
+    t_begin,
+    t_end,
+};
+/// The word for a kind before the point of a full name, as in "state.x".
+const char* name_of(component_kind kind);
+
+/// A component of a model, or one end of the time domain.
+struct component {
+    component_kind kind;
+    int number = 0;
+    std::string name = {};  ///< of its enumerator; empty if it has none
+
+    bool operator==(const component& other) const { return kind == other.kind && number == other.number; }
+    /// "parameter.k", or "parameter.3" without an enumerator.
+    std::string full_name() const;
+};
+
+/// All components of one model.
+class component_names {
+public:
+    component_names(std::string model, std::vector<component> all);
+
+    /// The name of the model.
+    const std::string& model() const { return model_; }
+    const std::vector<component>& all() const { return all_; }
+    /// The component called "k", "parameter.k" or "parameter.3", among those of the given kinds. Throws `error`, which
+    /// lists the names there are, for any other name, and for one that several components have.
+    const component& find(std::string_view name, std::initializer_list<component_kind> kinds) const;
+    /// The name of a variable or an axis of results for this component: its own name if no other has it, otherwise with
+    /// the kind, "state_x".
+    std::string variable(const component& c) const;
+    /// The name of its initial value, "x_begin", if a call changes it; otherwise the same.
+    std::string initial_variable(const component& c) const;
+
+private:
+    std::string choices(std::initializer_list<component_kind> kinds) const;
+
+    std::string model_;
+    std::vector<component> all_;
+};
+
+}  // namespace myriad::studies::inline MYRIAD_ABI

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Layouts as the JSON of Zarr, version 3 (https://zarr-specs.readthedocs.io/en/latest/v3/core), and back. As text, so
+// that nothing else needs a JSON library.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "myriad/kernel/core/abi.hpp"
+#include "myriad/study/layout.hpp"
+#include "myriad/study/store.hpp"
+
+namespace myriad::studies::inline MYRIAD_ABI {
+
+/// How an array is divided into files: along its outermost dimension.
+struct array_shape {
+    element type = element::f64;
+    std::vector<dimension> dimensions;
+    std::int64_t chunk = 1;  ///< items of a file; 1 for an array without dimensions
+
+    /// Of the outermost dimension, 1 for an array without dimensions.
+    std::int64_t items() const;
+    std::int64_t item_bytes() const;
+    /// Of each of its files, the last one too: filled up, and with four bytes of checksum.
+    std::int64_t file_bytes() const;
+    std::int64_t files() const;
+    /// The name of a file of it, as "c.17.0".
+    std::string file_name(std::int64_t file) const;
+};
+
+/// The array of a variable or of a coordinate.
+array_shape shape_of(const layout& content, const variable& v);
+array_shape shape_of(const layout& content, const coordinate& c);
+
+/// The file zarr.json of the group, with the metadata of all arrays, so that readers need not look for them.
+std::string group_json(const layout& content);
+/// The file zarr.json of one array.
+std::string array_json(const array_shape& shape, const std::vector<attribute>& attributes);
+/// The layout that `group_json` was made of, with coordinates without values. Throws `error` that begins with `path` if
+/// it is something else.
+layout layout_of(std::string_view group, const std::string& path);
+
+/// What differs between the layout in a store and another, as "options.relative_tolerance: 1e-09 in the store, 1e-08
+/// here". Chunk sizes and attributes may differ.
+std::vector<std::string> differences(const layout& stored, const layout& here);
+
+/// The global attributes that an exported file gets: the entries of the description, with dots in their names.
+std::vector<attribute> attributes_of(std::string_view description);
+
+/// What the record of a chunk holds.
+struct stored_chunk {
+    chunk_record record;
+    std::vector<std::uint32_t> checksums;  ///< of the variables with items for it, in the order of the layout
+};
+std::string record_json(const layout& content, std::int64_t chunk, const stored_chunk& stored);
+/// Throws `error` if the text is no such record of this chunk.
+stored_chunk record_of(std::string_view text, const layout& content, std::int64_t chunk);
+
+}  // namespace myriad::studies::inline MYRIAD_ABI

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// Reductions over the instances of a study: a histogram, an extremum, a mean, or a sum of the user's. Host code only.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "myriad/kernel/core/abi.hpp"
+#include "myriad/study/axes.hpp"
+#include "myriad/study/chunk_columns.hpp"
+#include "myriad/study/layout.hpp"
+
+namespace myriad {
+
+namespace studies::inline MYRIAD_ABI {
+
+/// A reduction under way: of a chunk, or of the partial results of all chunks in their order.
+class reduction_state {
+public:
+    virtual ~reduction_state() = default;
+    virtual void add(const chunk_columns& values) = 0;
+    virtual void add(std::span<const double> partial) = 0;
+    /// What `add` takes, of a length that depends on the reduction alone.
+    virtual std::vector<double> partial() = 0;
+    /// The values of each of the `results`.
+    virtual std::vector<std::vector<double>> results() = 0;
+};
+
+/// What is known of a reduction once it is known what it reduces.
+struct reduction_plan {
+    std::int64_t partial_size = 0;
+    std::vector<variable> results = {};        ///< of the whole study, f64 or i64
+    std::vector<coordinate> coordinates = {};  ///< of their inner dimensions
+    std::function<std::unique_ptr<reduction_state>()> start = {};
+};
+
+/// The definition of a reduction.
+struct reduction_definition {
+    std::string name;                 ///< that its results begin with
+    std::vector<std::string> inputs;  ///< names of the variables that it reduces
+    std::string description;          ///< all that determines its results
+    /// For inputs as they turned out to be.
+    std::function<reduction_plan(const std::vector<const variable*>& inputs)> plan;
+};
+
+}  // namespace studies::inline MYRIAD_ABI
+
+/// A reduction of a variable over all instances that have not failed; values that are not finite are left out. Made by
+/// the functions below; variables are named as in results: "x" at recorded phases, "x_end", "x_sample". Its result does
+/// not depend on chunks, devices or their order, bit for bit.
+class ensemble_reduction {
+public:
+    /// Made by `histogram_of` and its like.
+    explicit ensemble_reduction(studies::reduction_definition what)
+        : what_(std::make_shared<const studies::reduction_definition>(std::move(what))) {}
+
+    /// What it is; used by the library.
+    const studies::reduction_definition& definition() const { return *what_; }
+
+private:
+    std::shared_ptr<const studies::reduction_definition> what_;
+};
+
+/// How many values lie in each bin between neighbouring edges, the upper edge of the last bin included, as
+/// numpy.histogram: variable "x_end_histogram" with dimension "x_end_bin"; and "x_end_outside", how many lie below,
+/// above, and are not finite. All phases or samples of an instance are counted. Throws `error` unless there are two or
+/// more edges, and they increase.
+[[nodiscard]] ensemble_reduction histogram_of(std::string_view variable, const axis_values& edges);
+/// The smallest value, for each phase or sample: "x_end_minimum"; NaN if there is none.
+[[nodiscard]] ensemble_reduction minimum_of(std::string_view variable);
+/// The largest value, for each phase or sample: "x_end_maximum"; NaN if there is none.
+[[nodiscard]] ensemble_reduction maximum_of(std::string_view variable);
+/// The mean, for each phase or sample: "x_end_mean"; NaN if there is no value. The sum is exact and rounded once.
+[[nodiscard]] ensemble_reduction mean_of(std::string_view variable);
+/// The sum of what a function computes of each chunk of instances: a variable `name` of `size` numbers. The function
+/// adds to `sums`, which are zero at first, and is called by several threads at a time. Partial sums are added exactly;
+/// what the function itself rounds depends on the chunks. `name` stands for the function in the study's description:
+/// give another one when it changes. `inputs` are the variables that it asks for.
+[[nodiscard]] ensemble_reduction sum_of(
+    std::string name, std::vector<std::string> inputs, std::int64_t size,
+    std::function<void(const chunk_columns& chunk, std::span<double> sums)> function);
+
+}  // namespace myriad

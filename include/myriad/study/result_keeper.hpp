@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Where the chunks of a running study are handed out and their results kept: in memory, or in a store. Host code only.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "myriad/kernel/core/abi.hpp"
+#include "myriad/study/layout.hpp"
+#include "myriad/study/store.hpp"
+
+namespace myriad::studies::inline MYRIAD_ABI {
+
+/// All functions may be called by several threads; they do what those of `store` do.
+class result_keeper {
+public:
+    virtual ~result_keeper() = default;
+    virtual const layout& content() const = 0;
+    virtual std::optional<std::int64_t> claim_next() = 0;
+    virtual void commit(std::int64_t chunk, std::span<const column> columns, const chunk_record& record) = 0;
+    virtual void release(std::int64_t chunk) = 0;
+    virtual void write(const column& values) = 0;
+    virtual bool complete() = 0;
+    /// Instances whose chunks are done, by whichever process.
+    virtual std::int64_t instances_done() = 0;
+    /// The results; the keeper need not outlive them.
+    virtual std::shared_ptr<const results> kept() const = 0;
+};
+
+/// Throws `error` if there is not enough memory.
+std::unique_ptr<result_keeper> keep_in_memory(const layout& content);
+/// Throws `error` as `store::create_or_resume`.
+std::unique_ptr<result_keeper> keep_in_store(const std::string& folder, const layout& content,
+                                             const store_options& options);
+
+}  // namespace myriad::studies::inline MYRIAD_ABI

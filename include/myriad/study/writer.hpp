@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// One process among those that fill a store: the sign that it is alive, its temporary files, and its claims on chunks.
+//
+// In the folder, all in myriad/:
+//   writers/<id>/alive   its time of modification is renewed by a thread; the id says which process it is
+//   writers/<id>/...     temporary files, before they get their names
+//   claims/<chunk>       a hard link to a writer's file alive, so made by one atomic call, and renewed with it
+// A claim of a process that is dead is renamed to a name of the one who takes it over, which only one can do.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "myriad/kernel/core/abi.hpp"
+#include "myriad/study/file_system.hpp"
+
+namespace myriad::studies::inline MYRIAD_ABI {
+
+/// Which process a writer is.
+struct process_identity {
+    std::string id;     ///< all of it, and a random number: the name of the writer's folder, and the text of its file
+    std::string host;   ///< the name of the machine
+    std::string boot;   ///< changes when it starts anew
+    std::string space;  ///< among whom numbers of processes mean something: a container has its own
+    std::int64_t process = 0;
+    std::int64_t start = 0;  ///< of the process, in the system's ticks
+
+    /// This process, as a new writer.
+    static process_identity own();
+    /// From its id; empty if the text is none.
+    static process_identity of(std::string_view id);
+    /// Whether it ran on this machine and does no longer, or is a writer that this process had before. False if that
+    /// cannot be known.
+    bool ended_here() const;
+};
+
+/// This process as a writer to a store. Functions may be called by several threads at a time.
+class writer {
+public:
+    /// `folder` is the store's folder myriad/, which must be there.
+    writer(file_system& files, std::string folder, std::chrono::milliseconds expiry);
+    /// Removes all traces. Not in a process that was forked from the one which made it.
+    ~writer();
+    writer(const writer&) = delete;
+    writer& operator=(const writer&) = delete;
+
+    /// A path for a new temporary file.
+    std::string temporary();
+    /// Is there again if another process took this one for dead, after which its temporary files are lost.
+    void appear();
+
+    /// Takes a chunk, if need be from a dead process. False if another has it.
+    bool claim(std::int64_t chunk);
+    /// Gives a chunk back; it may be no longer, or never have been, this writer's. Does not throw: what stays is taken
+    /// over when this process has ended.
+    void release(std::int64_t chunk) noexcept;
+    /// Removes writers that are dead, with their temporary files and claims.
+    void remove_dead();
+
+private:
+    std::string path_of(std::int64_t chunk) const;
+    bool is_dead(const std::string& path, process_identity* who = nullptr);
+    bool take_away(const std::string& claim);
+    void remove_writer(const std::string& id) noexcept;
+    void leave() noexcept;
+    void stay_alive();
+
+    file_system& files_;
+    std::string folder_;
+    std::chrono::milliseconds expiry_;
+    process_identity self_;
+    std::int64_t owner_;  // the number of the process that made it
+
+    std::mutex mutex_;
+    std::int64_t temporaries_ = 0;
+    std::set<std::int64_t> held_;
+    bool ending_ = false;
+    std::condition_variable end_;
+    std::thread heartbeat_;
+};
+
+}  // namespace myriad::studies::inline MYRIAD_ABI

@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: MIT
+// Results as netCDF-4, by netCDF's C library, with the conventions of CF.
+#if defined(MYRIAD_WITHOUT_NETCDF)
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/study/export.hpp"
+
+namespace myriad {
+
+void export_netcdf(const studies::results&, const std::string& path, const netcdf_options&) {
+    throw error(message(path,
+                        " is not written, as the library was built without netCDF: install it (Debian package "
+                        "libnetcdf-dev) and build again, or use export_csv or export_npy"));
+}
+
+}  // namespace myriad
+
+#else
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <type_traits>
+
+#include <fcntl.h>
+#include <netcdf.h>
+#include <unistd.h>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/study/export.hpp"
+#include "myriad/study/file_system.hpp"
+#include "myriad/study/metadata.hpp"
+#include "myriad/version.hpp"
+
+namespace myriad {
+
+using namespace studies;
+
+namespace {
+
+constexpr std::int64_t chunk_values = std::int64_t{1} << 17;  // 1 MB of doubles: what readers decompress at a time
+constexpr std::int64_t coordinate_part = std::int64_t{1} << 20;
+
+int netcdf_type(element type) {
+    switch (type) {
+        case element::f64:
+            return NC_DOUBLE;
+        case element::f32:
+            return NC_FLOAT;
+        case element::i64:
+            return NC_INT64;
+        case element::i32:
+            return NC_INT;
+        case element::u8:
+            return NC_UBYTE;
+    }
+    return NC_DOUBLE;
+}
+
+// A file that is open for writing, removed unless it is finished.
+class netcdf_file {
+public:
+    netcdf_file(const std::string& path, std::string temporary) : path_(path), temporary_(std::move(temporary)) {
+        check(nc_create(temporary_.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_));
+        open_ = true;
+    }
+    netcdf_file(const netcdf_file&) = delete;
+    netcdf_file& operator=(const netcdf_file&) = delete;
+    ~netcdf_file() {
+        if (open_) nc_close(id_);
+        if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    }
+    operator int() const { return id_; }
+
+    void check(int code) const {
+        if (code == NC_NOERR) return;
+        // HDF5's errors are all one to netCDF.
+        const std::string reason =
+            errno != 0 && (code == NC_EHDFERR || code > 0) ? std::strerror(errno) : nc_strerror(code);
+        host::refuse({"writing ", path_, " failed: ", reason,
+                      ": give a place that you may write to and that has space, and export again"});
+    }
+
+    void finish() {
+        open_ = false;
+        check(nc_close(id_));
+        file_system& files = file_system::real();
+        open_file written(files, temporary_, O_RDONLY);
+        written.sync();
+        if (files.rename(temporary_, path_) < 0) throw file_error("writing", path_, errno);
+        temporary_.clear();
+        sync_folder(files, folder_of(path_));
+    }
+
+private:
+    std::string path_, temporary_;
+    int id_ = -1;
+    bool open_ = false;
+};
+
+// Attributes of numbers that are about a variable's values have its type, as CF asks.
+bool is_about_values(const std::string& name) {
+    for (const char* const known :
+         {"flag_values", "flag_masks", "valid_range", "valid_min", "valid_max", "actual_range"})
+        if (name == known) return true;
+    return false;
+}
+
+void put_integers(const netcdf_file& file, int variable, const attribute& a, const std::vector<std::int64_t>& values,
+                  const element* type) {
+    int stored = NC_INT64;
+    if (type != nullptr && is_about_values(a.name)) {
+        stored = netcdf_type(*type);
+    } else if (std::all_of(values.begin(), values.end(),
+                           [](std::int64_t v) { return v == static_cast<std::int32_t>(v); })) {
+        stored = NC_INT;
+    }
+    const std::vector<long long> numbers(values.begin(), values.end());
+    file.check(nc_put_att_longlong(file, variable, a.name.c_str(), stored, numbers.size(), numbers.data()));
+}
+
+void put_attribute(const netcdf_file& file, int variable, attribute a, const element* type = nullptr) {
+    std::replace(a.name.begin(), a.name.end(), '/', '_');
+    errno = 0;
+    std::visit(
+        [&](const auto& value) {
+            using T = std::remove_cvref_t<decltype(value)>;
+            const char* const name = a.name.c_str();
+            if constexpr (std::is_same_v<T, std::string>) {
+                file.check(nc_put_att_text(file, variable, name, value.size(), value.data()));
+            } else if constexpr (std::is_same_v<T, double>) {
+                file.check(nc_put_att_double(file, variable, name, NC_DOUBLE, 1, &value));
+            } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+                file.check(nc_put_att_double(file, variable, name, NC_DOUBLE, value.size(), value.data()));
+            } else if constexpr (std::is_same_v<T, std::int64_t>) {
+                put_integers(file, variable, a, {value}, type);
+            } else {
+                put_integers(file, variable, a, value, type);
+            }
+        },
+        a.value);
+}
+
+// Calls f(start, count) for boxes that have the places [first, first + count) of a grid, in their order.
+void for_boxes(const std::vector<std::size_t>& lengths, std::size_t first, std::size_t count,
+               const std::function<void(const std::vector<std::size_t>&, const std::vector<std::size_t>&)>& f) {
+    std::vector<std::size_t> start(lengths.size(), 0);
+    const std::function<void(std::size_t, std::size_t, std::size_t)> divide = [&](std::size_t level, std::size_t begin,
+                                                                                  std::size_t left) {
+        std::size_t inner = 1;
+        for (std::size_t d = level + 1; d < lengths.size(); ++d) inner *= lengths[d];
+        const auto whole = [&](std::size_t at, std::size_t n) {
+            std::vector<std::size_t> box(lengths.size(), 1);
+            if (level < lengths.size()) {
+                start[level] = at;
+                box[level] = n;
+            }
+            for (std::size_t d = level + 1; d < lengths.size(); ++d) {
+                start[d] = 0;
+                box[d] = lengths[d];
+            }
+            f(start, box);
+        };
+        if (left == 0) return;
+        if (level >= lengths.size()) return whole(0, 1);
+        std::size_t at = begin / inner;
+        if (begin % inner != 0) {
+            const std::size_t part = std::min(left, inner - begin % inner);
+            start[level] = at++;
+            divide(level + 1, begin % inner, part);
+            left -= part;
+        }
+        if (left / inner > 0) whole(at, left / inner);
+        at += left / inner;
+        if (left % inner > 0) {
+            start[level] = at;
+            divide(level + 1, 0, left % inner);
+        }
+    };
+    divide(0, first, count);
+}
+
+class exporter {
+public:
+    exporter(const results& from, netcdf_file& file, const netcdf_options& options)
+        : from_(from), content_(from.content()), file_(file), options_(options) {
+        for (std::int64_t chunk = 0; chunk < content_.chunks(); ++chunk)
+            if (!from_.done(chunk)) {
+                ++missing_chunks_;
+                missing_instances_ += range_of(content_, chunk).count;
+            }
+        for (const dimension& axis : content_.axes) grid_.push_back(static_cast<std::size_t>(axis.length));
+    }
+
+    void run() {
+        define();
+        for (const coordinate& c : content_.coordinates)
+            if (ids_.contains(c.name)) write_coordinate(c);
+        for (std::int64_t chunk = 0; chunk < content_.chunks(); ++chunk) {
+            if (!from_.done(chunk)) continue;
+            const chunk_range range = range_of(content_, chunk);
+            for (const variable& v : content_.variables)
+                if (v.extent == along::instances) write_items(v, range);
+        }
+        for (const variable& v : content_.variables) {
+            if (v.extent != along::nothing || !from_.written(v.name)) continue;
+            buffer_.resize(static_cast<std::size_t>(v.values_per_item()) * size_of(v.type));
+            from_.read(v.name, 0, 1, buffer_.data());
+            std::vector<std::size_t> start(v.inner.size(), 0), count;
+            for (const dimension& d : v.inner) count.push_back(static_cast<std::size_t>(d.length));
+            put(v.name, start, count, buffer_.data());
+        }
+    }
+
+private:
+    int dimension_id(const dimension& d) {
+        const auto [known, is_new] = dimensions_.emplace(d.name, -1);
+        errno = 0;
+        if (is_new) file_.check(nc_def_dim(file_, d.name.c_str(), static_cast<std::size_t>(d.length), &known->second));
+        return known->second;
+    }
+
+    // A variable of the file along dimensions, compressed in pieces that are contiguous.
+    int define_variable(const std::string& name, element type, const std::vector<dimension>& dimensions,
+                        const std::vector<attribute>& attributes) {
+        std::vector<int> ids;
+        for (const dimension& d : dimensions) ids.push_back(dimension_id(d));
+        int id = -1;
+        errno = 0;
+        file_.check(nc_def_var(file_, name.c_str(), netcdf_type(type), static_cast<int>(ids.size()), ids.data(), &id));
+        ids_[name] = id;
+        if (!dimensions.empty()) {
+            std::vector<std::size_t> piece(dimensions.size());
+            std::int64_t most = chunk_values;
+            for (std::size_t d = dimensions.size(); d-- > 0;) {
+                const std::int64_t length = dimensions[d].length;
+                const std::int64_t pieces = (length - 1) / std::min(length, most) + 1;
+                const std::int64_t part = (length - 1) / pieces + 1;
+                piece[d] = static_cast<std::size_t>(part);
+                most = part == length ? std::max<std::int64_t>(1, most / part) : 1;
+            }
+            file_.check(nc_def_var_chunking(file_, id, NC_CHUNKED, piece.data()));
+            if (options_.deflate > 0) file_.check(nc_def_var_deflate(file_, id, 1, 1, options_.deflate));
+        }
+        for (const attribute& a : attributes) put_attribute(file_, id, a, &type);
+        return id;
+    }
+
+    // Where a coordinate is: nothing if only a store has it.
+    bool find_dimensions(const coordinate& c, std::vector<dimension>& found) const {
+        if (c.dimension.empty()) return true;
+        if (c.dimension == "chunk") return false;
+        for (const dimension& d : content_.axes)
+            if (d.name == c.dimension) return found.push_back(d), true;
+        if (c.dimension == "instance") return found = content_.axes, true;
+        for (const variable& v : content_.variables)
+            for (const dimension& d : v.inner)
+                if (d.name == c.dimension && v.extent != along::chunks) return found.push_back(d), true;
+        return false;
+    }
+
+    void define() {
+        std::map<std::string, std::vector<dimension>> auxiliary;  // coordinates that are not dimensions' own
+        for (const dimension& axis : content_.axes) dimension_id(axis);
+        for (const coordinate& c : content_.coordinates) {
+            std::vector<dimension> dimensions;
+            if (!find_dimensions(c, dimensions)) continue;
+            define_variable(c.name, element::f64, dimensions, c.attributes);
+            if (c.name != c.dimension) auxiliary[c.name] = dimensions;
+        }
+        for (const variable& v : content_.variables)
+            if (v.role == role::coordinate && v.extent != along::chunks) auxiliary[v.name] = dimensions_of(v);
+        for (const variable& v : content_.variables) {
+            if (v.extent == along::chunks) continue;
+            const std::vector<dimension> dimensions = dimensions_of(v);
+            const int id = define_variable(v.name, v.type, dimensions, v.attributes);
+            // Readers take numbers with this attribute for floating-point ones, so integers have it only at need.
+            const bool is_real = v.type == element::f64 || v.type == element::f32;
+            if (is_real || (v.extent == along::instances ? missing_chunks_ > 0 : !from_.written(v.name))) {
+                std::byte value[8];
+                fill(v.type, value, 1);
+                file_.check(nc_def_var_fill(file_, id, NC_FILL, value));
+            }
+            if (v.role == role::coordinate) continue;
+            std::string names;
+            for (const auto& [name, needed] : auxiliary) {
+                const bool has_all = std::all_of(needed.begin(), needed.end(), [&](const dimension& d) {
+                    return std::find(dimensions.begin(), dimensions.end(), d) != dimensions.end();
+                });
+                if (has_all) names += (names.empty() ? "" : " ") + name;
+            }
+            if (!names.empty()) put_attribute(file_, id, {"coordinates", names});
+        }
+        define_global();
+        file_.check(nc_enddef(file_));
+    }
+
+    void define_global() {
+        put_attribute(file_, NC_GLOBAL, {"Conventions", "CF-1.10"});
+        put_attribute(file_, NC_GLOBAL, {"source", "Myriad " MYRIAD_VERSION});
+        for (const attribute& a : attributes_of(content_.description)) put_attribute(file_, NC_GLOBAL, a);
+        put_attribute(file_, NC_GLOBAL, {"description", content_.description});
+        std::string devices;
+        for (const std::string& name : from_.devices()) devices += (devices.empty() ? "" : ", ") + name;
+        if (!devices.empty()) put_attribute(file_, NC_GLOBAL, {"devices", devices});
+        if (missing_chunks_ > 0)
+            put_attribute(file_, NC_GLOBAL,
+                          {"incomplete", message(missing_instances_, " of ", content_.instances(),
+                                                 " instances are not computed yet: they have _FillValue")});
+    }
+
+    std::vector<dimension> dimensions_of(const variable& v) const {
+        std::vector<dimension> dimensions = v.extent == along::instances ? content_.axes : std::vector<dimension>{};
+        dimensions.insert(dimensions.end(), v.inner.begin(), v.inner.end());
+        return dimensions;
+    }
+
+    void put(const std::string& name, const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
+             const void* values) {
+        errno = 0;
+        file_.check(nc_put_vara(file_, ids_.at(name), start.data(), count.data(), values));
+    }
+
+    void put_places(const std::string& name, std::size_t first, std::size_t count,
+                    const std::vector<std::size_t>& inner, std::size_t item_bytes) {
+        const std::byte* from = buffer_.data();
+        for_boxes(grid_, first, count, [&](std::vector<std::size_t> start, std::vector<std::size_t> box) {
+            std::size_t items = 1;
+            for (const std::size_t n : box) items *= n;
+            start.resize(grid_.size() + inner.size(), 0);
+            box.insert(box.end(), inner.begin(), inner.end());
+            put(name, start, box, from);
+            from += items * item_bytes;
+        });
+    }
+
+    void write_items(const variable& v, const chunk_range& range) {
+        const std::size_t item = static_cast<std::size_t>(v.values_per_item()) * size_of(v.type);
+        buffer_.resize(static_cast<std::size_t>(range.count) * item);
+        from_.read(v.name, range.first, range.count, buffer_.data());
+        std::vector<std::size_t> inner;
+        for (const dimension& d : v.inner) inner.push_back(static_cast<std::size_t>(d.length));
+        put_places(v.name, static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count), inner, item);
+    }
+
+    void write_coordinate(const coordinate& c) {
+        std::vector<dimension> dimensions;
+        find_dimensions(c, dimensions);
+        std::int64_t length = 1;
+        for (const dimension& d : dimensions) length *= d.length;
+        std::vector<double> values;
+        for (std::int64_t first = 0; first < length; first += coordinate_part) {
+            values.resize(static_cast<std::size_t>(std::min(coordinate_part, length - first)));
+            c.values(first, values);
+            if (dimensions.size() <= 1) {
+                const std::vector<std::size_t> start(dimensions.size(), static_cast<std::size_t>(first));
+                put(c.name, start, std::vector<std::size_t>(dimensions.size(), values.size()), values.data());
+                continue;
+            }
+            buffer_.resize(values.size() * sizeof(double));
+            std::memcpy(buffer_.data(), values.data(), buffer_.size());
+            put_places(c.name, static_cast<std::size_t>(first), values.size(), {}, sizeof(double));
+        }
+    }
+
+    const results& from_;
+    const layout& content_;
+    netcdf_file& file_;
+    netcdf_options options_;
+    std::vector<std::size_t> grid_;
+    std::int64_t missing_chunks_ = 0, missing_instances_ = 0;
+    std::map<std::string, int> dimensions_, ids_;
+    std::vector<std::byte> buffer_;
+};
+
+}  // namespace
+
+void export_netcdf(const results& from, const std::string& path, const netcdf_options& options) {
+    require(options.deflate >= 0 && options.deflate <= 9, "deflate is ", options.deflate, " (must be 0 to 9)");
+    // The libraries below are not made for several threads.
+    static std::mutex one_at_a_time;
+    const std::lock_guard lock(one_at_a_time);
+    errno = 0;
+    netcdf_file file(path, message(path, ".part-", ::getpid()));
+    exporter(from, file, options).run();
+    errno = 0;
+    file.finish();
+}
+
+}  // namespace myriad
+
+#endif

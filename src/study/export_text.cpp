@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+// Results as text with commas, and as arrays of NumPy.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include <unistd.h>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/study/export.hpp"
+#include "myriad/study/file_system.hpp"
+
+namespace myriad {
+
+using namespace studies;
+
+namespace {
+
+constexpr std::size_t text_part = std::size_t{1} << 20;
+
+std::string temporary_for(const std::string& path) { return message(path, ".part-", ::getpid()); }
+
+void finish(new_file& file, const std::string& path) {
+    file.finish();
+    file.rename_to(path);
+    sync_folder(file_system::real(), folder_of(path));
+}
+
+// The values of an axis' coordinate, in parts, since an axis can be as long as the study.
+class axis_column {
+public:
+    axis_column(const dimension& axis, const coordinate* values, std::int64_t stride)
+        : length_(axis.length), stride_(stride), values_(values) {}
+
+    // Of an instance.
+    double value(std::int64_t instance) {
+        const std::int64_t place = instance / stride_ % length_;
+        if (values_ == nullptr) return static_cast<double>(place);
+        constexpr std::int64_t most = std::int64_t{1} << 16;
+        if (part_.empty() || place / most * most != first_) {
+            first_ = place / most * most;
+            part_.resize(static_cast<std::size_t>(std::min(most, length_ - first_)));
+            values_->values(first_, part_);
+        }
+        return part_[static_cast<std::size_t>(place - first_)];
+    }
+
+private:
+    std::int64_t length_, stride_;
+    const coordinate* values_;
+    std::int64_t first_ = 0;
+    std::vector<double> part_;
+};
+
+template <class T>
+void append(std::string& text, T value) {
+    char digits[32];
+    text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
+template <class T>
+void append_at(std::string& text, const std::byte* values, std::size_t place) {
+    T value;
+    std::memcpy(&value, values + place * sizeof(T), sizeof(T));
+    if constexpr (std::is_floating_point_v<T>) {
+        if (std::isnan(value)) {  // without the sign that it may have
+            text += "nan";
+            return;
+        }
+    }
+    append(text, value);
+}
+
+void append_value(std::string& text, element type, const std::byte* values, std::size_t place) {
+    switch (type) {
+        case element::f64:
+            return append_at<double>(text, values, place);
+        case element::f32:
+            return append_at<float>(text, values, place);
+        case element::i64:
+            return append_at<std::int64_t>(text, values, place);
+        case element::i32:
+            return append_at<std::int32_t>(text, values, place);
+        case element::u8:
+            return append_at<std::uint8_t>(text, values, place);
+    }
+}
+
+// "x", or "x[0][0]" to "x[2][1]".
+void append_names(std::string& text, const std::string& name, const std::vector<dimension>& inner,
+                  std::size_t level = 0) {
+    if (level == inner.size()) {
+        text += (text.empty() ? "" : ",") + name;
+        return;
+    }
+    for (std::int64_t i = 0; i < inner[level].length; ++i)
+        append_names(text, message(name, '[', i, ']'), inner, level + 1);
+}
+
+}  // namespace
+
+void export_csv(const results& from, const std::string& path) {
+    const layout& content = from.content();
+    std::string text;
+    std::vector<axis_column> axes;
+    std::int64_t stride = content.instances();
+    for (const dimension& axis : content.axes) {
+        stride /= axis.length;
+        bool has_coordinate = false;
+        for (const coordinate& c : content.coordinates) {
+            if (c.dimension != axis.name) continue;
+            append_names(text, c.name, {});
+            axes.emplace_back(axis, &c, stride);
+            has_coordinate = true;
+        }
+        if (has_coordinate) continue;
+        append_names(text, axis.name, {});
+        axes.emplace_back(axis, nullptr, stride);
+    }
+    std::vector<const variable*> variables;
+    for (const variable& v : content.variables)
+        if (v.extent == along::instances) variables.push_back(&v);
+    // What was drawn at random beside the axes.
+    std::stable_partition(variables.begin(), variables.end(),
+                          [](const variable* v) { return v->role == role::coordinate; });
+    for (const variable* v : variables) append_names(text, v->name, v->inner);
+    text += '\n';
+
+    new_file file(file_system::real(), temporary_for(path));
+    std::vector<std::vector<std::byte>> values(variables.size());
+    for (std::int64_t chunk = 0; chunk < content.chunks(); ++chunk) {
+        const chunk_range range = range_of(content, chunk);
+        const bool done = from.done(chunk);
+        for (std::size_t v = 0; v < variables.size() && done; ++v) {
+            values[v].resize(static_cast<std::size_t>(range.count * variables[v]->values_per_item()) *
+                             size_of(variables[v]->type));
+            from.read(variables[v]->name, range.first, range.count, values[v].data());
+        }
+        for (std::int64_t i = 0; i < range.count; ++i) {
+            bool is_first = true;
+            const auto separate = [&] {
+                if (!is_first) text += ',';
+                is_first = false;
+            };
+            for (axis_column& axis : axes) {
+                separate();
+                append(text, axis.value(range.first + i));
+            }
+            for (std::size_t v = 0; v < variables.size(); ++v) {
+                const auto per_item = static_cast<std::size_t>(variables[v]->values_per_item());
+                for (std::size_t j = 0; j < per_item; ++j) {
+                    separate();
+                    if (done)
+                        append_value(text, variables[v]->type, values[v].data(),
+                                     static_cast<std::size_t>(i) * per_item + j);
+                    else
+                        text += "nan";
+                }
+            }
+            text += '\n';
+            if (text.size() >= text_part) {
+                file.write(text);
+                text.clear();
+            }
+        }
+    }
+    file.write(text);
+    finish(file, path);
+}
+
+void export_npy(const results& from, std::string_view name, const std::string& path) {
+    const layout& content = from.content();
+    const variable& v = content.variables[content.find(name)];
+    std::vector<dimension> shape = v.inner;
+    if (v.extent == along::chunks) shape.insert(shape.begin(), {"chunk", content.chunks()});
+    if (v.extent == along::instances) shape.insert(shape.begin(), content.axes.begin(), content.axes.end());
+    std::string lengths;
+    for (const dimension& d : shape) lengths += message(d.length, ", ");
+    const char* type = "";
+    switch (v.type) {
+        case element::f64:
+            type = "<f8";
+            break;
+        case element::f32:
+            type = "<f4";
+            break;
+        case element::i64:
+            type = "<i8";
+            break;
+        case element::i32:
+            type = "<i4";
+            break;
+        case element::u8:
+            type = "|u1";
+            break;
+    }
+    // Format 1.0: a magic string, the version, the length of the header, which ends on a multiple of 64 bytes.
+    std::string header = message("{'descr': '", type, "', 'fortran_order': False, 'shape': (", lengths, "), }");
+    header.append(63 - (10 + header.size()) % 64, ' ');
+    header += '\n';
+    require(header.size() < 65536, "variable ", name, " has too many dimensions for an NPY file");
+    std::string begin("\x93NUMPY\x01\x00", 8);
+    begin += static_cast<char>(header.size() & 255);
+    begin += static_cast<char>(header.size() >> 8);
+
+    new_file file(file_system::real(), temporary_for(path));
+    file.write(begin + header);
+    std::vector<std::byte> values;
+    const auto write = [&](std::int64_t first, std::int64_t count) {
+        values.resize(static_cast<std::size_t>(count * v.values_per_item()) * size_of(v.type));
+        from.read(v.name, first, count, values.data());
+        file.write(values);
+    };
+    if (v.extent == along::nothing) write(0, 1);
+    for (std::int64_t chunk = 0; chunk < content.chunks() && v.extent != along::nothing; ++chunk) {
+        const chunk_range range = range_of(content, chunk);
+        v.extent == along::chunks ? write(chunk, 1) : write(range.first, range.count);
+    }
+    finish(file, path);
+}
+
+}  // namespace myriad

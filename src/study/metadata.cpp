@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: MIT
+// JSON of groups, arrays and records.
+#include "myriad/study/metadata.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <type_traits>
+
+#include <nlohmann/json.hpp>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/version.hpp"
+
+namespace myriad::studies::inline MYRIAD_ABI {
+
+namespace {
+
+// With keys in the order in which they are written, for those who read it.
+using json = nlohmann::ordered_json;
+
+constexpr std::int64_t coordinate_chunk = std::int64_t{1} << 20;  // 8 MB
+constexpr int store_format = 1;
+
+// JSON has no NaN and no infinity: as Zarr writes them.
+json number(double value) {
+    if (std::isnan(value)) return "NaN";
+    if (std::isinf(value)) return value > 0 ? "Infinity" : "-Infinity";
+    return value;
+}
+
+json fill_value(element type) {
+    switch (type) {
+        case element::f64:
+        case element::f32:
+            return "NaN";
+        case element::i64: {
+            std::int64_t value = 0;
+            fill(type, &value, 1);
+            return value;
+        }
+        case element::i32: {
+            std::int32_t value = 0;
+            fill(type, &value, 1);
+            return value;
+        }
+        case element::u8: {
+            std::uint8_t value = 0;
+            fill(type, &value, 1);
+            return value;
+        }
+    }
+    return {};
+}
+
+json as_json(const std::vector<attribute>& attributes) {
+    json all = json::object();
+    for (const attribute& a : attributes)
+        all[a.name] = std::visit(
+            [](const auto& value) -> json {
+                using T = std::remove_cvref_t<decltype(value)>;
+                if constexpr (std::is_same_v<T, double>) {
+                    return number(value);
+                } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+                    json values = json::array();
+                    for (const double v : value) values.push_back(number(v));
+                    return values;
+                } else {
+                    return value;
+                }
+            },
+            a.value);
+    return all;
+}
+
+// A number that may be written as text.
+bool is_number(const json& value) {
+    return value.is_number() || value == "NaN" || value == "Infinity" || value == "-Infinity";
+}
+double as_double(const json& value) {
+    if (value.is_number()) return value.get<double>();
+    return value == "NaN" ? std::nan("") : value == "Infinity" ? HUGE_VAL : -HUGE_VAL;
+}
+
+std::vector<attribute> attributes_from(const json& all) {
+    std::vector<attribute> attributes;
+    for (const auto& [name, value] : all.items()) {
+        const auto every = [&items = value](auto condition) {
+            return std::all_of(items.begin(), items.end(), condition);
+        };
+        if (value.is_number_integer()) {
+            attributes.push_back({name, value.get<std::int64_t>()});
+        } else if (is_number(value)) {
+            attributes.push_back({name, as_double(value)});
+        } else if (value.is_string()) {
+            attributes.push_back({name, value.get<std::string>()});
+        } else if (value.is_array() && every([](const json& v) { return v.is_number_integer(); })) {
+            attributes.push_back({name, value.get<std::vector<std::int64_t>>()});
+        } else if (value.is_array() && every(is_number)) {
+            std::vector<double> values;
+            for (const json& v : value) values.push_back(as_double(v));
+            attributes.push_back({name, values});
+        } else {
+            attributes.push_back({name, value.dump()});
+        }
+    }
+    return attributes;
+}
+
+json as_json(const std::vector<dimension>& dimensions) {
+    json all = json::array();
+    for (const dimension& d : dimensions) all.push_back({d.name, d.length});
+    return all;
+}
+
+std::vector<dimension> dimensions_from(const json& all) {
+    std::vector<dimension> dimensions;
+    for (const json& d : all) dimensions.push_back({d.at(0).get<std::string>(), d.at(1).get<std::int64_t>()});
+    return dimensions;
+}
+
+template <class E, std::size_t n>
+E named(const json& name, const std::pair<E, const char*> (&names)[n]) {
+    for (const auto& [value, known] : names)
+        if (name == known) return value;
+    host::refuse({"unknown entry ", name.dump()});
+}
+template <class E, std::size_t n>
+const char* name_in(E value, const std::pair<E, const char*> (&names)[n]) {
+    for (const auto& [known, name] : names)
+        if (known == value) return name;
+    return "";
+}
+constexpr std::pair<along, const char*> extent_names[] = {
+    {along::instances, "instances"}, {along::chunks, "chunks"}, {along::nothing, "nothing"}};
+constexpr std::pair<role, const char*> role_names[] = {{role::data, "data"}, {role::coordinate, "coordinate"}};
+constexpr std::pair<element, const char*> element_names[] = {{element::f64, "float64"},
+                                                             {element::f32, "float32"},
+                                                             {element::i64, "int64"},
+                                                             {element::i32, "int32"},
+                                                             {element::u8, "uint8"}};
+
+json array_metadata(const array_shape& shape, const std::vector<attribute>& attributes) {
+    json lengths = json::array(), parts = json::array(), names = json::array();
+    for (const dimension& d : shape.dimensions) {
+        parts.push_back(lengths.empty() ? shape.chunk : d.length);
+        lengths.push_back(d.length);
+        names.push_back(d.name);
+    }
+    return {{"zarr_format", 3},
+            {"node_type", "array"},
+            {"shape", lengths},
+            {"data_type", name_of(shape.type)},
+            {"chunk_grid", {{"name", "regular"}, {"configuration", {{"chunk_shape", parts}}}}},
+            {"chunk_key_encoding", {{"name", "default"}, {"configuration", {{"separator", "."}}}}},
+            {"fill_value", fill_value(shape.type)},
+            {"codecs", {{{"name", "bytes"}, {"configuration", {{"endian", "little"}}}}, {{"name", "crc32c"}}}},
+            {"attributes", as_json(attributes)},
+            {"dimension_names", names}};
+}
+
+// Adds what differs to a list, by the path of keys.
+void compare(const std::string& path, const json& stored, const json& here, std::vector<std::string>& found) {
+    if (stored == here) return;
+    if (stored.is_object() && here.is_object()) {
+        const std::string prefix = path.empty() ? "" : path + '.';
+        for (const auto& [key, value] : stored.items())
+            compare(prefix + key, value, here.contains(key) ? here.at(key) : json(), found);
+        for (const auto& [key, value] : here.items())
+            if (!stored.contains(key)) compare(prefix + key, json(), value, found);
+        return;
+    }
+    const auto shown = [](const json& value) {
+        std::string text = value.is_null() ? "nothing" : value.dump();
+        if (text.size() > 100) text = text.substr(0, 97) + "...";
+        return text;
+    };
+    found.push_back(path + ": " + shown(stored) + " in the store, " + shown(here) + " here");
+}
+
+// What must agree of a layout, by name and not by place.
+json comparable(const layout& content) {
+    json all = json::parse(content.description);
+    json axes = json::object(), variables = json::object(), coordinates = json::object();
+    for (const dimension& d : content.axes) axes[d.name] = d.length;
+    for (const variable& v : content.variables)
+        variables[v.name] = {{"type", name_of(v.type)},
+                             {"inner", as_json(v.inner)},
+                             {"along", name_in(v.extent, extent_names)},
+                             {"role", name_in(v.role, role_names)}};
+    for (const coordinate& c : content.coordinates) coordinates[c.name] = c.dimension;
+    return {{"description", all},
+            {"grid", axes},
+            {"order of the grid", axes.size() > 1 ? as_json(content.axes) : json()},
+            {"variables", variables},
+            {"coordinates", coordinates}};
+}
+
+void flatten(const std::string& name, const json& value, json& flat) {
+    if (value.is_object()) {
+        for (const auto& [key, inner] : value.items()) flatten(name.empty() ? key : name + '.' + key, inner, flat);
+    } else if (value.is_boolean()) {
+        flat[name] = value.get<bool>() ? "true" : "false";
+    } else if (!value.is_null()) {
+        flat[name] = value;
+    }
+}
+
+std::string hexadecimal(std::uint32_t value) {
+    char text[9];
+    std::snprintf(text, sizeof text, "%08x", value);
+    return text;
+}
+
+}  // namespace
+
+std::int64_t array_shape::items() const { return dimensions.empty() ? 1 : dimensions.front().length; }
+
+std::int64_t array_shape::item_bytes() const {
+    auto bytes = static_cast<std::int64_t>(size_of(type));
+    for (std::size_t d = 1; d < dimensions.size(); ++d) bytes *= dimensions[d].length;
+    return bytes;
+}
+
+std::int64_t array_shape::file_bytes() const { return chunk * item_bytes() + 4; }
+
+std::int64_t array_shape::files() const { return (items() - 1) / chunk + 1; }
+
+std::string array_shape::file_name(std::int64_t file) const {
+    std::string name = "c";
+    for (std::size_t d = 0; d < dimensions.size(); ++d) name += '.' + std::to_string(d == 0 ? file : 0);
+    return name;
+}
+
+array_shape shape_of(const layout& content, const variable& v) {
+    array_shape shape{v.type, v.inner, 1};
+    if (v.extent == along::instances) {
+        shape.dimensions.insert(shape.dimensions.begin(), {"instance", content.instances()});
+        shape.chunk = content.chunk;
+    } else if (v.extent == along::chunks) {
+        shape.dimensions.insert(shape.dimensions.begin(), {"chunk", content.chunks()});
+    } else {
+        shape.chunk = shape.items();
+    }
+    return shape;
+}
+
+array_shape shape_of(const layout& content, const coordinate& c) {
+    array_shape shape{element::f64, {}, 1};
+    if (c.dimension.empty()) return shape;
+    const auto find = [&](const std::vector<dimension>& dimensions) {
+        for (const dimension& d : dimensions)
+            if (d.name == c.dimension && shape.dimensions.empty()) shape.dimensions.push_back(d);
+    };
+    find(content.axes);
+    find({{"instance", content.instances()}, {"chunk", content.chunks()}});
+    for (const variable& v : content.variables) find(v.inner);
+    shape.chunk = std::min(shape.items(), coordinate_chunk);
+    return shape;
+}
+
+std::string array_json(const array_shape& shape, const std::vector<attribute>& attributes) {
+    return array_metadata(shape, attributes).dump(1) + '\n';
+}
+
+std::string group_json(const layout& content) {
+    json arrays = json::object(), variables = json::array(), coordinates = json::array();
+    for (const coordinate& c : content.coordinates) {
+        arrays[c.name] = array_metadata(shape_of(content, c), c.attributes);
+        coordinates.push_back({{"name", c.name}, {"dimension", c.dimension}, {"attributes", as_json(c.attributes)}});
+    }
+    for (const variable& v : content.variables) {
+        arrays[v.name] = array_metadata(shape_of(content, v), v.attributes);
+        variables.push_back({{"name", v.name},
+                             {"type", name_of(v.type)},
+                             {"inner", as_json(v.inner)},
+                             {"along", name_in(v.extent, extent_names)},
+                             {"role", name_in(v.role, role_names)},
+                             {"attributes", as_json(v.attributes)}});
+    }
+    const json own = {{"format", store_format},
+                      {"version", MYRIAD_VERSION},
+                      {"axes", as_json(content.axes)},
+                      {"chunk", content.chunk},
+                      {"variables", variables},
+                      {"coordinates", coordinates},
+                      {"description", json::parse(content.description)}};
+    const json group = {
+        {"zarr_format", 3},
+        {"node_type", "group"},
+        {"attributes", {{"myriad", own}}},
+        {"consolidated_metadata", {{"kind", "inline"}, {"must_understand", false}, {"metadata", arrays}}}};
+    return group.dump(1) + '\n';
+}
+
+layout layout_of(std::string_view group, const std::string& path) {
+    const json read = json::parse(group, nullptr, false);
+    require(!read.is_discarded(), path, " is no JSON, so it is damaged: restore it, or give another folder");
+    require(read.is_object() && read.contains("attributes") && read.at("attributes").contains("myriad"), path,
+            " is not from a study of Myriad: give another folder");
+    layout content;
+    try {
+        const json& own = read.at("attributes").at("myriad");
+        require(own.at("format") == store_format, path, " has format ", own.at("format").dump(),
+                ", and this version of Myriad knows ", store_format, ": use the version that wrote it, ",
+                own.at("version").dump());
+        content.axes = dimensions_from(own.at("axes"));
+        content.chunk = own.at("chunk").get<std::int64_t>();
+        content.description = own.at("description").dump();
+        for (const json& v : own.at("variables"))
+            content.variables.push_back({v.at("name").get<std::string>(), named(v.at("type"), element_names),
+                                         dimensions_from(v.at("inner")), attributes_from(v.at("attributes")),
+                                         named(v.at("along"), extent_names), named(v.at("role"), role_names)});
+        for (const json& c : own.at("coordinates"))
+            content.coordinates.push_back({c.at("name").get<std::string>(), c.at("dimension").get<std::string>(),
+                                           [](std::int64_t, std::span<double>) {},
+                                           attributes_from(c.at("attributes"))});
+        content.check();
+    } catch (const nlohmann::json::exception& failure) {
+        host::refuse({path, " is damaged (", failure.what(), "): restore the file, or give another folder"});
+    }
+    return content;
+}
+
+std::vector<std::string> differences(const layout& stored, const layout& here) {
+    const json a = comparable(stored), b = comparable(here);
+    std::vector<std::string> found;
+    compare("", a.at("description"), b.at("description"), found);
+    for (const char* const part : {"grid", "order of the grid", "variables", "coordinates"}) {
+        // The order matters only if the rest of the grid agrees.
+        if (found.empty() || std::string_view(part) != "order of the grid")
+            compare(part, a.at(part), b.at(part), found);
+    }
+    return found;
+}
+
+std::vector<attribute> attributes_of(std::string_view description) {
+    json flat = json::object();
+    flatten("", json::parse(description), flat);
+    return attributes_from(flat);
+}
+
+std::string record_json(const layout& content, std::int64_t chunk, const stored_chunk& stored) {
+    json files = json::object(), statuses = json::object();
+    std::size_t next = 0;
+    for (const variable& v : content.variables)
+        if (v.extent != along::nothing) files[v.name] = hexadecimal(stored.checksums.at(next++));
+    for (const auto& [name, count] : stored.record.statuses) statuses[name] = count;
+    const json all = {{"chunk", chunk},
+                      {"instances", range_of(content, chunk).count},
+                      {"device", stored.record.device},
+                      {"seconds", number(stored.record.seconds)},
+                      {"statuses", statuses},
+                      {"crc32c", files}};
+    return all.dump(1) + '\n';
+}
+
+stored_chunk record_of(std::string_view text, const layout& content, std::int64_t chunk) {
+    stored_chunk stored;
+    try {
+        const json read = json::parse(text);
+        require(read.at("chunk") == chunk, "it is that of another chunk");
+        stored.record.device = read.at("device").get<std::string>();
+        stored.record.seconds = as_double(read.at("seconds"));
+        for (const auto& [name, count] : read.at("statuses").items())
+            stored.record.statuses.emplace_back(name, count.get<std::int64_t>());
+        for (const variable& v : content.variables)
+            if (v.extent != along::nothing)
+                stored.checksums.push_back(static_cast<std::uint32_t>(
+                    std::stoul(read.at("crc32c").at(v.name).get<std::string>(), nullptr, 16)));
+    } catch (const nlohmann::json::exception& failure) {
+        host::refuse({"the record of chunk ", chunk, " is damaged: ", failure.what()});
+    } catch (const std::logic_error&) {
+        host::refuse({"the record of chunk ", chunk, " is damaged: a checksum is no number"});
+    }
+    return stored;
+}
+
+}  // namespace myriad::studies::inline MYRIAD_ABI

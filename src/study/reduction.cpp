@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+// The reductions.
+#include "myriad/study/reduction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/study/exact_sum.hpp"
+
+namespace myriad {
+
+const chunk_columns::column& chunk_columns::find(std::string_view name) const {
+    std::string all;
+    for (const column& c : columns_) {
+        if (c.what->name == name) return c;
+        all += (all.empty() ? "" : ", ") + c.what->name;
+    }
+    throw error(message("no variable \"", name, "\" is computed; there are ", all));
+}
+
+namespace {
+
+using studies::element;
+using studies::exact_sum;
+using studies::reduction_plan;
+using studies::reduction_state;
+using studies::variable;
+using inputs = std::vector<const variable*>;
+
+/// Calls `visit(j, value)` for value j of each instance that has not failed.
+template <class Visit>
+void for_each_value(const chunk_columns& chunk, const std::string& name, Visit&& visit) {
+    const auto visit_all = [&]<class T>(T) {
+        const std::span<const T> all = chunk.values<T>(name);
+        const std::size_t inner = chunk.size() > 0 ? all.size() / static_cast<std::size_t>(chunk.size()) : 0;
+        const T* next = all.data();
+        for (std::int64_t i = 0; i < chunk.size(); ++i, next += inner) {
+            if (is_failure(chunk.status(i))) continue;
+            for (std::size_t j = 0; j < inner; ++j) visit(j, static_cast<double>(next[j]));
+        }
+    };
+    switch (chunk.find(name).what->type) {
+        case element::f64:
+            return visit_all(double{});
+        case element::f32:
+            return visit_all(float{});
+        case element::i64:
+            return visit_all(std::int64_t{});
+        case element::i32:
+            return visit_all(std::int32_t{});
+        case element::u8:
+            return visit_all(std::uint8_t{});
+    }
+}
+
+class histogram_state final : public reduction_state {
+public:
+    histogram_state(std::string of, std::vector<double> edges)
+        : of_(std::move(of)), edges_(std::move(edges)), count_(bins() + 3) {}
+
+    void add(const chunk_columns& chunk) override {
+        for_each_value(chunk, of_, [this](std::size_t, double value) { ++count_[place_of(value)]; });
+    }
+    void add(std::span<const double> partial) override {
+        for (std::size_t i = 0; i < count_.size(); ++i) count_[i] += partial[i];
+    }
+    std::vector<double> partial() override { return count_; }
+    std::vector<std::vector<double>> results() override {
+        const auto inside = count_.begin() + static_cast<std::ptrdiff_t>(bins());
+        return {{count_.begin(), inside}, {inside, count_.end()}};
+    }
+
+private:
+    std::size_t bins() const { return edges_.size() - 1; }
+    std::size_t place_of(double value) const {
+        if (!std::isfinite(value)) return bins() + 2;
+        if (value < edges_.front()) return bins();
+        if (value >= edges_.back()) return value == edges_.back() ? bins() - 1 : bins() + 1;
+        // Most histograms have bins of equal width; the guess is at most one bin wrong for them.
+        const double share = (value - edges_.front()) / (edges_.back() - edges_.front());
+        std::size_t guess = std::min(static_cast<std::size_t>(share * static_cast<double>(bins())), bins() - 1);
+        if (guess > 0 && value < edges_[guess]) --guess;
+        if (guess + 1 < bins() && value >= edges_[guess + 1]) ++guess;
+        if (value >= edges_[guess] && value < edges_[guess + 1]) return guess;
+        return static_cast<std::size_t>(std::upper_bound(edges_.begin(), edges_.end(), value) - edges_.begin()) - 1;
+    }
+
+    std::string of_;
+    std::vector<double> edges_, count_;  // counts are exact up to 2^53
+};
+
+class extremum_state final : public reduction_state {
+public:
+    /// `sign`: 1 for the largest value, -1 for the smallest.
+    extremum_state(std::string of, std::int64_t size, double sign)
+        : of_(std::move(of)), sign_(sign), most_(static_cast<std::size_t>(size), none) {}
+
+    void add(const chunk_columns& chunk) override {
+        for_each_value(chunk, of_, [this](std::size_t j, double value) {
+            if (std::isfinite(value)) most_[j] = std::max(most_[j], sign_ * value);
+        });
+    }
+    void add(std::span<const double> partial) override {
+        for (std::size_t j = 0; j < most_.size(); ++j) most_[j] = std::max(most_[j], partial[j]);
+    }
+    std::vector<double> partial() override { return most_; }
+    std::vector<std::vector<double>> results() override {
+        std::vector<double> found(most_);
+        for (double& value : found) value = value == none ? std::numeric_limits<double>::quiet_NaN() : sign_ * value;
+        return {found};
+    }
+
+private:
+    static constexpr double none = -std::numeric_limits<double>::infinity();
+    std::string of_;
+    double sign_;
+    std::vector<double> most_;
+};
+
+/// Sums of several numbers, each exact.
+class sums {
+public:
+    static constexpr std::size_t stored = exact_sum::digits;
+
+    explicit sums(std::int64_t size) : sum_(static_cast<std::size_t>(size)) {}
+    std::size_t size() const { return sum_.size(); }
+    exact_sum& operator[](std::size_t j) { return sum_[j]; }
+    void add(std::span<const double> partial) {
+        std::int64_t digits[stored];
+        for (std::size_t j = 0; j < size(); ++j) {
+            for (std::size_t i = 0; i < stored; ++i) digits[i] = static_cast<std::int64_t>(partial[j * stored + i]);
+            sum_[j].add(digits);
+        }
+    }
+    /// As doubles, which have the digits of 32 bits exactly.
+    void store(std::vector<double>& to) {
+        std::int64_t digits[stored];
+        for (exact_sum& s : sum_) {
+            s.store(digits);
+            to.insert(to.end(), std::begin(digits), std::end(digits));
+        }
+    }
+
+private:
+    std::vector<exact_sum> sum_;
+};
+
+class mean_state final : public reduction_state {
+public:
+    mean_state(std::string of, std::int64_t size)
+        : of_(std::move(of)), sum_(size), count_(static_cast<std::size_t>(size)) {}
+
+    void add(const chunk_columns& chunk) override {
+        for_each_value(chunk, of_, [this](std::size_t j, double value) {
+            if (!std::isfinite(value)) return;
+            sum_[j].add(value);
+            ++count_[j];
+        });
+    }
+    void add(std::span<const double> partial) override {
+        sum_.add(partial);
+        const auto counts = partial.last(count_.size());
+        for (std::size_t j = 0; j < count_.size(); ++j) count_[j] += counts[j];
+    }
+    std::vector<double> partial() override {
+        std::vector<double> all;
+        sum_.store(all);
+        all.insert(all.end(), count_.begin(), count_.end());
+        return all;
+    }
+    std::vector<std::vector<double>> results() override {
+        std::vector<double> mean(count_.size());
+        for (std::size_t j = 0; j < mean.size(); ++j) mean[j] = sum_[j].value() / count_[j];
+        return {mean};
+    }
+
+private:
+    std::string of_;
+    sums sum_;
+    std::vector<double> count_;
+};
+
+using user_function = std::function<void(const chunk_columns&, std::span<double>)>;
+
+class user_state final : public reduction_state {
+public:
+    user_state(user_function function, std::int64_t size) : function_(std::move(function)), sum_(size) {}
+
+    void add(const chunk_columns& chunk) override {
+        std::vector<double> of_chunk(sum_.size());
+        function_(chunk, of_chunk);
+        for (std::size_t j = 0; j < of_chunk.size(); ++j) {
+            require(std::isfinite(of_chunk[j]), "a reduction's function gave ", of_chunk[j], " for instances ",
+                    chunk.first(), " to ", chunk.first() + chunk.size() - 1, ": it has to leave such values out");
+            sum_[j].add(of_chunk[j]);
+        }
+    }
+    void add(std::span<const double> partial) override { sum_.add(partial); }
+    std::vector<double> partial() override {
+        std::vector<double> all;
+        sum_.store(all);
+        return all;
+    }
+    std::vector<std::vector<double>> results() override {
+        std::vector<double> values;
+        for (std::size_t j = 0; j < sum_.size(); ++j) values.push_back(sum_[j].value());
+        return {values};
+    }
+
+private:
+    user_function function_;
+    sums sum_;
+};
+
+variable result(std::string name, element type, std::vector<studies::dimension> inner,
+                std::vector<studies::attribute> attributes = {}) {
+    return {std::move(name), type, std::move(inner), std::move(attributes), studies::along::nothing};
+}
+
+/// A reduction with one result that has the inner dimensions of what it reduces.
+template <class State, class... More>
+ensemble_reduction one_value(std::string_view of, const char* what, std::int64_t partial_values, More... more) {
+    studies::reduction_definition made;
+    made.name = message(of, '_', what);
+    made.inputs = {std::string(of)};
+    made.description = message(what, " of ", of);
+    made.plan = [name = made.name, of = std::string(of), partial_values, more...](const inputs& in) {
+        const std::int64_t size = in[0]->values_per_item();
+        return reduction_plan{size * partial_values, {result(name, element::f64, in[0]->inner)}, {}, [=] {
+                                  return std::make_unique<State>(of, size, more...);
+                              }};
+    };
+    return ensemble_reduction(std::move(made));
+}
+
+}  // namespace
+
+ensemble_reduction histogram_of(std::string_view of, const axis_values& edges) {
+    require(!edges.random() && edges.size() >= 2, "a histogram of ", of, " needs two or more edges of bins");
+    std::vector<double> all;
+    for (std::int64_t i = 0; i < edges.size(); ++i) {
+        all.push_back(edges[i]);
+        require(i == 0 || all[all.size() -
+                              2]<all.back(), "the edges of the bins of a histogram of ", of, " do not increase: ", i> 0
+                    ? all[all.size() - 2]
+                    : 0.0,
+                " is followed by ", all.back());
+    }
+    studies::reduction_definition made;
+    made.name = message(of, "_histogram");
+    made.inputs = {std::string(of)};
+    made.description = message("histogram of ", of, ", edges");
+    for (const double edge : all) made.description += message(' ', studies::exact_text(edge));
+    made.plan = [of = std::string(of), all](const inputs&) {
+        std::vector<double> middles;
+        for (std::size_t i = 1; i < all.size(); ++i) middles.push_back(0.5 * all[i - 1] + 0.5 * all[i]);
+        const auto bins = static_cast<std::int64_t>(middles.size());
+        const std::string dimension = of + "_bin";
+        return reduction_plan{
+            bins + 3,
+            {result(of + "_histogram", element::i64, {{dimension, bins}}, {{"edges", all}}),
+             result(of + "_outside", element::i64, {{of + "_side", 3}},
+                    {{"comment", "how many values are below the first edge, above the last one, and not finite"}})},
+            {studies::with_values(dimension, dimension, middles, {{"long_name", "middle of the bin"}})},
+            [=] { return std::make_unique<histogram_state>(of, all); }};
+    };
+    return ensemble_reduction(std::move(made));
+}
+ensemble_reduction minimum_of(std::string_view of) { return one_value<extremum_state>(of, "minimum", 1, -1.0); }
+ensemble_reduction maximum_of(std::string_view of) { return one_value<extremum_state>(of, "maximum", 1, 1.0); }
+ensemble_reduction mean_of(std::string_view of) { return one_value<mean_state>(of, "mean", exact_sum::digits + 1); }
+
+ensemble_reduction sum_of(std::string name, std::vector<std::string> of, std::int64_t size, user_function function) {
+    require(!name.empty(), "a reduction needs a name");
+    require(size > 0, "the reduction ", name, " has ", size, " sums (must be positive)");
+    require(function != nullptr, "the reduction ", name, " has no function");
+    studies::reduction_definition made;
+    made.name = name;
+    made.inputs = std::move(of);
+    made.description = message("sum of a function of ", made.inputs.size(), " variables, ", size, " numbers");
+    made.plan = [name, size, function = std::move(function)](const inputs&) {
+        std::vector<studies::dimension> inner;
+        if (size > 1) inner.push_back({name + "_number", size});
+        return reduction_plan{size * exact_sum::digits, {result(name, element::f64, inner)}, {}, [=] {
+                                  return std::make_unique<user_state>(function, size);
+                              }};
+    };
+    return ensemble_reduction(std::move(made));
+}
+
+}  // namespace myriad

@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: MIT
+// The threads of a running study.
+#include "myriad/study/runner.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/host/report/status_names.hpp"
+#include "myriad/kernel/core/abi.hpp"
+
+namespace myriad::studies::inline MYRIAD_ABI {
+
+namespace {
+
+using clock = std::chrono::steady_clock;
+
+double seconds_since(clock::time_point begin) { return std::chrono::duration<double>(clock::now() - begin).count(); }
+
+/// A device, on which one thread integrates while another prepares the next chunk or stores the last one.
+struct used_device {
+    explicit used_device(const device& d) : where(d) {}
+
+    const device where;
+    std::mutex turn;  // of the thread that integrates
+    std::atomic<bool> failed{false};
+    std::string why;                    // it failed
+    std::atomic<double> per_second{0};  // instances, in its last chunk
+};
+
+/// Instances that a thread has finished of its chunk.
+using done_of_chunk = std::atomic<std::int64_t>;
+
+/// Another thread has found that the device is lost.
+class device_lost : public std::exception {};
+
+class run {
+public:
+    run(const any_model& model, const study_plan& plan, result_keeper& keeper, const run_settings& settings)
+        : model_(model), plan_(plan), keeper_(keeper), settings_(settings), earlier_(keeper.instances_done()),
+          committed_(earlier_) {
+        for (const device& d : settings.devices) devices_.emplace_back(d);
+    }
+
+    run_outcome all() {
+        if (!keeper_.complete()) run_threads();
+        tell_warnings();
+        show();
+        outcome_.seconds = seconds_since(begin_);
+        if (failure_) std::rethrow_exception(failure_);
+        outcome_.complete = keeper_.complete();
+        outcome_.by_status = of_all_.by_status;
+        outcome_.notes = of_all_.notes;
+        if (outcome_.complete) finish_reductions();
+        return std::move(outcome_);
+    }
+
+private:
+    static constexpr int threads_per_device = 2;
+    static constexpr auto look_every = std::chrono::milliseconds(100);  // for signals, and to show progress
+    static constexpr auto ask_every = std::chrono::milliseconds(500);   // for chunks of other processes
+    static constexpr auto count_every = std::chrono::seconds(5);        // what other processes have done
+
+    // -- The calling thread -------------------------------------------------------------------------------------------
+
+    void run_threads() {
+        std::vector<std::thread> threads;
+        try {
+            for (used_device& d : devices_) {
+                for (int t = 0; t < threads_per_device; ++t) {
+                    const std::lock_guard lock(mutex_);
+                    done_of_chunk& mine = under_way_.emplace_back(0);
+                    threads.emplace_back([this, &d, &mine] { work_until_the_end(d, mine); });
+                    ++working_;
+                }
+            }
+            watch();
+        } catch (...) {
+            fail(std::current_exception());
+        }
+        for (std::thread& t : threads) t.join();
+    }
+    void watch() {
+        auto counted = clock::now();
+        std::unique_lock lock(mutex_);
+        while (working_ > 0) {
+            changed_.wait_for(lock, look_every);
+            lock.unlock();
+            if (settings_.stops && settings_.stops()) stop();
+            if (clock::now() - counted > count_every) {
+                counted = clock::now();
+                const std::int64_t done = keeper_.instances_done();
+                const std::lock_guard again(mutex_);
+                committed_ = std::max(committed_, done);
+            }
+            tell_warnings();
+            show();
+            lock.lock();
+        }
+    }
+    /// An exception of the user's function ends the run.
+    void show() {
+        if (!settings_.progress || failure_told_) return;
+        work_progress now;
+        {
+            const std::lock_guard lock(mutex_);
+            now = {.done = committed_,
+                   .total = plan_.content.instances(),
+                   .earlier = earlier_,
+                   .seconds = seconds_since(begin_),
+                   .by_status = of_all_.by_status};
+            for (const done_of_chunk& done : under_way_) now.done += done;
+        }
+        now.done = shown_ = std::clamp(now.done, shown_, now.total);  // a device that failed loses what it had
+        call([&] { settings_.progress(now); });
+    }
+    void tell_warnings() {
+        std::vector<std::string> told;
+        {
+            const std::lock_guard lock(mutex_);
+            std::swap(told, warnings_);
+        }
+        for (std::string& text : told) {
+            if (settings_.warning && !failure_told_) call([&] { settings_.warning(text); });
+            outcome_.warnings.push_back(std::move(text));
+        }
+    }
+    template <class Function>
+    void call(Function&& function) {
+        try {
+            function();
+        } catch (...) {
+            failure_told_ = true;
+            fail(std::current_exception());
+        }
+    }
+
+    // -- The threads of devices ---------------------------------------------------------------------------------------
+
+    void work_until_the_end(used_device& d, done_of_chunk& mine) {
+        try {
+            work(d, mine);
+        } catch (const std::exception& e) {
+            if (!d.failed) {
+                fail(std::current_exception());
+            } else if (std::all_of(devices_.begin(), devices_.end(),
+                                   [](const used_device& u) { return u.failed.load(); })) {
+                fail(std::make_exception_ptr(error(message("no device is left: the last one failed with: ", d.why))));
+            }
+        } catch (...) {
+            fail(std::current_exception());
+        }
+        const std::lock_guard lock(mutex_);
+        --working_;
+        changed_.notify_all();
+    }
+
+    void work(used_device& d, done_of_chunk& mine) {
+        const std::unique_ptr<chunk_solver> solver = model_.make_solver(plan_);
+        std::vector<std::vector<std::byte>> values(plan_.quantities.size());
+        std::int64_t piece = settings_.piece > 0 ? std::min(settings_.piece, content().chunk) : content().chunk;
+        while (const std::optional<std::int64_t> chunk = next_chunk(d)) {
+            const chunk_range range = range_of(content(), *chunk);
+            const auto begin = clock::now();
+            try {
+                const solved how = compute(d, *solver, range, piece, values, mine);
+                const double seconds = seconds_since(begin);
+                commit(*chunk, range, values, how, d, seconds);
+                const std::lock_guard lock(mutex_);
+                committed_ += range.count;
+                outcome_.instances += range.count;
+                add(of_all_, how);
+                mine = 0;
+            } catch (...) {
+                mine = 0;
+                give_back(*chunk);
+                throw;
+            }
+            changed_.notify_all();
+        }
+    }
+    const layout& content() const { return keeper_.content(); }
+
+    /// The next chunk for this device; nothing if it is to end.
+    std::optional<std::int64_t> next_chunk(used_device& d) {
+        for (;;) {
+            if (stopping_ || d.failed || (settings_.stops && settings_.stops())) return {};
+            if (is_worthwhile(d)) {
+                if (const auto chunk = keeper_.claim_next()) return chunk;
+            }
+            if (keeper_.complete()) return {};
+            // Others are at work on the rest. They may fail, or be in other processes, and die.
+            std::unique_lock lock(mutex_);
+            if (!stopping_) changed_.wait_for(lock, ask_every);
+        }
+    }
+    /// Whether the other devices would take longer for all that is left than this one for a chunk. It always is for the
+    /// fastest one.
+    bool is_worthwhile(const used_device& mine) {
+        const auto chunk = static_cast<double>(content().chunk);
+        double together = 0, fastest = 0;
+        for (const used_device& d : devices_) {
+            if (&d == &mine || d.failed) continue;
+            together += d.per_second;
+            fastest = std::max<double>(fastest, d.per_second);
+        }
+        if (mine.per_second <= 0 || together <= 0) return true;
+        auto left = static_cast<double>(content().instances());
+        {
+            const std::lock_guard lock(mutex_);
+            left -= static_cast<double>(committed_);
+            for (const done_of_chunk& done : under_way_) left -= static_cast<double>(done);
+        }
+        return chunk / mine.per_second <= std::max(left / together, chunk / fastest);
+    }
+
+    /// Sets and integrates a chunk, in pieces if memory is short, and copies what is kept.
+    solved compute(used_device& d, chunk_solver& solver, const chunk_range& range, std::int64_t& piece,
+                   std::vector<std::vector<std::byte>>& values, done_of_chunk& mine) {
+        solved sum;
+        double seconds = 0;
+        for (std::int64_t at = 0; at < range.count;) {
+            const std::int64_t count = std::min(piece, range.count - at);
+            try {
+                for (std::size_t q = 0; q < values.size(); ++q)
+                    values[q].resize(static_cast<std::size_t>(range.count) * bytes_of(plan_.quantities[q]));
+                solver.prepare(range.first + at, count);
+                add(sum, integrate(
+                             d, solver, [&](std::int64_t done) { mine = at + done; }, seconds));
+                for (std::size_t q = 0; q < values.size(); ++q)
+                    solver.copy(plan_.quantities[q],
+                                &values[q][static_cast<std::size_t>(at) * bytes_of(plan_.quantities[q])]);
+            } catch (const out_of_memory& e) {
+                halve(piece, count, solver, e.what());
+                continue;
+            } catch (const std::bad_alloc&) {
+                halve(piece, count, solver, "out of memory");
+                continue;
+            }
+            at += count;
+        }
+        if (seconds > 0) d.per_second = static_cast<double>(range.count) / seconds;
+        return sum;
+    }
+    solved integrate(used_device& d, chunk_solver& solver, const std::function<void(std::int64_t)>& progress,
+                     double& seconds) {
+        const std::lock_guard turn(d.turn);
+        if (d.failed) throw device_lost();
+        try {
+            const auto begin = clock::now();
+            solved how = solver.integrate(d.where, progress);
+            seconds += seconds_since(begin);
+            return how;
+        } catch (const out_of_memory&) {
+            throw;
+        } catch (const std::exception& e) {
+            // A GPU is lost with a driver's error. On the CPU, it is the model or the study that is wrong.
+            if (d.where.which() != device::kind::cpu) drop(d, e.what());
+            throw;
+        }
+    }
+    static void add(solved& sum, const solved& more) {
+        for (std::size_t s = 0; s < sum.by_status.size(); ++s) sum.by_status[s] += more.by_status[s];
+        add_new(sum.notes, more.notes);
+    }
+    static std::size_t bytes_of(const quantity& q) {
+        return static_cast<std::size_t>(q.as.values_per_item()) * size_of(q.as.type);
+    }
+    void halve(std::int64_t& piece, std::int64_t count, chunk_solver& solver, const std::string& why) {
+        solver.clear();
+        if (count == 1) throw error(why);
+        piece = (count + 1) / 2;
+        warn(message("memory is short, so ", piece, " instances are integrated at a time: ", why));
+    }
+
+    void commit(std::int64_t chunk, const chunk_range& range, const std::vector<std::vector<std::byte>>& values,
+                const solved& how, const used_device& d, double seconds) {
+        std::vector<column> columns;
+        std::vector<chunk_columns::column> all;
+        for (std::size_t q = 0; q < values.size(); ++q) {
+            const quantity& is = plan_.quantities[q];
+            all.push_back({&is.as, values[q]});
+            if (is.stored) columns.push_back({is.as.name, is.as.type, values[q]});
+        }
+        std::deque<std::vector<double>> partial;
+        std::deque<std::string> names;  // which columns refer to
+        const chunk_columns of_chunk(range.first, range.count, all);
+        for (std::size_t r = 0; r < plan_.reductions.size(); ++r) {
+            const auto state = plan_.reductions[r].start();
+            state->add(of_chunk);
+            columns.push_back(column_of(names.emplace_back(partial_name(plan_.asked.reductions[r])),
+                                        partial.emplace_back(state->partial())));
+        }
+        chunk_record record{d.where.description(), seconds, {}};
+        for (std::size_t s = 0; s < how.by_status.size(); ++s)
+            if (how.by_status[s] > 0)
+                record.statuses.emplace_back(myriad::name_of(static_cast<myriad::status>(s)), how.by_status[s]);
+        keeper_.commit(chunk, columns, record);
+    }
+
+    // -- Both ---------------------------------------------------------------------------------------------------------
+
+    void give_back(std::int64_t chunk) {
+        try {
+            keeper_.release(chunk);
+        } catch (...) {  // the reason why it is given back is what matters
+        }
+        changed_.notify_all();
+    }
+    void drop(used_device& d, const std::string& why) {
+        d.why = why;
+        d.failed = true;
+        warn(
+            message("device ", d.where.name(), " is left out, and its chunks are done by others, as it failed: ", why));
+    }
+    void warn(std::string text) {
+        const std::lock_guard lock(mutex_);
+        warnings_.push_back(std::move(text));
+    }
+    void stop() {
+        stopping_ = true;
+        changed_.notify_all();
+    }
+    void fail(std::exception_ptr why) {
+        const std::lock_guard lock(mutex_);
+        if (!failure_) failure_ = std::move(why);
+        stopping_ = true;
+        changed_.notify_all();
+    }
+    static void add_new(std::vector<std::string>& to, const std::vector<std::string>& from) {
+        constexpr std::size_t most = 16;
+        for (const std::string& text : from)
+            if (to.size() < most && std::find(to.begin(), to.end(), text) == to.end()) to.push_back(text);
+    }
+
+    void finish_reductions() {
+        const auto kept = keeper_.kept();
+        for (std::size_t r = 0; r < plan_.reductions.size(); ++r) {
+            const reduction_plan& reduced = plan_.reductions[r];
+            const auto is_written = [&](const variable& v) { return kept->written(v.name); };
+            if (std::all_of(reduced.results.begin(), reduced.results.end(), is_written)) continue;
+            const auto state = reduced.start();
+            std::vector<double> partial(static_cast<std::size_t>(reduced.partial_size));
+            for (std::int64_t c = 0; c < content().chunks(); ++c) {
+                kept->read(partial_name(plan_.asked.reductions[r]), c, 1, partial.data());
+                state->add(std::span<const double>(partial));
+            }
+            const auto values = state->results();
+            for (std::size_t v = 0; v < values.size(); ++v) {
+                const variable& is = reduced.results[v];
+                if (is.type == element::i64) {
+                    keeper_.write(column_of(is.name, std::vector<std::int64_t>(values[v].begin(), values[v].end())));
+                } else {
+                    keeper_.write(column_of(is.name, values[v]));
+                }
+            }
+        }
+    }
+
+    const any_model& model_;
+    const study_plan& plan_;
+    result_keeper& keeper_;
+    const run_settings& settings_;
+    std::deque<used_device> devices_;
+    std::deque<done_of_chunk> under_way_;
+    clock::time_point begin_ = clock::now();
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::atomic<bool> stopping_{false};
+    int working_ = 0;  // threads
+    std::int64_t earlier_, committed_;
+    std::vector<std::string> warnings_;  // not told yet
+    std::exception_ptr failure_;
+    solved of_all_;
+    run_outcome outcome_;
+
+    bool failure_told_ = false;  // an exception came from a callback
+    std::int64_t shown_ = 0;
+};
+
+}  // namespace
+
+run_outcome run_study(const any_model& model, const study_plan& plan, result_keeper& keeper,
+                      const run_settings& settings) {
+    return run(model, plan, keeper, settings).all();
+}
+
+}  // namespace myriad::studies::inline MYRIAD_ABI

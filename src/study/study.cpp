@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// From a study to its run.
+#include "myriad/study/study.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/host/memory/memory_need.hpp"
+#include "myriad/host/report/status_names.hpp"
+#include "myriad/study/chunk_solver.hpp"
+#include "myriad/study/result_keeper.hpp"
+#include "myriad/study/runner.hpp"
+#include "myriad/study/stop_signals.hpp"
+
+namespace myriad {
+
+namespace {
+
+using studies::element;
+
+/// Items of a variable.
+std::int64_t items_of(const studies::layout& content, const studies::variable& v) {
+    return v.extent == studies::along::instances ? content.instances()
+           : v.extent == studies::along::chunks  ? content.chunks()
+                                                 : 1;
+}
+
+/// Instances of a chunk, and of them those to be integrated at a time, as far as free memory goes.
+struct chunk_sizes {
+    std::int64_t chunk, piece;
+};
+chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_plan& plan, bool in_memory,
+                         const std::vector<device>& devices) {
+    const std::int64_t n = plan.content.instances();
+    const auto kept = static_cast<double>(plan.bytes_per_instance());
+    const double worked_on = model.bytes_per_instance(plan.asked.options) + kept;
+    // Two threads for each device; half of what is free stays free.
+    double free = host::available_memory().bytes / 2;
+    if (in_memory) free -= kept * static_cast<double>(n);
+    const double of_thread = std::max(free, 0.0) / (2 * static_cast<double>(devices.size()));
+    constexpr double enough = 256e6;  // bytes: more instances make no device faster
+    const auto fitting = [&](double bytes) {
+        return static_cast<std::int64_t>(std::clamp(bytes / worked_on, 1.0, static_cast<double>(n)));
+    };
+    // Enough instances to keep all lanes and threads busy, and as many chunks as let little be lost.
+    const bool has_gpu =
+        std::any_of(devices.begin(), devices.end(), [](const device& d) { return d.which() != device::kind::cpu; });
+    const auto threads = static_cast<std::int64_t>(std::max(std::thread::hardware_concurrency(), 1u));
+    const std::int64_t least = has_gpu ? std::int64_t{1} << 20 : 1024 * threads;
+    const std::int64_t most = fitting(std::min(of_thread, enough));
+    return {std::min(std::max((n + 31) / 32, least), most), most};
+}
+
+}  // namespace
+
+std::int64_t study_result::failed() const {
+    std::int64_t sum = 0;
+    for (int s = 0; s < status_count; ++s)
+        if (is_failure(static_cast<status>(s))) sum += by_status[static_cast<std::size_t>(s)];
+    return sum;
+}
+
+std::ostream& operator<<(std::ostream& stream, const study_result& r) {
+    std::string text = message(r.instances, " of ", r.content().instances(), " instances: ");
+    bool first = true;
+    for (int s = 0; s < status_count; ++s) {
+        const std::int64_t count = r.count(static_cast<status>(s));
+        if (count == 0) continue;
+        text += message(first ? "" : ", ", count, ' ', name_of(static_cast<status>(s)));
+        first = false;
+    }
+    text += message(first ? "" : "; ", r.seconds, " s", r.complete ? "" : "; stopped before all were done", '\n');
+    for (const std::string& note : r.notes) text += message("note: ", note, '\n');
+    for (const std::string& warning : r.warnings) text += message("warning: ", warning, '\n');
+    return stream << text;
+}
+
+std::size_t study_result::size_of(std::string_view name, element type, std::int64_t count) const {
+    const studies::variable& v = content().variables[content().find(name)];
+    require(v.type == type, name, " has values of type ", studies::name_of(v.type), ", not ", studies::name_of(type));
+    require(count >= 0, count, " instances of ", name, " are asked for");
+    return static_cast<std::size_t>(count * v.values_per_item());
+}
+
+std::vector<double> study_result::values(std::string_view name) const {
+    const studies::variable& v = content().variables[content().find(name)];
+    const std::int64_t items = items_of(content(), v), inner = v.values_per_item();
+    host::memory_need need;
+    need.add("values", static_cast<double>(items) * static_cast<double>(inner) * sizeof(double));
+    need.check(message("reading all of ", name), "read parts of it by values_of");
+    std::vector<double> all(static_cast<std::size_t>(items * inner));
+    if (v.type == element::f64) {
+        results_->read(name, 0, items, all.data());
+        return all;
+    }
+    const auto convert = [&]<class T>(T) {
+        constexpr std::int64_t at_a_time = 65'536;
+        std::vector<T> part;
+        T unset{};
+        studies::fill(v.type, &unset, 1);
+        for (std::int64_t first = 0; first < items; first += at_a_time) {
+            const std::int64_t count = std::min(at_a_time, items - first);
+            part.resize(static_cast<std::size_t>(count * inner));
+            results_->read(name, first, count, part.data());
+            std::transform(part.begin(), part.end(), all.begin() + first * inner, [&](T value) {
+                return value == unset ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(value);
+            });
+        }
+    };
+    switch (v.type) {
+        case element::f32:
+            convert(float{});
+            break;
+        case element::i64:
+            convert(std::int64_t{});
+            break;
+        case element::i32:
+            convert(std::int32_t{});
+            break;
+        default:
+            convert(std::uint8_t{});
+    }
+    return all;
+}
+
+any_study::any_study(std::shared_ptr<const studies::any_model> model)
+    : warning([](const std::string& text) { std::cerr << text << '\n'; }), model_(std::move(model)),
+      axes_(model_->names()) {}
+any_study::~any_study() = default;
+
+void any_study::time_domain(double t_begin, double t_end) {
+    set("t_begin", t_begin);
+    set("t_end", t_end);
+}
+
+void any_study::reduce(ensemble_reduction r) {
+    for (const ensemble_reduction& there : reductions_)
+        require(there.definition().name != r.definition().name, "the reduction ", r.definition().name,
+                " is given twice");
+    reductions_.push_back(std::move(r));
+}
+
+void any_study::unit(std::string_view component, std::string unit) {
+    using enum studies::component_kind;
+    if (component == "t") {
+        units_["t"] = std::move(unit);
+        return;
+    }
+    const auto kinds = {state, parameter, accessory, integer_accessory, shared, shared_integer};
+    units_[model_->names().find(component, kinds).full_name()] = std::move(unit);
+}
+
+void any_study::store(std::string folder, const studies::store_options& how) {
+    require(!folder.empty(), "the folder of a study has no name");
+    folder_ = std::move(folder);
+    store_options_ = how;
+}
+
+studies::study_request any_study::request() const {
+    require(!options.progress, "options.progress is for solve: set the study's own progress instead");
+    require(chunk >= 0, "chunk is ", chunk, " (must be positive, or 0 for a choice by memory)");
+    myriad::options how = options;
+    how.invalid_instances = invalid_instances::mark;
+    return {.method = model_->method(),
+            .real = model_->real(),
+            .axes = axes_,
+            .options = std::move(how),
+            .keep = keep,
+            .reductions = reductions_,
+            .generator = model_->generator(),
+            .notes = notes_,
+            .units = units_,
+            .title = title_};
+}
+
+study_result any_study::run() {
+    stopped_ = false;
+    studies::run_settings settings{.devices = devices, .progress = progress, .warning = warning};
+    if (settings.devices.empty()) settings.devices.push_back(device::best());
+    for (const device& d : settings.devices) model_->check(d, options);
+    studies::study_plan plan = studies::plan_study(request());
+    const chunk_sizes sizes = choose_sizes(*model_, plan, folder_.empty(), settings.devices);
+    plan.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
+    settings.piece = sizes.piece;
+    const auto keeper = folder_.empty() ? studies::keep_in_memory(plan.content)
+                                        : studies::keep_in_store(folder_, plan.content, store_options_);
+
+    std::unique_ptr<studies::stop_signals> signals;
+    if (stop_on_signals) signals = std::make_unique<studies::stop_signals>();
+    settings.stops = [&] { return stopped_ || (signals != nullptr && signals->came()); };
+    studies::run_outcome outcome = studies::run_study(*model_, plan, *keeper, settings);
+
+    study_result made(keeper->kept());
+    made.complete = outcome.complete;
+    made.instances = outcome.instances;
+    made.seconds = outcome.seconds;
+    made.by_status = outcome.by_status;
+    made.notes = std::move(outcome.notes);
+    made.warnings = std::move(outcome.warnings);
+    return made;
+}
+
+}  // namespace myriad

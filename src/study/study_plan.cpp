@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: MIT
+// From what a study was asked for to variables, their layout, and a description.
+#include "myriad/study/study_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/host/report/status_names.hpp"
+#include "myriad/kernel/core/abi.hpp"
+#include "myriad/version.hpp"
+
+namespace myriad::studies::inline MYRIAD_ABI {
+
+using json = nlohmann::json;
+using enum component_kind;
+
+std::string partial_name(const ensemble_reduction& r) { return r.definition().name + "_partial"; }
+
+std::int64_t study_plan::bytes_per_instance() const {
+    std::int64_t bytes = 0;
+    for (const quantity& q : quantities)
+        bytes += q.as.values_per_item() * static_cast<std::int64_t>(size_of(q.as.type));
+    return bytes;
+}
+
+namespace {
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The description
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// JSON has no NaN, which stands for a default, and no infinity.
+json number(double value) {
+    if (std::isnan(value)) return "default";
+    if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
+    return value;
+}
+json numbers(const std::vector<double>& all) {
+    constexpr std::size_t most = 1000;
+    json list = json::array();
+    if (all.size() <= most) {
+        for (const double value : all) list.push_back(number(value));
+        return list;
+    }
+    std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a of their bytes
+    for (const double value : all) {
+        unsigned char bytes[sizeof value];
+        std::memcpy(bytes, &value, sizeof value);
+        for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3;
+    }
+    return message(all.size(), " values from ", all.front(), " to ", all.back(), ", hash ", hash);
+}
+json numbers(const per_component& all) {
+    std::vector<double> list;
+    for (std::size_t i = 0; i < all.size(); ++i) list.push_back(all[i]);
+    return numbers(list);
+}
+
+json describe(const axis_values& v) {
+    if (v.which() == axis_values::kind::list) return numbers(v.listed());
+    constexpr const char* names[] = {"linspace", "logspace", "values", "random_uniform", "random_normal"};
+    std::string text = names[static_cast<int>(v.which())];
+    text += '(' + exact_text(v.first()) + ", " + exact_text(v.last());
+    if (!v.random()) text += ", " + std::to_string(v.size());
+    return text + ')';
+}
+
+json describe(const axes& all) {
+    json made{{"dimensions", json::array()}, {"values", json::object()}, {"random", json::object()}};
+    for (std::size_t d = 0; d < all.dimensions().size(); ++d) {
+        json along{{"name", all.dimensions()[d].name}, {"length", all.dimensions()[d].length}};
+        for (const axes::entry& e : all.entries())
+            if (e.dimension == static_cast<int>(d)) along["components"][e.what.full_name()] = describe(e.values);
+        made["dimensions"].push_back(along);
+    }
+    for (const axes::entry& e : all.entries()) {
+        if (e.dimension) continue;
+        if (e.values.random()) {
+            made["random"][e.what.full_name()] = describe(e.values);
+        } else {
+            made["values"][e.what.full_name()] = number(e.values[0]);
+        }
+    }
+    if (!made["random"].empty()) made["seed"] = all.seed();
+    return made;
+}
+
+json names_of(const component_names& names, component_kind kind, const component_list& list) {
+    json made = json::array();
+    for (const int c : list) made.push_back(names.find(message(name_of(kind), '.', c), {kind}).full_name());
+    return made;
+}
+
+json describe(const options& o, const component_names& names) {
+    json events = json::array();
+    for (const event_options& e : o.events)
+        events.push_back({{"direction", static_cast<int>(e.direction)},
+                          {"tolerance", number(e.tolerance)},
+                          {"stop_after", e.stop_after}});
+    json made{{"phases", o.phases},
+              {"relative_tolerance", numbers(o.relative_tolerance)},
+              {"absolute_tolerance", numbers(o.absolute_tolerance)},
+              {"step", number(o.step)},
+              {"minimum_step", number(o.minimum_step)},
+              {"maximum_step", number(o.maximum_step)},
+              {"growth_limit", number(o.growth_limit)},
+              {"shrink_limit", number(o.shrink_limit)},
+              {"max_steps", o.max_steps},
+              {"phase_time", o.phase_time == phase_time::restart ? "restart" : "carry_on"},
+              {"phase_length", number(o.phase_length)},
+              {"phase_step", o.phase_step == phase_step::restart ? "restart" : "carry_on"},
+              {"events", events},
+              {"sub_samples", o.sub_samples},
+              {"accumulation_limit", o.accumulation_limit}};
+    if (!o.record.empty()) {
+        made["record"] = {{"from_phase", o.record.from_phase},
+                          {"states", names_of(names, state, o.record.states)},
+                          {"accessories", names_of(names, accessory, o.record.accessories)},
+                          {"integer_accessories", names_of(names, integer_accessory, o.record.integer_accessories)},
+                          {"time", o.record.time}};
+    }
+    if (!o.samples.empty()) {
+        made["samples"] = {{"states", names_of(names, state, o.samples.states)},
+                           {"capacity", o.samples.capacity},
+                           {"evenly", o.samples.evenly},
+                           {"times", numbers(o.samples.times)},
+                           {"every", o.samples.every},
+                           {"minimum_spacing", number(o.samples.minimum_spacing)},
+                           {"from_phase", o.samples.from_phase}};
+    }
+    return made;
+}
+
+std::string describe(const study_request& asked, const study_plan& plan) {
+    const component_names& names = asked.axes.names();
+    std::map<std::string, int> components;
+    for (const component& c : names.all())
+        if (c.kind != t_begin && c.kind != t_end) ++components[name_of(c.kind)];
+    json kept = json::array(), reductions = json::object();
+    for (const quantity& q : plan.quantities)
+        if (q.stored) kept.push_back(q.as.name);
+    for (const ensemble_reduction& r : asked.reductions)
+        reductions[r.definition().name] = {{"of", r.definition().inputs}, {"what", r.definition().description}};
+    json made{{"model", names.model()},
+              {"components", components},
+              {"method", asked.method},
+              {"real", name_of(asked.real)},
+              {"version", MYRIAD_VERSION},
+              {"axes", describe(asked.axes)},
+              {"options", describe(asked.options, names)},
+              {"kept", kept}};
+    if (!asked.title.empty()) made["title"] = asked.title;
+    if (!reductions.empty()) made["reductions"] = reductions;
+    if (!asked.generator.empty()) made["generator"] = asked.generator;
+    if (!asked.notes.empty()) made["notes"] = asked.notes;
+    return made.dump(2);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The variables
+// ---------------------------------------------------------------------------------------------------------------------
+
+class planner {
+public:
+    explicit planner(study_plan& plan) : plan_(plan), asked_(plan.asked), names_(plan.asked.axes.names()) {}
+
+    void make() {
+        check_inputs();
+        add_axes();
+        add_records();
+        add_samples();
+        for (const std::string& name : asked_.keep.end) add_end(name, true);
+        add_work();
+        add_status();
+        for (const ensemble_reduction& r : asked_.reductions) add(r);
+        for (const quantity& q : plan_.quantities)
+            if (q.stored) plan_.content.variables.push_back(q.as);
+        for (const variable& v : plan_.content.variables) {
+            if (v.inner.empty() || v.inner[0].name != "phase") continue;
+            add_numbers("phase", asked_.options.record.from_phase);
+            break;
+        }
+    }
+
+private:
+    /// What every instance must have, unless a generator gives it.
+    void check_inputs() const {
+        require(asked_.options.samples.times_of_instances.empty(),
+                "samples.times_of_instances has times for each instance of one call: a study has none, give times or "
+                "evenly");
+        if (!asked_.generator.empty()) return;
+        for (const component& c : names_.all()) {
+            if (c.kind == accessory || c.kind == integer_accessory || c.kind == shared_integer) continue;
+            const auto& entries = asked_.axes.entries();
+            const bool is_set =
+                std::any_of(entries.begin(), entries.end(), [&](const axes::entry& e) { return e.what == c; });
+            require(is_set, c.full_name(),
+                    " has no value in any instance: give it an axis, a value by set, or a generator of instances");
+        }
+    }
+
+    std::vector<attribute> unit_of(const std::string& component) const {
+        const auto found = asked_.units.find(component);
+        if (found == asked_.units.end()) return {};
+        return {{"units", found->second}};
+    }
+    std::vector<attribute> unit_of(const component& c) const {
+        return unit_of(c.kind == t_begin || c.kind == t_end ? "t" : c.full_name());
+    }
+    element type_of(const component& c) const { return c.kind == integer_accessory ? element::i32 : asked_.real; }
+    quantity& add(origin from, std::string name, element type, bool stored, std::vector<dimension> inner = {},
+                  std::vector<attribute> attributes = {}, const component& what = {}) {
+        for (const quantity& q : plan_.quantities)
+            require(q.as.name != name, "two variables are called ", name, ": keep it once");
+        plan_.quantities.push_back(
+            {from, what, {std::move(name), type, std::move(inner), std::move(attributes)}, stored});
+        return plan_.quantities.back();
+    }
+
+    void add_axes() {
+        auto& content = plan_.content;
+        for (const axes::dimension& d : asked_.axes.dimensions()) content.axes.push_back({d.name, d.length});
+        for (const axes::entry& e : asked_.axes.entries()) {
+            const std::string name = names_.initial_variable(e.what);
+            if (e.values.random()) {
+                add(origin::axis, name, type_of(e.what), true, {}, unit_of(e.what), e.what).as.role = role::coordinate;
+                continue;
+            }
+            const std::string along = e.dimension ? content.axes[static_cast<std::size_t>(*e.dimension)].name : "";
+            const auto write = [all = e.values](std::int64_t first, std::span<double> values) {
+                for (std::size_t i = 0; i < values.size(); ++i) values[i] = all[first + static_cast<std::int64_t>(i)];
+            };
+            content.coordinates.push_back({name, along, write, unit_of(e.what)});
+        }
+    }
+    /// A coordinate that counts.
+    void add_numbers(const std::string& dimension, std::int64_t from) {
+        const auto count = [from](std::int64_t first, std::span<double> values) {
+            for (std::size_t i = 0; i < values.size(); ++i)
+                values[i] = static_cast<double>(from + first + static_cast<std::int64_t>(i));
+        };
+        plan_.content.coordinates.push_back({dimension, dimension, count, {}});
+    }
+
+    void add_records() {
+        const record_options& o = asked_.options.record;
+        if (o.empty()) return;
+        const dimension phase{"phase", asked_.options.phases - o.from_phase};
+        const auto add_all = [&](component_kind kind, const component_list& list) {
+            for (const int number : list) {
+                const component& c = names_.find(message(name_of(kind), '.', number), {kind});
+                add(origin::record, names_.variable(c), type_of(c), asked_.keep.records, {phase}, unit_of(c), c);
+            }
+        };
+        add_all(state, o.states);
+        add_all(accessory, o.accessories);
+        add_all(integer_accessory, o.integer_accessories);
+        if (o.time) add(origin::record_time, "t", asked_.real, asked_.keep.records, {phase}, unit_of("t"));
+    }
+    void add_samples() {
+        const sample_options& o = asked_.options.samples;
+        if (o.empty()) return;
+        const bool stored = asked_.keep.samples;
+        const dimension sample{"sample", o.capacity};
+        for (const int number : o.states) {
+            const component& c = names_.find(message("state.", number), {state});
+            add(origin::sample, names_.variable(c) + "_sample", asked_.real, stored, {sample}, unit_of(c), c);
+        }
+        add(origin::sample_time, "t_sample", asked_.real, stored, {sample}, unit_of("t"));
+        add(origin::samples_stored, "samples_stored", element::i32, stored);
+    }
+    void add_end(const std::string& name, bool stored) {
+        if (name == "t") {
+            add(origin::end_time, "t_last", asked_.real, stored, {}, unit_of("t"));
+            return;
+        }
+        const component& c = names_.find(name, {state, accessory, integer_accessory, parameter});
+        add(origin::end, names_.variable(c) + "_end", type_of(c), stored, {}, unit_of(c), c);
+    }
+    void add_work() {
+        if (!asked_.keep.work) return;
+        add(origin::phases_done, "phases_done", element::i32, true);
+        if (asked_.options.counting == counting::off) return;
+        add(origin::accepted_steps, "accepted_steps", element::i64, true);
+        add(origin::rejected_steps, "rejected_steps", element::i64, true);
+        add(origin::located_steps, "located_steps", element::i64, true);
+        add(origin::rhs_evaluations, "rhs_evaluations", element::i64, true);
+    }
+    void add_status() {
+        std::vector<std::int64_t> values;
+        std::string meanings;
+        for (int s = 0; s < status_count; ++s) {
+            values.push_back(s);
+            meanings += message(s == 0 ? "" : " ", myriad::name_of(static_cast<myriad::status>(s)));
+        }
+        add(origin::status, "status", element::u8, asked_.keep.status, {},
+            {{"flag_values", values}, {"flag_meanings", meanings}});
+    }
+
+    /// The variable that a reduction reduces; an end value is computed if it is not kept.
+    const variable& find(const std::string& name) {
+        const auto known = [&]() -> const quantity* {
+            for (const quantity& q : plan_.quantities)
+                if (q.as.name == name) return &q;
+            return nullptr;
+        };
+        if (known() == nullptr && name == "t_last") add_end("t", false);
+        for (const component& c : names_.all()) {
+            const bool has_end =
+                c.kind == state || c.kind == accessory || c.kind == integer_accessory || c.kind == parameter;
+            if (known() == nullptr && has_end && name == names_.variable(c) + "_end") add_end(c.full_name(), false);
+        }
+        if (const quantity* const found = known()) return found->as;
+        std::string all;
+        for (const quantity& q : plan_.quantities) all += (all.empty() ? "" : ", ") + q.as.name;
+        throw error(message("a reduction is asked for of \"", name, "\", which is not computed: there are ", all,
+                            all.empty() ? "" : ", ", "and the last values of components, as ",
+                            names_.variable(names_.all().front()), "_end"));
+    }
+    void add(const ensemble_reduction& r) {
+        const studies::reduction_definition& d = r.definition();
+        for (const std::string& name : d.inputs) find(name);  // which may add some
+        std::vector<const variable*> inputs;
+        for (const std::string& name : d.inputs) inputs.push_back(&find(name));
+        reduction_plan made = d.plan(inputs);
+        auto& content = plan_.content;
+        content.variables.push_back({.name = partial_name(r),
+                                     .type = element::f64,
+                                     .inner = {{d.name + "_part", made.partial_size}},
+                                     .attributes = {},
+                                     .extent = along::chunks});
+        for (variable& v : made.results) {
+            const bool has_unit = v.type != element::i64 && inputs.size() == 1;
+            for (const attribute& a : has_unit ? inputs[0]->attributes : std::vector<attribute>{})
+                if (a.name == "units") v.attributes.push_back(a);
+            content.variables.push_back(v);
+        }
+        for (const coordinate& c : made.coordinates) {
+            const bool known = std::any_of(content.coordinates.begin(), content.coordinates.end(),
+                                           [&](const coordinate& other) { return other.name == c.name; });
+            if (!known) content.coordinates.push_back(c);
+        }
+        plan_.reductions.push_back(std::move(made));
+    }
+
+    study_plan& plan_;
+    const study_request& asked_;
+    const component_names& names_;
+};
+
+}  // namespace
+
+study_plan plan_study(const study_request& asked) {
+    study_plan plan{asked, {}, {}, {}};
+    planner(plan).make();
+    plan.content.description = describe(plan.asked, plan);
+    return plan;
+}
+
+}  // namespace myriad::studies::inline MYRIAD_ABI

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Files that appear whole or not at all, folders, and messages. That every call may fail is in store_test.cpp.
+#include "myriad/study/file_system.hpp"
+
+#include <algorithm>
+#include <cerrno>
+
+#include <fcntl.h>
+
+#include "tests/catch.hpp"
+#include "tests/study/synthetic.hpp"
+
+namespace {
+
+using Catch::Matchers::Contains;
+using namespace myriad::studies;
+
+file_system& disk() { return file_system::real(); }
+
+TEST_CASE("a new file has its name when it is whole, and is gone if it never is") {
+    tests::temporary_folder folder;
+    {
+        new_file half(disk(), folder / "half");
+        half.write("text");
+        CHECK(tests::text_of(folder / "half") == "text");
+    }
+    CHECK_FALSE(std::filesystem::exists(folder / "half"));
+
+    std::ofstream(folder / "old") << "old";
+    new_file whole(disk(), folder / "new");
+    whole.write("new");
+    whole.finish();
+    CHECK_FALSE(whole.link_to(folder / "old"));
+    CHECK(tests::text_of(folder / "old") == "old");
+    CHECK(whole.link_to(folder / "linked"));
+    CHECK(tests::text_of(folder / "linked") == "new");
+    whole.rename_to(folder / "old");
+    CHECK(tests::text_of(folder / "old") == "new");
+    CHECK_FALSE(std::filesystem::exists(folder / "new"));
+    CHECK_THROWS_AS(new_file(disk(), folder / "old"), file_error);
+}
+
+TEST_CASE("texts are read as a whole, and what there is not is nothing") {
+    tests::temporary_folder folder;
+    for (const std::size_t size : std::vector<std::size_t>{0, 1, 65535, 65536, 65537, 200000}) {
+        const std::string text(size, 'x');
+        write_text(disk(), folder / "temporary", folder / "text", text);
+        CHECK((read_text(disk(), folder / "text") == text));
+    }
+    CHECK_FALSE(read_text(disk(), folder / "none").has_value());
+    CHECK_FALSE(names_in(disk(), folder / "none").has_value());
+    make_folders(disk(), folder / "a/b//c/");
+    make_folders(disk(), folder / "a/b/c");
+    make_folder(disk(), folder / "a/b/d");
+    auto names = names_in(disk(), folder / "a/b").value();
+    std::sort(names.begin(), names.end());
+    CHECK(names == std::vector<std::string>{"c", "d"});
+}
+
+TEST_CASE("the folder of a path is known without asking the disk") {
+    CHECK(folder_of("a/b") == "a");
+    CHECK(folder_of("a//b/") == "a");
+    CHECK(folder_of("a") == ".");
+    CHECK(folder_of("a/") == ".");
+    CHECK(folder_of("/a") == "/");
+    CHECK(folder_of("/") == "/");
+    CHECK(folder_of("") == ".");
+}
+
+TEST_CASE("errors name the file, the reason and what to do") {
+    const auto text = [](int code) { return std::string(file_error("writing", "run/x/c.1", code).what()); };
+    CHECK(text(ENOSPC) ==
+          "writing run/x/c.1 failed: No space left on device. What was finished is kept: free space, or "
+          "move the folder to a larger disk, and start again");
+    CHECK_THAT(text(EDQUOT), Contains("free space"));
+    CHECK_THAT(text(EACCES), Contains("give a folder that you may write to"));
+    CHECK_THAT(text(ENOTSUP), Contains("hard links"));
+    CHECK_THAT(text(EIO), Contains("start again when the disk works"));
+    try {
+        open_file(disk(), "/nonexistent/file", O_RDONLY);
+        FAIL("a file that is not there was opened");
+    } catch (const file_error& failure) {
+        CHECK(failure.code() == ENOENT);
+    }
+}
+
+}  // namespace

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// Layouts and records as JSON and back. What readers of Zarr make of it is in check_exports.py.
+#include "myriad/study/metadata.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "tests/catch.hpp"
+#include "tests/study/synthetic.hpp"
+
+namespace {
+
+using Catch::Matchers::Contains;
+using namespace myriad::studies;
+
+TEST_CASE("arrays are divided along their outermost dimension, and every file has the same length") {
+    const layout content = tests::synthetic_layout();
+    const array_shape step = shape_of(content, content.variables[3]);
+    CHECK(step.items() == 35);
+    CHECK(step.item_bytes() == 3 * 2 * 4);
+    CHECK(step.file_bytes() == 4 * 24 + 4);
+    CHECK(step.files() == 9);
+    CHECK(step.file_name(7) == "c.7.0.0");
+    const array_shape partial = shape_of(content, content.variables[6]);
+    CHECK(partial.items() == 9);
+    CHECK(partial.files() == 9);
+    const array_shape total = shape_of(content, content.variables[7]);
+    CHECK(total.files() == 1);
+    CHECK(total.file_bytes() == 4 * 8 + 4);
+    const array_shape number = shape_of(content, content.coordinates[3]);
+    CHECK(number.dimensions.empty());
+    CHECK(number.file_name(0) == "c");
+    // A long axis has files of 8 MB.
+    layout large = content;
+    large.axes[0].length = std::int64_t{1} << 40;
+    CHECK(shape_of(large, large.coordinates[0]).file_bytes() == (std::int64_t{8} << 20) + 4);
+    CHECK(shape_of(large, large.coordinates[0]).files() == std::int64_t{1} << 20);
+}
+
+TEST_CASE("a layout comes back from the JSON of its group, whatever its attributes are") {
+    layout content = tests::synthetic_layout();
+    content.variables[0].attributes = {{"text", "with \"quotes\" and \xC3\xBC"},
+                                       {"one", 1.0},
+                                       {"tenth", 0.1},
+                                       {"infinite", -std::numeric_limits<double>::infinity()},
+                                       {"many", std::vector<double>{1.0, 2.5, std::numeric_limits<double>::infinity()}},
+                                       {"integer", std::int64_t{1} << 62},
+                                       {"integers", std::vector<std::int64_t>{-1, 0, 7}}};
+    const layout read = layout_of(group_json(content), "zarr.json");
+    CHECK(read.axes == content.axes);
+    CHECK(read.chunk == content.chunk);
+    for (std::size_t v = 0; v < content.variables.size(); ++v)
+        CHECK(read.variables[v].attributes == content.variables[v].attributes);
+    for (std::size_t c = 0; c < content.coordinates.size(); ++c) {
+        CHECK(read.coordinates[c].name == content.coordinates[c].name);
+        CHECK(read.coordinates[c].dimension == content.coordinates[c].dimension);
+        CHECK(read.coordinates[c].attributes == content.coordinates[c].attributes);
+    }
+    CHECK(differences(read, content).empty());
+    CHECK_THROWS_WITH(layout_of("{\"attributes\": {\"myriad\": {}}}", "f"), Contains("f is damaged"));
+    CHECK_THROWS_WITH(layout_of("{\"attributes\": {\"myriad\": {\"format\": 1, \"axes\": 5}}}", "f"),
+                      Contains("damaged"));
+}
+
+TEST_CASE("numbers in a description are equal if they are the same number") {
+    layout a = tests::synthetic_layout(), b = a;
+    a.description = R"({"x": 1, "y": [0.1, 2], "z": {"deep": {"deeper": null}}})";
+    b.description = R"({"z": {"deep": {"deeper": null}}, "y": [1e-1, 2.0], "x": 1.0})";
+    CHECK(differences(a, b).empty());
+    b.description = R"({"z": {"deep": {"deeper": "0"}}, "y": [1e-1, 3], "x": 1.0000000000000002})";
+    CHECK(differences(a, b) == std::vector<std::string>{"x: 1 in the store, 1.0000000000000002 here",
+                                                        "y: [0.1,2] in the store, [0.1,3] here",
+                                                        "z.deep.deeper: nothing in the store, \"0\" here"});
+    a.description = R"({"x": ")" + std::string(500, 'a') + "\"}";
+    b.description = R"({"x": "b"})";
+    CHECK(differences(a, b).at(0).size() < 150);
+}
+
+TEST_CASE("the entries of a description become attributes with dots in their names") {
+    const auto attributes = attributes_of(
+        R"({"model": "duffing", "options": {"tolerance": 1e-9, "steps": 5, "on": true, "none": null},
+            "list": [1, 2], "reals": [1.5, 2], "mixed": [1, "a"], "empty": {}})");
+    const std::vector<attribute> expected{{"model", "duffing"},
+                                          {"options.tolerance", 1e-9},
+                                          {"options.steps", std::int64_t{5}},
+                                          {"options.on", "true"},
+                                          {"list", std::vector<std::int64_t>{1, 2}},
+                                          {"reals", std::vector<double>{1.5, 2}},
+                                          {"mixed", "[1,\"a\"]"}};
+    CHECK(attributes == expected);
+}
+
+TEST_CASE("the record of a chunk comes back, and that of another chunk does not") {
+    const layout content = tests::synthetic_layout();
+    const stored_chunk stored{{"a \"device\"", std::nan(""), {{"ok", 3}, {"failed", 1}}},
+                              {1, 2, 3, 4, 5, 0xFFFFFFFF, 7}};
+    const std::string text = record_json(content, 3, stored);
+    const stored_chunk read = record_of(text, content, 3);
+    CHECK(read.record.device == stored.record.device);
+    CHECK(std::isnan(read.record.seconds));
+    CHECK(read.record.statuses == stored.record.statuses);
+    CHECK(read.checksums == stored.checksums);
+    CHECK_THROWS_WITH(record_of(text, content, 4), Contains("that of another chunk"));
+    CHECK_THROWS_WITH(record_of("", content, 4), Contains("the record of chunk 4 is damaged"));
+    CHECK_THROWS_WITH(record_of(text.substr(0, text.size() / 2), content, 3), Contains("is damaged"));
+    std::string wrong = text;
+    wrong.replace(wrong.find("ffffffff"), 8, "zzzzzzzz");
+    CHECK_THROWS_WITH(record_of(wrong, content, 3), Contains("a checksum is no number"));
+}
+
+}  // namespace

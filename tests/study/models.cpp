@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+// The kernels of the models that studies are tested with.
+#include "tests/study/models.hpp"
+
+#include <myriad/instantiate.hpp>
+
+MYRIAD_INSTANTIATE(studied::duffing, myriad::dense<myriad::tsitouras_5>)
+MYRIAD_INSTANTIATE_FLOAT(studied::lorenz, myriad::runge_kutta_4)

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Reductions of made-up columns: their values, and that these do not depend on chunks.
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <myriad/host/core/error.hpp>
+#include <myriad/study/reduction.hpp>
+
+#include "tests/catch.hpp"
+
+namespace {
+
+using namespace myriad;
+using Catch::Matchers::Contains;
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+/// A variable "x" of one or more values for each instance, and how the instances ended.
+struct made_up {
+    studies::variable x{.name = "x", .inner = {}}, status{.name = "status", .type = studies::element::u8};
+    std::vector<double> values;
+    std::vector<std::uint8_t> statuses;
+
+    explicit made_up(std::vector<double> all, std::int64_t inner = 1) : values(std::move(all)) {
+        if (inner > 1) x.inner = {{"phase", inner}};
+        statuses.resize(values.size() / static_cast<std::size_t>(inner), static_cast<std::uint8_t>(status::success));
+    }
+    void fail(std::size_t i) { statuses[i] = static_cast<std::uint8_t>(myriad::status::max_steps); }
+
+    /// The results of a reduction, from chunks of that many instances.
+    std::vector<std::vector<double>> reduce(const ensemble_reduction& r, std::size_t chunk) const {
+        const auto plan = r.definition().plan({&x});
+        const std::size_t inner = values.size() / statuses.size();
+        const auto together = plan.start();
+        for (std::size_t first = 0; first < statuses.size(); first += chunk) {
+            const std::size_t count = std::min(chunk, statuses.size() - first);
+            const std::span all(values);
+            const chunk_columns::column columns[] = {
+                {&x, std::as_bytes(all.subspan(first * inner, count * inner))},
+                {&status, std::as_bytes(std::span(statuses).subspan(first, count))}};
+            const auto part = plan.start();
+            part->add(chunk_columns(static_cast<std::int64_t>(first), static_cast<std::int64_t>(count), columns));
+            const auto partial = part->partial();
+            REQUIRE(static_cast<std::int64_t>(partial.size()) == plan.partial_size);
+            together->add(std::span<const double>(partial));
+        }
+        return together->results();
+    }
+    std::vector<double> first_of(const ensemble_reduction& r) const { return reduce(r, statuses.size())[0]; }
+};
+
+}  // namespace
+
+TEST_CASE("A histogram has numpy's bins, and counts what is outside", "[reduction]") {
+    const made_up data({-1, 0, 0.5, 1, 1, 1.9, 2, 2.1, not_a_number, inf, -inf});
+    const auto found = data.reduce(histogram_of("x", linspace(0, 2, 3)), 4);
+    CHECK(found[0] == std::vector<double>{2, 4});
+    CHECK(found[1] == std::vector<double>{1, 1, 3});
+    CHECK(data.first_of(histogram_of("x", values({-1, 0, 0.25, 2}))) == std::vector<double>{1, 1, 5});
+}
+TEST_CASE("A histogram puts numbers at and next to an edge into the right bin", "[reduction]") {
+    for (const axis_values& edges : {linspace(0.1, 0.7, 101), logspace(1e-3, 10, 40)}) {
+        std::vector<double> at, expected(static_cast<std::size_t>(edges.size()) - 1, 2);
+        for (std::int64_t i = 0; i < edges.size(); ++i) {
+            at.push_back(edges[i]);
+            at.push_back(std::nextafter(edges[i], 0));
+        }
+        ++expected.back();  // which has its upper edge
+        CHECK(made_up(at).first_of(histogram_of("x", edges)) == expected);
+    }
+}
+TEST_CASE("Extrema and means are of each phase, and leave failed instances and NaN out", "[reduction]") {
+    made_up data({1, 10, 2, not_a_number, 3, 30, -100, 1000}, 2);
+    data.fail(3);
+    CHECK(data.first_of(minimum_of("x")) == std::vector<double>{1, 10});
+    CHECK(data.first_of(maximum_of("x")) == std::vector<double>{3, 30});
+    CHECK(data.first_of(mean_of("x")) == std::vector<double>{2, 20});
+    for (std::size_t i = 0; i < 3; ++i) data.fail(i);
+    CHECK(std::isnan(data.first_of(minimum_of("x"))[0]));
+    CHECK(std::isnan(data.first_of(mean_of("x"))[1]));
+}
+TEST_CASE("Reductions have the same bits whatever the chunks are", "[reduction]") {
+    std::mt19937_64 random(3);
+    std::vector<double> all(3000);
+    for (double& value : all) value = std::ldexp(static_cast<double>(random()), -static_cast<int>(random() % 80)) - 1e3;
+    const made_up data(all, 3);
+    const auto user = sum_of("squares", {"x"}, 2, [](const chunk_columns& chunk, std::span<double> sums) {
+        const auto x = chunk.values<double>("x");
+        // Exact in whatever order: integers and counts.
+        for (const double value : x) sums[0] += std::floor(std::fabs(value) / 1e18);
+        sums[1] += static_cast<double>(chunk.size());
+    });
+    for (const ensemble_reduction& r :
+         {histogram_of("x", linspace(-1e3, 1e19, 50)), minimum_of("x"), maximum_of("x"), mean_of("x"), user}) {
+        const auto whole = data.reduce(r, 1000);
+        for (const std::size_t chunk : std::vector<std::size_t>{1, 7, 512, 999}) CHECK(data.reduce(r, chunk) == whole);
+    }
+    CHECK(data.reduce(user, 10)[0][1] == 1000);
+}
+TEST_CASE("Mistakes with reductions are refused with what is wrong", "[reduction]") {
+    const auto message_of = [](auto&& function) -> std::string {
+        try {
+            function();
+        } catch (const error& e) {
+            return e.what();
+        }
+        return "nothing was thrown";
+    };
+    CHECK_THAT(message_of([] { (void)histogram_of("x", values({1, 1})); }), Contains("do not increase"));
+    CHECK_THAT(message_of([] { (void)histogram_of("x", values({1})); }), Contains("two or more edges"));
+    CHECK_THAT(message_of([] { (void)sum_of("", {}, 1, [](auto&, auto) {}); }), Contains("a name"));
+    CHECK_THAT(message_of([] { (void)sum_of("s", {}, 1, nullptr); }), Contains("no function"));
+    const made_up data({1, 2});
+    const auto asks = [&](auto read) {
+        return message_of(
+            [&] { data.first_of(sum_of("s", {}, 1, [&](const chunk_columns& c, std::span<double>) { read(c); })); });
+    };
+    CHECK_THAT(asks([](const chunk_columns& c) { c.values<double>("y"); }),
+               Contains("no variable \"y\" is computed; there are x, status"));
+    CHECK_THAT(asks([](const chunk_columns& c) { c.values<float>("x"); }), Contains("float64, not float32"));
+    CHECK_THAT(message_of([&] {
+                   data.first_of(sum_of("s", {}, 1, [](auto&, std::span<double> sums) { sums[0] = not_a_number; }));
+               }),
+               Contains("gave nan for instances 0 to 1"));
+}

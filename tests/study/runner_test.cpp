@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+// The run of a study whose model costs nothing: devices that fail, memory that is short, results that cannot be kept.
+// GPUs are simulated.
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <myriad/myriad.hpp>
+#include <myriad/study.hpp>
+#include <myriad/study/runner.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/host/solve/simulated_engine.hpp"
+#include "tests/host/solve/simulated_gpu.hpp"
+#include "tests/study/models.hpp"
+
+namespace {
+
+using namespace myriad;
+using namespace myriad::studies;
+using Catch::Matchers::Contains;
+
+/// What happens when instances are integrated.
+using event = std::function<void(const device& where, std::int64_t first, std::int64_t count)>;
+
+/// x = 2 k.
+class doubling final : public any_model {
+public:
+    explicit doubling(event integrate) : integrate_(std::move(integrate)) {}
+    const component_names& names() const override { return names_; }
+    std::string method() const override { return "none"; }
+    element real() const override { return element::f64; }
+    void check(const device&, const options&) const override {}
+    double bytes_per_instance(const options&) const override { return 16; }
+    std::string generator() const override { return {}; }
+    std::unique_ptr<chunk_solver> make_solver(const study_plan& plan) const override {
+        struct solver final : chunk_solver {
+            solver(const study_plan& p, const event& e) : plan(p), integrated(e) {}
+            void prepare(std::int64_t from, std::int64_t count) override {
+                first = from;
+                k.resize(static_cast<std::size_t>(count));
+                plan.asked.axes.fill(plan.asked.axes.entries()[0], first, count, k.data());
+            }
+            solved integrate(const device& where, const std::function<void(std::int64_t)>& progress) override {
+                const auto count = static_cast<std::int64_t>(k.size());
+                integrated(where, first, count);
+                progress(count);
+                solved how;
+                how.by_status[static_cast<std::size_t>(status::success)] = count;
+                return how;
+            }
+            void copy(const quantity& what, std::byte* to) const override {
+                if (what.from == origin::status) {
+                    std::memset(to, static_cast<int>(status::success), k.size());
+                    return;
+                }
+                std::vector<double> x(k);
+                for (double& value : x) value *= 2;
+                std::memcpy(to, x.data(), x.size() * sizeof(double));
+            }
+            void clear() override { k = {}; }
+
+            const study_plan& plan;
+            const event& integrated;
+            std::int64_t first = 0;
+            std::vector<double> k;
+        };
+        return std::make_unique<solver>(plan, integrate_);
+    }
+
+private:
+    component_names names_{"doubling", {{component_kind::state, 0, "x"}, {component_kind::parameter, 0, "k"}}};
+    event integrate_;
+};
+
+/// A run of 1000 instances.
+struct test_run {
+    std::vector<device> devices{device::cpu()};
+    event integrate = [](auto&&...) {};
+    std::int64_t chunk = 30;
+    std::function<void(result_keeper&)> before = [](result_keeper&) {};
+    std::vector<std::string> warnings = {};
+
+    run_outcome run() {
+        const doubling model(integrate);
+        axes a(model.names());
+        a.add("k", linspace(0, 999, 1000));
+        for (const char* name : {"x", "t_begin", "t_end"}) a.set(name, 0);
+        study_request asked{"none", element::f64, a, {}, {}, {}, {}, {}, {}, {}};
+        asked.keep.end = {"x"};
+        asked.reductions = {mean_of("x_end")};
+        study_plan plan = plan_study(asked);
+        plan.content.chunk = chunk;
+        const auto keeper = keep_in_memory(plan.content);
+        before(*keeper);
+        const run_outcome outcome =
+            run_study(model, plan, *keeper,
+                      {.devices = devices, .warning = [this](const std::string& text) { warnings.push_back(text); }});
+        if (outcome.complete) {
+            std::vector<double> x(1000);
+            keeper->kept()->read("x_end", 0, 1000, x.data());
+            for (std::size_t i = 0; i < x.size(); ++i) CHECK(x[i] == 2.0 * static_cast<double>(i));
+            double mean = 0;
+            keeper->kept()->read("x_end_mean", 0, 1, &mean);
+            CHECK(mean == 999);
+        }
+        return outcome;
+    }
+    std::string message() {
+        try {
+            run();
+        } catch (const error& e) {
+            return e.what();
+        }
+        return "nothing was thrown";
+    }
+};
+bool is_gpu(const device& d) { return d.which() == device::kind::cuda; }
+
+}  // namespace
+
+namespace myriad::cuda {
+
+template <class Model, class Method, class R, class Counts>
+std::unique_ptr<engine<Model, R>> make_engine(const engine_options&) {
+    simulated::the_gpu.meet(simulated::call::make_engine);
+    return std::make_unique<simulated::engine<Model, Method, R>>();
+}
+template std::unique_ptr<engine<studied::duffing, double>> make_engine<studied::duffing, dense<tsitouras_5>, double>(
+    const engine_options&);
+
+}  // namespace myriad::cuda
+
+TEST_CASE("All devices get chunks, each chunk is done once", "[runner]") {
+    std::atomic<int> on_cpu{0}, on_gpu{0};
+    test_run t;
+    t.devices = {device::cpu(1), device::cuda(), device::cpu(2)};
+    t.integrate = [&](const device& where, std::int64_t, std::int64_t) {
+        ++(is_gpu(where) ? on_gpu : on_cpu);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+    const run_outcome outcome = t.run();
+    CHECK(outcome.complete);
+    CHECK(outcome.instances == 1000);
+    CHECK(on_cpu + on_gpu == 34);
+    CHECK(on_cpu > 0);
+    CHECK(on_gpu > 0);
+    CHECK(t.warnings.empty());
+}
+TEST_CASE("One thread integrates on a device at a time", "[runner]") {
+    std::atomic<int> at_once{0}, most{0};
+    test_run t;
+    t.integrate = [&](auto&&...) {
+        most = std::max<int>(most, ++at_once);
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+        --at_once;
+    };
+    CHECK(t.run().complete);
+    CHECK(most == 1);
+}
+TEST_CASE("A GPU that fails is dropped with a warning, and its chunks are done elsewhere", "[runner]") {
+    std::atomic<int> calls{0};
+    test_run t;
+    t.devices = {device::cuda(), device::cpu(1)};
+    t.integrate = [&](const device& where, std::int64_t, std::int64_t) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        if (is_gpu(where) && ++calls > 3) throw error("unspecified launch failure");
+    };
+    CHECK(t.run().complete);
+    CHECK(calls == 4);
+    REQUIRE(t.warnings.size() == 1);
+    CHECK_THAT(t.warnings[0], Contains("device cuda:0 is left out") && Contains("unspecified launch failure"));
+}
+TEST_CASE("If all devices fail, the last failure ends the run", "[runner]") {
+    test_run t;
+    t.devices = {device::cuda()};
+    t.integrate = [](auto&&...) { throw error("unspecified launch failure"); };
+    CHECK_THAT(t.message(), Contains("no device is left") && Contains("unspecified launch failure"));
+}
+TEST_CASE("What the model throws on a CPU ends the run", "[runner]") {
+    std::atomic<int> calls{0};
+    test_run t;
+    t.devices = {device::cpu(1), device::cuda()};
+    t.integrate = [&](const device& where, std::int64_t, std::int64_t) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        if (!is_gpu(where) && ++calls == 2) throw error("a hook threw");
+    };
+    CHECK(t.message() == "a hook threw");
+}
+TEST_CASE("Where memory is short, fewer instances are integrated at a time", "[runner]") {
+    std::mutex mutex;
+    std::vector<std::int64_t> sizes;
+    test_run t;
+    t.integrate = [&](const device&, std::int64_t, std::int64_t count) {
+        if (count > 8) throw out_of_memory("out of device memory");
+        const std::lock_guard lock(mutex);
+        sizes.push_back(count);
+    };
+    CHECK(t.run().complete);
+    CHECK(*std::max_element(sizes.begin(), sizes.end()) == 8);  // 30, 15, 8
+    REQUIRE(!t.warnings.empty());
+    CHECK_THAT(t.warnings[0], Contains("15 instances are integrated at a time") && Contains("out of device memory"));
+
+    t.integrate = [](auto&&...) { throw std::bad_alloc(); };
+    CHECK_THAT(t.message(), Contains("out of memory"));
+}
+TEST_CASE("A result that cannot be kept ends the run", "[runner]") {
+    test_run t;
+    t.before = [](result_keeper& keeper) { (void)keeper.claim_next(); };
+    std::atomic<int> calls{0};
+    t.integrate = [&](auto&&...) {
+        if (++calls == 5) throw error("stop");
+    };
+    CHECK(t.message() == "stop");  // and does not wait for the chunk that somebody else has
+}
+TEST_CASE("A slow device takes no chunk that the others are done with earlier", "[runner]") {
+    std::atomic<int> on_gpu{0};
+    test_run t;
+    t.chunk = 10;
+    t.devices = {device::cpu(1), device::cuda()};
+    t.integrate = [&](const device& where, std::int64_t, std::int64_t) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(is_gpu(where) ? 100 : 1));
+        if (is_gpu(where)) ++on_gpu;
+    };
+    CHECK(t.run().complete);
+    CHECK(on_gpu <= 2);  // of its two threads, each without knowing how long it takes
+}
+TEST_CASE("A study on a GPU that is lost has the same bits as on the CPU", "[runner]") {
+    const auto run = [](std::vector<device> devices, int chunks_before) {
+        study<studied::duffing, dense<tsitouras_5>> s;
+        s.axis("k", linspace(0.2, 0.3, 200));
+        s.set("omega", 1);
+        s.set("x", -0.5);
+        s.set("v", 0);
+        s.set("B", 0.3);
+        s.set("power", 3);
+        s.time_domain(0, 1);
+        s.keep.end = {"x", "my_number"};
+        s.chunk = 1;
+        s.devices = std::move(devices);
+        s.warning = {};
+        s.generate("slow", [](std::int64_t, auto&) { std::this_thread::sleep_for(std::chrono::microseconds(200)); });
+        if (chunks_before >= 0) simulated::the_gpu.fail(simulated::call::kernel, chunks_before);
+        study_result r = s.run();
+        CHECK(r.complete);
+        CHECK(r.warnings.size() == (chunks_before >= 0 ? 1 : 0));
+        auto x = r.values("x_end"), number = r.values("my_number_end");
+        x.insert(x.end(), number.begin(), number.end());
+        return x;
+    };
+    const auto expected = run({device::cpu(1)}, -1);
+    CHECK(run({device::cuda()}, -1) == expected);
+    CHECK(run({device::cuda(), device::cpu(1)}, 1) == expected);
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Signals as a request to stop; what a study does then is in study_test.cpp.
+#include <csignal>
+
+#include <myriad/study/stop_signals.hpp>
+
+#include "tests/catch.hpp"
+
+namespace {
+
+volatile std::sig_atomic_t others = 0;
+
+}  // namespace
+
+TEST_CASE("A signal is remembered for as long as the object lives", "[stop_signals]") {
+    const auto before = std::signal(SIGTERM, [](int) { others = others + 1; });
+    {
+        const myriad::studies::stop_signals first;
+        CHECK(!first.came());
+        std::raise(SIGINT);
+        CHECK(first.came());
+        CHECK(others == 0);
+    }
+    {
+        const myriad::studies::stop_signals second;
+        CHECK(!second.came());
+        std::raise(SIGTERM);
+        CHECK(second.came());
+    }
+    CHECK(others == 0);
+    std::raise(SIGTERM);  // the handler that was there before
+    CHECK(others == 1);
+    std::signal(SIGTERM, before);
+}
