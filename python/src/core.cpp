@@ -193,11 +193,6 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
           "progress"_a.none() = nb::none());
 }
 
-template <class T>
-auto numbers_setter(T options::*member) {
-    return [member](options& o, std::vector<double> values) { o.*member = T(std::move(values)); };
-}
-
 void bind_options(nb::module_& m) {
     nb::class_<options>(m, "Options")
         .def(nb::init<>())
@@ -247,7 +242,15 @@ void bind_options(nb::module_& m) {
 NB_MODULE(_core, m) {
     using namespace myriad;
     using namespace myriad::python;
-    nb::exception<error>(m, "Error", PyExc_ValueError);
+    nb::register_exception_translator(
+        [](const std::exception_ptr& thrown, void*) {
+            try {
+                std::rethrow_exception(thrown);
+            } catch (const error& e) {
+                PyErr_SetString(nb::module_::import_("myriad.errors").attr("Error").ptr(), e.what());
+            }
+        },
+        nullptr);
     m.attr("version") = MYRIAD_VERSION;
     m.attr("headers") = MYRIAD_HEADERS_DIGEST;
     m.def("instruction_set", [] {

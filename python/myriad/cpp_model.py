@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""Models that are written in C++ rather than traced."""
+
+from .errors import Error
+
+
+class Event:
+    """The name of an event of a model in C++, and how it is detected."""
+
+    def __init__(self, name, direction="either", tolerance=1e-6, stop_after=0):
+        self.name, self.direction, self.tolerance, self.stop_after = name, direction, tolerance, stop_after
+
+
+def _names(several):
+    return tuple(several.replace(",", " ").split() if isinstance(several, str) else several)
+
+
+class CppModel:
+    """A model as a C++ struct, as in the C++ library's documentation: `text` defines the struct `struct`. The other
+    arguments name its components in the order of its enumerations, as one string or a list."""
+
+    def __init__(self, text, struct, states, parameters=(), shared=(), shared_integers=(), accessories=(),
+                 integer_accessories=(), events=()):
+        if struct not in text:
+            raise Error(f"the text of the model defines no struct {struct}: give the name of the model's struct")
+        self._text, self.struct = text, struct
+        self.states, self.parameters = _names(states), _names(parameters)
+        self.shared, self.shared_integers = _names(shared), _names(shared_integers)
+        self.accessories, self.integer_accessories = _names(accessories), _names(integer_accessories)
+        self.events = tuple(e if isinstance(e, Event) else Event(e) for e in _names(events))
+
+    def cpp(self):
+        """The text of the model."""
+        return self._text
