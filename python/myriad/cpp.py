@@ -4,17 +4,17 @@
 import re
 
 from .errors import Error, at
-from .expression import condition, integer, number_text, real, symbols_of, text, walk, write
+from .expression import condition, integer, number_text, real, text, walk, write
 
-_columns = 120
+_columns = 116  # inside the struct
 _largest_literal = 1 << 24  # exact in single precision
 
 _headers = {"time": "t", "step": "h", "next_step": "h_next", "phase": "phase", "instance": "index",
             "t_begin": "t_begin", "t_end": "t_end"}
 _temporaries = {"add": "sum", "subtract": "difference", "multiply": "product", "divide": "quotient", "sqrt": "root",
-                "sin": "sine", "cos": "cosine", "exp": "exponential", "pow": "power", "powr": "power", "log": "logarithm",
-                "select": "chosen", "abs": "size", "min": "least", "max": "largest", "reciprocal": "inverse",
-                "hypot": "length", "negate": "opposite"}
+                "sin": "sine", "cos": "cosine", "exp": "exponential", "pow": "power", "powr": "power",
+                "log": "logarithm", "select": "chosen", "abs": "size", "min": "least", "max": "largest",
+                "reciprocal": "inverse", "hypot": "length", "negate": "opposite"}
 
 
 def _converts(node, argument):
@@ -60,7 +60,8 @@ class Body:
         self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, names.event}
         uses = {}
         order = walk(roots)
-        for node in order:
+        computed = {(node.op.partition(".")[0], *map(id, node.args)): node for node in order}  # sincos once
+        for node in computed.values():
             for argument in node.args:
                 uses[id(argument)] = uses.get(id(argument), 0) + 1
         for root in roots:
@@ -91,8 +92,19 @@ class Body:
             argument = f"{self.names.R}({argument})" if node.args[0].op == "constant" else argument
         self.lines.append(f"const auto [{sine}, {cosine}] = myriad::{function}({argument});")
         for other in order:
-            if other.args == node.args and other.op.startswith(function + "."):
+            if other.args and other.args[0] is node.args[0] and other.op.startswith(function + "."):
                 self.named[id(other)] = sine if other.op.endswith(".sine") else cosine
+
+    def reads(self, node):
+        """The symbols that the text of an expression names, by id."""
+        found, stack = set(), [node]
+        while stack:
+            node = stack.pop()
+            if id(node) not in self.named:
+                stack.extend(node.args)
+                if node.op == "symbol":
+                    found.add(id(node))
+        return found
 
     def early(self, node, name):
         """The name of a variable with the value that the expression has here."""
@@ -180,7 +192,7 @@ class Writer:
         out += ["    " + d for d in self.declarations()]
         for kind, names in model.enumerations():
             if names:
-                out += _wrap(f"enum {kind} {{ {', '.join(names)}, n_{kind} }};", 4)
+                out += ["    " + line for line in _wrap(f"enum {kind} {{ {', '.join(names)}, n_{kind} }};", 0)]
         if model.reductions:
             out.append("    static constexpr myriad::reduction reductions[] = {")
             out += [f"        {{{r.observed}, myriad::over_phase::{r.kind}, {r.accessory}}}," for r in model.reductions]
@@ -266,22 +278,21 @@ class Writer:
         conditions that end a phase or an instance."""
         targets = [(t, e) for t, e in assignments if t.value[0] != "action"]
         ends = {t.value[1]: e for t, e in assignments if t.value[0] == "action"}
-        late, assigned = set(), set()  # late: computed before the first assignment
-        for target, value in targets:
-            if any(id(s) in assigned for s in symbols_of([value])):
-                late.add(id(target))
-            assigned.add(id(target))
-        plans = [(None, "=", value) if id(target) in late else self.plan(target, value, scalar)
-                 for target, value in targets]
+        plans = [self.plan(target, value, scalar) for target, value in targets]
         roots = [e for only_if, _, value in plans for e in (only_if, value) if e is not None]
         body = Body(roots + list(ends.values()), self.names, self.in_hook, scalar)
-        early = {id(t): body.early(value, "next_" + t.value[1]) for t, value in targets if id(t) in late}
-        conditions = {}
-        for action, value in ends.items():
-            reads_assigned = any(id(s) in assigned for s in symbols_of([value]))
-            conditions[action] = body.early(value, "ends") if reads_assigned else body.text(value)
+        early, assigned = {}, set()  # what later assignments compute from components that are assigned before
+        for target, value in targets:
+            if body.reads(value) & assigned:
+                early[id(target)] = body.early(value, "next_" + target.value[1])
+            assigned.add(id(target))
+        conditions = {action: body.early(value, "ends") if body.reads(value) & assigned else body.text(value)
+                      for action, value in ends.items()}
         for (target, _), (only_if, operator, value) in zip(targets, plans):
-            written = early.get(id(target)) or body.text(value)
+            if id(target) in early:
+                only_if, operator, written = None, "=", early[id(target)]
+            else:
+                written = body.text(value)
             if target.type == real and value.type == integer and value.op != "constant":
                 written = f"{self.names.R}({written})"
             if value.op == "symbol" and value.value == ("built-in", "instance") and target.type == integer:
@@ -327,7 +338,8 @@ class Writer:
             lines.append(f"if ({conditions['end_instance']}) return myriad::action::end_instance;")
         phase = conditions.get("end_phase", "false")
         simple = {"true": "myriad::action::end_phase", "false": "myriad::action::proceed"}
-        return lines + [f"return {simple.get(phase) or phase + ' ? myriad::action::end_phase : myriad::action::proceed'};"]
+        either = f"{phase} ? myriad::action::end_phase : myriad::action::proceed"
+        return lines + [f"return {simple.get(phase, either)};"]
 
     def after_step(self):
         n, assignments = self.names, self.model.after_step
@@ -367,5 +379,6 @@ class Writer:
         if ends and not (len(events) == 1 and lines[-1].startswith("return")):
             lines.append("return myriad::action::proceed;")
         number = f"int {n.event}" if len(events) > 1 else "int"
-        return [f"MYRIAD_FUNCTION static {'myriad::action' if ends else 'void'} after_event({number}, auto& {n.lane}) {{",
+        result = "myriad::action" if ends else "void"
+        return [f"MYRIAD_FUNCTION static {result} after_event({number}, auto& {n.lane}) {{",
                 *self.block(lines), "}"]

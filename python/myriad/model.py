@@ -9,8 +9,8 @@ import numpy as np
 from . import symbols as sym
 from .cpp import Writer
 from .errors import Error, at, users_line
-from .expression import Expression, Node, as_condition, as_number, condition, evaluate, integer, real, symbols_of, text
-from .parse import from_sympy, is_sympy, parse, parse_equations
+from .expression import Node, as_condition, as_number, evaluate, integer, symbols_of, text
+from .parse import from_sympy, is_sympy, parse, parse_equations, sympy_name
 
 __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
            "integral"]
@@ -131,8 +131,8 @@ class Model:
                 symbol = given if isinstance(given, Node) else sym.symbol(kind, given)
                 other = declared.get(symbol.value[1], symbol)
                 if other is not symbol:
-                    raise Error(f"'{symbol.value[1]}' is both a {other.value[0]} and a {kind}{at(self.line)}: a name "
-                                "stands for one component")
+                    raise Error(f"'{symbol.value[1]}' names both {sym.a(other.value[0])} and {sym.a(kind)}{at(self.line)}: "
+                                "a name stands for one component")
                 declared[symbol.value[1]] = symbol
         declared.setdefault("t", sym.time)
         return declared
@@ -165,13 +165,12 @@ class Model:
         for key, value in equations.items():
             if isinstance(key, str) and key not in self._declared:
                 self._declared[key] = sym.symbol("state", key)
-            elif is_sympy(key) and str(getattr(key, "func", key) if getattr(key, "args", ()) else key) not in self._declared:
-                name = str(key.func if key.args else key)
-                self._declared[name] = sym.symbol("state", name)
+            elif is_sympy(key) and sympy_name(key) not in self._declared:
+                self._declared[sympy_name(key)] = sym.symbol("state", sympy_name(key))
         for key, value in equations.items():
             target = self._target(key, "equations")
             if target.value[0] != "state":
-                raise Error(f"{target.value[1]} is no state but a {target.value[0].replace('_', ' ')}{at(self.line)}: "
+                raise Error(f"{target.value[1]} is no state but {sym.a(target.value[0])}{at(self.line)}: "
                             "only states have equations")
             if isinstance(value, (list, tuple)) or isinstance(value, np.ndarray) and value.ndim > 0:
                 raise Error(f"the equation of {target.value[1]} has {len(value)} values{at(self.line)}: it needs one")
@@ -180,6 +179,11 @@ class Model:
                                   f"the equation of {target.value[1]}"))
         if len(set(map(id, targets))) < len(targets):
             raise Error(f"a state has two equations{at(self.line)}: give each one")
+        order = [id(s) for s in self._declared.values() if s.value[0] == "state" and any(s is t for t in targets)]
+        if states is not None:  # in the order of `states`, then of the equations
+            ranked = sorted(zip(targets, rhs), key=lambda pair: order.index(id(pair[0])) if id(pair[0]) in order else
+                            len(order))
+            targets, rhs = [t for t, _ in ranked], [e for _, e in ranked]
         return targets, rhs
 
     def _real(self, value, what):
@@ -262,7 +266,7 @@ class Model:
         for key, value in (accessories or {}).items():
             target = self._target(key, "accessories")
             if target.value[0] not in ("accessory", "integer_accessory"):
-                raise Error(f"{target.value[1]} is no accessory but a {target.value[0].replace('_', ' ')}"
+                raise Error(f"{target.value[1]} is no accessory but {sym.a(target.value[0])}"
                             f"{at(self.line)}: make it by myriad.accessory(\"{target.value[1]}\")")
             self._accessory_targets.append(target)
             if not isinstance(value, Reduction):
@@ -284,8 +288,8 @@ class Model:
         for r in self.reductions:
             extremum = r.kind.removeprefix("time_of_")
             if (r.observed, extremum) not in present:
-                raise Error(f"{r.accessory} is the time of a {extremum} that no accessory has{at(r.line)}: add one with "
-                            f"myriad.phase_{extremum} of the same quantity")
+                raise Error(f"{r.accessory} is the time of a {extremum} that no accessory has{at(r.line)}: add one "
+                            f"with myriad.phase_{extremum} of the same quantity")
         return start
 
     def _assignments(self, given, what, taken=(), line=None):
@@ -325,7 +329,7 @@ class Model:
             found += [t for t, _ in assignments] + symbols_of([e for _, e in assignments])
         declared = [s for s in self._declared.values() if s.value[0] in sym.component_kinds]
         components = {kind: [] for kind in sym.component_kinds}
-        for symbol in dict.fromkeys(found + declared):
+        for symbol in dict.fromkeys(declared + found):
             if symbol.value[0] in components:
                 components[symbol.value[0]].append(symbol.value[1])
         missing = [n for n in components["state"] if n not in self.states]
@@ -361,9 +365,10 @@ class Model:
         for kind, names in self.enumerations():
             for name in names:
                 if name in kinds:
-                    clash = f"is both a {kinds[name]} and a {kind}" if kinds[name] != kind else f"is the name of two {kind}s"
-                    raise Error(f"'{name}' {clash}{at(self.line)}: rename one of them, as a name stands for one component")
-                kinds[name] = kind.replace("_", " ")
+                    clash = f"names both {sym.a(kinds[name])} and {sym.a(kind)}"
+                    clash = f"is the name of two {kind}s" if kinds[name] == kind else clash
+                    raise Error(f"'{name}' {clash}{at(self.line)}: rename one of them")
+                kinds[name] = kind
         for symbol in self._in_functions:
             kind, name = symbol.value
             if kind in ("event_count", "action") or kind == "built-in" and name != "time":
@@ -379,8 +384,8 @@ class Model:
                         raise Error(f"event_count('{name}') in {what}{at(self.line)} names no event: there are "
                                     f"{', '.join(e.name for e in self.events) or 'none'}")
         if self.name in kinds:
-            raise Error(f"the model has the name of its {kinds[self.name]} '{self.name}'{at(self.line)}: give it another "
-                        "one, name='...'")
+            raise Error(f"the model has the name of its {kinds[self.name]} '{self.name}'{at(self.line)}: give "
+                        "it another one, name='...'")
 
     # What it is used for
 

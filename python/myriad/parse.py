@@ -122,6 +122,12 @@ def is_sympy(value):
     return any(base.__module__.partition(".")[0] == "sympy" for base in type(value).__mro__)
 
 
+def sympy_name(key):
+    """The name of a symbol, of a function of time such as x(t), or of what a derivative is of."""
+    key = key.expr if hasattr(key, "expr") else key
+    return str(key.func if key.args else key)
+
+
 def from_sympy(value, names, what):
     """The expression of a SymPy expression. Its symbols, and functions of time such as x(t), are found by name."""
     import sympy
@@ -139,10 +145,8 @@ def from_sympy(value, names, what):
 
     @functools.lru_cache(maxsize=None)
     def convert(e):
-        if isinstance(e, (sympy.Symbol, sympy.core.function.AppliedUndef)):
-            return find(str(e.func) if e.args else e.name)
-        if isinstance(e, sympy.Derivative):
-            return find(str(e.expr.func if e.expr.args else e.expr))
+        if isinstance(e, (sympy.Symbol, sympy.core.function.AppliedUndef, sympy.Derivative)):
+            return find(sympy_name(e))
         if isinstance(e, sympy.Integer):
             return ex.constant(int(e))
         if e in (sympy.true, sympy.false):

@@ -17,16 +17,18 @@ component_kinds = {"state": "states", "parameter": "parameters", "shared": "shar
                    "shared_integer": "shared integers", "accessory": "accessories",
                    "integer_accessory": "integer accessories"}
 
-_cpp_keywords = set("""alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t
-char32_t class compl concept const consteval constexpr constinit const_cast continue co_await co_return co_yield
-decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto if inline int long
-mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast
-requires return short signed sizeof static static_assert static_cast struct switch template this thread_local throw true
-try typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq typeof""".split())
+_cpp_keywords = set("""
+alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl
+concept const consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do
+double dynamic_cast else enum explicit export extern false float for friend goto if inline int long mutable namespace
+new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast requires return
+short signed sizeof static static_assert static_cast struct switch template this thread_local throw true try typedef
+typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq typeof
+""".split())
 # Members that the library looks for in a model by name, and macros of C's headers.
 _reserved = set("""state parameter shared shared_integer accessory integer_accessory event observed rhs jacobian events
 observe reductions initialise after_step after_event finalise writes_parameters writes_time_domain
-accessories_are_outputs scalar_only rare_events pack_batches max_block_size growth transient_phases tangent time_summed
+accessories_are_outputs scalar_only rare_events pack_batches max_block_size
 myriad std linux unix errno assert NULL NAN INFINITY EOF BUFSIZ RAND_MAX HUGE_VAL OVERFLOW UNDERFLOW DOMAIN SING PLOSS
 TLOSS stdin stdout stderr major minor""".split())
 _reserved_pattern = re.compile(
@@ -51,9 +53,14 @@ def check_name(name, what):
     return name
 
 
+def a(kind):
+    """A kind of component for messages, as in 'a shared integer'."""
+    return ("an " if kind[0] in "aei" else "a ") + kind.replace("_", " ")
+
+
 def symbol(kind, name, type=real):
     """The symbol of a component."""
-    return make("symbol", value=(kind, check_name(name, "a " + kind.replace("_", " "))), type=type)
+    return make("symbol", value=(kind, check_name(name, a(kind))), type=type)
 
 
 def names(several):
