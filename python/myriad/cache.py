@@ -75,8 +75,8 @@ def _locked(path):
 
 
 def obtain(key, make):
-    """The file of a key, and whether it was there. If it was not, `make(folder)` writes it, and returns its path in that
-    folder; other processes that want the same wait for it."""
+    """The file of a key, and whether it was there. If it was not, `make(folder)` writes it, and returns its path in
+    that folder; other processes that want the same wait for it."""
     folder = directory()
     path = folder / f"{key}.so"
     if path.exists():

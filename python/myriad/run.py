@@ -108,8 +108,8 @@ class Run:
             raise Error("no samples were taken: give samples= to solve")
 
     def steps(self, kind="accepted"):
-        """Steps of each instance: "accepted", "rejected" or "located" (redone to locate events); or "evaluations" of the
-        right-hand side."""
+        """Steps of each instance: "accepted", "rejected" or "located" (redone to locate events); or "evaluations" of
+        the right-hand side."""
         names = {"accepted": "accepted_steps", "rejected": "rejected_steps", "located": "located_steps",
                  "evaluations": "rhs_evaluations"}
         if kind not in names:
@@ -244,4 +244,5 @@ class Run:
         return frame.dropna(subset=["time"]).reset_index(drop=True) if self._sampled else frame
 
     def __repr__(self):
-        return f"<myriad.Run of {self.size} instances: {', '.join(f'{n} {s}' for s, n in self.report.by_status.items())}>"
+        counts = ", ".join(f"{count} {name}" for name, count in self.report.by_status.items())
+        return f"<myriad.Run of {self.size} instances: {counts}>"

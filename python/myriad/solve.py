@@ -13,10 +13,11 @@ from .methods import fixed_step, method_type
 from .run import Interrupted, Run
 
 _directions = {"falling": -1, "either": 0, "rising": 1}
+_default_event_tolerance = 1e-6
 _schedules = {"automatic": 0, "in_order": 1, "dynamic": 2, "by_cost": 3}
 # How the core's messages, which are the C++ library's, say things in Python.
 _in_python = (
-    ("or set invalid_instances = invalid_instances::mark to run the others", "or give invalid=\"mark\" to run the others"),
+    ("set invalid_instances = invalid_instances::mark", "give invalid=\"mark\""),
     ("set it with ensemble.shared(...) before solving", "give it a value in the sweep"),
     ("name it in options::record", "name it in record="),
     ("give options::step", "give step="),
@@ -96,8 +97,8 @@ def _fill(ensemble, components, given, domain):
         kind, number = components.place[name]
         if kind in ("shared", "shared_integer"):
             if array.ndim == 1:
-                raise Error(f"'{name}' is shared by all instances and has {len(array)} values: give one number, or make "
-                            "it a parameter")
+                raise Error(f"'{name}' is shared by all instances and has {len(array)} values: give one number, or "
+                            "make it a parameter")
             ensemble.array(kind)[number] = array
             continue
         if kind == "integer_accessory" and array.dtype.kind not in "biu":
@@ -206,7 +207,8 @@ def _set_events(options, events, components):
         if direction not in _directions:
             raise Error(f"the direction of event '{event.name}' is {direction!r}: give \"falling\", \"rising\" or "
                         "\"either\"")
-        options.add_event(_directions[direction], float(of_call.get("tolerance", event.tolerance)),
+        tolerance = of_call.get("tolerance", event.tolerance)
+        options.add_event(_directions[direction], _default_event_tolerance if tolerance is None else float(tolerance),
                           _whole(of_call.get("stop_after", event.stop_after), "stop_after"))
 
 
@@ -234,8 +236,8 @@ def _device_name(device):
     if device == "auto":
         return "cpu"
     if str(device).startswith("cuda"):
-        raise Error(f"device {device!r} is not available: this version of the Python package has no kernels for GPUs yet; "
-                    "use \"cpu\" or \"auto\"")
+        raise Error(f"device {device!r} is not available: this version of the Python package has no kernels for GPUs "
+                    "yet; use \"cpu\" or \"auto\"")
     try:
         return _core.check_device(str(device))
     except Error:
@@ -312,7 +314,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     sampled = _set_samples(options, samples, components, options.phases, options.phase_length, count)
     _set_events(options, events, components)
 
-    kernel = compiler.kernel(model.cpp(), getattr(model, "struct", "model"), written, precision)
+    kernel = compiler.kernel(*model.source(), written, precision)
     kind = _core.Ensemble64 if precision == "double" else _core.Ensemble32
     function, finish = _progress_function(progress)
     try:

@@ -30,10 +30,9 @@ namespace {
 /// A NumPy array of `count` values, which keeps its owner alive.
 template <class T>
 nb::object view(T* values, std::int64_t count, nb::handle owner) {
-    return nb::cast(
-        nb::ndarray<nb::numpy, std::remove_const_t<T>, nb::ndim<1>>(
-            const_cast<std::remove_const_t<T>*>(values), {static_cast<std::size_t>(count)}, owner),
-        nb::rv_policy::reference);
+    return nb::cast(nb::ndarray<nb::numpy, std::remove_const_t<T>, nb::ndim<1>>(
+                        const_cast<std::remove_const_t<T>*>(values), {static_cast<std::size_t>(count)}, owner),
+                    nb::rv_policy::reference);
 }
 /// One of `rows` times `columns` values, of which column after column is in memory.
 template <class T>
@@ -147,11 +146,11 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
                 std::vector<std::string> parameters, std::vector<std::string> shared,
                 std::vector<std::string> shared_integers, std::vector<std::string> accessories,
                 std::vector<std::string> integer_accessories, std::vector<std::string> events, std::int64_t size) {
-                 new (self) ensemble<R>(kernel.facts(),
-                                        {std::move(states), std::move(parameters), std::move(shared),
-                                         std::move(shared_integers), std::move(accessories),
-                                         std::move(integer_accessories), std::move(events)},
-                                        size);
+                 new (self) ensemble<R>(
+                     kernel.facts(),
+                     {std::move(states), std::move(parameters), std::move(shared), std::move(shared_integers),
+                      std::move(accessories), std::move(integer_accessories), std::move(events)},
+                     size);
              })
         .def("array", &component<R>, "kind"_a, "component"_a = 0)
         .def("set_domain", [](ensemble<R>& e, R begin, R end) { e.data.set_domain(begin, end); })
@@ -221,8 +220,7 @@ void bind_options(nb::module_& m) {
              [](options& o, int direction, double tolerance, std::int64_t stop_after) {
                  o.events.push_back({static_cast<myriad::direction>(direction), tolerance, stop_after});
              })
-        .def("set_schedule",
-             [](options& o, int number) { o.schedule = static_cast<myriad::schedule>(number); })
+        .def("set_schedule", [](options& o, int number) { o.schedule = static_cast<myriad::schedule>(number); })
         .def("record",
              [](options& o, std::int64_t from_phase, const std::vector<int>& states,
                 const std::vector<int>& accessories, const std::vector<int>& integer_accessories, bool time) {
@@ -231,8 +229,8 @@ void bind_options(nb::module_& m) {
         .def("sample", [](options& o, const std::vector<int>& states, std::int64_t capacity, std::int64_t evenly,
                           std::vector<double> times, std::vector<double> times_of_instances, std::int64_t every,
                           double minimum_spacing, std::int64_t from_phase) {
-            o.samples = {states, capacity, evenly, std::move(times), std::move(times_of_instances), every,
-                         minimum_spacing, from_phase};
+            o.samples = {states, capacity,        evenly,    std::move(times), std::move(times_of_instances),
+                         every,  minimum_spacing, from_phase};
         });
 }
 

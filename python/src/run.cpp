@@ -38,24 +38,23 @@ host::component_label label(const host::model_shape& shape, int c, std::string_v
 }  // namespace
 
 named_shape::named_shape(const kernel_library& of, component_names its_names)
-    : model_shape{of.n_state,
-                  of.n_parameter,
-                  of.n_shared,
-                  of.n_shared_integer,
-                  of.n_accessory,
-                  of.n_integer_accessory,
-                  of.n_event,
-                  of.writes_parameters,
-                  of.writes_time_domain,
-                  [](const model_shape& s, int c) { return label<&component_names::states>(s, c, "state"); },
-                  [](const model_shape& s, int c) { return label<&component_names::parameters>(s, c, "parameter"); },
-                  [](const model_shape& s, int c) {
-                      return label<&component_names::shared>(s, c, "shared parameter");
-                  }},
+    : model_shape{
+          of.n_state,
+          of.n_parameter,
+          of.n_shared,
+          of.n_shared_integer,
+          of.n_accessory,
+          of.n_integer_accessory,
+          of.n_event,
+          of.writes_parameters,
+          of.writes_time_domain,
+          [](const model_shape& s, int c) { return label<&component_names::states>(s, c, "state"); },
+          [](const model_shape& s, int c) { return label<&component_names::parameters>(s, c, "parameter"); },
+          [](const model_shape& s, int c) { return label<&component_names::shared>(s, c, "shared parameter"); }},
       names(std::move(its_names)) {
     const auto check = [](const std::vector<std::string>& named, int count, const char* what) {
-        require(static_cast<int>(named.size()) == count, "the model has ", count, " components of kind ", what, ", and ",
-                named.size(), " names are given");
+        require(static_cast<int>(named.size()) == count, "the model has ", count, " components of kind ", what,
+                ", and ", named.size(), " names are given");
     };
     check(names.states, n_state, "state");
     check(names.parameters, n_parameter, "parameter");
@@ -211,8 +210,8 @@ detail::run_statistics run_library(const host::any_run& all, const detail::run_o
         now.order = part->order;
     }
     detail::run_statistics used;
-    static_cast<const kernel_library*>(all.kernel)->run(
-        &now, &o, o.threads > 0 ? o.threads : usual_threads(), &start_team, &used);
+    static_cast<const kernel_library*>(all.kernel)
+        ->run(&now, &o, o.threads > 0 ? o.threads : usual_threads(), &start_team, &used);
     return used;
 }
 

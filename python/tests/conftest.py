@@ -65,4 +65,4 @@ def oscillator():
 def ball():
     """A ball that bounces."""
     return my.CppModel(BALL, "ball", "height speed", "loss", "g", accessories="top", integer_accessories="bounces",
-                       events=[my.Event("impact", "falling", tolerance=1e-10)])
+                       events={"impact": dict(direction="falling", tolerance=1e-10)})

@@ -90,10 +90,9 @@ inline constexpr python::kernel_library library_of{
 }  // namespace myriad::detail::inline MYRIAD_TARGET
 
 /// Makes the kernel of a model, a method and a real type the shared object's. The arguments may not contain commas.
-#define MYRIAD_KERNEL_LIBRARY(Model, Method, R)                                                               \
-    static_assert(myriad::detail::check_linkage<Model, Method>());                                            \
-    static_assert(myriad::detail::check_method<Method>());                                                    \
-    extern "C" __attribute__((visibility("default"))) const myriad::python::kernel_library*                   \
-    myriad_kernel_library() {                                                                                 \
-        return &myriad::detail::library_of<Model, Method, R>;                                                 \
+#define MYRIAD_KERNEL_LIBRARY(Model, Method, R)                                                                       \
+    static_assert(myriad::detail::check_linkage<Model, Method>());                                                    \
+    static_assert(myriad::detail::check_method<Method>());                                                            \
+    extern "C" __attribute__((visibility("default"))) const myriad::python::kernel_library* myriad_kernel_library() { \
+        return &myriad::detail::library_of<Model, Method, R>;                                                         \
     }
