@@ -3,5 +3,6 @@
 
 from .errors import Error
 from .expression import *  # noqa: F403
+from .grid import *  # noqa: F403
 from .model import *  # noqa: F403
 from .symbols import *  # noqa: F403
