@@ -22,19 +22,17 @@ def _name(key, line):
 
 
 def _numbers(name, values, line):
-    """Values as a read-only array of double precision without NaN."""
+    """Values as an array of whole numbers or of double precision, without NaN."""
     try:
         array = np.asarray(values)
         if array.dtype.kind == "c":
             raise Error(f"the values of {name} are complex{at(line)}: a model is real")
-        if array.dtype.kind not in "fiub":
-            array = array.astype(float)
-        array = np.asarray(array, float)
+        array = array.astype(np.int64 if array.dtype.kind in "iub" else float, copy=False)
     except (TypeError, ValueError) as error:
         if isinstance(error, Error):
             raise
         raise Error(f"the values of {name} are no numbers{at(line)}: {error}") from None
-    if array.size and np.isnan(array).any():
+    if np.isnan(array).any():
         where = np.flatnonzero(np.isnan(array.ravel()))
         raise Error(f"{name} is NaN in {where.size} of {array.size} values, first at index {where[0]}{at(line)}: every "
                     "instance needs a number")
@@ -126,7 +124,7 @@ def grid(*parts, **axes):
                         "names with values, or a sweep")
         for name, values in _collect(part, {}, line).items():
             if values.ndim == 0:
-                add([], {}, {name: float(values)})
+                add([], {}, {name: values.item()})
             elif values.ndim > 1 or not values.size:
                 what = "no values" if not values.size else f"values of shape {values.shape}"
                 raise Error(f"{name} has {what}{at(line)}: an axis of a grid is a list of numbers")
@@ -139,7 +137,7 @@ def zip(mapping=None, **arrays):
     """The values of equally long arrays together: instance i has the i-th of each. Single numbers are for all."""
     line = users_line()
     given = _collect(mapping, arrays, line)
-    constants = {n: float(v) for n, v in given.items() if v.ndim == 0}
+    constants = {n: v.item() for n, v in given.items() if v.ndim == 0}
     along = {n: v for n, v in given.items() if v.ndim > 0}
     for name, values in along.items():
         if values.ndim > 1 or not values.size:

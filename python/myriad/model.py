@@ -106,6 +106,7 @@ class Model:
     def __init__(self, equations, events, accessories, initialise, after_step, finalise, states, parameters, shared,
                  name):
         self.line = users_line()
+        self._source = None
         self._declared = self._declare(states, parameters, shared, accessories)
         if name is None and callable(equations):
             name = getattr(equations, "__name__", None)
@@ -394,6 +395,12 @@ class Model:
     def cpp(self, name=None):
         """The model as the text of a C++ header, `model.hpp`, which compiles as it is: `struct NAME { ... };`."""
         return Writer(self).header(self.name if name is None else sym.check_name(name, "a model"))
+
+    def source(self):
+        """The text that kernels are compiled from, the same for equal models, and the name of its struct."""
+        if self._source is None:
+            self._source = self.cpp("traced_model")
+        return self._source, "traced_model"
 
     @property
     def hash(self):

@@ -29,9 +29,9 @@ def read_headers(roots):
 
 
 def layer(header):
-    """kernel, host, openmp, cuda, or public: what users include."""
+    """kernel, host, openmp, cuda, python, or public: what users include."""
     folder = header.split("/")[1:-1]
-    return folder[0] if folder and folder[0] in ("kernel", "host", "openmp", "cuda") else "public"
+    return folder[0] if folder and folder[0] in ("kernel", "host", "openmp", "cuda", "python") else "public"
 
 
 # The layers that a header of each layer may include.
@@ -40,6 +40,7 @@ BELOW = {
     "host": {"host", "kernel"},
     "openmp": {"openmp", "host", "kernel"},
     "cuda": {"cuda", "host", "kernel"},
+    "python": {"python", "openmp", "host", "kernel", "public"},
     "public": {"public", "host", "kernel"},
 }
 
