@@ -23,13 +23,18 @@ def _converts(node, argument):
             (node.type == real or node.type == condition and any(a.type == real for a in node.args)))
 
 
+def _is_plain(node):
+    """Whether an expression is one number for all instances, so that packs do not come into it."""
+    return all(n.value[0] in ("shared", "shared_integer") if n.op == "symbol" else n.op != "select" or n.type == real
+               for n in walk([node]))
+
+
 def generic_problem(roots):
     """The first node that cannot be computed for a whole pack, or None: packs of whole numbers have no products and do
     not mix with real ones."""
     for node in walk(roots):
-        if node.type == integer and node.op in ("multiply", "min", "max", "abs"):
-            return node
-        if any(_converts(node, a) for a in node.args):
+        products = node.type == integer and node.op in ("multiply", "min", "max", "abs")
+        if (products or any(_converts(node, a) and not _is_plain(a) for a in node.args)) and not _is_plain(node):
             return node
     return None
 
@@ -115,7 +120,14 @@ class Body:
         return name
 
     def text(self, node):
-        return write(node, self._leaf, self._call, lambda n, a: self.names.R if _converts(n, a) else None)
+        return write(node, self._leaf, self._call, self._convert)
+
+    def _convert(self, node, argument):
+        """The conversion of an argument, as the text before its parenthesis."""
+        if not _converts(node, argument):
+            return None
+        R = self.names.R
+        return R if self.scalar else f"static_cast<myriad::real_of<{R}>>"
 
     def _leaf(self, node):
         if id(node) in self.named:
@@ -141,12 +153,12 @@ class Body:
         function = node.op
         values = list(arguments)
         numbers = node.args[1:] if function == "select" else node.args
-        if all(a.op == "constant" for a in numbers) or function in ("pow", "powr", "fma"):
-            first = len(node.args) - len(numbers)
-            kind = self.names.R if node.type != integer else f"myriad::integer_of<{self.names.R}>"
-            if node.type != integer or not self.scalar:
-                values[first:] = [f"{kind}({v})" if a.op == "constant" and "(" not in v else v
-                                  for a, v in zip(numbers, values[first:])]
+        first = len(node.args) - len(numbers)
+        if node.type != integer and (all(a.op == "constant" for a in numbers) or function in ("pow", "powr", "fma")):
+            values[first:] = [f"{self.names.R}({v})" if a.op == "constant" and "(" not in v else v
+                              for a, v in zip(numbers, values[first:])]
+        elif node.type == integer and not self.scalar and all(map(_is_plain, numbers)):
+            values[first] = f"myriad::integer_of<{self.names.R}>({values[first]})"
         return f"myriad::{function}({', '.join(values)})"
 
 
@@ -346,7 +358,7 @@ class Writer:
         values = [e for _, e in assignments]
         ends = {t.value[1] for t, _ in assignments if t.value[0] == "action"}
         mixed = any(t.type == real and e.type == integer and e.op != "constant" for t, e in assignments)
-        if generic_problem(values) or "end_instance" in ends or mixed:
+        if generic_problem(values) is not None or "end_instance" in ends or mixed:
             lines, conditions = self.statements(assignments, scalar=True)
             result = "myriad::action" if ends else "void"
             lines += self.returned(conditions) if ends else []

@@ -111,9 +111,21 @@ def _is_constant(node):
     return node.op == "constant"
 
 
-def _to_real(node):
+def _is_whole(node):
+    return _is_constant(node) and node.type == integer
+
+
+def to_real(node):
     """Whole constants beside real numbers are real, so that x - 1 and x - 1.0 are the same."""
-    return _float(node.value) if _is_constant(node) and node.type == integer else node
+    if node.type != integer:
+        return node
+    if _is_constant(node):
+        return _float(node.value)
+    if node.op == "select":
+        branches = tuple(to_real(a) for a in node.args[1:])
+        if all(a.type == real for a in branches):
+            return make("select", (node.args[0], *branches))
+    return node
 
 
 def _float(value):
@@ -135,9 +147,13 @@ def _arithmetic(op, fold, a, b, always_real=False):
         except OverflowError:
             raise Error(f"`{text(a)}` and `{text(b)}` have a result too large for double precision"
                         f"{at(users_line())}") from None
+    for one, other, neutral in ((a, b, op in ("add", "subtract")), (b, a, op == "add")):
+        if other.value == 0 and neutral and _is_whole(other) or other.value == 1 and _is_whole(other) and (
+                op == "multiply" or op == "divide" and other is b and one.type == real):
+            return one  # as in the sums and products that Python's sum() and loops begin with
     if is_integer:
         return make(op, (a, b), type=integer)
-    return make(op, (_to_real(a), _to_real(b)))
+    return make(op, (to_real(a), to_real(b)))
 
 
 def _power(base, exponent):
@@ -154,14 +170,14 @@ def _power(base, exponent):
             return sqrt(base)
         if float(n).is_integer():
             return _whole_power(base, int(n))
-    return make("pow", (_to_real(base), _to_real(exponent)))
+    return make("pow", (to_real(base), to_real(exponent)))
 
 
 def _whole_power(base, n):
     if n < 0:
         return 1.0 / _whole_power(base, -n)
     if n > 1 << 20:
-        return make("pow", (_to_real(base), _float(n)))
+        return make("pow", (to_real(base), _float(n)))
     result, factor = None, base
     while n:
         if n % 2:
@@ -177,7 +193,7 @@ def _compare(op, fold, a, b):
     if _is_constant(a) and _is_constant(b):
         return constant(fold(a.value, b.value))
     if a.type != b.type:
-        a, b = _to_real(a), _to_real(b)
+        a, b = to_real(a), to_real(b)
     return make(op, (a, b), type=condition)
 
 
@@ -337,7 +353,7 @@ _unary = {  # for the values of constants and for `evaluate`; C++ uses myriad's 
 
 def _function(name, description):
     def function(x):
-        return make(name, (_to_real(as_number(x)),))
+        return make(name, (to_real(as_number(x)),))
 
     function.__name__ = function.__qualname__ = name
     function.__doc__ = description
@@ -369,7 +385,7 @@ reciprocal = _function("reciprocal", "1 / x without a division, for normal x wit
 
 def _function_of_two(name, description):
     def function(a, b):
-        return make(name, (_to_real(as_number(a)), _to_real(as_number(b))))
+        return make(name, (to_real(as_number(a)), to_real(as_number(b))))
 
     function.__name__ = function.__qualname__ = name
     function.__doc__ = description
@@ -395,18 +411,18 @@ def abs(x):
 
 def fma(a, b, c):
     """a * b + c, with one rounding if the processor has the instruction."""
-    return make("fma", tuple(_to_real(as_number(x)) for x in (a, b, c)))
+    return make("fma", tuple(to_real(as_number(x)) for x in (a, b, c)))
 
 
 def sincos(x):
     """Sine and cosine of one angle for about the price of one: up to 2^30 (float 2^16) radians, NaN beyond."""
-    x = _to_real(as_number(x))
+    x = to_real(as_number(x))
     return make("sincos.sine", (x,)), make("sincos.cosine", (x,))
 
 
 def sincospi(x):
     """sin(pi x) and cos(pi x) for about the price of one: x up to 2^50 (float 2^21), NaN beyond."""
-    x = _to_real(as_number(x))
+    x = to_real(as_number(x))
     return make("sincospi.sine", (x,)), make("sincospi.cosine", (x,))
 
 
@@ -422,7 +438,7 @@ def _extreme(op, pick, arguments):
         elif result.type == other.type == integer:
             result = make(op, (result, other), type=integer)
         else:
-            result = make(op, (_to_real(result), _to_real(other)))
+            result = make(op, (to_real(result), to_real(other)))
     return result
 
 
@@ -450,12 +466,12 @@ def where(condition, a, b):
         return (chosen & a) | (~chosen & b)
     if a.type == b.type == integer:
         return make("select", (chosen, a, b), type=integer)
-    return make("select", (chosen, _to_real(a), _to_real(b)))
+    return make("select", (chosen, to_real(a), to_real(b)))
 
 
 def is_finite(x):
     """A condition: neither infinite nor NaN."""
-    return make("is_finite", (_to_real(as_number(x)),), type=condition)
+    return make("is_finite", (to_real(as_number(x)),), type=condition)
 
 
 def _numpy_functions():

@@ -9,7 +9,7 @@ import numpy as np
 from . import symbols as sym
 from .cpp import Writer
 from .errors import Error, at, users_line
-from .expression import Node, as_condition, as_number, evaluate, integer, symbols_of, text
+from .expression import Node, as_condition, as_number, evaluate, integer, real, symbols_of, text, to_real
 from .parse import from_sympy, is_sympy, parse, parse_equations, sympy_name
 
 __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
@@ -132,8 +132,8 @@ class Model:
                 symbol = given if isinstance(given, Node) else sym.symbol(kind, given)
                 other = declared.get(symbol.value[1], symbol)
                 if other is not symbol:
-                    raise Error(f"'{symbol.value[1]}' names both {sym.a(other.value[0])} and {sym.a(kind)}{at(self.line)}: "
-                                "a name stands for one component")
+                    raise Error(f"'{symbol.value[1]}' names both {sym.a(other.value[0])} and "
+                                f"{sym.a(kind)}{at(self.line)}: a name stands for one component")
                 declared[symbol.value[1]] = symbol
         declared.setdefault("t", sym.time)
         return declared
@@ -176,8 +176,8 @@ class Model:
             if isinstance(value, (list, tuple)) or isinstance(value, np.ndarray) and value.ndim > 0:
                 raise Error(f"the equation of {target.value[1]} has {len(value)} values{at(self.line)}: it needs one")
             targets.append(target)
-            rhs.append(self._real(self._value(value, f"equation of {target.value[1]}"),
-                                  f"the equation of {target.value[1]}"))
+            rhs.append(to_real(self._real(self._value(value, f"equation of {target.value[1]}"),
+                                          f"the equation of {target.value[1]}")))
         if len(set(map(id, targets))) < len(targets):
             raise Error(f"a state has two equations{at(self.line)}: give each one")
         order = [id(s) for s in self._declared.values() if s.value[0] == "state" and any(s is t for t in targets)]
@@ -256,7 +256,7 @@ class Model:
         self._event_names = [e.name for e in made]
         for one, given in zip(made, events):
             what = f"event {one.name}"
-            one.function = self._real(self._value(given.function, what), what)
+            one.function = to_real(self._real(self._value(given.function, what), what))
             one.do = self._assignments(given.do, what, line=given.line)
         return made
 
@@ -277,7 +277,8 @@ class Model:
             if target.value[0] != "accessory":
                 raise Error(f"the accessory {target.value[1]} holds whole numbers and cannot be a {value.kind}"
                             f"{at(value.line)}: make it by myriad.accessory")
-            quantity = self._real(self._value(value.quantity, "accessories"), f"the quantity of {target.value[1]}")
+            quantity = to_real(self._real(self._value(value.quantity, "accessories"),
+                                          f"the quantity of {target.value[1]}"))
             if id(quantity) not in quantities:
                 short = quantity.value[1] if quantity.op == "symbol" else target.value[1]
                 quantities[id(quantity)] = f"observed_{short}"
@@ -312,6 +313,7 @@ class Model:
                 value = as_condition(value)
             else:
                 value = self._real(value, f"{what}, {name}")
+                value = to_real(value) if target.type == real else value
             if target.type == integer and value.type != integer:
                 raise Error(f"{what} gives the whole number {name} the real value `{text(value)}`{at(line)}: use an "
                             "accessory for real numbers, or whole constants")

@@ -243,6 +243,16 @@ class Run:
         frame = pandas.DataFrame(table)
         return frame.dropna(subset=["time"]).reset_index(drop=True) if self._sampled else frame
 
+    @property
+    def plot(self):
+        """Pictures by matplotlib: `bifurcation`, `map`, `time_series`, `phase_portrait` and `statuses`."""
+        from .plots import Plots
+        return Plots(self)
+
+    def _repr_html_(self):
+        from .plots import html
+        return html(self)
+
     def __repr__(self):
         counts = ", ".join(f"{count} {name}" for name, count in self.report.by_status.items())
         return f"<myriad.Run of {self.size} instances: {counts}>"

@@ -46,7 +46,8 @@ def _sweep_values(sweep):
     if sweep is None:
         return {}
     if hasattr(sweep, "names") and hasattr(sweep, "values") and hasattr(sweep, "axes"):
-        return {name: sweep.values(name) for name in sweep.names}
+        constants = getattr(sweep, "constants", {})
+        return {name: constants[name] if name in constants else sweep.values(name) for name in sweep.names}
     if hasattr(sweep, "items"):
         return {name_of(key): value for key, value in sweep.items()}
     raise Error(f"the sweep is a {type(sweep).__name__}: give a dict, as in {{k: np.linspace(0, 1, 100)}}, or "

@@ -47,11 +47,12 @@ bool same(const A& a, const B& b) {
 
 /// Numbers of components, which must agree before bits are compared.
 template <class A, class B>
-constexpr bool same_shape = detail::n_state<A> == detail::n_state<B> && detail::n_parameter<A> == detail::n_parameter<B> &&
-                            detail::n_shared<A> == detail::n_shared<B> &&
-                            detail::n_accessory<A> == detail::n_accessory<B> &&
-                            detail::n_integer_accessory<A> == detail::n_integer_accessory<B> &&
-                            detail::n_event<A> == detail::n_event<B> && detail::n_observed<A> == detail::n_observed<B>;
+constexpr bool same_shape() {
+    return detail::n_state<A> == detail::n_state<B> && detail::n_parameter<A> == detail::n_parameter<B> &&
+           detail::n_shared<A> == detail::n_shared<B> && detail::n_accessory<A> == detail::n_accessory<B> &&
+           detail::n_integer_accessory<A> == detail::n_integer_accessory<B> &&
+           detail::n_event<A> == detail::n_event<B> && detail::n_observed<A> == detail::n_observed<B>;
+}
 
 /// rhs, events and observe of both models for states of kind S, parameters and time of kind P.
 template <class A, class B, class S, class P = S>
@@ -129,7 +130,7 @@ bool same_hook(Call&& call, const double* shared) {
 /// Prints the name and what differs; 1 if something does.
 template <class A, class B>
 int compare(const char* name) {
-    static_assert(same_shape<A, B>);
+    static_assert(same_shape<A, B>());
     static_assert(detail::has_initialise<A> == detail::has_initialise<B> &&
                   detail::has_after_step<A> == detail::has_after_step<B> &&
                   detail::has_after_event<A> == detail::has_after_event<B> &&

@@ -18,8 +18,8 @@ warnings = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Wfloat-conversion"
 def compile_cpp(folder, source, *flags):
     """Compiles a text, and returns what the compiler says if it fails."""
     (folder / "source.cpp").write_text(source)
-    command = [compiler, "-std=c++20", "-ffp-contract=off", f"-I{root}/include", f"-I{root}/backends/openmp", f"-I{root}",
-               f"-I{folder}", f"-I{pathlib.Path(__file__).parent}", "source.cpp", *flags]
+    command = [compiler, "-std=c++20", "-ffp-contract=off", f"-I{root}/include", f"-I{root}/backends/openmp",
+               f"-I{root}", f"-I{folder}", f"-I{pathlib.Path(__file__).parent}", "source.cpp", *flags]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     return done.stderr if done.returncode else ""
 
@@ -35,7 +35,8 @@ def test_traced_examples_have_the_bits_of_the_written_ones(tmp_path):
         lines.append(f"#include \"{model.name}.hpp\"")
         pairs.append(f"same_bits::compare<{model.name}, traced_{model.name}>(\"{model.name}\")")
     wrong = example_models.duffing().cpp("wrong").replace("p[k] * y[v] +", "p[k] * y[v] -")
-    lines += [wrong.replace("#pragma once", ""), "int main() { if (same_bits::compare<duffing, wrong>(\"wrong\") != 3) return 1;"]
+    lines += [wrong.replace("#pragma once", ""), "int main() {",
+              "if (same_bits::compare<duffing, wrong>(\"wrong\") != 3) return 1;"]
     lines.append("return " + " + ".join(pairs) + "; }")
     said = compile_cpp(tmp_path, "\n".join(lines), "-O1", "-march=native", *warnings, "-o", "compare")
     assert not said, said
