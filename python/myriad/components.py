@@ -32,6 +32,8 @@ class Components:
         self.accessories, self.integer_accessories = list(model.accessories), list(model.integer_accessories)
         self.events = list(model.events)
         self.event_names = [e.name for e in self.events]
+        self.names = (self.states, self.parameters, self.shared, self.shared_integers, self.accessories,
+                      self.integer_accessories, self.event_names)
         self.place = {}
         for kind, names in (("state", self.states), ("parameter", self.parameters), ("shared", self.shared),
                             ("shared_integer", self.shared_integers), ("accessory", self.accessories),
