@@ -3,7 +3,6 @@
 
 import re
 
-from .errors import Error, at
 from .expression import condition, integer, number_text, real, text, walk, write
 
 _columns = 116  # inside the struct
@@ -49,7 +48,6 @@ class Names:
         self.t = self._free("t", "time", "t_")
         self.R = self._free("R", "S", "Real", "R_")
         self.lane = self._free("lane", "instance", "lane_")
-        self.event = self._free("event", "number", "event_")
 
     def _free(self, *candidates):
         return next(c for c in candidates if c not in self.taken)
@@ -62,7 +60,7 @@ class Body:
         self.names, self.symbol, self.scalar = names, symbol, scalar
         self.lines = []
         self.named = {}
-        self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, names.event}
+        self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, "event"}
         uses = {}
         order = walk(roots)
         computed = {(node.op.partition(".")[0], *map(id, node.args)): node for node in order}  # sincos once
@@ -247,10 +245,6 @@ class Writer:
 
     def function(self, name, count, roots):
         n = self.names
-        problem = generic_problem(roots)
-        if problem is not None:
-            raise Error(f"`{text(problem)}`{at(problem.line)} mixes whole and real numbers, or multiplies whole ones, "
-                        f"in an equation or event: compare them, as in myriad.where(mode == 1, a, b)")
         body = Body(roots, n, self.in_function, scalar=False)
         values = []
         for root in roots:
@@ -384,13 +378,13 @@ class Writer:
             elif i == len(events) - 1:
                 lines += ["} else {", *("    " + s for s in statements)]
             else:
-                start = f"if ({n.event} == {event.name}) {{"
+                start = f"if (event == {event.name}) {{"
                 lines += ["} else " + start if i else start, *("    " + s for s in statements)]
         if len(events) > 1:
             lines.append("}")
         if ends and not (len(events) == 1 and lines[-1].startswith("return")):
             lines.append("return myriad::action::proceed;")
-        number = f"int {n.event}" if len(events) > 1 else "int"
+        number = f"int event" if len(events) > 1 else "int"
         result = "myriad::action" if ends else "void"
         return [f"MYRIAD_FUNCTION static {result} after_event({number}, auto& {n.lane}) {{",
                 *self.block(lines), "}"]

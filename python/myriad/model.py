@@ -7,9 +7,9 @@ import inspect
 import numpy as np
 
 from . import symbols as sym
-from .cpp import Writer
+from .cpp import Writer, generic_problem
 from .errors import Error, at, users_line
-from .expression import Node, as_condition, as_number, evaluate, integer, real, symbols_of, text, to_real
+from .expression import Node, as_condition, as_number, evaluate, integer, real, symbols_of, text, to_real, walk
 from .parse import from_sympy, is_sympy, parse, parse_equations, sympy_name
 
 __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
@@ -112,8 +112,11 @@ class Model:
             name = getattr(equations, "__name__", None)
             name = name if name and name.isidentifier() and name.isascii() and not name.startswith("_") else None
         self.name = sym.check_name(name, "a model") if name is not None else "model"
-        targets, self.rhs = self._equations(equations, states, parameters, shared)
+        self._names = self._declared  # what texts may name: later also what the equations do
+        targets, self.rhs = self._equations(equations, states)
         self.states = [t.value[1] for t in targets]
+        others = [a for a in accessories or {} if isinstance(a, Node) and a.op == "symbol"]
+        self._names = {**{s.value[1]: s for s in targets + symbols_of(self.rhs) + others}, **self._declared}
         self.events = self._events(events)
         start = self._accessories(accessories)
         self.initialise = start + self._assignments(initialise, "initialise", {t for t, _ in start})
@@ -141,9 +144,9 @@ class Model:
     def _value(self, value, what):
         """An expression from what a user gave."""
         if isinstance(value, str):
-            return parse(value, self._declared, f"{what}{at(self.line)}")
+            return parse(value, self._names, f"{what}{at(self.line)}")
         if is_sympy(value):
-            return from_sympy(value, self._declared, f"{what}{at(self.line)}")
+            return from_sympy(value, self._names, f"{what}{at(self.line)}")
         return value
 
     def _target(self, key, what):
@@ -154,7 +157,7 @@ class Model:
                         "myriad.states")
         return key
 
-    def _equations(self, equations, states, parameters, shared):
+    def _equations(self, equations, states):
         if isinstance(equations, str):
             equations = parse_equations(equations, self._declared, at(self.line))
         elif callable(equations) and not isinstance(equations, dict):
@@ -326,7 +329,8 @@ class Model:
         """The components, in the order in which the equations, events, accessories and hooks first name them."""
         hooks = [("initialise", self.initialise), ("after_step", self.after_step), ("finalise", self.finalise)]
         hooks += [(f"event {e.name}", e.do) for e in self.events]
-        self._in_functions = symbols_of(self.rhs + [e.function for e in self.events] + [q for _, q in self.observed])
+        self._functions = self.rhs + [e.function for e in self.events] + [q for _, q in self.observed]
+        self._in_functions = symbols_of(self._functions)
         found = targets + self._in_functions + self._accessory_targets
         for _, assignments in hooks:
             found += [t for t, _ in assignments] + symbols_of([e for _, e in assignments])
@@ -377,6 +381,14 @@ class Model:
             if kind in ("event_count", "action") or kind == "built-in" and name != "time":
                 raise Error(f"{name} stands in an equation, event or reduction{at(self.line)}, but only hooks and "
                             "actions see it: store it in an accessory there")
+        problem = generic_problem(self._functions)
+        if problem is not None:
+            raise Error(f"`{text(problem)}`{at(problem.line)} mixes whole and real numbers, or multiplies whole ones, "
+                        "in an equation or event: compare them, as in myriad.where(mode == 1, a, b)")
+        for node in walk(self._functions):
+            if node.op == "powr" and any(s.value[0] == "state" or s is sym.time for s in symbols_of([node.args[1]])):
+                raise Error(f"the exponent of `{text(node)}`{at(node.line)} depends on the state or on time: use "
+                            "myriad.pow, as powr has no derivative by its exponent")
         for what, assignments in self._hooks:
             for target, value in assignments:
                 for symbol in symbols_of([value]):
