@@ -16,6 +16,10 @@ _temporaries = {"add": "sum", "subtract": "difference", "multiply": "product", "
                 "reciprocal": "inverse", "hypot": "length", "negate": "opposite"}
 
 
+# Of several of these with equal arguments, the arguments are used once.
+_shared_work = ("sincos.sine", "sincos.cosine", "sincospi.sine", "sincospi.cosine", "dot")
+
+
 def _converts(node, argument):
     """Whether an argument is a whole number, not a constant, in an operation of real ones."""
     return (argument.type == integer and argument.op != "constant" and
@@ -42,7 +46,7 @@ class Names:
     """The names that a model's functions use for their arguments: the usual ones unless a component has that name."""
 
     def __init__(self, model):
-        self.taken = set(model.component_names)
+        self.taken = {*model.component_names, "i", "j"}
         self.y = self._free("y", "s", "u", "state_")
         self.p = self._free("p", "in", "inputs")
         self.t = self._free("t", "time", "t_")
@@ -58,12 +62,14 @@ class Body:
 
     def __init__(self, roots, names, symbol, scalar):
         self.names, self.symbol, self.scalar = names, symbol, scalar
+        self.shared = f"{names.lane if symbol.__name__ == 'in_hook' else names.p}.shared"
         self.lines = []
         self.named = {}
         self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, "event"}
         uses = {}
         order = walk(roots)
-        computed = {(node.op.partition(".")[0], *map(id, node.args)): node for node in order}  # sincos once
+        computed = {(node.op.partition(".")[0], *map(id, node.args)) if node.op in _shared_work else node: node
+                    for node in order}
         for node in computed.values():
             for argument in node.args:
                 uses[id(argument)] = uses.get(id(argument), 0) + 1
@@ -74,6 +80,8 @@ class Body:
                 continue
             if node.op.startswith("sincos"):
                 self._sine_and_cosine(node, order)
+            elif node.op == "dot":
+                self._product(node, order)
             elif uses[id(node)] > 1 and node.args and not (node.op == "negate" and not node.args[0].args):
                 name = self._name(_temporaries.get(node.op, "holds" if node.type == condition else node.op))
                 self.lines.append(f"const auto {name} = {self.text(node)};")
@@ -109,6 +117,27 @@ class Body:
                     found.add(id(node))
         return found
 
+    def _product(self, node, order):
+        """Products of rows of a table with one vector, in a loop over all rows that are used."""
+        table, _ = node.value
+        n, kind = len(node.args), self.names.R
+        same = [other for other in order if other.op == "dot" and other.value[0] == table and
+                all(a is b for a, b in zip(other.args, node.args))]
+        first, last = min(o.value[1] for o in same) // n, max(o.value[1] for o in same) // n
+        vector, product, total = self._name("vector"), self._name("product"), self._name("total")
+        if self.scalar:
+            kind = f"std::remove_cvref_t<decltype({self.names.lane}.t)>"
+        self.lines.append(f"const myriad::vec<{kind}, {n}> {vector} = {{{', '.join(map(self.text, node.args))}}};")
+        self.lines.append(f"myriad::vec<{kind}, {last - first + 1}> {product};")
+        row = f"({first} + i)" if first else "i"
+        self.lines += [f"for (int i = 0; i < {last - first + 1}; ++i) {{",
+                       f"    {kind} {total} = {self.shared}[{table.name} + {row} * {n}] * {vector}[0];",
+                       f"    for (int j = 1; j < {n}; ++j) {total} += "
+                       f"{self.shared}[{table.name} + {row} * {n} + j] * {vector}[j];",
+                       f"    {product}[i] = {total};", "}"]
+        for other in same:
+            self.named[id(other)] = f"{product}[{other.value[1] // n - first}]"
+
     def early(self, node, name):
         """The name of a variable with the value that the expression has here."""
         if id(node) in self.named or not node.args and node.op != "symbol":
@@ -132,6 +161,9 @@ class Body:
             return self.named[id(node)]
         if node.op == "symbol":
             return self.symbol(node)
+        if node.op == "element":
+            table, number = node.value
+            return f"{self.shared}[{table.name}{f' + {number}' if number else ''}]"
         if node.op == "truth":
             return "true" if node.value else "false"
         if node.op == "constant":
@@ -200,9 +232,11 @@ class Writer:
         out += [f"/// {line}" for line in self.description()]
         out += [f"struct {name} {{"]
         out += ["    " + d for d in self.declarations()]
+        last_elements = {f"{t.name}_last": f"{t.name}_last = {t.name} + {t.values.size - 1}" for t in model.tables}
         for kind, names in model.enumerations():
             if names:
-                out += ["    " + line for line in _wrap(f"enum {kind} {{ {', '.join(names)}, n_{kind} }};", 0)]
+                written = ", ".join(last_elements.get(n, n) if kind == "shared" else n for n in names)
+                out += ["    " + line for line in _wrap(f"enum {kind} {{ {written}, n_{kind} }};", 0)]
         if model.reductions:
             out.append("    static constexpr myriad::reduction reductions[] = {")
             out += [f"        {{{r.observed}, myriad::over_phase::{r.kind}, {r.accessory}}}," for r in model.reductions]
@@ -250,7 +284,8 @@ class Writer:
         for root in roots:
             value = body.text(root)
             values.append(value if _depends_on_instance(root) or value.startswith(n.R + "(") else f"{n.R}({value})")
-        kinds = {s.value[0] for s in walk(roots) if s.op == "symbol"}
+        used = [node for node in walk(roots) if node.op in ("symbol", "element", "dot")]
+        kinds = {node.value[0] if node.op == "symbol" else "shared" for node in used}
         arguments = [f"auto {n.t}" if "built-in" in kinds else "auto",
                      f"const myriad::vec<{n.R}, n_state>&" + (f" {n.y}" if "state" in kinds else ""),
                      "const auto&" + (f" {n.p}" if kinds - {"built-in", "state"} else "")]

@@ -595,7 +595,9 @@ def text(node):
             return n.value[1]
         if n.op in ("constant", "truth"):
             return number_text(n.value) if n.op == "constant" else str(n.value)
-        return None
+        if n.op == "element":
+            return f"{n.value[0].name}[{n.value[1]}]"
+        return f"({n.value[0].name} @ vector)[{n.value[1] // len(n.args)}]" if n.op == "dot" else None
 
     if len(walk([node])) > 200:
         return f"({node.op} of {len(walk([node]))} operations)"
@@ -629,6 +631,11 @@ def evaluate(roots, values):
                 known[id(node)] = np.asarray(values[node]) + 0
             elif node.op in ("constant", "truth"):
                 known[id(node)] = node.value
+            elif node.op == "element":
+                known[id(node)] = node.value[0].values.flat[node.value[1]]
+            elif node.op == "dot":
+                table, start = node.value
+                known[id(node)] = sum(table.values.flat[start + j] * known[id(a)] for j, a in enumerate(node.args))
             else:
                 known[id(node)] = _operations[node.op](*(known[id(a)] for a in node.args))
     return [known[id(root)] for root in roots]

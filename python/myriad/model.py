@@ -11,6 +11,7 @@ from .cpp import Writer, generic_problem
 from .errors import Error, at, users_line
 from .expression import Node, as_condition, as_number, evaluate, integer, real, symbols_of, text, to_real, walk
 from .parse import from_sympy, is_sympy, parse, parse_equations, sympy_name
+from .table import element_name, tables_of
 
 __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
            "integral"]
@@ -100,8 +101,9 @@ def model(equations, *, events=(), accessories=None, initialise=None, after_step
 
 
 class Model:
-    """A recorded model. Names of components are in the order in which results and C++ enumerate them; `cpp()` is its
-    header, `hash` identifies it."""
+    """A recorded model. Names of components are in the order in which results and C++ enumerate them, elements of
+    tables behind the other shared values; `shared_values` has what they are. `cpp()` is its header, `hash` identifies
+    it."""
 
     def __init__(self, equations, events, accessories, initialise, after_step, finalise, states, parameters, shared,
                  name):
@@ -345,6 +347,10 @@ class Model:
             raise Error(f"the state {missing[0]}{at(symbol.line)} has no equation{at(self.line)}: add its derivative, "
                         f"or make it a parameter if it is constant")
         self.parameters, self.shared = components["parameter"], components["shared"]
+        everything = walk(self._functions + [e for _, assignments in hooks for _, e in assignments])
+        self.tables = tables_of(everything)
+        self.shared_values = {element_name(t, i): float(v) for t in self.tables for i, v in enumerate(t.values.flat)}
+        self.scalar_shared, self.shared = self.shared, self.shared + list(self.shared_values)
         self.shared_integers = components["shared_integer"]
         self.accessories, self.integer_accessories = components["accessory"], components["integer_accessory"]
         assigned = {t.value for _, assignments in hooks for t, _ in assignments}
@@ -357,7 +363,8 @@ class Model:
 
     def enumerations(self):
         """(kind, names) of everything that has an enumeration in C++."""
-        return [("state", self.states), ("parameter", self.parameters), ("shared", self.shared),
+        shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
+        return [("state", self.states), ("parameter", self.parameters), ("shared", shared),
                 ("shared_integer", self.shared_integers), ("accessory", self.accessories),
                 ("integer_accessory", self.integer_accessories), ("event", [e.name for e in self.events]),
                 ("observed", [n for n, _ in self.observed])]
@@ -373,7 +380,7 @@ class Model:
             for name in names:
                 if name in kinds:
                     clash = f"names both {sym.a(kinds[name])} and {sym.a(kind)}"
-                    clash = f"is the name of two {kind}s" if kinds[name] == kind else clash
+                    clash = "is the name of two components" if kinds[name] == kind else clash
                     raise Error(f"'{name}' {clash}{at(self.line)}: rename one of them")
                 kinds[name] = kind
         for symbol in self._in_functions:

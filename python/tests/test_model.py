@@ -195,7 +195,7 @@ def of_wrong_shape(t, y, A=np.ones((3, 3))):
     (lambda: my.states(""), "no names are given"),
     (lambda: my.model({x: my.parameter("x")}), "'x' names both a state and a parameter"),
     (lambda: my.model({x: v, v: x}, events=[my.event(x, name="v")]), "'v' names both a state and an event"),
-    (lambda: my.model({x: v, v: x}, events=[my.event(x, name="e"), my.event(v, name="e")]), "name of two events"),
+    (lambda: my.model({x: v, v: x}, events=[my.event(x, name="e"), my.event(v, name="e")]), "name of two components"),
     (lambda: my.model({x: 1}, name="x"), "name of its state 'x'"),
     # equations
     (lambda: my.model({x: v}), "the state v .*has no equation"),
