@@ -498,6 +498,18 @@ def _numpy_functions():
 
 _numpy_table = {}
 
+
+def _add_numpys_methods():
+    """NumPy's functions of an array of objects call a method of each: np.sin(array) calls array[0].sin()."""
+    for function, ours in _numpy_functions().items():
+        if function.nin == 1 and function.__name__ not in ("absolute", "negative", "positive", "invert"):
+            setattr(Expression, function.__name__, lambda self, ours=ours: ours(self))
+    for name, ours in (("arctan2", atan2), ("hypot", hypot), ("copysign", copysign)):
+        setattr(Expression, name, lambda self, other, ours=ours: ours(self, other))
+
+
+_add_numpys_methods()
+
 # ----------------------------------------------------------------------------------------------------------------------
 # Walking through a graph
 # ----------------------------------------------------------------------------------------------------------------------

@@ -175,7 +175,8 @@ class Run:
     def _axes(self):
         """The dimensions of the instances and their lengths."""
         if self.sweep is not None and len(self.sweep.axes) > 1:
-            return [name for name, _ in self.sweep.axes], tuple(len(values) for _, values in self.sweep.axes)
+            names = [f"{name}_start" if name in self._components.states else name for name, _ in self.sweep.axes]
+            return names, tuple(len(values) for _, values in self.sweep.axes)
         return ["instance"], (self.size,)
 
     def to_xarray(self):
@@ -205,7 +206,7 @@ class Run:
         if self._recorded:
             phases = next(iter(self.records.values())).shape[1]
             coordinates["phase"] = np.arange(self.from_phase, self.from_phase + phases)
-        axes = dict(self.sweep.axes) if len(dims) > 1 else {}
+        axes = dict(zip(dims, (values for _, values in self.sweep.axes))) if len(dims) > 1 else {}
         for name, values in axes.items():
             coordinates[name] = (name, np.asarray(values))
         for name, array in self.parameters.items():
@@ -213,7 +214,7 @@ class Run:
                 coordinates[name] = unstacked(array)
         coordinates.update((name, value) for name, value in self.shared.items() if name not in axes)
         for name, value in self.start.items():
-            if name not in axes and np.ndim(value) == 1:
+            if f"{name}_start" not in axes and np.ndim(value) == 1:
                 coordinates[f"{name}_start"] = unstacked(value)
         return xarray.Dataset(variables, coordinates, {"myriad_version": _core.version})
 
