@@ -6,6 +6,7 @@ import re
 from .expression import condition, integer, number_text, real, text, walk, write
 
 _columns = 116  # inside the struct
+_deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
 _largest_literal = 1 << 24  # exact in single precision
 
 _headers = {"time": "t", "step": "h", "next_step": "h_next", "phase": "phase", "instance": "index",
@@ -65,6 +66,7 @@ class Body:
         self.shared = f"{names.lane if symbol.__name__ == 'in_hook' else names.p}.shared"
         self.lines = []
         self.named = {}
+        self.numbers = {}
         self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, "event"}
         uses = {}
         order = walk(roots)
@@ -75,23 +77,30 @@ class Body:
                 uses[id(argument)] = uses.get(id(argument), 0) + 1
         for root in roots:
             uses[id(root)] = uses.get(id(root), 0) + 1
+        depth = {}
         for node in order:
             if id(node) in self.named:
                 continue
             if node.op.startswith("sincos"):
                 self._sine_and_cosine(node, order)
-            elif node.op == "dot":
+                continue
+            if node.op == "dot":
                 self._product(node, order)
-            elif uses[id(node)] > 1 and node.args and not (node.op == "negate" and not node.args[0].args):
+                continue
+            depth[id(node)] = 1 + max((depth.get(id(a), 0) for a in node.args), default=0)
+            shared = uses[id(node)] > 1 and not (node.op == "negate" and not node.args[0].args)
+            if node.args and (shared or depth[id(node)] > _deepest):
                 name = self._name(_temporaries.get(node.op, "holds" if node.type == condition else node.op))
                 self.lines.append(f"const auto {name} = {self.text(node)};")
                 self.named[id(node)] = name
+                depth[id(node)] = 0
 
     def _name(self, base):
-        name, n = base, 1
+        """A name that nothing else has: `base`, or with a number."""
+        name = base
         while name in self.used_names:
-            n += 1
-            name = f"{base}_{n}"
+            self.numbers[base] = self.numbers.get(base, 1) + 1
+            name = f"{base}_{self.numbers[base]}"
         self.used_names.add(name)
         return name
 

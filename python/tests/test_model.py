@@ -78,6 +78,15 @@ def test_a_long_sum_is_recorded_and_written():
     assert all(len(line) <= 120 for line in model.cpp().splitlines())
 
 
+def test_deeply_nested_expressions_are_written_in_several_statements():
+    nested = x
+    for _ in range(2000):
+        nested = my.sin(nested * v)
+    model = my.model({x: nested, v: 0})
+    assert max(line.count("(") for line in model.cpp().splitlines()) < 60
+    assert 0 < model.derivatives(0.0, [1.0, 1.1])[0] < 1
+
+
 # ----------------------------------------------------------------------------------------------------------------------
 # Models
 # ----------------------------------------------------------------------------------------------------------------------

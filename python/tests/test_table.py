@@ -59,7 +59,7 @@ def test_integrated_with_a_table_linear_equations_have_their_closed_form():
     (lambda: my.table("W", np.ones((2, 3))) @ states[:2], "each of its 3 columns"),
     (lambda: np.array(states[:2]) @ my.table("W", np.ones((2, 2))), "from the left"),
     (lambda: my.table("W", np.ones(3))[3], "no element of a table"),
-    (lambda: my.model({states[0]: my.table("W", [1.0])[0] + my.table("W", [2.0])[0]}), "'W' is the name of two components"),
+    (lambda: my.model({states[0]: my.table("W", [1.0])[0] + my.table("W", [2.0])[0]}), "'W' is the name of two"),
     (lambda: my.model({states[0]: my.table("y0", [1.0])[0]}), "'y0' names both a state and a shared"),
 ])
 def test_wrong_tables_are_refused(make, message):
