@@ -6,6 +6,7 @@ import numpy as np
 from . import _core
 from .components import name_of
 from .errors import Error
+from .grid import Sweep
 
 status_names = tuple(_core.status_names())
 _first_failure = status_names.index("max_steps")
@@ -52,7 +53,7 @@ class Run:
     def __init__(self, components, ensemble, report, kernel, sweep, inputs, recorded, sampled, seconds, from_phase):
         self._components, self._ensemble, self._records = components, ensemble, report
         self._recorded, self._sampled, self._inputs = recorded, sampled, inputs
-        self.sweep = sweep if hasattr(sweep, "axes") else None
+        self.sweep = sweep if isinstance(sweep, Sweep) else None
         self.report = Report(report, kernel, seconds)
         self.from_phase = from_phase  #: number of the first recorded phase
 
@@ -172,12 +173,15 @@ class Run:
     def __len__(self):
         return self.size
 
+    def _in_dataset(self, name):
+        """The name of an input in a dataset, where a state's own name is that of its result."""
+        return f"{name}_start" if name in self._components.states else name
+
     def _axes(self):
         """The dimensions of the instances and their lengths."""
-        if self.sweep is not None and len(self.sweep.axes) > 1:
-            names = [f"{name}_start" if name in self._components.states else name for name, _ in self.sweep.axes]
-            return names, tuple(len(values) for _, values in self.sweep.axes)
-        return ["instance"], (self.size,)
+        if self.sweep is None or not self.sweep.axes:
+            return ["instance"], (self.size,)
+        return [self._in_dataset(name) for name, _ in self.sweep.axes], tuple(self.sweep.shape)
 
     def to_xarray(self):
         """The results as an `xarray.Dataset`: records along `phase`, samples along `sample`, and along `instance`, or
@@ -206,16 +210,16 @@ class Run:
         if self._recorded:
             phases = next(iter(self.records.values())).shape[1]
             coordinates["phase"] = np.arange(self.from_phase, self.from_phase + phases)
-        axes = dict(zip(dims, (values for _, values in self.sweep.axes))) if len(dims) > 1 else {}
-        for name, values in axes.items():
-            coordinates[name] = (name, np.asarray(values))
+        along = {} if self.sweep is None else self.sweep.coordinates
+        for name, (axis, values) in along.items():
+            coordinates[self._in_dataset(name)] = (self._in_dataset(axis), np.asarray(values))
         for name, array in self.parameters.items():
-            if name not in axes:
+            if name not in along:
                 coordinates[name] = unstacked(array)
-        coordinates.update((name, value) for name, value in self.shared.items() if name not in axes)
+        coordinates.update(self.shared)
         for name, value in self.start.items():
-            if f"{name}_start" not in axes and np.ndim(value) == 1:
-                coordinates[f"{name}_start"] = unstacked(value)
+            if name not in along and np.ndim(value) == 1:
+                coordinates[self._in_dataset(name)] = unstacked(value)
         return xarray.Dataset(variables, coordinates, {"myriad_version": _core.version})
 
     def to_pandas(self):

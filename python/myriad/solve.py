@@ -9,6 +9,7 @@ import numpy as np
 from . import _core, compiler
 from .components import Components, name_of, unknown
 from .errors import Error
+from .grid import Sweep
 from .methods import fixed_step, method_type
 from .run import Interrupted, Run
 
@@ -45,9 +46,8 @@ def _sweep_values(sweep):
     """The values of a sweep by name: of an object like `myriad.grid(...)`, or of a dict."""
     if sweep is None:
         return {}
-    if hasattr(sweep, "names") and hasattr(sweep, "values") and hasattr(sweep, "axes"):
-        constants = getattr(sweep, "constants", {})
-        return {name: constants[name] if name in constants else sweep.values(name) for name in sweep.names}
+    if isinstance(sweep, Sweep):
+        return {**{name: sweep.values(name) for name in sweep.coordinates}, **sweep.constants}
     if hasattr(sweep, "items"):
         return {name_of(key): value for key, value in sweep.items()}
     raise Error(f"the sweep is a {type(sweep).__name__}: give a dict, as in {{k: np.linspace(0, 1, 100)}}, or "
@@ -85,7 +85,7 @@ def _gather(components, sweep, start, time, size):
                if a.ndim == 1}
     if size is not None:
         lengths["size"] = size
-    if hasattr(sweep, "size") and not hasattr(sweep, "items"):
+    if isinstance(sweep, Sweep):
         lengths["the sweep"] = sweep.size
     if len(set(lengths.values())) > 1:
         (first, n), (other, m) = next(((a, b) for a in lengths.items() for b in lengths.items() if a[1] != b[1]))

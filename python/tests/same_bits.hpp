@@ -75,9 +75,9 @@ bool same_functions() {
             q.integer_accessory = p.integer_accessory;
         }
         equal = equal && same(A::template rhs<S>(t, y, p), B::template rhs<S>(t, y, q));
-        if constexpr (detail::n_event<A> > 0)
+        if constexpr (detail::n_event < A >> 0)
             equal = equal && same(A::template events<S>(t, y, p), B::template events<S>(t, y, q));
-        if constexpr (detail::n_observed<A> > 0)
+        if constexpr (detail::n_observed < A >> 0)
             equal = equal && same(A::template observe<S>(t, y, p), B::template observe<S>(t, y, q));
     }
     return equal;
@@ -91,7 +91,7 @@ detail::lane_data<Model, double> drawn_lane(const double* shared, int sample) {
     draw(d.integer_accessory), draw(d.event_count);
     d.shared = shared, d.t_end = 3, d.phase = sample % 2, d.h_next = 0.5;
     for (int i = 0; i < detail::n_event<Model>; ++i) d.event_count[i] = sample % 7;
-    if constexpr (detail::n_integer_accessory<Model> > 0) d.integer_accessory[0] = sample % 60;
+    if constexpr (detail::n_integer_accessory < Model >> 0) d.integer_accessory[0] = sample % 60;
     return d;
 }
 

@@ -138,3 +138,34 @@ def test_progress_is_told(oscillator):
 def test_arrays_outlive_the_run(oscillator):
     x = my.solve(oscillator, {"w": w}, start=start, time=(0, 1), record=["x"])["x"]
     np.testing.assert_allclose(x[:, 0], np.cos(w), atol=1e-6)
+
+
+def test_a_grid_is_unstacked_to_its_axes(oscillator):
+    speeds, places = np.array([1.0, 1.5, 2.0]), np.array([0.5, 1.0])
+    run = my.solve(oscillator, my.grid({"w": speeds, "x": places}), start={"v": 0}, time=(0, 1), rtol=1e-10,
+                   phases=2, record=["x"])
+    assert run.shape == (3, 2) and run["x"].shape == (6, 2)
+    data = run.to_xarray()
+    assert data.x.dims == ("w", "x_start", "phase") and data.v.dims == ("w", "x_start")
+    np.testing.assert_array_equal(data.w, speeds)
+    np.testing.assert_array_equal(data.x_start, places)
+    np.testing.assert_allclose(data.x.sel(w=1.5, x_start=0.5)[0], 0.5 * np.cos(1.5), atol=1e-8)
+
+
+def test_shared_values_of_a_grid_and_a_zip(ball):
+    run = my.solve(ball, my.grid(my.zip(loss=[0.5, 0.6], height=[1.0, 2.0]), g=2.0), start={"speed": 0},
+                   time=(0, 0.1))
+    data = run.to_xarray()
+    assert data.height.dims == ("instance",) and float(data.g) == 2.0
+    np.testing.assert_array_equal(data.height_start, [1.0, 2.0])
+    np.testing.assert_array_equal(data.loss, [0.5, 0.6])
+    with pytest.raises(my.Error, match="'g' is shared by all instances and has 2 values"):
+        my.solve(ball, my.grid(g=[1.0, 2.0], loss=0.5), start={"height": 1, "speed": 0}, time=(0, 1))
+
+
+def test_traced_models_have_the_bits_of_written_ones(oscillator):
+    x, v = my.states("x v")
+    speed = my.parameter("w")
+    traced = my.model({x: v, v: -speed * speed * x})
+    call = dict(start=start, time=(0, 10), phases=2, record=["x"])
+    assert (my.solve(traced, {speed: w}, **call)["x"].tobytes() == my.solve(oscillator, {"w": w}, **call)["x"].tobytes())
