@@ -6,6 +6,7 @@ one object. Operators and functions record what they are applied to and compute 
 import math
 import numbers
 import operator
+import threading
 import weakref
 
 import numpy as np
@@ -20,6 +21,7 @@ pi = math.pi
 
 real, integer, condition = "real", "integer", "condition"  # the types of nodes
 _known = weakref.WeakValueDictionary()
+_lock = threading.RLock()
 
 
 class Node:
@@ -29,6 +31,9 @@ class Node:
 
     def __hash__(self):
         return id(self) >> 4
+
+    def __reduce__(self):
+        return make, (self.op, self.args, self.value, self.type)
 
     def __repr__(self):
         return text(self)
@@ -45,12 +50,13 @@ class Node:
 def make(op, args=(), value=None, type=real):
     """The node of an operation; the same object whenever it is made of the same arguments."""
     key = (op, tuple(id(a) for a in args), value if op != "constant" else (value.__class__, repr(value)))
-    node = _known.get(key)
-    if node is None:
-        node = object.__new__(Condition if type == condition else Expression)
-        node.op, node.args, node.value, node.type, node.line = op, args, value, type, users_line()
-        _known[key] = node
-    return node
+    with _lock:
+        node = _known.get(key)
+        if node is None:
+            node = object.__new__(Condition if type == condition else Expression)
+            node.op, node.args, node.value, node.type, node.line = op, args, value, type, users_line()
+            _known[key] = node
+        return node
 
 
 def constant(number):

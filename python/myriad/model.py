@@ -110,10 +110,6 @@ class Model:
         self.line = users_line()
         self._source = None
         self._declared = self._declare(states, parameters, shared, accessories)
-        if name is None and callable(equations):
-            name = getattr(equations, "__name__", None)
-            name = name if name and name.isidentifier() and name.isascii() and not name.startswith("_") else None
-        self.name = sym.check_name(name, "a model") if name is not None else "model"
         self._names = self._declared  # what texts may name: later also what the equations do
         targets, self.rhs = self._equations(equations, states)
         self.states = [t.value[1] for t in targets]
@@ -125,7 +121,18 @@ class Model:
         self.after_step = self._assignments(after_step, "after_step")
         self.finalise = self._assignments(finalise, "finalise")
         self._collect(targets)
+        self.name = self._default_name(equations) if name is None else sym.check_name(name, "a model")
         self._check()
+
+    def _default_name(self, equations):
+        """The name of the function, if it can be that of a struct, or "model"."""
+        for name in (getattr(equations, "__name__", ""), "model"):
+            try:
+                if name not in self.component_names:
+                    return sym.check_name(name, "a model")
+            except Error:
+                continue
+        return "traced"
 
     # What users may give
 

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Models as they are recorded: what users may write, what it means, and what is refused."""
 
+import concurrent.futures
+import copy
 import itertools
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -177,6 +180,33 @@ def test_the_text_of_a_model_depends_only_on_the_model():
     assert len(texts) == 1
     changed = my.model({x: v, v: x - x**3 - k * v + 2 * B * my.cos(my.time)})
     assert changed.hash != of_dictionary().hash
+
+
+def test_a_function_gives_the_model_its_name_where_it_can():
+    def rhs(t, y):
+        return [y[0]]
+
+    assert my.model(duffing, states="x v").name == "duffing"
+    assert my.model(rhs, states="x").name == my.model(lambda t, y: [y[0]], states="x").name == "model"
+    assert my.model({my.state("model"): 1}).name == "traced"
+
+
+def test_models_can_be_pickled():
+    model = example_models.relief_valve()
+    copied = pickle.loads(pickle.dumps(model))
+    assert copied.hash == model.hash and copied.rhs[0] is model.rhs[0] and copy.deepcopy(x) is x
+    states = my.states([f"y{i}" for i in range(12)])
+    model = my.model(dict(zip(states, my.table("W", np.ones((12, 12))) @ states)))
+    assert pickle.loads(pickle.dumps(model)).cpp() == model.cpp()
+
+
+def test_threads_record_the_same_nodes():
+    def record(_):
+        return [my.sin(x * (i + 0.125)) for i in range(300)]
+
+    with concurrent.futures.ThreadPoolExecutor(8) as pool:
+        made = list(pool.map(record, range(8)))
+    assert all(a is b for other in made for a, b in zip(made[0], other))
 
 
 # ----------------------------------------------------------------------------------------------------------------------
