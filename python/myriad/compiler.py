@@ -82,15 +82,21 @@ def find_compiler():
 _found = {}
 
 
-def compiler():
-    """The compiler of this process. Raises `Error` if there is none."""
+def known_compiler():
+    """What `find_compiler` found for these variables of the environment."""
     asked = (os.environ.get("MYRIAD_CXX"), os.environ.get("PATH"))
     if asked not in _found:
         _found[asked] = find_compiler()
-    if _found[asked] is None:
+    return _found[asked]
+
+
+def compiler():
+    """The compiler of this process. Raises `Error` if there is none."""
+    found = known_compiler()
+    if found is None:
         raise Error("there is no C++ compiler to compile the model with: install clang++ 14 or g++ 12 or newer, or "
                     "`pip install ziglang`, or name a compiler in the environment variable MYRIAD_CXX")
-    return _found[asked]
+    return found
 
 
 def _first_message(output):
@@ -128,7 +134,7 @@ class Kernel:
     """A loaded kernel and where it came from."""
 
     library: object
-    origin: str  # "compiled by g++", "cache" or "memory"
+    origin: str  # "compiled by g++", "cache", "memory", or "interpreted" and why
     seconds: float  # that it took to get
 
 

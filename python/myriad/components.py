@@ -34,6 +34,8 @@ class Components:
         self.defaults = getattr(model, "defaults", self.tables)  # of components that need not be given
         self.events = list(model.events)
         self.event_names = [e.name for e in self.events]
+        self.names = (self.states, self.parameters, self.shared, self.shared_integers, self.accessories,
+                      self.integer_accessories, self.event_names)
         self.place = {}
         for kind, names in (("state", self.states), ("parameter", self.parameters), ("shared", self.shared),
                             ("shared_integer", self.shared_integers), ("accessory", self.accessories),

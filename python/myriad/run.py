@@ -25,7 +25,8 @@ class Report:
 
     def __init__(self, report, kernel, seconds):
         self._report = report
-        self.kernel = kernel.origin  #: "compiled by clang++", "cache" (on disk) or "memory" (of this process)
+        #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why
+        self.kernel = kernel.origin
         self.kernel_seconds = kernel.seconds  #: that it took to get the kernel
         self.total_seconds = seconds  #: of the whole call
 
@@ -39,8 +40,10 @@ class Report:
 
     def __str__(self):
         text = str(self._report).rstrip("\n")
-        origin = self.kernel if self.kernel.startswith("compiled") else f"from {self.kernel}"
-        return f"{text}\nkernel {origin} in {self.kernel_seconds:.3g} s; {self.total_seconds:.3g} s in all"
+        origin = f"from {self.kernel}" if self.kernel in ("cache", "memory") else self.kernel
+        if not self.kernel.startswith("interpreted"):
+            origin += f" in {self.kernel_seconds:.3g} s"
+        return f"{text}\nkernel {origin}; {self.total_seconds:.3g} s in all"
 
     __repr__ = __str__
 

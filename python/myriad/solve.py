@@ -6,7 +6,7 @@ import time as clock
 
 import numpy as np
 
-from . import _core, compiler
+from . import _core, compiler, tape
 from .components import Components, name_of, unknown
 from .errors import Error
 from .grid import Sweep
@@ -94,7 +94,11 @@ def _gather(components, sweep, start, time, size):
     return given, domain, next(iter(lengths.values()), 1)
 
 
-def _fill(ensemble, components, given, domain):
+def _fill(ensemble, components, given, domain, names):
+    for kind, known, all_names in (("state", components.states, names[0]), ("parameter", components.parameters, names[1]),
+                                   ("accessory", components.accessories, names[4])):
+        for number in range(len(known), len(all_names)):  # which an interpreted model does not use
+            ensemble.array(kind, number)[...] = 0
     for name, array in given.items():
         kind, number = components.place[name]
         if kind in ("shared", "shared_integer"):
@@ -113,9 +117,9 @@ def _fill(ensemble, components, given, domain):
         ensemble.array("t_end")[...] = domain[1]
 
 
-def _per_state(value, components, name):
+def _per_state(value, components, name, count):
     """One tolerance for all states, one for each in their order, or a dict by state; those that it leaves out get the
-    default."""
+    default. For `count` states, of which those beyond the model's are not used."""
     if hasattr(value, "items"):
         values = [1e-8] * len(components.states)
         for key, tolerance in value.items():
@@ -123,9 +127,9 @@ def _per_state(value, components, name):
             if state not in components.states:
                 raise unknown(state, components.states, "state of the model")
             values[components.states.index(state)] = float(tolerance)
-        return values
-    array = _numbers(value, name)
-    return [float(v) for v in np.atleast_1d(array)]
+    else:
+        values = [float(v) for v in np.atleast_1d(_numbers(value, name))]
+    return values + [1.0] * (count - len(components.states)) if len(values) == len(components.states) > 1 else values
 
 
 def _whole(value, name):
@@ -194,8 +198,8 @@ def _set_samples(options, samples, components, phases, phase_length, size):
     return {components.states[c]: c for c in states}
 
 
-def _set_events(options, events, components):
-    """Options of events: the model's own, replaced by those that the call gives by name."""
+def _set_events(options, events, components, count):
+    """Options of events: the model's own, replaced by those that the call gives by name; for `count` events."""
     changed = {}
     for key, value in (events or {}).items():
         name = key if isinstance(key, str) else getattr(key, "name", None)
@@ -212,6 +216,8 @@ def _set_events(options, events, components):
         tolerance = of_call.get("tolerance", event.tolerance)
         options.add_event(_directions[direction], _default_event_tolerance if tolerance is None else float(tolerance),
                           _whole(of_call.get("stop_after", event.stop_after), "stop_after"))
+    for _ in range(len(components.events), count):
+        options.add_event(0, _default_event_tolerance, 0)
 
 
 def _progress_function(progress):
@@ -254,7 +260,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
           rtol=1e-8, atol=1e-8, step=None, minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1,
           max_steps=10_000_000, phase_length=0, carry_on=False, events=None, sub_samples=1, accumulation_limit=50,
           tolerance_scale=None, invalid="refuse", schedule="automatic", size=None, precision="double", device="auto",
-          progress=None):
+          interpreted=None, progress=None):
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
     model             from `myriad.model(...)`
@@ -280,6 +286,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     size              number of instances, if no array gives it
     precision         "double" or "float"
     device            "auto", "cpu", "cpu:4" (threads)
+    interpreted       True runs the model without compiling it, several times slower; None does so only where there
+                      is no compiler, which the report tells
     progress          True for a bar, or a function of the numbers of instances done and of all
 
     Raises `myriad.Error` if something is missing or does not fit, before any work. Ctrl-C raises
@@ -295,7 +303,6 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
         raise Error(f"{method} takes fixed steps: give step=")
     options = _core.Options()
     options.phases = _whole(phases, "phases")
-    options.set_tolerances(_per_state(rtol, components, "rtol"), _per_state(atol, components, "atol"))
     options.step = math.nan if step is None else float(step)
     options.minimum_step = float(minimum_step)
     options.maximum_step = _positive_infinity(maximum_step)
@@ -314,16 +321,26 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     options.set_schedule(_schedules[schedule])
     recorded = _set_records(options, record, components)
     sampled = _set_samples(options, samples, components, options.phases, options.phase_length, count)
-    _set_events(options, events, components)
 
-    kernel = compiler.kernel(*model.source(), written, precision)
+    why = None
+    if interpreted or (interpreted is None and compiler.known_compiler() is None):
+        why = "as asked" if interpreted else "as there is no C++ compiler"
+        if precision != "double" or control:
+            raise Error(f"a model is interpreted, {why}, in double precision and with the usual control alone: leave out "
+                        "precision= and control=, or install a C++ compiler")
+        kernel = tape.kernel(model, components, method, why)
+        names = tape.padded(components)
+    else:
+        kernel = compiler.kernel(*model.source(), written, precision)
+        names = components.names
+    options.set_tolerances(_per_state(rtol, components, "rtol", len(names[0])),
+                           _per_state(atol, components, "atol", len(names[0])))
+    _set_events(options, events, components, len(names[-1]))
     kind = _core.Ensemble64 if precision == "double" else _core.Ensemble32
     function, finish = _progress_function(progress)
     try:
-        ensemble = kind(kernel.library, components.states, components.parameters, components.shared,
-                        components.shared_integers, components.accessories, components.integer_accessories,
-                        components.event_names, count)
-        _fill(ensemble, components, given, domain)
+        ensemble = kind(kernel.library, *names, count)
+        _fill(ensemble, components, given, domain, names)
         if tolerance_scale is not None:
             ensemble.array("tolerance_scale")[...] = _numbers(tolerance_scale, "tolerance_scale")
         report, failure = _core.solve(kernel.library, where, ensemble, options, function)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The extension module myriad._core: what the Python side of the package calls. Private; the package checks names and
 // shapes before it calls.
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -12,6 +13,8 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
@@ -263,8 +266,25 @@ NB_MODULE(_core, m) {
         return names;
     });
     m.def("check_device", [](const std::string& name) { return device::parse(name).name(); });
+    m.def("interpreted_methods", &interpreted_methods);
+    m.def("tape_operations", &tape_operations);
+    m.attr("tape_limits") =
+        nb::make_tuple(tape_states, tape_parameters, tape_accessories, tape_integers, tape_events, tape_registers);
+    nb::class_<interpreted>(m, "Tape").def("__init__", [](interpreted* self, const tape_functions& functions,
+                                                          const std::vector<int>& codes,
+                                                          const std::vector<double>& values,
+                                                          const std::vector<std::array<int, 4>>& registers) {
+        require(codes.size() == values.size() && codes.size() == registers.size(), "a tape's parts differ in length");
+        std::vector<tape_step> steps;
+        for (std::size_t i = 0; i < codes.size(); ++i) {
+            const auto narrow = [&](std::size_t k) { return static_cast<std::uint16_t>(registers[i][k]); };
+            steps.push_back({values[i], narrow(0), narrow(1), narrow(2), narrow(3), static_cast<tape_code>(codes[i])});
+        }
+        new (self) interpreted(functions, std::move(steps));
+    });
     nb::class_<library>(m, "Library")
         .def(nb::init<const std::string&>())
+        .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
         .def_prop_ro("samples_trajectory", [](const library& l) { return l.facts().samples_trajectory; })
         .def_prop_ro("adaptive", [](const library& l) { return l.facts().embedded_order > 0; })
         .def_prop_ro("instruction_set", [](const library& l) {

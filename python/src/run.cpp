@@ -22,10 +22,21 @@ library::library(const std::string& path) {
     require(handle != nullptr, "the compiled model could not be loaded: ", handle != nullptr ? "" : dlerror());
     const auto function = reinterpret_cast<kernel_library_function>(dlsym(handle, kernel_library_symbol));
     require(function != nullptr, path, " holds no compiled model");
-    facts_ = function();
-    require(facts_->interface_version == interface_version, path, " was compiled for another version of Myriad");
-    const auto set = static_cast<openmp::instruction_set>(facts_->instruction_set);
+    facts_ = *function();
+    require(facts_.interface_version == interface_version, path, " was compiled for another version of Myriad");
+    const auto set = static_cast<openmp::instruction_set>(facts_.instruction_set);
     require(host::cpu_has(set), "the model was compiled for ", host::name_of(set), ", which this CPU lacks");
+}
+
+library::library(const std::string& method, int shared, int shared_integers, bool may_stop,
+                 std::shared_ptr<const interpreted> model)
+    : facts_(interpreter(method)), model_(std::move(model)) {
+    facts_.n_shared = shared;
+    facts_.n_shared_integer = shared_integers;
+    facts_.hooks_may_stop = may_stop;
+    const auto set = static_cast<openmp::instruction_set>(facts_.instruction_set);
+    require(host::cpu_has(set), "this CPU lacks the instructions of ", host::name_of(set),
+            ", for which models are interpreted: install a C++ compiler");
 }
 
 namespace {
@@ -210,8 +221,10 @@ detail::run_statistics run_library(const host::any_run& all, const detail::run_o
         now.order = part->order;
     }
     detail::run_statistics used;
-    static_cast<const kernel_library*>(all.kernel)
-        ->run(&now, &o, o.threads > 0 ? o.threads : usual_threads(), &start_team, &used);
+    const library& kernel = *static_cast<const library*>(all.kernel);
+    current_tape = kernel.model();
+    kernel.facts().run(&now, &o, o.threads > 0 ? o.threads : usual_threads(),
+                       current_tape != nullptr ? &start_tape_team : &start_team, &used);
     return used;
 }
 
@@ -237,7 +250,7 @@ std::unique_ptr<report<R>> solve(const library& with, const device& where, ensem
 
     auto result = std::make_unique<report<R>>();
     prepared_call<R> call(instances, o, kernel);
-    const host::any_run run{&kernel,   &call.arguments, &run_library<R>,
+    const host::any_run run{&with,     &call.arguments, &run_library<R>,
                             data.size, o.phases,        static_cast<openmp::instruction_set>(kernel.instruction_set)};
     try {
         host::integrate_all<R>(where, o, &run, nullptr, data, check, *result);

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "interpreted.hpp"
 #include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/core/error.hpp"
@@ -25,10 +26,16 @@ class library {
 public:
     /// Throws `error` if the file is no kernel library of this version, or not for this CPU.
     explicit library(const std::string& path);
-    const kernel_library& facts() const { return *facts_; }
+    /// The interpreter with a model of that many shared values; `may_stop`: its hooks may end phases.
+    library(const std::string& method, int shared, int shared_integers, bool may_stop,
+            std::shared_ptr<const interpreted> model);
+    const kernel_library& facts() const { return facts_; }
+    /// What an interpreter runs; null for compiled kernels.
+    const tape* model() const { return model_ ? &model_->get() : nullptr; }
 
 private:
-    const kernel_library* facts_;
+    kernel_library facts_;
+    std::shared_ptr<const interpreted> model_;
 };
 
 /// The names of a model's components, in their order.
