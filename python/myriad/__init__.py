@@ -11,5 +11,7 @@ from .model import *  # noqa: F403
 from .run import Interrupted, Run, status_names
 from .solve import solve
 from .symbols import *  # noqa: F403
+from .table import *  # noqa: F403
+from .tangents import *  # noqa: F403
 
 __version__ = _core.version

@@ -3,10 +3,10 @@
 
 import re
 
-from .errors import Error, at
 from .expression import condition, integer, number_text, real, text, walk, write
 
 _columns = 116  # inside the struct
+_deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
 _largest_literal = 1 << 24  # exact in single precision
 
 _headers = {"time": "t", "step": "h", "next_step": "h_next", "phase": "phase", "instance": "index",
@@ -15,6 +15,10 @@ _temporaries = {"add": "sum", "subtract": "difference", "multiply": "product", "
                 "sin": "sine", "cos": "cosine", "exp": "exponential", "pow": "power", "powr": "power",
                 "log": "logarithm", "select": "chosen", "abs": "size", "min": "least", "max": "largest",
                 "reciprocal": "inverse", "hypot": "length", "negate": "opposite"}
+
+
+# Of several of these with equal arguments, the arguments are used once.
+_shared_work = ("sincos.sine", "sincos.cosine", "sincospi.sine", "sincospi.cosine", "dot")
 
 
 def _converts(node, argument):
@@ -43,13 +47,12 @@ class Names:
     """The names that a model's functions use for their arguments: the usual ones unless a component has that name."""
 
     def __init__(self, model):
-        self.taken = set(model.component_names)
+        self.taken = {*model.component_names, "i", "j"}
         self.y = self._free("y", "s", "u", "state_")
         self.p = self._free("p", "in", "inputs")
         self.t = self._free("t", "time", "t_")
         self.R = self._free("R", "S", "Real", "R_")
         self.lane = self._free("lane", "instance", "lane_")
-        self.event = self._free("event", "number", "event_")
 
     def _free(self, *candidates):
         return next(c for c in candidates if c not in self.taken)
@@ -60,32 +63,44 @@ class Body:
 
     def __init__(self, roots, names, symbol, scalar):
         self.names, self.symbol, self.scalar = names, symbol, scalar
+        self.shared = f"{names.lane if symbol.__name__ == 'in_hook' else names.p}.shared"
         self.lines = []
         self.named = {}
-        self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, names.event}
+        self.numbers = {}
+        self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, "event"}
         uses = {}
         order = walk(roots)
-        computed = {(node.op.partition(".")[0], *map(id, node.args)): node for node in order}  # sincos once
+        computed = {(node.op.partition(".")[0], *map(id, node.args)) if node.op in _shared_work else node: node
+                    for node in order}
         for node in computed.values():
             for argument in node.args:
                 uses[id(argument)] = uses.get(id(argument), 0) + 1
         for root in roots:
             uses[id(root)] = uses.get(id(root), 0) + 1
+        depth = {}
         for node in order:
             if id(node) in self.named:
                 continue
             if node.op.startswith("sincos"):
                 self._sine_and_cosine(node, order)
-            elif uses[id(node)] > 1 and node.args and not (node.op == "negate" and not node.args[0].args):
+                continue
+            if node.op == "dot":
+                self._product(node, order)
+                continue
+            depth[id(node)] = 1 + max((depth.get(id(a), 0) for a in node.args), default=0)
+            shared = uses[id(node)] > 1 and not (node.op == "negate" and not node.args[0].args)
+            if node.args and (shared or depth[id(node)] > _deepest):
                 name = self._name(_temporaries.get(node.op, "holds" if node.type == condition else node.op))
                 self.lines.append(f"const auto {name} = {self.text(node)};")
                 self.named[id(node)] = name
+                depth[id(node)] = 0
 
     def _name(self, base):
-        name, n = base, 1
+        """A name that nothing else has: `base`, or with a number."""
+        name = base
         while name in self.used_names:
-            n += 1
-            name = f"{base}_{n}"
+            self.numbers[base] = self.numbers.get(base, 1) + 1
+            name = f"{base}_{self.numbers[base]}"
         self.used_names.add(name)
         return name
 
@@ -111,6 +126,27 @@ class Body:
                     found.add(id(node))
         return found
 
+    def _product(self, node, order):
+        """Products of rows of a table with one vector, in a loop over all rows that are used."""
+        table, _ = node.value
+        n, kind = len(node.args), self.names.R
+        same = [other for other in order if other.op == "dot" and other.value[0] == table and
+                all(a is b for a, b in zip(other.args, node.args))]
+        first, last = min(o.value[1] for o in same) // n, max(o.value[1] for o in same) // n
+        vector, product, total = self._name("vector"), self._name("product"), self._name("total")
+        if self.scalar:
+            kind = f"std::remove_cvref_t<decltype({self.names.lane}.t)>"
+        self.lines.append(f"const myriad::vec<{kind}, {n}> {vector} = {{{', '.join(map(self.text, node.args))}}};")
+        self.lines.append(f"myriad::vec<{kind}, {last - first + 1}> {product};")
+        row = f"({first} + i)" if first else "i"
+        self.lines += [f"for (int i = 0; i < {last - first + 1}; ++i) {{",
+                       f"    {kind} {total} = {self.shared}[{table.name} + {row} * {n}] * {vector}[0];",
+                       f"    for (int j = 1; j < {n}; ++j) {total} += "
+                       f"{self.shared}[{table.name} + {row} * {n} + j] * {vector}[j];",
+                       f"    {product}[i] = {total};", "}"]
+        for other in same:
+            self.named[id(other)] = f"{product}[{other.value[1] // n - first}]"
+
     def early(self, node, name):
         """The name of a variable with the value that the expression has here."""
         if id(node) in self.named or not node.args and node.op != "symbol":
@@ -134,6 +170,9 @@ class Body:
             return self.named[id(node)]
         if node.op == "symbol":
             return self.symbol(node)
+        if node.op == "element":
+            table, number = node.value
+            return f"{self.shared}[{table.name}{f' + {number}' if number else ''}]"
         if node.op == "truth":
             return "true" if node.value else "false"
         if node.op == "constant":
@@ -202,9 +241,11 @@ class Writer:
         out += [f"/// {line}" for line in self.description()]
         out += [f"struct {name} {{"]
         out += ["    " + d for d in self.declarations()]
+        last_elements = {f"{t.name}_last": f"{t.name}_last = {t.name} + {t.values.size - 1}" for t in model.tables}
         for kind, names in model.enumerations():
             if names:
-                out += ["    " + line for line in _wrap(f"enum {kind} {{ {', '.join(names)}, n_{kind} }};", 0)]
+                written = ", ".join(last_elements.get(n, n) if kind == "shared" else n for n in names)
+                out += ["    " + line for line in _wrap(f"enum {kind} {{ {written}, n_{kind} }};", 0)]
         if model.reductions:
             out.append("    static constexpr myriad::reduction reductions[] = {")
             out += [f"        {{{r.observed}, myriad::over_phase::{r.kind}, {r.accessory}}}," for r in model.reductions]
@@ -247,16 +288,13 @@ class Writer:
 
     def function(self, name, count, roots):
         n = self.names
-        problem = generic_problem(roots)
-        if problem is not None:
-            raise Error(f"`{text(problem)}`{at(problem.line)} mixes whole and real numbers, or multiplies whole ones, "
-                        f"in an equation or event: compare them, as in myriad.where(mode == 1, a, b)")
         body = Body(roots, n, self.in_function, scalar=False)
         values = []
         for root in roots:
             value = body.text(root)
             values.append(value if _depends_on_instance(root) or value.startswith(n.R + "(") else f"{n.R}({value})")
-        kinds = {s.value[0] for s in walk(roots) if s.op == "symbol"}
+        used = [node for node in walk(roots) if node.op in ("symbol", "element", "dot")]
+        kinds = {node.value[0] if node.op == "symbol" else "shared" for node in used}
         arguments = [f"auto {n.t}" if "built-in" in kinds else "auto",
                      f"const myriad::vec<{n.R}, n_state>&" + (f" {n.y}" if "state" in kinds else ""),
                      "const auto&" + (f" {n.p}" if kinds - {"built-in", "state"} else "")]
@@ -384,13 +422,13 @@ class Writer:
             elif i == len(events) - 1:
                 lines += ["} else {", *("    " + s for s in statements)]
             else:
-                start = f"if ({n.event} == {event.name}) {{"
+                start = f"if (event == {event.name}) {{"
                 lines += ["} else " + start if i else start, *("    " + s for s in statements)]
         if len(events) > 1:
             lines.append("}")
         if ends and not (len(events) == 1 and lines[-1].startswith("return")):
             lines.append("return myriad::action::proceed;")
-        number = f"int {n.event}" if len(events) > 1 else "int"
+        number = f"int event" if len(events) > 1 else "int"
         result = "myriad::action" if ends else "void"
         return [f"MYRIAD_FUNCTION static {result} after_event({number}, auto& {n.lane}) {{",
                 *self.block(lines), "}"]

@@ -6,6 +6,7 @@ one object. Operators and functions record what they are applied to and compute 
 import math
 import numbers
 import operator
+import threading
 import weakref
 
 import numpy as np
@@ -20,6 +21,7 @@ pi = math.pi
 
 real, integer, condition = "real", "integer", "condition"  # the types of nodes
 _known = weakref.WeakValueDictionary()
+_lock = threading.RLock()
 
 
 class Node:
@@ -29,6 +31,9 @@ class Node:
 
     def __hash__(self):
         return id(self) >> 4
+
+    def __reduce__(self):
+        return make, (self.op, self.args, self.value, self.type)
 
     def __repr__(self):
         return text(self)
@@ -45,12 +50,13 @@ class Node:
 def make(op, args=(), value=None, type=real):
     """The node of an operation; the same object whenever it is made of the same arguments."""
     key = (op, tuple(id(a) for a in args), value if op != "constant" else (value.__class__, repr(value)))
-    node = _known.get(key)
-    if node is None:
-        node = object.__new__(Condition if type == condition else Expression)
-        node.op, node.args, node.value, node.type, node.line = op, args, value, type, users_line()
-        _known[key] = node
-    return node
+    with _lock:
+        node = _known.get(key)
+        if node is None:
+            node = object.__new__(Condition if type == condition else Expression)
+            node.op, node.args, node.value, node.type, node.line = op, args, value, type, users_line()
+            _known[key] = node
+        return node
 
 
 def constant(number):
@@ -498,6 +504,18 @@ def _numpy_functions():
 
 _numpy_table = {}
 
+
+def _add_numpys_methods():
+    """NumPy's functions of an array of objects call a method of each: np.sin(array) calls array[0].sin()."""
+    for function, ours in _numpy_functions().items():
+        if function.nin == 1 and function.__name__ not in ("absolute", "negative", "positive", "invert"):
+            setattr(Expression, function.__name__, lambda self, ours=ours: ours(self))
+    for name, ours in (("arctan2", atan2), ("hypot", hypot), ("copysign", copysign)):
+        setattr(Expression, name, lambda self, other, ours=ours: ours(self, other))
+
+
+_add_numpys_methods()
+
 # ----------------------------------------------------------------------------------------------------------------------
 # Walking through a graph
 # ----------------------------------------------------------------------------------------------------------------------
@@ -595,7 +613,9 @@ def text(node):
             return n.value[1]
         if n.op in ("constant", "truth"):
             return number_text(n.value) if n.op == "constant" else str(n.value)
-        return None
+        if n.op == "element":
+            return f"{n.value[0].name}[{n.value[1]}]"
+        return f"({n.value[0].name} @ vector)[{n.value[1] // len(n.args)}]" if n.op == "dot" else None
 
     if len(walk([node])) > 200:
         return f"({node.op} of {len(walk([node]))} operations)"
@@ -629,6 +649,11 @@ def evaluate(roots, values):
                 known[id(node)] = np.asarray(values[node]) + 0
             elif node.op in ("constant", "truth"):
                 known[id(node)] = node.value
+            elif node.op == "element":
+                known[id(node)] = node.value[0].values.flat[node.value[1]]
+            elif node.op == "dot":
+                table, start = node.value
+                known[id(node)] = sum(table.values.flat[start + j] * known[id(a)] for j, a in enumerate(node.args))
             else:
                 known[id(node)] = _operations[node.op](*(known[id(a)] for a in node.args))
     return [known[id(root)] for root in roots]

@@ -7,10 +7,11 @@ import inspect
 import numpy as np
 
 from . import symbols as sym
-from .cpp import Writer
+from .cpp import Writer, generic_problem
 from .errors import Error, at, users_line
-from .expression import Node, as_condition, as_number, evaluate, integer, real, symbols_of, text, to_real
+from .expression import Node, as_condition, as_number, evaluate, integer, real, symbols_of, text, to_real, walk
 from .parse import from_sympy, is_sympy, parse, parse_equations, sympy_name
+from .table import element_name, tables_of
 
 __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
            "integral"]
@@ -100,27 +101,38 @@ def model(equations, *, events=(), accessories=None, initialise=None, after_step
 
 
 class Model:
-    """A recorded model. Names of components are in the order in which results and C++ enumerate them; `cpp()` is its
-    header, `hash` identifies it."""
+    """A recorded model. Names of components are in the order in which results and C++ enumerate them, elements of
+    tables behind the other shared values; `shared_values` has what they are. `cpp()` is its header, `hash` identifies
+    it."""
 
     def __init__(self, equations, events, accessories, initialise, after_step, finalise, states, parameters, shared,
                  name):
         self.line = users_line()
         self._source = None
         self._declared = self._declare(states, parameters, shared, accessories)
-        if name is None and callable(equations):
-            name = getattr(equations, "__name__", None)
-            name = name if name and name.isidentifier() and name.isascii() and not name.startswith("_") else None
-        self.name = sym.check_name(name, "a model") if name is not None else "model"
-        targets, self.rhs = self._equations(equations, states, parameters, shared)
+        self._names = self._declared  # what texts may name: later also what the equations do
+        targets, self.rhs = self._equations(equations, states)
         self.states = [t.value[1] for t in targets]
+        others = [a for a in accessories or {} if isinstance(a, Node) and a.op == "symbol"]
+        self._names = {**{s.value[1]: s for s in targets + symbols_of(self.rhs) + others}, **self._declared}
         self.events = self._events(events)
         start = self._accessories(accessories)
         self.initialise = start + self._assignments(initialise, "initialise", {t for t, _ in start})
         self.after_step = self._assignments(after_step, "after_step")
         self.finalise = self._assignments(finalise, "finalise")
         self._collect(targets)
+        self.name = self._default_name(equations) if name is None else sym.check_name(name, "a model")
         self._check()
+
+    def _default_name(self, equations):
+        """The name of the function, if it can be that of a struct, or "model"."""
+        for name in (getattr(equations, "__name__", ""), "model"):
+            try:
+                if name not in self.component_names:
+                    return sym.check_name(name, "a model")
+            except Error:
+                continue
+        return "traced"
 
     # What users may give
 
@@ -141,9 +153,9 @@ class Model:
     def _value(self, value, what):
         """An expression from what a user gave."""
         if isinstance(value, str):
-            return parse(value, self._declared, f"{what}{at(self.line)}")
+            return parse(value, self._names, f"{what}{at(self.line)}")
         if is_sympy(value):
-            return from_sympy(value, self._declared, f"{what}{at(self.line)}")
+            return from_sympy(value, self._names, f"{what}{at(self.line)}")
         return value
 
     def _target(self, key, what):
@@ -154,7 +166,7 @@ class Model:
                         "myriad.states")
         return key
 
-    def _equations(self, equations, states, parameters, shared):
+    def _equations(self, equations, states):
         if isinstance(equations, str):
             equations = parse_equations(equations, self._declared, at(self.line))
         elif callable(equations) and not isinstance(equations, dict):
@@ -326,7 +338,8 @@ class Model:
         """The components, in the order in which the equations, events, accessories and hooks first name them."""
         hooks = [("initialise", self.initialise), ("after_step", self.after_step), ("finalise", self.finalise)]
         hooks += [(f"event {e.name}", e.do) for e in self.events]
-        self._in_functions = symbols_of(self.rhs + [e.function for e in self.events] + [q for _, q in self.observed])
+        self._functions = self.rhs + [e.function for e in self.events] + [q for _, q in self.observed]
+        self._in_functions = symbols_of(self._functions)
         found = targets + self._in_functions + self._accessory_targets
         for _, assignments in hooks:
             found += [t for t, _ in assignments] + symbols_of([e for _, e in assignments])
@@ -341,6 +354,10 @@ class Model:
             raise Error(f"the state {missing[0]}{at(symbol.line)} has no equation{at(self.line)}: add its derivative, "
                         f"or make it a parameter if it is constant")
         self.parameters, self.shared = components["parameter"], components["shared"]
+        everything = walk(self._functions + [e for _, assignments in hooks for _, e in assignments])
+        self.tables = tables_of(everything)
+        self.shared_values = {element_name(t, i): float(v) for t in self.tables for i, v in enumerate(t.values.flat)}
+        self.scalar_shared, self.shared = self.shared, self.shared + list(self.shared_values)
         self.shared_integers = components["shared_integer"]
         self.accessories, self.integer_accessories = components["accessory"], components["integer_accessory"]
         assigned = {t.value for _, assignments in hooks for t, _ in assignments}
@@ -353,7 +370,8 @@ class Model:
 
     def enumerations(self):
         """(kind, names) of everything that has an enumeration in C++."""
-        return [("state", self.states), ("parameter", self.parameters), ("shared", self.shared),
+        shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
+        return [("state", self.states), ("parameter", self.parameters), ("shared", shared),
                 ("shared_integer", self.shared_integers), ("accessory", self.accessories),
                 ("integer_accessory", self.integer_accessories), ("event", [e.name for e in self.events]),
                 ("observed", [n for n, _ in self.observed])]
@@ -369,7 +387,7 @@ class Model:
             for name in names:
                 if name in kinds:
                     clash = f"names both {sym.a(kinds[name])} and {sym.a(kind)}"
-                    clash = f"is the name of two {kind}s" if kinds[name] == kind else clash
+                    clash = "is the name of two components" if kinds[name] == kind else clash
                     raise Error(f"'{name}' {clash}{at(self.line)}: rename one of them")
                 kinds[name] = kind
         for symbol in self._in_functions:
@@ -377,6 +395,14 @@ class Model:
             if kind in ("event_count", "action") or kind == "built-in" and name != "time":
                 raise Error(f"{name} stands in an equation, event or reduction{at(self.line)}, but only hooks and "
                             "actions see it: store it in an accessory there")
+        problem = generic_problem(self._functions)
+        if problem is not None:
+            raise Error(f"`{text(problem)}`{at(problem.line)} mixes whole and real numbers, or multiplies whole ones, "
+                        "in an equation or event: compare them, as in myriad.where(mode == 1, a, b)")
+        for node in walk(self._functions):
+            if node.op == "powr" and any(s.value[0] == "state" or s is sym.time for s in symbols_of([node.args[1]])):
+                raise Error(f"the exponent of `{text(node)}`{at(node.line)} depends on the state or on time: use "
+                            "myriad.pow, as powr has no derivative by its exponent")
         for what, assignments in self._hooks:
             for target, value in assignments:
                 for symbol in symbols_of([value]):

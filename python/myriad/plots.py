@@ -30,7 +30,7 @@ def _numbers(array, what, dimensions):
     numbers = np.asarray(array)
     if numbers.ndim not in dimensions:
         wanted = " or ".join(map(str, dimensions))
-        raise Error(f"{what} has shape {numbers.shape}: give an array of {wanted} dimension{'s' * (dimensions != (1,))}")
+        raise Error(f"{what} has shape {numbers.shape}: give an array of {wanted} dimensions")
     return numbers
 
 
@@ -40,6 +40,18 @@ def _is_geometric(values):
         return False
     steps, ratios = np.diff(values), np.diff(np.log(values))
     return np.allclose(ratios, ratios[0], rtol=1e-6) and not np.allclose(steps, steps[0], rtol=1e-6)
+
+
+def _logarithmic(axis, set_scale):
+    """A logarithmic axis, with ticks at 1, 2 and 5 of each decade if it has less than two."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    set_scale("log")
+    least, most = axis.get_view_interval()
+    if most < 100 * least:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(StrMethodFormatter("{x:.10g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def bifurcation(x, y, *, xlabel=None, ylabel=None, axes=None, **style):
@@ -55,8 +67,6 @@ def bifurcation(x, y, *, xlabel=None, ylabel=None, axes=None, **style):
     shown = np.isfinite(across) & np.isfinite(up)
     across, up = across[shown], up[shown]
     logarithmic = _is_geometric(np.unique(x[np.isfinite(x)]))
-    if logarithmic:
-        axes.set_xscale("log")
     if len(up) > _many_points and not style:
         box = axes.get_window_extent()
         rows = max(int(box.height), 200)
@@ -71,6 +81,8 @@ def bifurcation(x, y, *, xlabel=None, ylabel=None, axes=None, **style):
                 "markeredgewidth": 0, "color": _colours[0], "rasterized": True, **style}
         axes.plot(across, up, **look)
     axes.margins(x=0)
+    if logarithmic:
+        _logarithmic(axes.xaxis, axes.set_xscale)
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
     return axes
@@ -86,9 +98,6 @@ def parameter_map(x, y, z, *, xlabel=None, ylabel=None, zlabel=None, names=None,
                     f"({len(x)}, {len(y)})")
     axes = _axes_of(axes, figsize=(6.4, 4.8))
     axes.set_facecolor("0.85")
-    for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
-        if _is_geometric(values):
-            set_scale("log")
     if names is None:
         colours = axes.pcolormesh(x, y, np.ma.masked_invalid(z).T, shading="nearest",
                                   **{"cmap": "viridis", "rasterized": True, **style})
@@ -104,6 +113,9 @@ def parameter_map(x, y, z, *, xlabel=None, ylabel=None, zlabel=None, names=None,
         bar = axes.figure.colorbar(colours, ax=axes, ticks=np.arange(len(present)))
         bar.ax.set_yticklabels([names[int(p)] for p in present])
         bar.ax.minorticks_off()
+    for axis, set_scale, values in ((axes.xaxis, axes.set_xscale, x), (axes.yaxis, axes.set_yscale, y)):
+        if _is_geometric(values):
+            _logarithmic(axis, set_scale)
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
     return axes
@@ -208,8 +220,8 @@ class Plots:
         run, (x, y, z) = self._run, map(_name, (x, y, z))
         along = [] if run.sweep is None else [name for name, _ in run.sweep.axes]
         if sorted((x, y)) != sorted(name for name, values in (run.sweep.axes if along else ()) if len(values) > 1):
-            raise Error(f"the sweep is no grid over {x} and {y} alone (its axes: {', '.join(along) or 'none'}): make it "
-                        f"by myriad.grid({x}=..., {y}=...)")
+            raise Error(f"the sweep is no grid over {x} and {y} alone (its axes: {', '.join(along) or 'none'}): make "
+                        f"it by myriad.grid({x}=..., {y}=...)")
         values = np.asarray(run.status if z == "status" else run.records[z][:, phase] if z in run.records else run[z])
         if values.ndim == 2:
             values = values[:, -1]
@@ -238,7 +250,8 @@ class Plots:
         chosen, labels = self._instances(instances)
         if y not in run.samples:
             raise Error(f"there are no samples of {y}: give samples=, as in samples=200, to solve")
-        return time_series(run.sample_times[chosen], run.samples[y][chosen], labels=labels, ylabel=y, axes=axes, **style)
+        return time_series(run.sample_times[chosen], run.samples[y][chosen], labels=labels, ylabel=y, axes=axes,
+                           **style)
 
     def phase_portrait(self, x, y, *, instances=None, axes=None, **style):
         """The samples of one state over those of another; without samples the points recorded at the ends of phases.

@@ -140,9 +140,10 @@ class Run:
 
     @property
     def shared(self):
-        """The shared values by name."""
+        """The shared values by name, without those of tables."""
         reals, integers = self._ensemble.array("shared"), self._ensemble.array("shared_integer")
-        return {**{name: reals[c] for c, name in enumerate(self._components.shared)},
+        tables = self._components.tables
+        return {**{name: reals[c] for c, name in enumerate(self._components.shared) if name not in tables},
                 **{name: integers[c] for c, name in enumerate(self._components.shared_integers)}}
 
     @property

@@ -68,6 +68,7 @@ def _gather(components, sweep, start, time, size):
             if name in given:
                 raise Error(f"'{name}' is given in the sweep and in start=: give it once")
             given[name] = _numbers(value, name)
+    given = {**{name: np.asarray(value) for name, value in components.defaults.items()}, **given}
     missing = [f"'{n}'" for n in components.states if n not in given]
     if missing:
         raise Error(f"the initial value of {', '.join(missing)} is missing: give it in start=")
