@@ -95,7 +95,8 @@ def _gather(components, sweep, start, time, size):
 
 
 def _fill(ensemble, components, given, domain, names):
-    for kind, known, all_names in (("state", components.states, names[0]), ("parameter", components.parameters, names[1]),
+    for kind, known, all_names in (("state", components.states, names[0]),
+                                   ("parameter", components.parameters, names[1]),
                                    ("accessory", components.accessories, names[4])):
         for number in range(len(known), len(all_names)):  # which an interpreted model does not use
             ensemble.array(kind, number)[...] = 0
@@ -326,8 +327,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     if interpreted or (interpreted is None and compiler.known_compiler() is None):
         why = "as asked" if interpreted else "as there is no C++ compiler"
         if precision != "double" or control:
-            raise Error(f"a model is interpreted, {why}, in double precision and with the usual control alone: leave out "
-                        "precision= and control=, or install a C++ compiler")
+            raise Error(f"a model is interpreted, {why}, in double precision and with the usual control alone: leave "
+                        "out precision= and control=, or install a C++ compiler")
         kernel = tape.kernel(model, components, method, why)
         names = tape.padded(components)
     else:

@@ -277,7 +277,11 @@ NB_MODULE(_core, m) {
         require(codes.size() == values.size() && codes.size() == registers.size(), "a tape's parts differ in length");
         std::vector<tape_step> steps;
         for (std::size_t i = 0; i < codes.size(); ++i) {
-            const auto narrow = [&](std::size_t k) { return static_cast<std::uint16_t>(registers[i][k]); };
+            const auto narrow = [&](std::size_t k) {
+                require(registers[i][k] >= 0 && registers[i][k] <= 0xffff, "the interpreter has no component ",
+                        registers[i][k], ": install a C++ compiler");
+                return static_cast<std::uint16_t>(registers[i][k]);
+            };
             steps.push_back({values[i], narrow(0), narrow(1), narrow(2), narrow(3), static_cast<tape_code>(codes[i])});
         }
         new (self) interpreted(functions, std::move(steps));

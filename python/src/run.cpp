@@ -208,6 +208,12 @@ private:
     host::component_array<R> own_times_;
 };
 
+/// The components of a kind that the model has; those that an interpreter has besides are called unused.
+std::size_t used(const std::vector<std::string>& names) {
+    return static_cast<std::size_t>(std::count_if(
+        names.begin(), names.end(), [](const std::string& name) { return name.substr(0, 7) != "unused "; }));
+}
+
 /// The kernel of a library, for `run_kernel`.
 template <class R>
 detail::run_statistics run_library(const host::any_run& all, const detail::run_options& o,
@@ -258,6 +264,8 @@ std::unique_ptr<report<R>> solve(const library& with, const device& where, ensem
         result->interrupted = true;
         result->device = where.name();
     }
+    result->first_state.resize(std::min(result->first_state.size(), used(instances.shape->names.states)));
+    result->first_parameter.resize(std::min(result->first_parameter.size(), used(instances.shape->names.parameters)));
     result->records = std::move(call.records);
     if (!left.note.empty()) result->notes.push_back(left.note);
     if (kernel.embedded_order > 0) host::note_raised_tolerances<R>(*result, o);

@@ -6,21 +6,27 @@
 #include <cstdint>
 
 // Operations with one, two and three arguments, by the names of the traced expressions, and what they call.
-#define MYRIAD_TAPE_UNARY(X)                                                                                     \
-    X(sqrt)                                                                                                      \
-    X(cbrt)                                                                                                      \
-    X(abs) X(floor) X(round) X(sin) X(cos) X(tan) X(asin) X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(exp) X(exp2) \
-        X(log) X(log2) X(log10) X(reciprocal) X(sinpi) X(cospi)
+#define MYRIAD_TAPE_UNARY(X)                                                                                           \
+    X(sqrt)                                                                                                            \
+    X(cbrt)                                                                                                            \
+    X(abs)                                                                                                             \
+    X(floor)                                                                                                           \
+    X(round)                                                                                                           \
+    X(sin)                                                                                                             \
+    X(cos) X(tan) X(asin) X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(exp) X(exp2) X(log) X(log2) X(log10) X(reciprocal) \
+        X(sinpi) X(cospi)
 #define MYRIAD_TAPE_BINARY(X) X(min) X(max) X(pow) X(atan2) X(hypot) X(copysign)
 #define MYRIAD_TAPE_INFIX(X) X(add, +) X(subtract, -) X(multiply, *) X(divide, /)
 #define MYRIAD_TAPE_COMPARISON(X) \
     X(less, <) X(less_equal, <=) X(greater, >) X(greater_equal, >=) X(equal, ==) X(not_equal, !=)
 // What is loaded from and stored to a model's arguments; `a` is the number of the component.
-#define MYRIAD_TAPE_LOAD(X)                                                                                            \
-    X(state)                                                                                                           \
-    X(parameter)                                                                                                       \
-    X(shared) X(shared_integer) X(accessory) X(integer_accessory) X(event_count) X(time) X(step) X(next_step) X(phase) \
-        X(instance) X(t_begin) X(t_end)
+#define MYRIAD_TAPE_LOAD(X) \
+    X(state)                \
+    X(parameter)            \
+    X(shared)               \
+    X(shared_integer)       \
+    X(accessory)            \
+    X(integer_accessory) X(event_count) X(time) X(step) X(next_step) X(phase) X(instance) X(t_begin) X(t_end)
 #define MYRIAD_TAPE_STORE(X) \
     X(result) X(state) X(parameter) X(accessory) X(integer_accessory) X(next_step) X(end_phase) X(end_instance)
 // The methods that the interpreter is compiled for.
