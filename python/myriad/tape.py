@@ -7,6 +7,7 @@ from . import _core
 from .compiler import Kernel
 from .errors import Error
 from .expression import walk
+from .table import element_name
 
 methods = tuple(_core.interpreted_methods())
 _codes = {name: number for number, name in enumerate(_core.tape_operations())}
@@ -63,11 +64,23 @@ class Writer:
             for argument in dict.fromkeys(map(id, node.args)):
                 if uses[argument] == 0:
                     free.append(register[argument])
-            if not free:
+            unread = [r for r in free if node.op != "dot" or r not in arguments]  # a product reads them several times
+            if len(unread) < (2 if node.op == "dot" else 1):
                 raise _refuse("one of its functions needs more intermediate values than the interpreter has")
-            to = register[id(node)] = free.pop()
+            to = register[id(node)] = unread[-1]
+            free.remove(to)
             if node.op == "symbol":
                 self._symbol(node, to)
+            elif node.op == "element":
+                self._emit("load_shared", to, self.place[element_name(*node.value)][1])
+            elif node.op == "dot":
+                table, start = node.value
+                for j, argument in enumerate(arguments):
+                    term = unread[-2] if j else to
+                    self._emit("load_shared", term, self.place[element_name(table, start + j)][1])
+                    self._emit("multiply", term, term, argument)
+                    if j:
+                        self._emit("add", to, to, term)
             elif node.op in ("constant", "truth"):
                 self._emit("constant", to, value=float(node.value))
             else:
@@ -100,7 +113,7 @@ def library(model, components, method):
     """The interpreter of the core with the tape of a traced model. Raises `Error` if the model or the method is beyond
     it."""
     if not hasattr(model, "rhs"):
-        raise _refuse("it is written in C++")
+        raise _refuse("it has tangents" if hasattr(model, "vectors") else "it is written in C++")
     if method not in methods:
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
     if model.reductions:

@@ -6,15 +6,17 @@
 #include <cstdint>
 
 // Operations with one, two and three arguments, by the names of the traced expressions, and what they call.
-#define MYRIAD_TAPE_UNARY(X)                                                                                           \
-    X(sqrt)                                                                                                            \
-    X(cbrt)                                                                                                            \
-    X(abs)                                                                                                             \
-    X(floor)                                                                                                           \
-    X(round)                                                                                                           \
-    X(sin)                                                                                                             \
-    X(cos) X(tan) X(asin) X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(exp) X(exp2) X(log) X(log2) X(log10) X(reciprocal) \
-        X(sinpi) X(cospi)
+#define MYRIAD_TAPE_UNARY(X) \
+    X(sqrt)                  \
+    X(cbrt)                  \
+    X(abs)                   \
+    X(floor)                 \
+    X(round)                 \
+    X(sin)                   \
+    X(cos)                   \
+    X(tan)                   \
+    X(asin)                  \
+    X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(exp) X(exp2) X(log) X(log2) X(log10) X(reciprocal) X(sinpi) X(cospi)
 #define MYRIAD_TAPE_BINARY(X) X(min) X(max) X(pow) X(atan2) X(hypot) X(copysign)
 #define MYRIAD_TAPE_INFIX(X) X(add, +) X(subtract, -) X(multiply, *) X(divide, /)
 #define MYRIAD_TAPE_COMPARISON(X) \

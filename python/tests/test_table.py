@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Arrays that all instances share."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -49,6 +53,27 @@ def test_integrated_with_a_table_linear_equations_have_their_closed_form():
         expected = (vectors * np.exp(factor * values) @ np.linalg.solve(vectors, start)).real
         np.testing.assert_allclose([run[y][i] for y in states], expected, atol=1e-10)
         assert run[total][i] == pytest.approx(expected.sum(), abs=1e-9)
+
+
+INTERPRETED = """
+import numpy as np, myriad as my
+x, y = my.states("x y")
+W = my.table("W", np.linspace(-1, 1, 18).reshape(2, 9))
+slopes = W @ [x, y, x * y, x - y, 1, x, y, x + y, 2] - W[0, 1] * np.array([x, y])
+run = my.solve(my.model(dict(zip((x, y), slopes))), start={x: 1, y: 0.5}, time=(0, 1))
+print("interpreted" in run.report.kernel, *run["x"], *run["y"])
+"""
+
+
+def test_tables_are_interpreted_where_there_is_no_compiler():
+    printed = []
+    for changed in ({}, {"PATH": "/nonexistent", "MYRIAD_CXX": ""}):
+        done = subprocess.run([sys.executable, "-c", INTERPRETED], env={**os.environ, **changed}, capture_output=True,
+                              text=True)
+        assert done.returncode == 0, done.stderr
+        printed.append(done.stdout.split())
+    assert [first for first, *_ in printed] == ["False", "True"]
+    np.testing.assert_allclose(*(np.array(values, float) for _, *values in printed), rtol=1e-13)
 
 
 @pytest.mark.parametrize("make, message", [
