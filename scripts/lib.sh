@@ -71,6 +71,8 @@ has_package() {
         libclang-rt-dev) has_clang_runtime ;;
         python3-matplotlib | python3-scipy | python3-xarray) python_with "${1#python3-}" >/dev/null ;;
         python3-netcdf4) python_with netCDF4 >/dev/null ;;
+        python3-dev) python3 -c 'import os, sysconfig
+assert os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h"))' >/dev/null 2>&1 ;;
         python3-venv) python3 -c 'import ensurepip, venv' >/dev/null 2>&1 ;;
         doxygen) has_command doxygen ;;
         *) return 1 ;;

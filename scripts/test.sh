@@ -6,8 +6,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
 source scripts/lib.sh
 
-all_steps=(ci docs cuda strict clang asan tsan)
-usual_steps=(ci docs cuda tsan)
+all_steps=(ci docs python cuda strict clang asan tsan)
+usual_steps=(ci docs python cuda tsan)
 
 usage() {
     cat <<'END'
@@ -20,6 +20,8 @@ Steps, in this order, of which strict, clang and asan run only if asked for, for
   ci      g++, release, warnings are errors: all tests, examples, benchmarks, validation
   docs    the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx cannot
           be installed)
+  python  the Python package: its wheel is built, installed in a fresh virtual environment, and tested (skipped where
+          the packages of PyPI that it is built with cannot be installed)
   cuda    the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
           both backends runs without a GPU (skipped without nvcc)
   strict  no contraction of a * b + c: scalar lanes and packs agree bit for bit
@@ -73,7 +75,8 @@ if wants ci || wants cuda || wants clang; then
         python3-xarray)
 fi
 if wants ci || wants docs; then packages+=(doxygen); fi
-if wants docs; then packages+=(python3-venv); fi
+if wants docs || wants python; then packages+=(python3-venv); fi
+if wants python; then packages+=(python3-dev); fi
 if wants clang || wants tsan; then packages+=(clang libomp-dev); fi
 if wants tsan; then packages+=(libclang-rt-dev); fi
 
@@ -159,6 +162,21 @@ run_step() {
                 failed=$((failed + 1)) result="failed"
             else
                 passed=$((passed + 1)) result="$(tail -n 2 build/docs.log | head -n 1)"
+            fi ;;
+        python)
+            local status=0 log=build/python.log
+            quietly "$log" scripts/python.sh || status=$?
+            if ((status == 77)); then
+                say "python: skipped, $(tail -n 1 "$log")"
+                summary+=("python: SKIPPED, the package was not tested: see $log")
+                return
+            fi
+            result=$(tail -n 1 "$log")
+            if [[ $result =~ ([0-9]+)\ passed ]]; then passed=$((passed + BASH_REMATCH[1])); fi
+            if [[ $result =~ ([0-9]+)\ failed ]]; then
+                failed=$((failed + BASH_REMATCH[1]))
+            elif ((status)); then
+                failed=$((failed + 1)) result="failed"
             fi ;;
         cuda)
             if ! has_command nvcc; then

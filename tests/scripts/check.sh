@@ -72,6 +72,7 @@ expect "validate.sh refuses an unknown device" 2 "no device 'abacus'" scripts/va
 expect "case_studies.sh --help" 0 'Usage: scripts/case_studies.sh' scripts/case_studies.sh --help
 expect "case_studies.sh refuses an unknown program" 2 "no case study 'abacus'" scripts/case_studies.sh --only abacus
 expect "case_studies.sh refuses an unknown device" 2 "no device 'abacus'" scripts/case_studies.sh --device abacus
+expect "python.sh --help" 0 'Usage: scripts/python.sh' scripts/python.sh --help
 expect "docs.sh --help" 0 'Usage: scripts/docs.sh' scripts/docs.sh --help
 expect "docs.sh refuses an unknown option" 2 "Unknown option '--quick'" scripts/docs.sh --quick
 expect "site_sources.py puts the site's sources together" 0 '^$' scripts/site_sources.py "$work/sources"

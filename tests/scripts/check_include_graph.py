@@ -29,9 +29,10 @@ def read_headers(roots):
 
 
 def layer(header):
-    """kernel, host, study, openmp, cuda, or public: what users include."""
+    """kernel, host, study, openmp, cuda, python, or public: what users include."""
     folder = header.split("/")[1:-1]
-    return folder[0] if folder and folder[0] in ("kernel", "host", "study", "openmp", "cuda") else "public"
+    known = ("kernel", "host", "study", "openmp", "cuda", "python")
+    return folder[0] if folder and folder[0] in known else "public"
 
 
 # The layers that a header of each layer may include.
@@ -41,6 +42,7 @@ BELOW = {
     "study": {"study", "public", "host", "kernel"},
     "openmp": {"openmp", "host", "kernel"},
     "cuda": {"cuda", "host", "kernel"},
+    "python": {"python", "openmp", "host", "kernel", "public"},
     "public": {"public", "study", "host", "kernel"},
 }
 

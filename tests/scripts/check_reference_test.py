@@ -40,7 +40,7 @@ MEMBER_CHANGES = (
     (CONCEPTS, r"MYRIAD_HOOK_NAME\(finalise\)\n", r"\g<0>MYRIAD_HOOK_NAME(new_hook)\n", "new_hook"),
     (CONCEPTS, r"MYRIAD_MODEL_ENUMERATION\(event\)\n", r"\g<0>MYRIAD_MODEL_ENUMERATION(new_kind)\n",
      ("new_kind", "n_new_kind")),
-    ("backends/openmp/myriad/openmp/run.hpp", r"requires \{ Model::pack_batches; \}",
+    ("backends/openmp/myriad/openmp/packs.hpp", r"requires \{ Model::pack_batches; \}",
      r"requires { Model::pack_batches; Model::new_member; }", "new_member"),
     ("docs/model_members.md", r"### `max_block_size`\n", r"\g<0>\n### `nobody_asks`\n", "nobody_asks"),
 )

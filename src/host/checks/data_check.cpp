@@ -177,11 +177,11 @@ void data_check<R>::run() {
     if (passes(0, count_)) return;
     const model_shape& shape = *data_.shape;
     for (int c = 0; c < shape.n_shared; ++c)
-        require(std::isfinite(data_.shared.data()[c]), shape.shared(c), " is ", data_.shared.data()[c],
+        require(std::isfinite(data_.shared.data()[c]), shape.shared(shape, c), " is ", data_.shared.data()[c],
                 std::isnan(data_.shared.data()[c]) ? " (never set, or set to NaN)" : "",
                 ": set it with ensemble.shared(...) before solving");
-    for (int c = 0; c < shape.n_state; ++c) check(shape.state(c), data_.state.component(c));
-    for (int c = 0; c < shape.n_parameter; ++c) check(shape.parameter(c), data_.parameter.component(c));
+    for (int c = 0; c < shape.n_state; ++c) check(shape.state(shape, c), data_.state.component(c));
+    for (int c = 0; c < shape.n_parameter; ++c) check(shape.parameter(shape, c), data_.parameter.component(c));
     if (data_.scales_tolerances()) check_positive_scales();
     if (data_.has_common_domain()) {
         const std::vector<R> begin(static_cast<std::size_t>(count_), data_.t_begin_of(0)),

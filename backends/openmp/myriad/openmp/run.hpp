@@ -1,137 +1,22 @@
 // SPDX-License-Identifier: MIT
-// The OpenMP backend: every thread runs the loop on a pack of SIMD lanes, refilled from a common supply of instances.
+// The OpenMP backend: the loop of the CPU, by teams of OpenMP.
 #pragma once
-
-#include <algorithm>
-#include <atomic>
-#include <cstddef>
-#include <cstdint>
-#include <type_traits>
 
 #include <omp.h>
 
 #include "myriad/host/backend/cpu_backend.hpp"
-#if !defined(MYRIAD_WITHOUT_XSIMD)
-#include "myriad/kernel/scalar/pack.hpp"
-#endif
-// after the packs, whose functions the loop calls
-#include "myriad/kernel/integrator/integrate.hpp"
-#include "myriad/openmp/instances.hpp"
+#include "myriad/openmp/packs.hpp"
 #include "myriad/openmp/team.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// SIMD batches per pack: enough independent work to hide a batch's latency, few enough that the stages of a large
-/// state stay in the first-level cache, and one if events make lanes diverge at every step. Measured on a Zen 4, CPU
-/// time per step and instance in ns with 1, 2, 3, 4 batches: with AVX-512, whose 32 registers hold two batches, Lorenz
-/// with RK4 -, 1.35, 1.46, 1.40 and Duffing with Cash-Karp -, 11.6, 12.2, -; with AVX2, whose 16 hold none, -, 2.38,
-/// 2.10, 2.07 and -, 16.6, 15.7, 15.9, but the bubble of cpu_peers, with its 13 parameters, -, 54, 56, -; with events
-/// every 5 steps 46, 48, 76, - and 63, 71, 78, -; with hundreds of steps between events (the valve of cpu_peers) -,
-/// 12.4, 13.0, - and -, 19.4, 17.3, 18.7. That is g++'s code; clang++'s with AVX-512 on an Intel Xeon takes -, 1.25,
-/// 0.98, -, Duffing -, 9.6, 9.3, -, the valve -, 11.3, 12.1, -. A model may choose by `static constexpr bool
-/// rare_events = true;` or `static constexpr int pack_batches = 2;`.
-template <class Model, class Method>
-constexpr int default_batches() {
-#if defined(MYRIAD_WITHOUT_XSIMD)  // MYRIAD_SIMD
-    return 0;
-#else
-#if defined(MYRIAD_SCALAR_LANES)  // with sanitizers, which take minutes to compile a pack's kernel
-    constexpr bool one_by_one = true;
-#else
-    constexpr bool one_by_one = scalar_only<Model>;
-#endif
-    if constexpr (one_by_one) {
-        return 0;
-    } else if constexpr (requires { Model::pack_batches; }) {
-        return Model::pack_batches;
-    } else if constexpr ((has_events<Model> && !rare_events<Model>) || n_state<Model> > 16) {
-        return 1;
-    } else {
-#if defined(__clang__)
-        constexpr bool two_fit = pack<double, 1>::lanes == 8 && has_events<Model>;
-#else
-        constexpr bool two_fit = pack<double, 1>::lanes == 8;  // AVX-512
-#endif
-        constexpr bool small = n_state<Model> <= 4 && n_state<Model> + n_parameter<Model> <= 8 && Method::stages <= 7;
-        return two_fit || !small ? 2 : 3;
-    }
-#endif
-}
-
-/// The scalar kind with `batches` batches; 0: one instance at a time.
-template <class R, int batches>
-struct lane_kind;
-#if !defined(MYRIAD_WITHOUT_XSIMD)
-template <class R, int batches>
-requires(batches > 0) struct lane_kind<R, batches> {
-    using type = pack<R, batches>;
-};
-#endif
-template <class R>
-struct lane_kind<R, 0> {
-    using type = R;
-};
-
-/// Estimate of a kernel's stack per thread in bytes: twice the data it holds, as the compiler makes separate copies of
-/// parts of it, and some states for a step's intermediate values. g++ was seen to use half to nine tenths of that.
-template <class Model, class Method, class S>
-constexpr std::size_t stack_of_kernel() {
-    constexpr std::size_t state = sizeof(vec<S, n_state<Model>>), few = 4096;
-    constexpr std::size_t matrix = solves_linear_systems<Method> ? n_state<Model> * state : 0;
-    return 2 * (sizeof(integrator<Model, Method, S>) + sizeof(trial_step<Method, S, n_state<Model>>)) + matrix +
-           16 * state + few;
-}
-
-/// One run of a kernel by a team of threads.
-template <class Model, class Method, class S>
-struct team_run {
-    const kernel_arguments<Model, real_of<S>>& arguments;
-    const run_options& options;
-    std::int64_t count, chunk;
-    common_supply supply{};
-    std::atomic<std::int64_t> iterations{0};
-    bool failed = false;
-
-    /// An exception from a function of the model ends the run: no further instance is started. The host stores the
-    /// exception, as functions of the standard library that are not inlined here are shared with files for other
-    /// instruction sets.
-    static void work(void* context, int part) noexcept {
-        auto& run = *static_cast<team_run*>(context);
-        chunked_instances instances(run.supply, run.count, run.chunk, lanes_of<S>, run.arguments.order, run.options,
-                                    part == 0);
-        try {
-            run.iterations += detail::integrate<Model, Method, S>(run.arguments, run.arguments.shared, instances);
-        } catch (...) {
-            const bool first = !__atomic_exchange_n(&run.failed, true, __ATOMIC_ACQ_REL);
-            if (first && run.options.caught != nullptr) run.options.caught(run.options.failure);
-            run.supply.stop(run.count);
-        }
-    }
-};
-
-/// Integrates the ensemble with packs of the given number of batches.
+/// Integrates the ensemble with packs of the given number of batches, by a team of OpenMP.
 template <class Model, class Method, class R, int batches>
 run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_options& options) {
-    using S = typename lane_kind<R, batches>::type;
-    constexpr int lanes = lanes_of<S>;
-    const std::int64_t count = options.count > 0 ? options.count : arguments.size;
-    const std::int64_t packs = (count + lanes - 1) / lanes;  // more threads would have nothing to do
-    const std::int64_t threads =
-        std::min<std::int64_t>(options.threads > 0 ? options.threads : omp_get_max_threads(), packs);
-    // In order: one chunk per thread.
-    const std::int64_t chunk = options.schedule == schedule::in_order
-                                   ? (count + threads - 1) / threads
-                                   : std::clamp<std::int64_t>(count / (64 * threads), 1, 64);
-    team_run<Model, Method, S> run{arguments, options, count, chunk};
-    openmp::team members{&run.work, &run, static_cast<int>(threads), stack_of_kernel<Model, Method, S>()};
-    openmp::in_parts(openmp::for_set<openmp::instruction_set::MYRIAD_INSTRUCTION_SET>{}, members);
-    run_statistics used{run.iterations.load() * lanes, lanes, members.threads};
-    used.failed = run.failed;
-    used.stack = members.stack;
-    used.least_stack = members.least_stack;
-    const bool all_done = !run.supply.stopped && members.least_stack >= members.stack;
-    if (options.progress && all_done) options.progress(options.context, count);
-    return used;
+    return run_packs<Model, Method, R, batches>(
+        arguments, options, options.threads > 0 ? options.threads : omp_get_max_threads(), [](openmp::team& all) {
+            openmp::in_parts(openmp::for_set<openmp::instruction_set::MYRIAD_INSTRUCTION_SET>{}, all);
+        });
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

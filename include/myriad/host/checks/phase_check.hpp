@@ -4,8 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <type_traits>
-#include <utility>
 
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
@@ -14,21 +12,6 @@
 #include "myriad/kernel/model/hooks.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
-
-/// Whether a hook's return value can end a phase.
-template <class Model, class R>
-constexpr bool hooks_may_stop() {
-    using one_lane = lane<Model, R>;
-    if constexpr (has_generic_after_step<Model, R>) {
-        if (!std::is_void_v<decltype(Model::template after_step<R>(std::declval<one_lane&>()))>) return true;
-    } else if constexpr (has_after_step<Model>) {
-        if (!std::is_void_v<decltype(Model::after_step(std::declval<one_lane&>()))>) return true;
-    }
-    if constexpr (has_after_event<Model>) {
-        if (!std::is_void_v<decltype(Model::after_event(0, std::declval<one_lane&>()))>) return true;
-    }
-    return false;
-}
 
 /// Whether something can end a phase before t_end.
 template <class Model, class R>

@@ -12,10 +12,15 @@ namespace myriad::host::inline MYRIAD_ABI {
 struct model_shape {
     int n_state, n_parameter, n_shared, n_shared_integer, n_accessory, n_integer_accessory, n_event;
     bool writes_parameters, writes_time_domain;
-    component_label (*state)(int);
-    component_label (*parameter)(int);
-    component_label (*shared)(int);
+    component_label (*state)(const model_shape&, int);
+    component_label (*parameter)(const model_shape&, int);
+    component_label (*shared)(const model_shape&, int);
 };
+/// What a numbering calls component c of any model of that shape.
+template <class Numbering>
+component_label label_of(const model_shape&, int c) {
+    return Numbering::label(c);
+}
 template <class Model>
 inline constexpr model_shape shape_of{
     .n_state = detail::n_state<Model>,
@@ -27,9 +32,9 @@ inline constexpr model_shape shape_of{
     .n_event = detail::n_event<Model>,
     .writes_parameters = detail::writes_parameters<Model>,
     .writes_time_domain = detail::writes_time_domain<Model>,
-    .state = &state_numbering<Model>::label,
-    .parameter = &parameter_numbering<Model>::label,
-    .shared = &shared_numbering<Model>::label,
+    .state = &label_of<state_numbering<Model>>,
+    .parameter = &label_of<parameter_numbering<Model>>,
+    .shared = &label_of<shared_numbering<Model>>,
 };
 
 }  // namespace myriad::host::inline MYRIAD_ABI

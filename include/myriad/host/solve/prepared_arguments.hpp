@@ -2,10 +2,8 @@
 // Turns an ensemble and options into checked kernel arguments; solve and solver both start here.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,49 +13,16 @@
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report.hpp"
+#include "myriad/host/solve/described_options.hpp"
 #include "myriad/kernel/core/abi.hpp"
-#include "myriad/kernel/methods/controller_policies.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 
-/// The properties of a method that a kernel's arguments depend on.
-struct method_traits {
-    bool adaptive, scales_tolerances, chooses_first_step;
-};
-template <class Method>
-inline constexpr method_traits traits_of{Method::embedded_order > 0, scales_tolerances<Method>,
-                                         chooses_first_step<Method>};
-
 /// The options in the form that a kernel of the method takes.
 template <class Model, class R>
 void describe_options(kernel_arguments<Model, R>& a, const options& o, const method_traits& method) {
-    a.phases = static_cast<std::int32_t>(o.phases);
-    a.phase_length = static_cast<R>(o.phase_length);
-    a.phases_per_time = o.phase_length > 0 ? R(1) / a.phase_length : R(0);
-    a.carry_time = o.phase_time == phase_time::carry_on || o.phase_length > 0;
-    a.carry_step = o.phase_step == phase_step::carry_on;
-    a.max_steps = static_cast<std::int32_t>(o.max_steps);
-    const double default_step = method.chooses_first_step ? 0 : 1e-2;
-    a.step = static_cast<R>(std::isnan(o.step) ? std::min(default_step, o.maximum_step) : o.step);
-    a.minimum_step = static_cast<R>(o.minimum_step);
-    a.maximum_step = static_cast<R>(o.maximum_step);
-    if (method.adaptive && a.step > 0) a.step = std::clamp(a.step, a.minimum_step, a.maximum_step);
-    a.growth_limit = static_cast<float>(o.growth_limit);
-    a.shrink_limit = static_cast<float>(o.shrink_limit);
-    for (std::size_t c = 0; c < static_cast<std::size_t>(n_state<Model>); ++c) {
-        a.relative_tolerance[c] = std::max(static_cast<R>(o.relative_tolerance[c]), least_relative_tolerance<R>);
-        // not subnormal: a GPU takes its reciprocal
-        a.absolute_tolerance[c] = std::max(static_cast<R>(o.absolute_tolerance[c]), std::numeric_limits<R>::min());
-    }
-    for (std::size_t j = 0; j < static_cast<std::size_t>(n_event<Model>); ++j) {
-        const event_options e = o.events.empty() ? event_options{} : o.events[j];
-        a.event[j] = {static_cast<R>(e.tolerance), static_cast<std::int32_t>(e.stop_after)};
-        if (e.direction != direction::falling) a.rising[j / 32] |= std::uint32_t{1} << (j % 32);
-        if (e.direction != direction::rising) a.falling[j / 32] |= std::uint32_t{1} << (j % 32);
-    }
-    a.sub_samples = static_cast<std::int32_t>(o.sub_samples);
-    a.accumulation_limit = static_cast<std::int32_t>(o.accumulation_limit);
+    describe_options<R>(a, n_state<Model>, n_event<Model>, o, method);
 }
 template <class Model, class Method, class R>
 void describe_options(kernel_arguments<Model, R>& a, const options& o) {

@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <type_traits>
+#include <utility>
 
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/model/lane.hpp"
@@ -109,6 +110,21 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
 
 template <class Model, class R>
 inline constexpr bool hooks_fit = check_hooks<Model, R>();
+
+/// Whether a hook's return value can end a phase.
+template <class Model, class R>
+constexpr bool hooks_may_stop() {
+    using one_lane = lane<Model, R>;
+    if constexpr (has_generic_after_step<Model, R>) {
+        if (!std::is_void_v<decltype(Model::template after_step<R>(std::declval<one_lane&>()))>) return true;
+    } else if constexpr (has_after_step<Model>) {
+        if (!std::is_void_v<decltype(Model::after_step(std::declval<one_lane&>()))>) return true;
+    }
+    if constexpr (has_after_event<Model>) {
+        if (!std::is_void_v<decltype(Model::after_event(0, std::declval<one_lane&>()))>) return true;
+    }
+    return false;
+}
 
 /// Calls a hook that returns an action or nothing.
 template <class Call>

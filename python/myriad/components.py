@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""The names of a model's components."""
+
+import difflib
+
+from .errors import Error
+
+
+def name_of(key):
+    """The name of a component: a symbol's, or the text itself."""
+    if isinstance(key, str):
+        return key
+    value = getattr(key, "value", None)
+    if getattr(key, "op", None) == "symbol" and value[0] != "built-in":
+        return value[1]
+    raise Error(f"{key!r} is no component of a model: give a symbol, such as x, or its name, such as \"x\"")
+
+
+def unknown(name, known, what):
+    """The error of a name that is none of the known ones."""
+    near = [k for k in known if k.lower() == name.lower()] or difflib.get_close_matches(name, known, 1)
+    hint = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}" if known else "there is none"
+    return Error(f"'{name}' is no {what}: {hint}")
+
+
+class Components:
+    """Where a model's components are: the kind and number of each name."""
+
+    def __init__(self, model):
+        self.states, self.parameters = list(model.states), list(model.parameters)
+        self.shared, self.shared_integers = list(model.shared), list(model.shared_integers)
+        self.accessories, self.integer_accessories = list(model.accessories), list(model.integer_accessories)
+        self.tables = getattr(model, "shared_values", {})  # shared values that the model itself has
+        self.defaults = getattr(model, "defaults", self.tables)  # of components that need not be given
+        self.events = list(model.events)
+        self.event_names = [e.name for e in self.events]
+        self.names = (self.states, self.parameters, self.shared, self.shared_integers, self.accessories,
+                      self.integer_accessories, self.event_names)
+        self.place = {}
+        for kind, names in (("state", self.states), ("parameter", self.parameters), ("shared", self.shared),
+                            ("shared_integer", self.shared_integers), ("accessory", self.accessories),
+                            ("integer_accessory", self.integer_accessories)):
+            self.place.update((name, (kind, number)) for number, name in enumerate(names))
+
+    def numbers(self, chosen, what, kinds):
+        """The numbers of named components of each of some kinds."""
+        found = {kind: [] for kind in kinds}
+        chosen = [chosen] if isinstance(chosen, str) or getattr(chosen, "op", None) == "symbol" else list(chosen)
+        for key in chosen:
+            name = name_of(key)
+            kind, number = self.place.get(name, (None, None))
+            if kind not in found:
+                known = [n for n, (k, _) in self.place.items() if k in found]
+                raise unknown(name, known, f"component of the model that {what} can name")
+            found[kind].append(number)
+        return [found[kind] for kind in kinds]

@@ -1,0 +1,434 @@
+# SPDX-License-Identifier: MIT
+"""A recorded model as the header that a C++ user would write: enumerations, rhs, events and hooks."""
+
+import re
+
+from .expression import condition, integer, number_text, real, text, walk, write
+
+_columns = 116  # inside the struct
+_deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
+_largest_literal = 1 << 24  # exact in single precision
+
+_headers = {"time": "t", "step": "h", "next_step": "h_next", "phase": "phase", "instance": "index",
+            "t_begin": "t_begin", "t_end": "t_end"}
+_temporaries = {"add": "sum", "subtract": "difference", "multiply": "product", "divide": "quotient", "sqrt": "root",
+                "sin": "sine", "cos": "cosine", "exp": "exponential", "pow": "power", "powr": "power",
+                "log": "logarithm", "select": "chosen", "abs": "size", "min": "least", "max": "largest",
+                "reciprocal": "inverse", "hypot": "length", "negate": "opposite"}
+
+
+# Of several of these with equal arguments, the arguments are used once.
+_shared_work = ("sincos.sine", "sincos.cosine", "sincospi.sine", "sincospi.cosine", "dot")
+
+
+def _converts(node, argument):
+    """Whether an argument is a whole number, not a constant, in an operation of real ones."""
+    return (argument.type == integer and argument.op != "constant" and
+            (node.type == real or node.type == condition and any(a.type == real for a in node.args)))
+
+
+def _is_plain(node):
+    """Whether an expression is one number for all instances, so that packs do not come into it."""
+    return all(n.value[0] in ("shared", "shared_integer") if n.op == "symbol" else n.op != "select" or n.type == real
+               for n in walk([node]))
+
+
+def generic_problem(roots):
+    """The first node that cannot be computed for a whole pack, or None: packs of whole numbers have no products and do
+    not mix with real ones."""
+    for node in walk(roots):
+        products = node.type == integer and node.op in ("multiply", "min", "max", "abs")
+        if (products or any(_converts(node, a) and not _is_plain(a) for a in node.args)) and not _is_plain(node):
+            return node
+    return None
+
+
+class Names:
+    """The names that a model's functions use for their arguments: the usual ones unless a component has that name."""
+
+    def __init__(self, model):
+        self.taken = {*model.component_names, "i", "j"}
+        self.y = self._free("y", "s", "u", "state_")
+        self.p = self._free("p", "in", "inputs")
+        self.t = self._free("t", "time", "t_")
+        self.R = self._free("R", "S", "Real", "R_")
+        self.lane = self._free("lane", "instance", "lane_")
+
+    def _free(self, *candidates):
+        return next(c for c in candidates if c not in self.taken)
+
+
+class Body:
+    """The statements that compute some expressions, shared subexpressions first, and the text of each expression."""
+
+    def __init__(self, roots, names, symbol, scalar):
+        self.names, self.symbol, self.scalar = names, symbol, scalar
+        self.shared = f"{names.lane if symbol.__name__ == 'in_hook' else names.p}.shared"
+        self.lines = []
+        self.named = {}
+        self.numbers = {}
+        self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, "event"}
+        uses = {}
+        order = walk(roots)
+        computed = {(node.op.partition(".")[0], *map(id, node.args)) if node.op in _shared_work else node: node
+                    for node in order}
+        for node in computed.values():
+            for argument in node.args:
+                uses[id(argument)] = uses.get(id(argument), 0) + 1
+        for root in roots:
+            uses[id(root)] = uses.get(id(root), 0) + 1
+        depth = {}
+        for node in order:
+            if id(node) in self.named:
+                continue
+            if node.op.startswith("sincos"):
+                self._sine_and_cosine(node, order)
+                continue
+            if node.op == "dot":
+                self._product(node, order)
+                continue
+            depth[id(node)] = 1 + max((depth.get(id(a), 0) for a in node.args), default=0)
+            shared = uses[id(node)] > 1 and not (node.op == "negate" and not node.args[0].args)
+            if node.args and (shared or depth[id(node)] > _deepest):
+                name = self._name(_temporaries.get(node.op, "holds" if node.type == condition else node.op))
+                self.lines.append(f"const auto {name} = {self.text(node)};")
+                self.named[id(node)] = name
+                depth[id(node)] = 0
+
+    def _name(self, base):
+        """A name that nothing else has: `base`, or with a number."""
+        name = base
+        while name in self.used_names:
+            self.numbers[base] = self.numbers.get(base, 1) + 1
+            name = f"{base}_{self.numbers[base]}"
+        self.used_names.add(name)
+        return name
+
+    def _sine_and_cosine(self, node, order):
+        function = node.op.partition(".")[0]
+        sine, cosine = self._name("sine"), self._name("cosine")
+        argument = self.text(node.args[0])
+        if not node.args[0].args:
+            argument = f"{self.names.R}({argument})" if node.args[0].op == "constant" else argument
+        self.lines.append(f"const auto [{sine}, {cosine}] = myriad::{function}({argument});")
+        for other in order:
+            if other.args and other.args[0] is node.args[0] and other.op.startswith(function + "."):
+                self.named[id(other)] = sine if other.op.endswith(".sine") else cosine
+
+    def reads(self, node):
+        """The symbols that the text of an expression names, by id."""
+        found, stack = set(), [node]
+        while stack:
+            node = stack.pop()
+            if id(node) not in self.named:
+                stack.extend(node.args)
+                if node.op == "symbol":
+                    found.add(id(node))
+        return found
+
+    def _product(self, node, order):
+        """Products of rows of a table with one vector, in a loop over all rows that are used."""
+        table, _ = node.value
+        n, kind = len(node.args), self.names.R
+        same = [other for other in order if other.op == "dot" and other.value[0] == table and
+                all(a is b for a, b in zip(other.args, node.args))]
+        first, last = min(o.value[1] for o in same) // n, max(o.value[1] for o in same) // n
+        vector, product, total = self._name("vector"), self._name("product"), self._name("total")
+        if self.scalar:
+            kind = f"std::remove_cvref_t<decltype({self.names.lane}.t)>"
+        self.lines.append(f"const myriad::vec<{kind}, {n}> {vector} = {{{', '.join(map(self.text, node.args))}}};")
+        self.lines.append(f"myriad::vec<{kind}, {last - first + 1}> {product};")
+        row = f"({first} + i)" if first else "i"
+        self.lines += [f"for (int i = 0; i < {last - first + 1}; ++i) {{",
+                       f"    {kind} {total} = {self.shared}[{table.name} + {row} * {n}] * {vector}[0];",
+                       f"    for (int j = 1; j < {n}; ++j) {total} += "
+                       f"{self.shared}[{table.name} + {row} * {n} + j] * {vector}[j];",
+                       f"    {product}[i] = {total};", "}"]
+        for other in same:
+            self.named[id(other)] = f"{product}[{other.value[1] // n - first}]"
+
+    def early(self, node, name):
+        """The name of a variable with the value that the expression has here."""
+        if id(node) in self.named or not node.args and node.op != "symbol":
+            return self.text(node)
+        name = self._name(name)
+        self.lines.append(f"const auto {name} = {self.text(node)};")
+        return name
+
+    def text(self, node):
+        return write(node, self._leaf, self._call, self._convert)
+
+    def _convert(self, node, argument):
+        """The conversion of an argument, as the text before its parenthesis."""
+        if not _converts(node, argument):
+            return None
+        R = self.names.R
+        return R if self.scalar else f"static_cast<myriad::real_of<{R}>>"
+
+    def _leaf(self, node):
+        if id(node) in self.named:
+            return self.named[id(node)]
+        if node.op == "symbol":
+            return self.symbol(node)
+        if node.op == "element":
+            table, number = node.value
+            return f"{self.shared}[{table.name}{f' + {number}' if number else ''}]"
+        if node.op == "truth":
+            return "true" if node.value else "false"
+        if node.op == "constant":
+            return self._number(node.value)
+        return None
+
+    def _number(self, value):
+        if value in (float("inf"), float("-inf")):
+            infinity = f"myriad::infinity_of<myriad::real_of<{self.names.R}>>"
+            return infinity if value > 0 else "-" + infinity
+        if float(value).is_integer() and -_largest_literal <= value <= _largest_literal and not (
+                value == 0 and str(value).startswith("-")):
+            return str(int(value))
+        return f"{self.names.R}({number_text(float(value))})"
+
+    def _call(self, node, arguments):
+        function = node.op
+        values = list(arguments)
+        numbers = node.args[1:] if function == "select" else node.args
+        first = len(node.args) - len(numbers)
+        if node.type != integer and (all(a.op == "constant" for a in numbers) or function in ("pow", "powr", "fma")):
+            values[first:] = [f"{self.names.R}({v})" if a.op == "constant" and "(" not in v else v
+                              for a, v in zip(numbers, values[first:])]
+        elif node.type == integer and not self.scalar and all(map(_is_plain, numbers)):
+            values[first] = f"myriad::integer_of<{self.names.R}>({values[first]})"
+        return f"myriad::{function}({', '.join(values)})"
+
+
+def _wrap(line, indent):
+    """A statement in lines of at most 120 columns, broken after commas and operators."""
+    first, rest = " " * indent, " " * (indent + 4)
+    if len(first) + len(line) <= _columns:
+        return [first + line]
+    words = []
+    for word in line.split(" "):
+        if words and word in ("+", "-", "*", "/", "&&", "||", "<", "<=", ">", ">=", "==", "!=", "="):
+            words[-1] += " " + word
+        else:
+            words.append(word)
+    lines, current = [], first + words[0]
+    for word in words[1:]:
+        if len(current) + 1 + len(word) > _columns:
+            lines.append(current)
+            current = rest + word
+        else:
+            current += " " + word
+    return lines + [current]
+
+
+def _depends_on_instance(node):
+    """Whether a value differs between instances, so that its type is that of the state and not of a shared value."""
+    return any(n.op == "symbol" and n.value[0] not in ("shared", "shared_integer") for n in walk([node]))
+
+
+class Writer:
+    """Writes one model."""
+
+    def __init__(self, model):
+        self.model = model
+        self.names = Names(model)
+
+    def header(self, name):
+        model = self.model
+        out = ["// SPDX-License-Identifier: MIT", "// Written by Myriad's Python package from a traced model.",
+               "#pragma once", "", "#include <myriad/model.hpp>", ""]
+        out += [f"/// {line}" for line in self.description()]
+        out += [f"struct {name} {{"]
+        out += ["    " + d for d in self.declarations()]
+        last_elements = {f"{t.name}_last": f"{t.name}_last = {t.name} + {t.values.size - 1}" for t in model.tables}
+        for kind, names in model.enumerations():
+            if names:
+                written = ", ".join(last_elements.get(n, n) if kind == "shared" else n for n in names)
+                out += ["    " + line for line in _wrap(f"enum {kind} {{ {written}, n_{kind} }};", 0)]
+        if model.reductions:
+            out.append("    static constexpr myriad::reduction reductions[] = {")
+            out += [f"        {{{r.observed}, myriad::over_phase::{r.kind}, {r.accessory}}}," for r in model.reductions]
+            out.append("    };")
+        blocks = [self.function("rhs", "n_state", model.rhs)]
+        if model.events:
+            blocks.append(self.function("events", "n_event", [e.function for e in model.events]))
+        if model.observed:
+            blocks.append(self.function("observe", "n_observed", [q for _, q in model.observed]))
+        if model.initialise:
+            blocks.append(self.hook("initialise", model.initialise))
+        if model.after_step:
+            blocks.append(self.after_step())
+        if any(e.do for e in model.events):
+            blocks.append(self.after_event())
+        if model.finalise:
+            blocks.append(self.hook("finalise", model.finalise))
+        for block in blocks:
+            out += [""] + ["    " + line if line else line for line in block]
+        return "\n".join(out + ["};", ""])
+
+    def description(self):
+        lines = [f"{s}' = {text(e)}" for s, e in zip(self.model.states, self.model.rhs)]
+        return lines if len(lines) <= 8 else lines[:7] + [f"... and {len(lines) - 7} more equations"]
+
+    def declarations(self):
+        model = self.model
+        declared = [name for name in ("accessories_are_outputs", "writes_parameters", "writes_time_domain")
+                    if getattr(model, name)]
+        return [f"static constexpr bool {name} = true;" for name in declared]
+
+    # Functions of the state
+
+    def in_function(self, node):
+        names, (kind, name) = self.names, node.value
+        prefix = {"state": names.y, "parameter": names.p, "shared": f"{names.p}.shared",
+                  "shared_integer": f"{names.p}.shared_integer", "accessory": f"{names.p}.accessory",
+                  "integer_accessory": f"{names.p}.integer_accessory"}.get(kind)
+        return names.t if prefix is None else f"{prefix}[{name}]"
+
+    def function(self, name, count, roots):
+        n = self.names
+        body = Body(roots, n, self.in_function, scalar=False)
+        values = []
+        for root in roots:
+            value = body.text(root)
+            values.append(value if _depends_on_instance(root) or value.startswith(n.R + "(") else f"{n.R}({value})")
+        used = [node for node in walk(roots) if node.op in ("symbol", "element", "dot")]
+        kinds = {node.value[0] if node.op == "symbol" else "shared" for node in used}
+        arguments = [f"auto {n.t}" if "built-in" in kinds else "auto",
+                     f"const myriad::vec<{n.R}, n_state>&" + (f" {n.y}" if "state" in kinds else ""),
+                     "const auto&" + (f" {n.p}" if kinds - {"built-in", "state"} else "")]
+        lines = [f"template <class {n.R}>"]
+        lines += _wrap(f"MYRIAD_FUNCTION static myriad::vec<{n.R}, {count}> {name}({', '.join(arguments)}) {{", 0)
+        for statement in body.lines:
+            lines += _wrap(statement, 4)
+        result = ", ".join(values)
+        if len(values) == 1:
+            lines += _wrap(f"return myriad::vec<{n.R}, {count}>{{{result}}};", 4)
+        elif len(result) + 18 <= _columns:
+            lines.append(f"    return {{{result}}};")
+        else:
+            lines.append("    return {")
+            for value in values:
+                lines += _wrap(value + ",", 8)
+            lines[-1] = lines[-1].rstrip(",") + "};"
+        return lines + ["}"]
+
+    # Hooks
+
+    def in_hook(self, node):
+        lane, (kind, name) = self.names.lane, node.value
+        if kind == "built-in":
+            return f"{lane}.{_headers[name]}"
+        member = {"state": "y"}.get(kind, kind)
+        return f"{lane}.{member}[{name}]"
+
+    def statements(self, assignments, scalar):
+        """The lines of assignments that take effect together, none seeing what another one has assigned, and the
+        conditions that end a phase or an instance."""
+        targets = [(t, e) for t, e in assignments if t.value[0] != "action"]
+        ends = {t.value[1]: e for t, e in assignments if t.value[0] == "action"}
+        plans = [self.plan(target, value, scalar) for target, value in targets]
+        roots = [e for only_if, _, value in plans for e in (only_if, value) if e is not None]
+        body = Body(roots + list(ends.values()), self.names, self.in_hook, scalar)
+        early, assigned = {}, set()  # what later assignments compute from components that are assigned before
+        for target, value in targets:
+            if body.reads(value) & assigned:
+                early[id(target)] = body.early(value, "next_" + target.value[1])
+            assigned.add(id(target))
+        conditions = {action: body.early(value, "ends") if body.reads(value) & assigned else body.text(value)
+                      for action, value in ends.items()}
+        for (target, _), (only_if, operator, value) in zip(targets, plans):
+            if id(target) in early:
+                only_if, operator, written = None, "=", early[id(target)]
+            else:
+                written = body.text(value)
+            if target.type == real and value.type == integer and value.op != "constant":
+                written = f"{self.names.R}({written})"
+            if value.op == "symbol" and value.value == ("built-in", "instance") and target.type == integer:
+                written = f"static_cast<std::int32_t>({written})"
+            statement = f"{self.in_hook(target)} {operator} {written};"
+            body.lines.append(statement if only_if is None else f"if ({body.text(only_if)}) {statement}")
+        return body.lines, conditions
+
+    @staticmethod
+    def plan(target, value, scalar):
+        """An assignment as (condition or None, operator, value): `if` where it keeps the old value, += where it adds to
+        it."""
+        only_if = None
+        if scalar and value.op == "select":
+            chosen, a, b = value.args
+            if b is target:
+                only_if, value = chosen, a
+            elif a is target:
+                only_if, value = ~chosen, b
+        for op, operator in (("add", "+="), ("subtract", "-="), ("multiply", "*=")):
+            if value.op == op and value.args[0] is target:
+                return only_if, operator, value.args[1]
+        return only_if, "=", value
+
+    def block(self, lines):
+        """Lines of a scalar hook, with the name of its real type if they need it."""
+        n = self.names
+        if any(re.search(rf"\b{n.R}\b", line) for line in lines):
+            lines = [f"using {n.R} = myriad::real_of<std::remove_cvref_t<decltype({n.lane}.t)>>;"] + lines
+        return [wrapped for line in lines for wrapped in _wrap(line, 4)]
+
+    def hook(self, name, assignments):
+        lines, _ = self.statements(assignments, scalar=True)
+        return [f"MYRIAD_FUNCTION static void {name}(auto& {self.names.lane}) {{", *self.block(lines), "}"]
+
+    @staticmethod
+    def returned(conditions):
+        """The statements that return an action."""
+        lines = []
+        if "end_instance" in conditions:
+            if conditions["end_instance"] == "true":
+                return ["return myriad::action::end_instance;"]
+            lines.append(f"if ({conditions['end_instance']}) return myriad::action::end_instance;")
+        phase = conditions.get("end_phase", "false")
+        simple = {"true": "myriad::action::end_phase", "false": "myriad::action::proceed"}
+        either = f"{phase} ? myriad::action::end_phase : myriad::action::proceed"
+        return lines + [f"return {simple.get(phase, either)};"]
+
+    def after_step(self):
+        n, assignments = self.names, self.model.after_step
+        values = [e for _, e in assignments]
+        ends = {t.value[1] for t, _ in assignments if t.value[0] == "action"}
+        mixed = any(t.type == real and e.type == integer and e.op != "constant" for t, e in assignments)
+        if generic_problem(values) is not None or "end_instance" in ends or mixed:
+            lines, conditions = self.statements(assignments, scalar=True)
+            result = "myriad::action" if ends else "void"
+            lines += self.returned(conditions) if ends else []
+            return [f"MYRIAD_FUNCTION static {result} after_step(auto& {n.lane}) {{", *self.block(lines), "}"]
+        lines, conditions = self.statements(assignments, scalar=False)
+        result = f"myriad::mask_of<{n.R}>" if ends else "void"
+        if ends:
+            lines.append(f"return {conditions['end_phase']};")
+        return [f"template <class {n.R}>", f"MYRIAD_FUNCTION static {result} after_step(auto& {n.lane}) {{",
+                *(wrapped for line in lines for wrapped in _wrap(line, 4)), "}"]
+
+    def after_event(self):
+        n, events = self.names, self.model.events
+        acting = [e for e in events if e.do]
+        ends = any(t.value[0] == "action" for e in acting for t, _ in e.do)
+        lines = []
+        for i, event in enumerate(acting):
+            statements, conditions = self.statements(event.do, scalar=True)
+            if conditions:
+                statements += self.returned(conditions)
+            if len(events) == 1:
+                lines += statements
+            elif i == len(events) - 1:
+                lines += ["} else {", *("    " + s for s in statements)]
+            else:
+                start = f"if (event == {event.name}) {{"
+                lines += ["} else " + start if i else start, *("    " + s for s in statements)]
+        if len(events) > 1:
+            lines.append("}")
+        if ends and not (len(events) == 1 and lines[-1].startswith("return")):
+            lines.append("return myriad::action::proceed;")
+        number = f"int event" if len(events) > 1 else "int"
+        result = "myriad::action" if ends else "void"
+        return [f"MYRIAD_FUNCTION static {result} after_event({number}, auto& {n.lane}) {{",
+                *self.block(lines), "}"]

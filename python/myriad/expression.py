@@ -1,0 +1,659 @@
+# SPDX-License-Identifier: MIT
+"""Expressions of a model: a graph of operations on its symbols, in double precision, in which equal subexpressions are
+one object. Operators and functions record what they are applied to and compute nothing, except with constants alone.
+"""
+
+import math
+import numbers
+import operator
+import threading
+import weakref
+
+import numpy as np
+
+from .errors import Error, at, users_line
+
+__all__ = ["sqrt", "cbrt", "abs", "floor", "round", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinpi",
+           "cospi", "sinh", "cosh", "tanh", "exp", "exp2", "log", "log2", "log10", "pow", "powr", "reciprocal",
+           "hypot", "copysign", "fma", "sincos", "sincospi", "minimum", "maximum", "where", "is_finite", "pi"]
+
+pi = math.pi
+
+real, integer, condition = "real", "integer", "condition"  # the types of nodes
+_known = weakref.WeakValueDictionary()
+_lock = threading.RLock()
+
+
+class Node:
+    """An operation with its arguments. Nodes are made by `make`, so that equal ones are the same object."""
+
+    __slots__ = ("op", "args", "value", "type", "line", "__weakref__")
+
+    def __hash__(self):
+        return id(self) >> 4
+
+    def __reduce__(self):
+        return make, (self.op, self.args, self.value, self.type)
+
+    def __repr__(self):
+        return text(self)
+
+    def __bool__(self):
+        raise Error(f"`{text(self)}` has no truth value while the model is recorded, as it differs between instances: "
+                    "instead of `if`, `and`, `or`, `not` and chained comparisons use myriad.where(condition, a, b) "
+                    "and (a < b) & (b < c), |, ~")
+
+    def __iter__(self):
+        raise Error(f"`{text(self)}` is one number and cannot be iterated over")
+
+
+def make(op, args=(), value=None, type=real):
+    """The node of an operation; the same object whenever it is made of the same arguments."""
+    key = (op, tuple(id(a) for a in args), value if op != "constant" else (value.__class__, repr(value)))
+    with _lock:
+        node = _known.get(key)
+        if node is None:
+            node = object.__new__(Condition if type == condition else Expression)
+            node.op, node.args, node.value, node.type, node.line = op, args, value, type, users_line()
+            _known[key] = node
+        return node
+
+
+def constant(number):
+    """The node of a number."""
+    if isinstance(number, (bool, np.bool_)):
+        return make("truth", value=bool(number), type=condition)
+    if isinstance(number, numbers.Integral):
+        return make("constant", value=int(number), type=integer)
+    if isinstance(number, numbers.Real):
+        number = float(number)
+        if number != number:
+            raise Error(f"a constant is NaN{at(users_line())}: check how it was computed")
+        return make("constant", value=number)
+    if isinstance(number, numbers.Complex):
+        raise Error(f"{number!r} is complex{at(users_line())}: a model is real, so write real and imaginary parts as "
+                    "two states")
+    raise TypeError
+
+
+def as_node(value):
+    """A node from an expression, a number, an array without axes, or a SymPy expression without free symbols."""
+    if isinstance(value, Node):
+        return value
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        return as_node(value[()])
+    try:
+        return constant(value)
+    except TypeError:
+        pass
+    if isinstance(value, np.ndarray):
+        raise Error(f"an array of shape {value.shape} stands where one number is needed{at(users_line())}: take an "
+                    "element of it, or give one equation per element")
+    if type(value).__module__.partition(".")[0] == "sympy":
+        raise Error(f"the SymPy expression `{value}` is mixed with Myriad's symbols{at(users_line())}: write the whole "
+                    "equation in SymPy's symbols, or all of it in Myriad's")
+    raise Error(f"{value!r} of type {type(value).__name__} is not an expression{at(users_line())}: use numbers and "
+                "symbols from myriad.states, myriad.parameter and so on")
+
+
+def as_number(value):
+    """A real or integer node."""
+    node = as_node(value)
+    if node.type == condition:
+        raise Error(f"`{text(node)}` is a condition and not a number{at(users_line())}: use "
+                    "myriad.where(condition, 1.0, 0.0)")
+    return node
+
+
+def as_condition(value):
+    """A node that is true or false."""
+    node = as_node(value)
+    if node.type != condition:
+        raise Error(f"`{text(node)}` is a number and not a condition{at(users_line())}: compare it with something")
+    return node
+
+
+def _is_constant(node):
+    return node.op == "constant"
+
+
+def _is_whole(node):
+    return _is_constant(node) and node.type == integer
+
+
+def to_real(node):
+    """Whole constants beside real numbers are real, so that x - 1 and x - 1.0 are the same."""
+    if node.type != integer:
+        return node
+    if _is_constant(node):
+        return _float(node.value)
+    if node.op == "select":
+        branches = tuple(to_real(a) for a in node.args[1:])
+        if all(a.type == real for a in branches):
+            return make("select", (node.args[0], *branches))
+    return node
+
+
+def _float(value):
+    try:
+        return constant(float(value))
+    except OverflowError:
+        raise Error(f"a whole number of {len(str(value))} digits is too large for double precision"
+                    f"{at(users_line())}") from None
+
+
+def _arithmetic(op, fold, a, b, always_real=False):
+    a, b = as_number(a), as_number(b)
+    is_integer = a.type == b.type == integer and not always_real
+    if _is_constant(a) and _is_constant(b):
+        try:
+            return constant(fold(a.value, b.value))
+        except ZeroDivisionError:
+            raise Error(f"{a.value} is divided by zero{at(users_line())}") from None
+        except OverflowError:
+            raise Error(f"`{text(a)}` and `{text(b)}` have a result too large for double precision"
+                        f"{at(users_line())}") from None
+    for one, other, neutral in ((a, b, op in ("add", "subtract")), (b, a, op == "add")):
+        if other.value == 0 and neutral and _is_whole(other) or other.value == 1 and _is_whole(other) and (
+                op == "multiply" or op == "divide" and other is b and one.type == real):
+            return one  # as in the sums and products that Python's sum() and loops begin with
+    if is_integer:
+        return make(op, (a, b), type=integer)
+    return make(op, (to_real(a), to_real(b)))
+
+
+def _power(base, exponent):
+    """base ** exponent: whole exponents by multiplication, as myriad::pow does it, 0.5 as a square root."""
+    base, exponent = as_number(base), as_number(exponent)
+    if _is_constant(exponent):
+        n = exponent.value
+        if _is_constant(base):
+            try:
+                return constant(base.value ** n)
+            except (ZeroDivisionError, OverflowError):
+                raise Error(f"{base.value} ** {n} is not a finite number{at(users_line())}") from None
+        if n == 0.5:
+            return sqrt(base)
+        if float(n).is_integer():
+            return _whole_power(base, int(n))
+    return make("pow", (to_real(base), to_real(exponent)))
+
+
+def _whole_power(base, n):
+    if n < 0:
+        return 1.0 / _whole_power(base, -n)
+    if n > 1 << 20:
+        return make("pow", (to_real(base), _float(n)))
+    result, factor = None, base
+    while n:
+        if n % 2:
+            result = factor if result is None else factor * result
+        n //= 2
+        if n:
+            factor = factor * factor
+    return constant(1 if base.type == integer else 1.0) if result is None else result
+
+
+def _compare(op, fold, a, b):
+    a, b = as_number(a), as_number(b)
+    if _is_constant(a) and _is_constant(b):
+        return constant(fold(a.value, b.value))
+    if a.type != b.type:
+        a, b = to_real(a), to_real(b)
+    return make(op, (a, b), type=condition)
+
+
+def _is_array(other):
+    return isinstance(other, np.ndarray) and other.ndim > 0
+
+
+def _binary(build):
+    def forward(self, other):
+        return NotImplemented if _is_array(other) else build(self, other)
+
+    def backward(self, other):
+        return NotImplemented if _is_array(other) else build(other, self)
+
+    return forward, backward
+
+
+def _add(a, b):
+    return _arithmetic("add", operator.add, a, b)
+
+
+def _subtract(a, b):
+    return _arithmetic("subtract", operator.sub, a, b)
+
+
+def _multiply(a, b):
+    return _arithmetic("multiply", operator.mul, a, b)
+
+
+def _divide(a, b):
+    return _arithmetic("divide", operator.truediv, a, b, always_real=True)
+
+
+def _floor_divide(a, b):
+    return floor(_divide(a, b))
+
+
+def _remainder(a, b):
+    return a - _multiply(b, floor(_divide(a, b)))
+
+
+class _NumpyFunctions:
+    """NumPy's functions of expressions, and arrays of them, are this module's."""
+
+    __slots__ = ()
+
+    def __array_ufunc__(self, ufunc, method, *inputs, **options):
+        function = _numpy_functions().get(ufunc)
+        if function is None or method != "__call__" or options:
+            raise Error(f"numpy.{ufunc.__name__} cannot be applied to expressions of a model{at(users_line())}: use "
+                        "the functions of myriad")
+        arrays = [x if isinstance(x, np.ndarray) else _in_array(x) for x in inputs]
+        return np.frompyfunc(function, len(arrays), 1)(*arrays)
+
+    def __array_function__(self, function, types, args, options):
+        if function is np.where and len(args) == 3 and not options:
+            return where(*args)
+        if function is np.clip and len(args) == 3 and not options:
+            return minimum(maximum(args[0], args[1]), args[2])
+        raise Error(f"numpy.{function.__name__} cannot be applied to expressions of a model{at(users_line())}: use the "
+                    "functions of myriad")
+
+
+def _in_array(x):
+    array = np.empty((), object)
+    array[()] = x
+    return array
+
+
+class Expression(Node, _NumpyFunctions):
+    """A number, real or integer, that depends on the symbols of a model."""
+
+    __slots__ = ()
+    __hash__ = Node.__hash__
+    __add__, __radd__ = _binary(_add)
+    __sub__, __rsub__ = _binary(_subtract)
+    __mul__, __rmul__ = _binary(_multiply)
+    __truediv__, __rtruediv__ = _binary(_divide)
+    __floordiv__, __rfloordiv__ = _binary(_floor_divide)
+    __mod__, __rmod__ = _binary(_remainder)
+    __pow__, __rpow__ = _binary(_power)
+    __lt__, _ = _binary(lambda a, b: _compare("less", operator.lt, a, b))
+    __le__, _ = _binary(lambda a, b: _compare("less_equal", operator.le, a, b))
+    __gt__, _ = _binary(lambda a, b: _compare("greater", operator.gt, a, b))
+    __ge__, _ = _binary(lambda a, b: _compare("greater_equal", operator.ge, a, b))
+    __eq__, _ = _binary(lambda a, b: _compare("equal", operator.eq, a, b))
+    __ne__, _ = _binary(lambda a, b: _compare("not_equal", operator.ne, a, b))
+    del _
+
+    def __neg__(self):
+        return make("negate", (self,), type=self.type)
+
+    def __pos__(self):
+        return self
+
+    def __abs__(self):
+        return abs(self)
+
+    def __round__(self):
+        return round(self)
+
+    def __floor__(self):
+        return floor(self)
+
+    def _refuse_number(self, *_):
+        raise Error(f"`{text(self)}` is not a number yet, while the model is recorded{at(users_line())}: use the "
+                    "functions of myriad (myriad.sin, not math.sin)")
+
+    __float__ = __int__ = __index__ = __complex__ = __trunc__ = __ceil__ = _refuse_number
+
+
+class Condition(Node, _NumpyFunctions):
+    """True or false, by instance: what a comparison gives. Joined by & and |, inverted by ~."""
+
+    __slots__ = ()
+
+    def __and__(self, other):
+        return _logical("and", self, other)
+
+    def __or__(self, other):
+        return _logical("or", self, other)
+
+    def __invert__(self):
+        return make("truth", value=not self.value, type=condition) if self.op == "truth" else make(
+            "not", (self,), type=condition)
+
+    __rand__, __ror__ = __and__, __or__
+
+
+def _logical(op, a, b):
+    a, b = as_condition(a), as_condition(b)
+    for one, other in ((a, b), (b, a)):
+        if one.op == "truth":
+            return other if one.value == (op == "and") else one
+    return make(op, (a, b), type=condition)
+
+
+# ----------------------------------------------------------------------------------------------------------------------
+# Functions
+# ----------------------------------------------------------------------------------------------------------------------
+
+
+def _exp2(x):
+    return 2.0 ** x
+
+
+_unary = {  # for the values of constants and for `evaluate`; C++ uses myriad's own
+    "sqrt": np.sqrt, "cbrt": np.cbrt, "floor": np.floor, "sin": np.sin, "cos": np.cos, "tan": np.tan,
+    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh,
+    "exp": np.exp, "exp2": np.exp2, "log": np.log, "log2": np.log2, "log10": np.log10,
+    "reciprocal": lambda x: 1.0 / x,
+    "round": lambda x: np.copysign(np.floor(np.abs(x) + 0.5), x),
+    "sinpi": lambda x: np.sin(np.pi * np.remainder(x, 2.0)),
+    "cospi": lambda x: np.cos(np.pi * np.remainder(x, 2.0)),
+}
+
+
+def _function(name, description):
+    def function(x):
+        return make(name, (to_real(as_number(x)),))
+
+    function.__name__ = function.__qualname__ = name
+    function.__doc__ = description
+    return function
+
+
+sqrt = _function("sqrt", "Square root; NaN of negative numbers.")
+cbrt = _function("cbrt", "Cube root.")
+floor = _function("floor", "The largest whole number that is not above x.")
+round = _function("round", "The nearest whole number, halves away from zero.")
+sin = _function("sin", "Sine of an angle in radians.")
+cos = _function("cos", "Cosine of an angle in radians.")
+tan = _function("tan", "Tangent of an angle in radians.")
+asin = _function("asin", "Inverse of the sine; NaN outside [-1, 1].")
+acos = _function("acos", "Inverse of the cosine; NaN outside [-1, 1].")
+atan = _function("atan", "Inverse of the tangent.")
+sinpi = _function("sinpi", "sin(pi x), exact at multiples of a half.")
+cospi = _function("cospi", "cos(pi x), exact at multiples of a half.")
+sinh = _function("sinh", "Hyperbolic sine.")
+cosh = _function("cosh", "Hyperbolic cosine.")
+tanh = _function("tanh", "Hyperbolic tangent.")
+exp = _function("exp", "Exponential function.")
+exp2 = _function("exp2", "2 to the power of x.")
+log = _function("log", "Natural logarithm; NaN of negative numbers, minus infinity of zero.")
+log2 = _function("log2", "Logarithm to base 2.")
+log10 = _function("log10", "Logarithm to base 10.")
+reciprocal = _function("reciprocal", "1 / x without a division, for normal x with a normal result.")
+
+
+def _function_of_two(name, description):
+    def function(a, b):
+        return make(name, (to_real(as_number(a)), to_real(as_number(b))))
+
+    function.__name__ = function.__qualname__ = name
+    function.__doc__ = description
+    return function
+
+
+atan2 = _function_of_two("atan2", "The angle of the point (second, first).")
+hypot = _function_of_two("hypot", "sqrt(a^2 + b^2).")
+copysign = _function_of_two("copysign", "The magnitude of the first with the sign of the second.")
+powr = _function_of_two("powr", "x to the power y for x >= 0, in half the time of pow: NaN for negative x.")
+
+
+def pow(x, y):
+    """x to the power y, the same as `x**y`: whole constants y by multiplication."""
+    return _power(x, y)
+
+
+def abs(x):
+    """Absolute value."""
+    x = as_number(x)
+    return constant(x.value if x.value >= 0 else -x.value) if _is_constant(x) else make("abs", (x,), type=x.type)
+
+
+def fma(a, b, c):
+    """a * b + c, with one rounding if the processor has the instruction."""
+    return make("fma", tuple(to_real(as_number(x)) for x in (a, b, c)))
+
+
+def sincos(x):
+    """Sine and cosine of one angle for about the price of one: up to 2^30 (float 2^16) radians, NaN beyond."""
+    x = to_real(as_number(x))
+    return make("sincos.sine", (x,)), make("sincos.cosine", (x,))
+
+
+def sincospi(x):
+    """sin(pi x) and cos(pi x) for about the price of one: x up to 2^50 (float 2^21), NaN beyond."""
+    x = to_real(as_number(x))
+    return make("sincospi.sine", (x,)), make("sincospi.cosine", (x,))
+
+
+def _extreme(op, pick, arguments):
+    if len(arguments) == 1 and not isinstance(arguments[0], Node):
+        arguments = tuple(arguments[0])
+    if not arguments:
+        raise Error(f"{pick.__name__}imum of nothing{at(users_line())}: give it two numbers or more")
+    result = as_number(arguments[0])
+    for other in map(as_number, arguments[1:]):
+        if _is_constant(result) and _is_constant(other):
+            result = constant(pick(result.value, other.value))
+        elif result.type == other.type == integer:
+            result = make(op, (result, other), type=integer)
+        else:
+            result = make(op, (to_real(result), to_real(other)))
+    return result
+
+
+def minimum(*numbers):
+    """The smallest of two numbers or more; a NaN is left out."""
+    return _extreme("min", min, numbers)
+
+
+def maximum(*numbers):
+    """The largest of two numbers or more; a NaN is left out."""
+    return _extreme("max", max, numbers)
+
+
+def where(condition, a, b):
+    """a where the condition holds, else b, by instance: what `if` is elsewhere. Both are evaluated."""
+    chosen = as_condition(condition)
+    a, b = as_node(a), as_node(b)
+    if (a.type == "condition") != (b.type == "condition"):
+        raise Error(f"where has a condition and a number to choose from{at(users_line())}: both must be of one kind")
+    if chosen.op == "truth":
+        return a if chosen.value else b
+    if a is b:
+        return a
+    if a.type == "condition":
+        return (chosen & a) | (~chosen & b)
+    if a.type == b.type == integer:
+        return make("select", (chosen, a, b), type=integer)
+    return make("select", (chosen, to_real(a), to_real(b)))
+
+
+def is_finite(x):
+    """A condition: neither infinite nor NaN."""
+    return make("is_finite", (to_real(as_number(x)),), type=condition)
+
+
+def _numpy_functions():
+    if not _numpy_table:
+        for name in ("sqrt", "cbrt", "floor", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "exp2", "log", "log2",
+                     "log10", "hypot", "copysign", "reciprocal"):
+            _numpy_table[getattr(np, name)] = globals()[name]
+        for name in ("asin", "acos", "atan", "atan2"):
+            _numpy_table[getattr(np, name.replace("a", "arc", 1))] = globals()[name]
+        _numpy_table.update({
+            np.absolute: abs, np.fabs: abs, np.minimum: minimum, np.maximum: maximum, np.power: pow,
+            np.square: lambda x: x * x, np.isfinite: is_finite,
+            np.sign: lambda x: where(x > 0, 1.0, where(x < 0, -1.0, x)), np.heaviside: lambda x, h: where(
+                x > 0, 1.0, where(x < 0, 0.0, h)), np.deg2rad: lambda x: x * (pi / 180),
+            np.add: _add, np.subtract: _subtract, np.multiply: _multiply, np.true_divide: _divide,
+            np.floor_divide: _floor_divide, np.remainder: _remainder, np.negative: operator.neg,
+            np.positive: operator.pos, np.less: operator.lt, np.less_equal: operator.le, np.greater: operator.gt,
+            np.greater_equal: operator.ge, np.equal: operator.eq, np.not_equal: operator.ne,
+            np.logical_and: operator.and_, np.logical_or: operator.or_, np.logical_not: operator.invert,
+            np.bitwise_and: operator.and_, np.bitwise_or: operator.or_, np.invert: operator.invert,
+        })
+    return _numpy_table
+
+
+_numpy_table = {}
+
+
+def _add_numpys_methods():
+    """NumPy's functions of an array of objects call a method of each: np.sin(array) calls array[0].sin()."""
+    for function, ours in _numpy_functions().items():
+        if function.nin == 1 and function.__name__ not in ("absolute", "negative", "positive", "invert"):
+            setattr(Expression, function.__name__, lambda self, ours=ours: ours(self))
+    for name, ours in (("arctan2", atan2), ("hypot", hypot), ("copysign", copysign)):
+        setattr(Expression, name, lambda self, other, ours=ours: ours(self, other))
+
+
+_add_numpys_methods()
+
+# ----------------------------------------------------------------------------------------------------------------------
+# Walking through a graph
+# ----------------------------------------------------------------------------------------------------------------------
+
+
+def walk(roots):
+    """All nodes that the roots need, each once, arguments before what uses them; in a fixed order."""
+    seen, order = set(), []
+    for root in roots:
+        stack = [] if id(root) in seen else [(root, iter(root.args))]
+        seen.add(id(root))
+        while stack:
+            node, arguments = stack[-1]
+            for argument in arguments:
+                if id(argument) not in seen:
+                    seen.add(id(argument))
+                    stack.append((argument, iter(argument.args)))
+                    break
+            else:
+                order.append(node)
+                stack.pop()
+    return order
+
+
+def symbols_of(roots):
+    """The symbols in these expressions, in the order in which they are first needed."""
+    return [node for node in walk(roots) if node.op == "symbol"]
+
+
+_infix = {  # symbol, precedence: higher binds tighter
+    "or": ("||", 1), "and": ("&&", 2), "equal": ("==", 3), "not_equal": ("!=", 3), "less": ("<", 4),
+    "less_equal": ("<=", 4), "greater": (">", 4), "greater_equal": (">=", 4), "add": ("+", 5), "subtract": ("-", 5),
+    "multiply": ("*", 6), "divide": ("/", 6),
+}
+_prefix = {"negate": "-", "not": "!"}
+_atom, _unary_precedence = 9, 8
+
+
+def write(root, leaf, call, convert=None):
+    """An expression as text with as few parentheses as C++ and Python need. `leaf(node)` is the text of a node without
+    arguments or one that has a name, else None; `call(node, arguments)` that of a function; `convert(node, argument)`
+    is the type that an argument is converted to first, or None."""
+    texts = {}
+    stack = [root]
+    while stack:
+        node = stack[-1]
+        if id(node) in texts:
+            stack.pop()
+            continue
+        known = leaf(node)
+        if known is not None:
+            texts[id(node)] = (known, _unary_precedence if known.startswith("-") else _atom)
+            stack.pop()
+            continue
+        missing = [a for a in node.args if id(a) not in texts]
+        if missing:
+            stack.extend(reversed(missing))
+            continue
+        stack.pop()
+        arguments = [texts[id(a)] for a in node.args]
+        for i, argument in enumerate(node.args):
+            to = convert and convert(node, argument)
+            if to:
+                arguments[i] = (f"{to}({arguments[i][0]})", _atom)
+        if node.op in _infix:
+            symbol, precedence = _infix[node.op]
+            (left, left_precedence), (right, right_precedence) = arguments
+            mixed = node.op == "or"  # && within || in parentheses, as compilers suggest
+            if left_precedence < precedence or mixed and left_precedence == 2:
+                left = f"({left})"
+            if right_precedence <= precedence or mixed and right_precedence == 2:
+                right = f"({right})"
+            texts[id(node)] = (f"{left} {symbol} {right}", precedence)
+        elif node.op in _prefix:
+            inner, precedence = arguments[0]
+            inner = inner if precedence == _atom else f"({inner})"
+            texts[id(node)] = (_prefix[node.op] + inner, _unary_precedence)
+        else:
+            texts[id(node)] = (call(node, [a for a, _ in arguments]), _atom)
+    return texts[id(root)][0]
+
+
+def number_text(value):
+    """A number as Python writes it, whole ones without a fraction."""
+    if isinstance(value, float) and value.is_integer() and -1e15 < value < 1e15 and math.copysign(1, value) == 1 - 2 * (
+            value < 0):
+        return str(int(value))
+    return repr(value)
+
+
+def text(node):
+    """An expression for messages and comments, cut where it is long."""
+    def leaf(n):
+        if n.op == "symbol":
+            return n.value[1]
+        if n.op in ("constant", "truth"):
+            return number_text(n.value) if n.op == "constant" else str(n.value)
+        if n.op == "element":
+            return f"{n.value[0].name}[{n.value[1]}]"
+        return f"({n.value[0].name} @ vector)[{n.value[1] // len(n.args)}]" if n.op == "dot" else None
+
+    if len(walk([node])) > 200:
+        return f"({node.op} of {len(walk([node]))} operations)"
+    written = write(node, leaf, lambda n, arguments: f"{n.op.replace('select', 'where')}({', '.join(arguments)})")
+    written = written.replace("&&", "and").replace("||", "or").replace("!(", "not (")
+    return written if len(written) <= 100 else written[:97] + "..."
+
+
+# ----------------------------------------------------------------------------------------------------------------------
+# Values
+# ----------------------------------------------------------------------------------------------------------------------
+
+_operations = {
+    "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
+    "negate": operator.neg, "less": operator.lt, "less_equal": operator.le, "greater": operator.gt,
+    "greater_equal": operator.ge, "equal": operator.eq, "not_equal": operator.ne, "and": np.logical_and,
+    "or": np.logical_or, "not": np.logical_not, "select": np.where, "is_finite": np.isfinite, "abs": np.abs,
+    "min": np.fmin, "max": np.fmax, "pow": np.power, "powr": np.power, "atan2": np.arctan2, "hypot": np.hypot,
+    "copysign": np.copysign, "fma": lambda a, b, c: a * b + c, "sincos.sine": np.sin, "sincos.cosine": np.cos,
+    "sincospi.sine": _unary["sinpi"], "sincospi.cosine": _unary["cospi"], **_unary,
+}
+
+
+def evaluate(roots, values):
+    """The values of expressions by NumPy: `values` has a number or an array for each symbol. Slow; a second opinion for
+    tests and for looking at a model. Where C++ has functions of its own, the last places differ."""
+    known = {}
+    with np.errstate(all="ignore"):
+        for node in walk(roots):
+            if node.op == "symbol":
+                known[id(node)] = np.asarray(values[node]) + 0
+            elif node.op in ("constant", "truth"):
+                known[id(node)] = node.value
+            elif node.op == "element":
+                known[id(node)] = node.value[0].values.flat[node.value[1]]
+            elif node.op == "dot":
+                table, start = node.value
+                known[id(node)] = sum(table.values.flat[start + j] * known[id(a)] for j, a in enumerate(node.args))
+            else:
+                known[id(node)] = _operations[node.op](*(known[id(a)] for a in node.args))
+    return [known[id(root)] for root in roots]

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""Sweeps by name: which value each instance has. A grid has an instance for every combination of the values of its
+axes, the last one varying fastest; a zip takes the values of equally long arrays together.
+"""
+
+import numpy as np
+
+from .errors import Error, at, users_line
+from .expression import Node
+
+__all__ = ["grid", "zip", "Sweep"]
+
+
+def _name(key, line):
+    if isinstance(key, Node) and key.op == "symbol" and key.value[0] not in ("action", "event_count"):
+        return key.value[1]
+    if isinstance(key, str):
+        return key
+    if type(key).__module__.partition(".")[0] == "sympy":
+        return str(key)
+    raise Error(f"{key!r} names nothing to sweep over{at(line)}: use a symbol, as from myriad.parameter, or its name")
+
+
+def _numbers(name, values, line):
+    """Values as an array of whole numbers or of double precision, without NaN."""
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind == "c":
+            raise Error(f"the values of {name} are complex{at(line)}: a model is real")
+        array = array.astype(np.int64 if array.dtype.kind in "iub" else float, copy=False)
+    except (TypeError, ValueError) as error:
+        if isinstance(error, Error):
+            raise
+        raise Error(f"the values of {name} are no numbers{at(line)}: {error}") from None
+    if np.isnan(array).any():
+        where = np.flatnonzero(np.isnan(array.ravel()))
+        raise Error(f"{name} is NaN in {where.size} of {array.size} values, first at index {where[0]}{at(line)}: every "
+                    "instance needs a number")
+    return array
+
+
+class Sweep:
+    """The values of all instances, by name.
+
+    `axes` is a list of (name, values), `shape` has their lengths: instance i is at numpy.unravel_index(i, shape).
+    `names` are all that have values, `values(name)` one per instance; `coordinates` {name: (axis, values)} are the
+    names whose values go along one axis, `constants` {name: value} those that are equal for all instances.
+    """
+
+    def __init__(self, axes, coordinates, constants):
+        self.axes, self.coordinates, self.constants = axes, coordinates, constants
+        self.shape = tuple(len(values) for _, values in axes)
+        self.size = int(np.prod(self.shape, dtype=np.int64))
+        self.names = [*coordinates, *constants]
+
+    def values(self, name):
+        """One value per instance, as an array of length `size`."""
+        if name in self.constants:
+            return np.full(self.size, self.constants[name])
+        if name not in self.coordinates:
+            raise Error(f"the sweep has no values of '{name}'{at(users_line())}: it has "
+                        f"{', '.join(self.names) or 'none'}")
+        axis, values = self.coordinates[name]
+        place = [a for a, _ in self.axes].index(axis)
+        shape = [1] * len(self.axes)
+        shape[place] = len(values)
+        return np.ascontiguousarray(np.broadcast_to(values.reshape(shape), self.shape)).reshape(self.size)
+
+    def unstack(self, values):
+        """An array with a row per instance as one with the axes of the sweep: (size, ...) to shape + (...)."""
+        values = np.asarray(values)
+        if values.shape[:1] != (self.size,):
+            raise Error(f"an array of shape {values.shape}{at(users_line())} has no row for each of {self.size} "
+                        "instances: give one")
+        return values.reshape(self.shape + values.shape[1:])
+
+    def with_constants(self, constants):
+        """The same with further values that are equal for all instances."""
+        twice = [n for n in constants if n in self.names]
+        if twice:
+            raise Error(f"'{twice[0]}' is given twice{at(users_line())}: give it one value")
+        return Sweep(self.axes, self.coordinates, {**self.constants, **constants})
+
+    def __len__(self):
+        return self.size
+
+    def __repr__(self):
+        along = " x ".join(f"{name} ({len(values)})" for name, values in self.axes)
+        fixed = ", ".join(f"{n} = {v:g}" for n, v in self.constants.items())
+        return f"<sweep of {self.size} instances: {along or 'one'}{', ' + fixed if fixed else ''}>"
+
+
+def _collect(mapping, named, line):
+    given = {}
+    for key, values in [*(mapping or {}).items(), *named.items()]:
+        name = _name(key, line)
+        if name in given:
+            raise Error(f"'{name}' is given twice{at(line)}: give it one set of values")
+        given[name] = values if isinstance(values, Sweep) else _numbers(name, values, line)
+    return given
+
+
+def grid(*parts, **axes):
+    """All combinations of the values of several axes: `grid(k=np.linspace(0.2, 0.3, 100), B=[0.3, 0.4])`, or with
+    symbols `grid({k: ..., B: ...})`. The last axis varies fastest. A single number is a value for all instances.
+    Sweeps, as from `zip`, may be among the parts: their axes come first, in order."""
+    line = users_line()
+    made_axes, coordinates, constants = [], {}, {}
+
+    def add(new_axes, new_coordinates, new_constants):
+        for name in [*new_coordinates, *new_constants, *(a for a, _ in new_axes if a not in new_coordinates)]:
+            if name in coordinates or name in constants or name in [a for a, _ in made_axes]:
+                raise Error(f"'{name}' is on two axes of the grid{at(line)}: give it one set of values")
+        made_axes.extend(new_axes)
+        coordinates.update(new_coordinates)
+        constants.update(new_constants)
+
+    for part in [*parts, axes]:
+        if isinstance(part, Sweep):
+            add(part.axes, part.coordinates, part.constants)
+            continue
+        if not isinstance(part, dict):
+            raise Error(f"{type(part).__name__} is no part of a grid{at(line)}: give a dictionary {{name: values}}, "
+                        "names with values, or a sweep")
+        for name, values in _collect(part, {}, line).items():
+            if values.ndim == 0:
+                add([], {}, {name: values.item()})
+            elif values.ndim > 1 or not values.size:
+                what = "no values" if not values.size else f"values of shape {values.shape}"
+                raise Error(f"{name} has {what}{at(line)}: an axis of a grid is a list of numbers")
+            else:
+                add([(name, values)], {name: (name, values)}, {})
+    return Sweep(made_axes, coordinates, constants)
+
+
+def zip(mapping=None, **arrays):
+    """The values of equally long arrays together: instance i has the i-th of each. Single numbers are for all."""
+    line = users_line()
+    given = _collect(mapping, arrays, line)
+    constants = {n: v.item() for n, v in given.items() if v.ndim == 0}
+    along = {n: v for n, v in given.items() if v.ndim > 0}
+    for name, values in along.items():
+        if values.ndim > 1 or not values.size:
+            what = "no values" if not values.size else f"values of shape {values.shape}"
+            raise Error(f"{name} has {what}{at(line)}: give one number per instance, in one dimension")
+    lengths = {n: len(v) for n, v in along.items()}
+    if len(set(lengths.values())) > 1:
+        listed = ", ".join(f"{n} has {length}" for n, length in lengths.items())
+        raise Error(f"the numbers of values differ: {listed}{at(line)}: give each one value per instance, or all "
+                    "combinations by myriad.grid")
+    if not along:
+        return Sweep([], {}, constants)
+    if len(along) == 1:
+        (name, values), = along.items()
+        return Sweep([(name, values)], {name: (name, values)}, constants)
+    axis = "instance"
+    return Sweep([(axis, np.arange(next(iter(lengths.values()))))], {n: (axis, v) for n, v in along.items()}, constants)
+
+
+def as_sweep(given):
+    """A sweep from what users give to `solve`: a sweep, or a dictionary {name or symbol: number or array}, whose arrays
+    are zipped."""
+    if isinstance(given, Sweep):
+        return given
+    if isinstance(given, dict):
+        return zip(given)
+    raise Error(f"{type(given).__name__} is no sweep{at(users_line())}: give a dictionary {{k: values}}, "
+                "myriad.grid or myriad.zip")

@@ -1,0 +1,450 @@
+# SPDX-License-Identifier: MIT
+"""A model: equations, events, accessories and hooks, recorded once, checked, and written as C++."""
+
+import hashlib
+import inspect
+
+import numpy as np
+
+from . import symbols as sym
+from .cpp import Writer, generic_problem
+from .errors import Error, at, users_line
+from .expression import Node, as_condition, as_number, evaluate, integer, real, symbols_of, text, to_real, walk
+from .parse import from_sympy, is_sympy, parse, parse_equations, sympy_name
+from .table import element_name, tables_of
+
+__all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
+           "integral"]
+
+_directions = ("rising", "falling", "either")
+
+
+class Reduction:
+    """What is computed from a quantity over a phase, along the solution and not only at the ends of steps."""
+
+    def __init__(self, kind, quantity):
+        self.kind, self.quantity, self.line = kind, quantity, users_line()
+        self.observed = self.accessory = None  # names, known with the model
+
+
+def phase_maximum(quantity):
+    """For an accessory: the largest value of a quantity over each phase."""
+    return Reduction("maximum", quantity)
+
+
+def phase_minimum(quantity):
+    """For an accessory: the smallest value of a quantity over each phase."""
+    return Reduction("minimum", quantity)
+
+
+def time_of_maximum(quantity):
+    """For an accessory: when the quantity was largest; another accessory has its `phase_maximum`."""
+    return Reduction("time_of_maximum", quantity)
+
+
+def time_of_minimum(quantity):
+    """For an accessory: when the quantity was smallest; another accessory has its `phase_minimum`."""
+    return Reduction("time_of_minimum", quantity)
+
+
+def integral(quantity):
+    """For an accessory: the integral of a quantity over time, from the start of each phase."""
+    return Reduction("integral", quantity)
+
+
+class Event:
+    """A change of sign of a function of time and state; `do` is what happens then."""
+
+    def __init__(self, function, name, direction, tolerance, stop_after, do):
+        self.function, self.name, self.direction = function, name, direction
+        self.tolerance, self.stop_after, self.do = tolerance, stop_after, do
+        self.line = users_line()
+
+    def __repr__(self):
+        return f"event {self.name or ''}: {self.function!r} {self.direction}"
+
+
+def event(function, *, name=None, direction="either", tolerance=None, stop_after=0, do=None):
+    """An event of a model: `function` changes its sign, "rising", "falling" or "either". `tolerance` is the largest
+    value of the function at which the event counts as located (default: that of the solver); after `stop_after`
+    detections the phase ends (0: never). `do` are assignments at the event: {v: -r * v, myriad.end_phase: count == 5}.
+    """
+    if direction not in _directions:
+        raise Error(f"the direction of an event is {direction!r}{at(users_line())}: choose \"rising\", \"falling\" or "
+                    "\"either\"")
+    if isinstance(stop_after, bool) or not isinstance(stop_after, (int, np.integer)) or stop_after < 0:
+        raise Error(f"stop_after is {stop_after!r}{at(users_line())}: give the number of detections after which the "
+                    "phase ends, 0 for never")
+    if tolerance is not None and not (isinstance(tolerance, (int, float)) and 0 < tolerance < float("inf")):
+        raise Error(f"the tolerance of an event is {tolerance!r}{at(users_line())}: give the largest value of the "
+                    "event function that counts as zero, as in tolerance=1e-8")
+    if name is not None:
+        sym.check_name(name, "an event")
+    return Event(function, name, direction, tolerance, int(stop_after), {} if do is None else do)
+
+
+def model(equations, *, events=(), accessories=None, initialise=None, after_step=None, finalise=None, states=None,
+          parameters=(), shared=(), name=None):
+    """Records a model.
+
+    `equations` is a dictionary {state: its derivative}; or a function f(t, y, ...) that returns the derivatives, as for
+    SciPy, with the names of its states in `states` and those of its further arguments that all instances share in
+    `shared`; or a string "x' = v; v' = -x" with all names in `parameters` and `shared`. In a dictionary keys and values
+    may be strings or SymPy's symbols and expressions, named in the same way.
+
+    `accessories` {a: value} are set to the value at the start of every phase, or get a reduction over the phase, as in
+    {peak: myriad.phase_maximum(x)}. `initialise`, `after_step` and `finalise` are assignments {target: value} at the
+    start of a phase, after every step and at the end of a phase. Assignments of one hook or event take effect together:
+    every value is computed from what was there before.
+    """
+    return Model(equations, events, accessories, initialise, after_step, finalise, states, parameters, shared, name)
+
+
+class Model:
+    """A recorded model. Names of components are in the order in which results and C++ enumerate them, elements of
+    tables behind the other shared values; `shared_values` has what they are. `cpp()` is its header, `hash` identifies
+    it."""
+
+    def __init__(self, equations, events, accessories, initialise, after_step, finalise, states, parameters, shared,
+                 name):
+        self.line = users_line()
+        self._source = None
+        self._declared = self._declare(states, parameters, shared, accessories)
+        self._names = self._declared  # what texts may name: later also what the equations do
+        targets, self.rhs = self._equations(equations, states)
+        self.states = [t.value[1] for t in targets]
+        others = [a for a in accessories or {} if isinstance(a, Node) and a.op == "symbol"]
+        self._names = {**{s.value[1]: s for s in targets + symbols_of(self.rhs) + others}, **self._declared}
+        self.events = self._events(events)
+        start = self._accessories(accessories)
+        self.initialise = start + self._assignments(initialise, "initialise", {t for t, _ in start})
+        self.after_step = self._assignments(after_step, "after_step")
+        self.finalise = self._assignments(finalise, "finalise")
+        self._collect(targets)
+        self.name = self._default_name(equations) if name is None else sym.check_name(name, "a model")
+        self._check()
+
+    def _default_name(self, equations):
+        """The name of the function, if it can be that of a struct, or "model"."""
+        for name in (getattr(equations, "__name__", ""), "model"):
+            try:
+                if name not in self.component_names:
+                    return sym.check_name(name, "a model")
+            except Error:
+                continue
+        return "traced"
+
+    # What users may give
+
+    def _declare(self, states, parameters, shared, accessories):
+        declared = {}
+        for kind, several in (("state", states or ()), ("parameter", parameters), ("shared", shared),
+                              ("accessory", [a for a in accessories or {} if isinstance(a, str)])):
+            for given in [several] if isinstance(several, Node) else sym.names(several):
+                symbol = given if isinstance(given, Node) else sym.symbol(kind, given)
+                other = declared.get(symbol.value[1], symbol)
+                if other is not symbol:
+                    raise Error(f"'{symbol.value[1]}' names both {sym.a(other.value[0])} and "
+                                f"{sym.a(kind)}{at(self.line)}: a name stands for one component")
+                declared[symbol.value[1]] = symbol
+        declared.setdefault("t", sym.time)
+        return declared
+
+    def _value(self, value, what):
+        """An expression from what a user gave."""
+        if isinstance(value, str):
+            return parse(value, self._names, f"{what}{at(self.line)}")
+        if is_sympy(value):
+            return from_sympy(value, self._names, f"{what}{at(self.line)}")
+        return value
+
+    def _target(self, key, what):
+        if isinstance(key, str) or is_sympy(key):
+            key = self._value(key, what)
+        if not isinstance(key, Node) or key.op != "symbol":
+            raise Error(f"{what}{at(self.line)}: {key!r} stands where a component is assigned: use a symbol, as from "
+                        "myriad.states")
+        return key
+
+    def _equations(self, equations, states):
+        if isinstance(equations, str):
+            equations = parse_equations(equations, self._declared, at(self.line))
+        elif callable(equations) and not isinstance(equations, dict):
+            equations = self._call(equations, states)
+        if not isinstance(equations, dict) or not equations:
+            raise Error(f"the equations of a model are {type(equations).__name__}{at(self.line)}: give a dictionary "
+                        "{state: derivative}, a function f(t, y, ...) or a string \"x' = v; v' = -x\"")
+        targets, rhs = [], []
+        for key, value in equations.items():
+            if isinstance(key, str) and key not in self._declared:
+                self._declared[key] = sym.symbol("state", key)
+            elif is_sympy(key) and sympy_name(key) not in self._declared:
+                self._declared[sympy_name(key)] = sym.symbol("state", sympy_name(key))
+        for key, value in equations.items():
+            target = self._target(key, "equations")
+            if target.value[0] != "state":
+                raise Error(f"{target.value[1]} is no state but {sym.a(target.value[0])}{at(self.line)}: "
+                            "only states have equations")
+            if isinstance(value, (list, tuple)) or isinstance(value, np.ndarray) and value.ndim > 0:
+                raise Error(f"the equation of {target.value[1]} has {len(value)} values{at(self.line)}: it needs one")
+            targets.append(target)
+            rhs.append(to_real(self._real(self._value(value, f"equation of {target.value[1]}"),
+                                          f"the equation of {target.value[1]}")))
+        if len(set(map(id, targets))) < len(targets):
+            raise Error(f"a state has two equations{at(self.line)}: give each one")
+        order = [id(s) for s in self._declared.values() if s.value[0] == "state" and any(s is t for t in targets)]
+        if states is not None:  # in the order of `states`, then of the equations
+            ranked = sorted(zip(targets, rhs), key=lambda pair: order.index(id(pair[0])) if id(pair[0]) in order else
+                            len(order))
+            targets, rhs = [t for t, _ in ranked], [e for _, e in ranked]
+        return targets, rhs
+
+    def _real(self, value, what):
+        try:
+            return as_number(value)
+        except Error as error:
+            raise Error(f"{what}: {error}") from None
+
+    def _call(self, function, states):
+        """The equations that a function f(t, y, ...) returns."""
+        name = getattr(function, "__name__", "the function")
+        if states is None:
+            raise Error(f"the states of {name} have no names{at(self.line)}: give them in the order of y, as in "
+                        "states=\"x v\"")
+        unknowns = [s for s in self._declared.values() if s.value[0] == "state"]
+        y = np.empty(len(unknowns), object)
+        y[:] = unknowns
+        try:
+            arguments = list(inspect.signature(function).parameters.values())
+        except (TypeError, ValueError):
+            raise Error(f"the arguments of {name} are not known{at(self.line)}: give a Python function f(t, y, ...)"
+                        ) from None
+        positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+        if len(arguments) < 2 or any(a.kind not in positional for a in arguments[:2]):
+            raise Error(f"{name} takes {len(arguments)} arguments{at(self.line)}: its first two are time and state, "
+                        "f(t, y, ...)")
+        further = {}
+        for argument in arguments[2:]:
+            if argument.kind not in positional + (inspect.Parameter.KEYWORD_ONLY,):
+                raise Error(f"{name} takes *{argument.name}{at(self.line)}: give each parameter a name, f(t, y, k, B)")
+            if argument.name not in self._declared:
+                if argument.default is not argument.empty:
+                    continue  # a constant
+                self._declared[argument.name] = sym.symbol("parameter", argument.name)
+            further[argument.name] = self._declared[argument.name]
+        unused = [n for n, s in self._declared.items() if s.value[0] in ("parameter", "shared") and n not in further]
+        if unused:
+            raise Error(f"'{unused[0]}' is no argument of {name}{at(self.line)}: write {name}(t, y, {unused[0]})")
+        by_position = [a.name for a in arguments[2:] if a.kind == inspect.Parameter.POSITIONAL_ONLY]
+        try:
+            returned = function(sym.time, y, *(further.pop(n) for n in by_position), **further)
+        except Error:
+            raise
+        except Exception as error:
+            hint = f" (y has shape ({len(y)},))" if isinstance(error, (ValueError, IndexError)) else ""
+            raise Error(f"{name} failed while it was recorded{at(self.line)}: {type(error).__name__}: {error}{hint}"
+                        ) from error
+        shape = np.shape(np.asarray(returned, dtype=object)) if not isinstance(returned, Node) else ()
+        if shape == () and len(y) == 1 and returned is not None:
+            returned, shape = [returned], (1,)
+        if shape != (len(y),):
+            got = "nothing" if returned is None else f"values of shape {shape}"
+            raise Error(f"{name} returns {got}{at(self.line)}: return one derivative for each of the {len(y)} states "
+                        f"({', '.join(s.value[1] for s in unknowns)})")
+        return dict(zip(unknowns, returned))
+
+    def _events(self, events):
+        if isinstance(events, Event):
+            events = [events]
+        made = []
+        for i, given in enumerate(events):
+            if not isinstance(given, Event):
+                raise Error(f"events[{i}] is {type(given).__name__}{at(self.line)}: make it by myriad.event(function, "
+                            "direction=...)")
+            made.append(Event(None, given.name or f"event_{i + 1}", given.direction, given.tolerance, given.stop_after,
+                              None))
+            made[-1].line = given.line
+            self._event_names = [e.name for e in made]
+        self._event_names = [e.name for e in made]
+        for one, given in zip(made, events):
+            what = f"event {one.name}"
+            one.function = to_real(self._real(self._value(given.function, what), what))
+            one.do = self._assignments(given.do, what, line=given.line)
+        return made
+
+    def _accessories(self, accessories):
+        self.reductions, self.observed, start = [], [], []
+        quantities = {}
+        self._accessory_targets = []
+        for key, value in (accessories or {}).items():
+            target = self._target(key, "accessories")
+            if target.value[0] not in ("accessory", "integer_accessory"):
+                raise Error(f"{target.value[1]} is no accessory but {sym.a(target.value[0])}"
+                            f"{at(self.line)}: make it by myriad.accessory(\"{target.value[1]}\")")
+            self._accessory_targets.append(target)
+            if not isinstance(value, Reduction):
+                if value is not None:
+                    start += self._assignments({target: value}, "accessories")
+                continue
+            if target.value[0] != "accessory":
+                raise Error(f"the accessory {target.value[1]} holds whole numbers and cannot be a {value.kind}"
+                            f"{at(value.line)}: make it by myriad.accessory")
+            quantity = to_real(self._real(self._value(value.quantity, "accessories"),
+                                          f"the quantity of {target.value[1]}"))
+            if id(quantity) not in quantities:
+                short = quantity.value[1] if quantity.op == "symbol" else target.value[1]
+                quantities[id(quantity)] = f"observed_{short}"
+                self.observed.append((f"observed_{short}", quantity))
+            made = Reduction(value.kind, quantity)
+            made.observed, made.accessory, made.line = quantities[id(quantity)], target.value[1], value.line
+            self.reductions.append(made)
+        present = {(r.observed, r.kind) for r in self.reductions}
+        for r in self.reductions:
+            extremum = r.kind.removeprefix("time_of_")
+            if (r.observed, extremum) not in present:
+                raise Error(f"{r.accessory} is the time of a {extremum} that no accessory has{at(r.line)}: add one "
+                            f"with myriad.phase_{extremum} of the same quantity")
+        return start
+
+    def _assignments(self, given, what, taken=(), line=None):
+        """[(target, value)] of a hook or action, checked."""
+        made, line = [], line or self.line
+        for key, value in (given or {}).items():
+            target = self._target(key, what)
+            kind, name = target.value
+            if kind in ("shared", "shared_integer", "event_count") or kind == "built-in" and name not in (
+                    "next_step", "t_begin", "t_end"):
+                raise Error(f"{what} assigns {name}{at(line)}, which no hook may: states, parameters, accessories, "
+                            "next_step, t_begin and t_end can be assigned")
+            if kind == "action" and what in ("initialise", "finalise", "accessories"):
+                raise Error(f"{what} assigns {name}{at(line)}: only after_step and events can end a phase")
+            if id(target) in map(id, taken) or any(t is target for t, _ in made):
+                raise Error(f"{name} is assigned twice in {what}{at(line)}: give it one value")
+            value = self._value(value, what)
+            if kind == "action":
+                value = as_condition(value)
+            else:
+                value = self._real(value, f"{what}, {name}")
+                value = to_real(value) if target.type == real else value
+            if target.type == integer and value.type != integer:
+                raise Error(f"{what} gives the whole number {name} the real value `{text(value)}`{at(line)}: use an "
+                            "accessory for real numbers, or whole constants")
+            made.append((target, value))
+        return made
+
+    # What follows from it
+
+    def _collect(self, targets):
+        """The components, in the order in which the equations, events, accessories and hooks first name them."""
+        hooks = [("initialise", self.initialise), ("after_step", self.after_step), ("finalise", self.finalise)]
+        hooks += [(f"event {e.name}", e.do) for e in self.events]
+        self._functions = self.rhs + [e.function for e in self.events] + [q for _, q in self.observed]
+        self._in_functions = symbols_of(self._functions)
+        found = targets + self._in_functions + self._accessory_targets
+        for _, assignments in hooks:
+            found += [t for t, _ in assignments] + symbols_of([e for _, e in assignments])
+        declared = [s for s in self._declared.values() if s.value[0] in sym.component_kinds]
+        components = {kind: [] for kind in sym.component_kinds}
+        for symbol in dict.fromkeys(declared + found):
+            if symbol.value[0] in components:
+                components[symbol.value[0]].append(symbol.value[1])
+        missing = [n for n in components["state"] if n not in self.states]
+        if missing:
+            symbol = next(s for s in found + declared if s.value == ("state", missing[0]))
+            raise Error(f"the state {missing[0]}{at(symbol.line)} has no equation{at(self.line)}: add its derivative, "
+                        f"or make it a parameter if it is constant")
+        self.parameters, self.shared = components["parameter"], components["shared"]
+        everything = walk(self._functions + [e for _, assignments in hooks for _, e in assignments])
+        self.tables = tables_of(everything)
+        self.shared_values = {element_name(t, i): float(v) for t in self.tables for i, v in enumerate(t.values.flat)}
+        self.scalar_shared, self.shared = self.shared, self.shared + list(self.shared_values)
+        self.shared_integers = components["shared_integer"]
+        self.accessories, self.integer_accessories = components["accessory"], components["integer_accessory"]
+        assigned = {t.value for _, assignments in hooks for t, _ in assignments}
+        self.writes_parameters = any(kind == "parameter" for kind, _ in assigned)
+        self.writes_time_domain = bool(assigned & {("built-in", "t_begin"), ("built-in", "t_end")})
+        read = {s.value[0] for s in self._in_functions}
+        self.accessories_are_outputs = bool(self.accessories or self.integer_accessories) and not read & {
+            "accessory", "integer_accessory"}
+        self._hooks = hooks
+
+    def enumerations(self):
+        """(kind, names) of everything that has an enumeration in C++."""
+        shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
+        return [("state", self.states), ("parameter", self.parameters), ("shared", shared),
+                ("shared_integer", self.shared_integers), ("accessory", self.accessories),
+                ("integer_accessory", self.integer_accessories), ("event", [e.name for e in self.events]),
+                ("observed", [n for n, _ in self.observed])]
+
+    @property
+    def component_names(self):
+        """All names, in the order of `enumerations`."""
+        return [n for _, names in self.enumerations() for n in names]
+
+    def _check(self):
+        kinds = {}
+        for kind, names in self.enumerations():
+            for name in names:
+                if name in kinds:
+                    clash = f"names both {sym.a(kinds[name])} and {sym.a(kind)}"
+                    clash = "is the name of two components" if kinds[name] == kind else clash
+                    raise Error(f"'{name}' {clash}{at(self.line)}: rename one of them")
+                kinds[name] = kind
+        for symbol in self._in_functions:
+            kind, name = symbol.value
+            if kind in ("event_count", "action") or kind == "built-in" and name != "time":
+                raise Error(f"{name} stands in an equation, event or reduction{at(self.line)}, but only hooks and "
+                            "actions see it: store it in an accessory there")
+        problem = generic_problem(self._functions)
+        if problem is not None:
+            raise Error(f"`{text(problem)}`{at(problem.line)} mixes whole and real numbers, or multiplies whole ones, "
+                        "in an equation or event: compare them, as in myriad.where(mode == 1, a, b)")
+        for node in walk(self._functions):
+            if node.op == "powr" and any(s.value[0] == "state" or s is sym.time for s in symbols_of([node.args[1]])):
+                raise Error(f"the exponent of `{text(node)}`{at(node.line)} depends on the state or on time: use "
+                            "myriad.pow, as powr has no derivative by its exponent")
+        for what, assignments in self._hooks:
+            for target, value in assignments:
+                for symbol in symbols_of([value]):
+                    kind, name = symbol.value
+                    if kind == "action":
+                        raise Error(f"{name} is read in {what}{at(self.line)}, but can only be assigned")
+                    if kind == "event_count" and name not in [e.name for e in self.events]:
+                        raise Error(f"event_count('{name}') in {what}{at(self.line)} names no event: there are "
+                                    f"{', '.join(e.name for e in self.events) or 'none'}")
+        if self.name in kinds:
+            raise Error(f"the model has the name of its {kinds[self.name]} '{self.name}'{at(self.line)}: give "
+                        "it another one, name='...'")
+
+    # What it is used for
+
+    def cpp(self, name=None):
+        """The model as the text of a C++ header, `model.hpp`, which compiles as it is: `struct NAME { ... };`."""
+        return Writer(self).header(self.name if name is None else sym.check_name(name, "a model"))
+
+    def source(self):
+        """The text that kernels are compiled from, the same for equal models, and the name of its struct."""
+        if self._source is None:
+            self._source = self.cpp("traced_model")
+        return self._source, "traced_model"
+
+    @property
+    def hash(self):
+        """A text that is equal for models with the same C++ code, whatever their names and their events' options."""
+        return hashlib.sha256(self.cpp("model").encode()).hexdigest()
+
+    def derivatives(self, t, y, **values):
+        """The right-hand side by NumPy: y has one entry per state, each a number or an array; parameters and shared
+        values are given by name. For looking at a model and for tests; SciPy can integrate it."""
+        known = {sym.time: t, **{sym.symbol("state", n): v for n, v in zip(self.states, y)}}
+        for symbol in self._in_functions:
+            kind, name = symbol.value
+            if kind in sym.component_kinds and kind != "state":
+                if name not in values:
+                    raise Error(f"derivatives needs a value of {name}: give it by name, {name}=...")
+                known[symbol] = values[name]
+        return np.array(np.broadcast_arrays(*evaluate(self.rhs, known), *y, t)[:len(y)])
+
+    def __repr__(self):
+        equations = [f"{s}' = {text(e)}" for s, e in zip(self.states[:4], self.rhs)]
+        return f"<myriad model {self.name}: {'; '.join(equations)}{'; ...' if len(self.states) > 4 else ''}>"

@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: MIT
+"""The pictures that a sweep is usually looked at in, by matplotlib: bifurcation diagram, map over two parameters, time
+series, phase portrait, statuses. The functions draw arrays, of NumPy or xarray; `run.plot` draws the results of a run
+by name. All draw into `axes`, or a new figure, and return the axes.
+"""
+
+import numpy as np
+
+from .errors import Error
+from .expression import Node
+
+# Okabe and Ito's colours, which the colour-blind can tell apart.
+_colours = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#000000")
+_many_points = 300_000  # from which on a picture shows their density
+
+
+def _axes_of(axes, **figure):
+    try:
+        from matplotlib import pyplot
+    except ImportError:
+        raise Error("pictures need the package matplotlib: `pip install matplotlib`") from None
+    return pyplot.subplots(layout="constrained", **figure)[1] if axes is None else axes
+
+
+def _label(array, given):
+    return given if given is not None else str(getattr(array, "name", None) or "")
+
+
+def _numbers(array, what, dimensions):
+    numbers = np.asarray(array)
+    if numbers.ndim not in dimensions:
+        wanted = " or ".join(map(str, dimensions))
+        raise Error(f"{what} has shape {numbers.shape}: give an array of {wanted} dimensions")
+    return numbers
+
+
+def _is_geometric(values):
+    """Whether values are spaced evenly on a logarithmic scale and not on a linear one."""
+    if len(values) < 3 or values.min() <= 0:
+        return False
+    steps, ratios = np.diff(values), np.diff(np.log(values))
+    return np.allclose(ratios, ratios[0], rtol=1e-6) and not np.allclose(steps, steps[0], rtol=1e-6)
+
+
+def _logarithmic(axis, set_scale):
+    """A logarithmic axis, with ticks at 1, 2 and 5 of each decade if it has less than two."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    set_scale("log")
+    least, most = axis.get_view_interval()
+    if most < 100 * least:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(StrMethodFormatter("{x:.10g}"))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def bifurcation(x, y, *, xlabel=None, ylabel=None, axes=None, **style):
+    """Points (x, y) of a bifurcation diagram: x has one value per instance, y a row of values, one for each phase.
+    Further arguments are those of matplotlib's `plot`. Many points are drawn as their density."""
+    xlabel, ylabel = _label(x, xlabel), _label(y, ylabel)
+    x, y = _numbers(x, "x", (1,)), _numbers(y, "y", (1, 2))
+    if len(x) != len(y):
+        raise Error(f"x has {len(x)} values and y {len(y)} rows: give one row per instance")
+    y = y.reshape(len(x), -1)
+    axes = _axes_of(axes, figsize=(7, 4.2))
+    across, up = np.repeat(x, y.shape[1]), y.ravel()
+    shown = np.isfinite(across) & np.isfinite(up)
+    across, up = across[shown], up[shown]
+    logarithmic = _is_geometric(np.unique(x[np.isfinite(x)]))
+    if len(up) > _many_points and not style:
+        box = axes.get_window_extent()
+        rows = max(int(box.height), 200)
+        values = np.unique(across)
+        columns = min(max(int(box.width), 200), len(values))  # no column without instances
+        edges = np.geomspace(values[0], values[-1], columns + 1) if logarithmic else columns
+        count, right, top = np.histogram2d(across, up, bins=[edges, rows])
+        darkness = np.ma.masked_equal(np.sqrt(count / count.max(axis=1, keepdims=True).clip(1)), 0)
+        axes.pcolormesh(right, top, darkness.T, cmap="Blues", vmin=-0.6, vmax=0.9, rasterized=True)
+    else:
+        look = {"linestyle": "none", "marker": "o", "markersize": 1.2 if len(up) < 20_000 else 0.5,
+                "markeredgewidth": 0, "color": _colours[0], "rasterized": True, **style}
+        axes.plot(across, up, **look)
+    axes.margins(x=0)
+    if logarithmic:
+        _logarithmic(axes.xaxis, axes.set_xscale)
+    axes.set_xlabel(xlabel)
+    axes.set_ylabel(ylabel)
+    return axes
+
+
+def parameter_map(x, y, z, *, xlabel=None, ylabel=None, zlabel=None, names=None, axes=None, **style):
+    """A quantity z over two parameters in colour: z has shape (len(x), len(y)). NaN is left grey. With `names`, z has
+    whole numbers that stand for these names. Further arguments are those of matplotlib's `pcolormesh`."""
+    xlabel, ylabel, zlabel = _label(x, xlabel), _label(y, ylabel), _label(z, zlabel)
+    x, y, z = _numbers(x, "x", (1,)), _numbers(y, "y", (1,)), _numbers(z, "z", (2,))
+    if z.shape != (len(x), len(y)):
+        raise Error(f"z has shape {z.shape} for {len(x)} values of x and {len(y)} of y: give it the shape "
+                    f"({len(x)}, {len(y)})")
+    axes = _axes_of(axes, figsize=(6.4, 4.8))
+    axes.set_facecolor("0.85")
+    if names is None:
+        colours = axes.pcolormesh(x, y, np.ma.masked_invalid(z).T, shading="nearest",
+                                  **{"cmap": "viridis", "rasterized": True, **style})
+        axes.figure.colorbar(colours, ax=axes, label=zlabel)
+    else:
+        from matplotlib.colors import BoundaryNorm, ListedColormap
+        present = np.unique(z)
+        places = np.searchsorted(present, z)
+        palette = ListedColormap([_colours[i % len(_colours)] for i in range(len(present))])
+        norm = BoundaryNorm(np.arange(len(present) + 1) - 0.5, len(present))
+        colours = axes.pcolormesh(x, y, places.T, shading="nearest", **{
+            "cmap": palette, "norm": norm, "rasterized": True, **style})
+        bar = axes.figure.colorbar(colours, ax=axes, ticks=np.arange(len(present)))
+        bar.ax.set_yticklabels([names[int(p)] for p in present])
+        bar.ax.minorticks_off()
+    for axis, set_scale, values in ((axes.xaxis, axes.set_xscale, x), (axes.yaxis, axes.set_yscale, y)):
+        if _is_geometric(values):
+            _logarithmic(axis, set_scale)
+    axes.set_xlabel(xlabel)
+    axes.set_ylabel(ylabel)
+    return axes
+
+
+def _lines(x, y, labels, axes, style):
+    """Each row of y over the same row of x, or over x."""
+    y = np.atleast_2d(y)
+    x = np.broadcast_to(x, y.shape)
+    if labels is not None and len(labels) != len(y):
+        raise Error(f"there are {len(labels)} labels for {len(y)} lines: give one for each")
+    for i in range(len(y)):
+        look = {"color": _colours[i % len(_colours)], "linewidth": 1.1, **style}
+        axes.plot(x[i], y[i], label=None if labels is None else labels[i], **look)
+    if labels is not None and 1 < len(y) <= 10:
+        axes.legend(frameon=False)
+
+
+def time_series(t, y, *, labels=None, ylabel=None, axes=None, **style):
+    """Each row of y over time: t has a row for each, or is the same for all."""
+    ylabel = _label(y, ylabel)
+    t, y = _numbers(t, "t", (1, 2)), _numbers(y, "y", (1, 2))
+    if t.shape[-1] != y.shape[-1] or t.ndim == 2 and t.shape != y.shape:
+        raise Error(f"t has shape {t.shape} and y {y.shape}: give a time for each value, or one row of times for all")
+    axes = _axes_of(axes, figsize=(7, 3.6))
+    _lines(t, y, labels, axes, style)
+    axes.set_xlabel("t")
+    axes.set_ylabel(ylabel)
+    axes.margins(x=0)
+    return axes
+
+
+def phase_portrait(x, y, *, labels=None, xlabel=None, ylabel=None, points=False, axes=None, **style):
+    """Each row of y over the same row of x, as a line, or with `points` as separate points (a Poincare section)."""
+    xlabel, ylabel = _label(x, xlabel), _label(y, ylabel)
+    x, y = _numbers(x, "x", (1, 2)), _numbers(y, "y", (1, 2))
+    if x.shape != y.shape:
+        raise Error(f"x has shape {x.shape} and y {y.shape}: give arrays of one shape")
+    axes = _axes_of(axes, figsize=(5, 4.6))
+    if points:
+        style = {"linestyle": "none", "marker": "o", "markersize": 2, "markeredgewidth": 0, **style}
+    _lines(x, y, labels, axes, style)
+    axes.set_xlabel(xlabel)
+    axes.set_ylabel(ylabel)
+    return axes
+
+
+def statuses(status, names, *, axes=None):
+    """How many instances ended in which way: `status` has numbers into `names`."""
+    counts = np.bincount(_numbers(status, "status", (1,)), minlength=len(names))
+    present = np.flatnonzero(counts)[::-1]
+    axes = _axes_of(axes, figsize=(6, 0.9 + 0.35 * len(present)))
+    labels = [str(names[i]).replace("_", " ") for i in present]
+    bars = axes.barh(labels, counts[present], height=0.6, color=_colours[0])
+    share = counts[present] / max(counts.sum(), 1)
+    axes.bar_label(bars, [f" {c} ({s:.3g} %)" for c, s in zip(counts[present], 100 * share)])
+    axes.set_xlabel("instances")
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.margins(x=0.25)
+    axes.set_xlim(left=0)
+    axes.set_ylim(-0.6, len(present) - 0.4)
+    return axes
+
+
+# ----------------------------------------------------------------------------------------------------------------------
+# Of a run
+# ----------------------------------------------------------------------------------------------------------------------
+
+
+def _name(key):
+    return key.value[1] if isinstance(key, Node) and key.op == "symbol" else str(key)
+
+
+class Plots:
+    """`run.plot`: pictures of the results of a run, whose components are given by name or symbol."""
+
+    def __init__(self, run):
+        self._run = run
+
+    def _per_instance(self, name):
+        """A value for each instance: of the sweep, so that initial states are those given, else of the results."""
+        run = self._run
+        if run.sweep is not None and name in run.sweep.names:
+            return run.sweep.values(name)
+        values = np.asarray(run[name])
+        if values.shape != (run.size,):
+            raise Error(f"{name} has values of shape {values.shape}: this axis needs one number per instance")
+        return values
+
+    def bifurcation(self, x, y, *, axes=None, **style):
+        """The recorded component y of every phase over the parameter x."""
+        x, y = _name(x), _name(y)
+        if y not in self._run.records:
+            raise Error(f"{y} was not recorded: give record=dict(from_phase=..., states=[{y}]) to solve")
+        return bifurcation(self._per_instance(x), self._run.records[y], xlabel=x, ylabel=y, axes=axes, **style)
+
+    def map(self, x, y, z, *, phase=-1, axes=None, **style):
+        """The component z over two axes of a grid, x and y: its value at the end, or in one recorded phase; failed
+        instances are left grey. z may be "status"."""
+        from .run import status_names
+
+        run, (x, y, z) = self._run, map(_name, (x, y, z))
+        along = [] if run.sweep is None else [name for name, _ in run.sweep.axes]
+        if sorted((x, y)) != sorted(name for name, values in (run.sweep.axes if along else ()) if len(values) > 1):
+            raise Error(f"the sweep is no grid over {x} and {y} alone (its axes: {', '.join(along) or 'none'}): make "
+                        f"it by myriad.grid({x}=..., {y}=...)")
+        values = np.asarray(run.status if z == "status" else run.records[z][:, phase] if z in run.records else run[z])
+        if values.ndim == 2:
+            values = values[:, -1]
+        if z != "status":
+            values = np.where(run.failed, np.nan, values)
+        grid = np.moveaxis(run.sweep.unstack(values), (along.index(x), along.index(y)), (0, 1))
+        values_of = dict(run.sweep.axes)
+        return parameter_map(values_of[x], values_of[y], grid.reshape(grid.shape[:2]), xlabel=x, ylabel=y, zlabel=z,
+                             names=status_names if z == "status" else None, axes=axes, **style)
+
+    def _instances(self, instances):
+        """Numbers of instances and what tells them apart."""
+        run = self._run
+        chosen = np.arange(min(run.size, 5)) if instances is None else np.atleast_1d(np.asarray(instances, int))
+        if chosen.ndim != 1 or not ((-run.size <= chosen) & (chosen < run.size)).all():
+            raise Error(f"instances {instances!r}: give numbers from 0 to {run.size - 1}")
+        chosen = chosen % run.size
+        varying = [] if run.sweep is None else list(run.sweep.coordinates)[:2]
+        values = {name: run.sweep.values(name)[chosen] for name in varying}
+        return chosen, [", ".join(f"{n} = {v[i]:.4g}" for n, v in values.items()) or f"instance {chosen[i]}"
+                        for i in range(len(chosen))]
+
+    def time_series(self, y, *, instances=None, axes=None, **style):
+        """The samples of a state over time, for the first five instances or those of the given numbers."""
+        run, y = self._run, _name(y)
+        chosen, labels = self._instances(instances)
+        if y not in run.samples:
+            raise Error(f"there are no samples of {y}: give samples=, as in samples=200, to solve")
+        return time_series(run.sample_times[chosen], run.samples[y][chosen], labels=labels, ylabel=y, axes=axes,
+                           **style)
+
+    def phase_portrait(self, x, y, *, instances=None, axes=None, **style):
+        """The samples of one state over those of another; without samples the points recorded at the ends of phases.
+        For the first five instances or those of the given numbers."""
+        run, x, y = self._run, _name(x), _name(y)
+        chosen, labels = self._instances(instances)
+        points = not (x in run.samples and y in run.samples)
+        kept = run.records if points else run.samples
+        if x not in kept or y not in kept:
+            raise Error(f"there are no samples of {x} and {y}, nor records of both: give samples= or record= to solve")
+        return phase_portrait(kept[x][chosen], kept[y][chosen], labels=labels, xlabel=x, ylabel=y, points=points,
+                              axes=axes, **style)
+
+    def statuses(self, *, axes=None):
+        """How many instances ended in which way."""
+        from .run import status_names
+
+        return statuses(self._run.status, status_names, axes=axes)
+
+
+def html(run):
+    """What a notebook shows of a run: its sweep, statuses, results by name and report."""
+    from html import escape
+
+    def row(name, value):
+        return f"<tr><th style=\"text-align:left\">{name}</th><td style=\"text-align:left\">{value}</td></tr>"
+
+    kinds = (("recorded by phase", run.records), ("samples", run.samples), ("at the end", {**run.states,
+                                                                                          **run.accessories}))
+    rows = [row("instances", f"{run.size}" + (f": {escape(repr(run.sweep)[1:-1])}" if run.sweep is not None else ""))]
+    rows.append(row("ended as", ", ".join(f"{count} {escape(name.replace('_', ' '))}"
+                                          for name, count in run.report.by_status.items())))
+    for kind, arrays in kinds:
+        if arrays:
+            named = ", ".join(f"<code>{escape(n)}</code> {escape(str(np.shape(a)))}" for n, a in arrays.items())
+            rows.append(row(kind, named))
+    return (f"<table>{''.join(rows)}</table><details><summary>Report</summary><pre>{escape(str(run.report))}</pre>"
+            "</details>")

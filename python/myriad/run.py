@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: MIT
+"""The outcome of `solve`: arrays by name, statuses, the report, and the way to xarray and pandas."""
+
+import numpy as np
+
+from . import _core
+from .components import name_of
+from .errors import Error
+from .grid import Sweep
+
+status_names = tuple(_core.status_names())
+_first_failure = status_names.index("max_steps")
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C ended a call of `solve`; `run` has the instances that were done, and the others as not_started."""
+
+    def __init__(self, run):
+        super().__init__(f"{run.done} of {run.size} instances were done; .run has them")
+        self.run = run
+
+
+class Report:
+    """How the instances ended, the work, where it was done, and where the kernel came from."""
+
+    def __init__(self, report, kernel, seconds):
+        self._report = report
+        #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why
+        self.kernel = kernel.origin
+        self.kernel_seconds = kernel.seconds  #: that it took to get the kernel
+        self.total_seconds = seconds  #: of the whole call
+
+    def __getattr__(self, name):
+        return getattr(self._report, name)
+
+    @property
+    def by_status(self):
+        """Number of instances by the name of their status, those that occur."""
+        return {name: count for name, count in zip(status_names, self._report.by_status) if count}
+
+    def __str__(self):
+        text = str(self._report).rstrip("\n")
+        origin = f"from {self.kernel}" if self.kernel in ("cache", "memory") else self.kernel
+        if not self.kernel.startswith("interpreted"):
+            origin += f" in {self.kernel_seconds:.3g} s"
+        return f"{text}\nkernel {origin}; {self.total_seconds:.3g} s in all"
+
+    __repr__ = __str__
+
+
+class Run:
+    """The results of one call of `solve`. `run["x"]` is an array by name: of a sampled state one row per instance and
+    one column per sample, of a recorded component one column per phase, of others the value at the end, or that of an
+    input. Arrays are views of the core's memory, not copies."""
+
+    def __init__(self, components, ensemble, report, kernel, sweep, inputs, recorded, sampled, seconds, from_phase):
+        self._components, self._ensemble, self._records = components, ensemble, report
+        self._recorded, self._sampled, self._inputs = recorded, sampled, inputs
+        self.sweep = sweep if isinstance(sweep, Sweep) else None
+        self.report = Report(report, kernel, seconds)
+        self.from_phase = from_phase  #: number of the first recorded phase
+
+    @property
+    def size(self):
+        """The number of instances."""
+        return self.report.instances
+
+    @property
+    def shape(self):
+        """The lengths of the sweep's axes; those of a sweep without axes are its size alone."""
+        return tuple(self.sweep.shape) if self.sweep is not None else (self.size,)
+
+    @property
+    def status(self):
+        """How each instance ended, as numbers into `myriad.status_names`."""
+        return self._ensemble.array("status")
+
+    @property
+    def done(self):
+        """The number of instances that were integrated: all, unless the call was interrupted."""
+        return self.size - self._records.by_status[0]
+
+    @property
+    def failed(self):
+        """True for each instance that ended with a failure."""
+        return self.status >= _first_failure
+
+    @property
+    def t(self):
+        """The time at which the last phase of each instance ended."""
+        return self._ensemble.array("t")
+
+    @property
+    def phases_done(self):
+        """The number of phases that each instance has done."""
+        return self._ensemble.array("phases_done")
+
+    @property
+    def stored_samples(self):
+        """The number of samples of each instance."""
+        self._require_samples()
+        return self._ensemble.stored_samples()
+
+    @property
+    def sample_times(self):
+        """The times of the samples, one row per instance; NaN beyond those stored."""
+        self._require_samples()
+        return self._ensemble.samples(-1)
+
+    def _require_samples(self):
+        if not self._sampled:
+            raise Error("no samples were taken: give samples= to solve")
+
+    def steps(self, kind="accepted"):
+        """Steps of each instance: "accepted", "rejected" or "located" (redone to locate events); or "evaluations" of
+        the right-hand side."""
+        names = {"accepted": "accepted_steps", "rejected": "rejected_steps", "located": "located_steps",
+                 "evaluations": "rhs_evaluations"}
+        if kind not in names:
+            raise Error(f"there are no {kind!r} steps: choose one of {', '.join(names)}")
+        return self._ensemble.array(names[kind])
+
+    @property
+    def states(self):
+        """The states at the end by name."""
+        return {name: self._ensemble.array("state", c) for c, name in enumerate(self._components.states)}
+
+    @property
+    def accessories(self):
+        """The accessories at the end by name, integer ones too."""
+        found = {name: self._ensemble.array("accessory", c) for c, name in enumerate(self._components.accessories)}
+        found.update((name, self._ensemble.array("integer_accessory", c))
+                     for c, name in enumerate(self._components.integer_accessories))
+        return found
+
+    @property
+    def parameters(self):
+        """The parameters by name, one value per instance."""
+        return {name: self._ensemble.array("parameter", c) for c, name in enumerate(self._components.parameters)}
+
+    @property
+    def shared(self):
+        """The shared values by name, without those of tables."""
+        reals, integers = self._ensemble.array("shared"), self._ensemble.array("shared_integer")
+        tables = self._components.tables
+        return {**{name: reals[c] for c, name in enumerate(self._components.shared) if name not in tables},
+                **{name: integers[c] for c, name in enumerate(self._components.shared_integers)}}
+
+    @property
+    def start(self):
+        """The initial states by name, as they were given."""
+        return {name: self._inputs[name] for name in self._components.states}
+
+    @property
+    def records(self):
+        """What was recorded at the end of each phase, by name: one row per instance, one column per phase; NaN (0 of
+        integers) after an instance has ended."""
+        return {name: self._records.records(kind, c) for name, (kind, c) in self._recorded.items()}
+
+    @property
+    def samples(self):
+        """The sampled states by name: one row per instance, one column per sample."""
+        return {name: self._ensemble.samples(c) for name, c in self._sampled.items()}
+
+    def __getitem__(self, name):
+        name = name_of(name)
+        if name in self._sampled:
+            return self._ensemble.samples(self._sampled[name])
+        if name in self._recorded:
+            return self._records.records(*self._recorded[name])
+        for found in (self.states, self.accessories, self.parameters, self.shared):
+            if name in found:
+                return found[name]
+        raise KeyError(f"there is no {name!r}: the model has {', '.join(self._components.place)}")
+
+    def __len__(self):
+        return self.size
+
+    def _in_dataset(self, name):
+        """The name of an input in a dataset, where a state's own name is that of its result."""
+        return f"{name}_start" if name in self._components.states else name
+
+    def _axes(self):
+        """The dimensions of the instances and their lengths."""
+        if self.sweep is None or not self.sweep.axes:
+            return ["instance"], (self.size,)
+        return [self._in_dataset(name) for name, _ in self.sweep.axes], tuple(self.sweep.shape)
+
+    def to_xarray(self):
+        """The results as an `xarray.Dataset`: records along `phase`, samples along `sample`, and along `instance`, or
+        the axes of a grid, whose values are coordinates, as are parameters."""
+        try:
+            import xarray
+        except ImportError:
+            raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
+        dims, lengths = self._axes()
+
+        def unstacked(array, *more):
+            return (*dims, *more), array.reshape(*lengths, *array.shape[1:])
+
+        variables, coordinates = {}, {}
+        for name, array in self.records.items():
+            variables[name] = unstacked(array, "phase")
+        for name, array in self.samples.items():
+            variables[f"{name}_samples" if name in variables else name] = unstacked(array, "sample")
+        if self._sampled:
+            coordinates["time"] = unstacked(self.sample_times, "sample")
+        for name, array in {**self.states, **self.accessories}.items():
+            variables.setdefault(name, unstacked(array))
+        variables["t_last"] = (*unstacked(self.t), {"long_name": "time at which the last phase ended"})
+        variables["status"] = (*unstacked(self.status), {
+            "flag_values": np.arange(len(status_names), dtype=np.uint8), "flag_meanings": " ".join(status_names)})
+        if self._recorded:
+            phases = next(iter(self.records.values())).shape[1]
+            coordinates["phase"] = np.arange(self.from_phase, self.from_phase + phases)
+        along = {} if self.sweep is None else self.sweep.coordinates
+        for name, (axis, values) in along.items():
+            coordinates[self._in_dataset(name)] = (self._in_dataset(axis), np.asarray(values))
+        for name, array in self.parameters.items():
+            if name not in along:
+                coordinates[name] = unstacked(array)
+        coordinates.update(self.shared)
+        for name, value in self.start.items():
+            if name not in along and np.ndim(value) == 1:
+                coordinates[self._in_dataset(name)] = unstacked(value)
+        return xarray.Dataset(variables, coordinates, {"myriad_version": _core.version})
+
+    def to_pandas(self):
+        """The results as a `pandas.DataFrame`: one row for each instance and recorded phase, or each instance and
+        sample, or each instance, with the parameters as columns."""
+        try:
+            import pandas
+        except ImportError:
+            raise Error("to_pandas needs the package pandas: `pip install pandas`") from None
+        if self._recorded and self._sampled:
+            raise Error("records by phase and samples do not fit into one table: use to_xarray()")
+        long = dict(self.records) or dict(self.samples)
+        columns = next(iter(long.values())).shape[1] if long else 1
+        table = {"instance": np.repeat(np.arange(self.size), columns)}
+        if self._recorded:
+            table["phase"] = np.tile(np.arange(self.from_phase, self.from_phase + columns), self.size)
+        if self._sampled:
+            table["time"] = self.sample_times.ravel()
+        for name, array in self.parameters.items():
+            table[name] = np.repeat(array, columns)
+        table.update((name, array.ravel()) for name, array in long.items())
+        for name, array in {**self.states, **self.accessories}.items():
+            if not long:
+                table[name] = array
+        names = pandas.Categorical.from_codes(self.status, status_names)
+        table["status"] = names.repeat(columns)
+        frame = pandas.DataFrame(table)
+        return frame.dropna(subset=["time"]).reset_index(drop=True) if self._sampled else frame
+
+    @property
+    def plot(self):
+        """Pictures by matplotlib: `bifurcation`, `map`, `time_series`, `phase_portrait` and `statuses`."""
+        from .plots import Plots
+        return Plots(self)
+
+    def _repr_html_(self):
+        from .plots import html
+        return html(self)
+
+    def __repr__(self):
+        counts = ", ".join(f"{count} {name}" for name, count in self.report.by_status.items())
+        return f"<myriad.Run of {self.size} instances: {counts}>"

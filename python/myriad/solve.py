@@ -1,0 +1,363 @@
+# SPDX-License-Identifier: MIT
+"""`solve`: checks names and shapes, fills an ensemble of the core, integrates it and hands the arrays over."""
+
+import math
+import time as clock
+
+import numpy as np
+
+from . import _core, compiler, tape
+from .components import Components, name_of, unknown
+from .errors import Error
+from .grid import Sweep
+from .methods import fixed_step, method_type
+from .run import Interrupted, Run
+
+_directions = {"falling": -1, "either": 0, "rising": 1}
+_default_event_tolerance = 1e-6
+_schedules = {"automatic": 0, "in_order": 1, "dynamic": 2, "by_cost": 3}
+# How the core's messages, which are the C++ library's, say things in Python.
+_in_python = (
+    ("set invalid_instances = invalid_instances::mark", "give invalid=\"mark\""),
+    ("set it with ensemble.shared(...) before solving", "give it a value in the sweep"),
+    ("name it in options::record", "name it in record="),
+    ("give options::step", "give step="),
+    ("use an ensemble of doubles", "give precision=\"double\""),
+    ("relative_tolerance", "rtol"),
+    ("absolute_tolerance", "atol"),
+    ("the ensemble", "the sweep"),
+)
+
+
+def _numbers(value, name):
+    """A number, or an array of one dimension, of real numbers."""
+    array = np.asarray(value)
+    if array.dtype.kind == "c":
+        raise Error(f"'{name}' is complex: a model is real, so give real and imaginary parts as two components")
+    if array.dtype.kind not in "biuf":
+        raise Error(f"'{name}' is {value!r}: give a number, or an array with one number per instance")
+    if array.ndim > 1:
+        raise Error(f"'{name}' has {array.ndim} dimensions: give one number per instance, in one dimension; "
+                    "myriad.grid(...) makes a sweep over several axes")
+    return array
+
+
+def _sweep_values(sweep):
+    """The values of a sweep by name: of an object like `myriad.grid(...)`, or of a dict."""
+    if sweep is None:
+        return {}
+    if isinstance(sweep, Sweep):
+        return {**{name: sweep.values(name) for name in sweep.coordinates}, **sweep.constants}
+    if hasattr(sweep, "items"):
+        return {name_of(key): value for key, value in sweep.items()}
+    raise Error(f"the sweep is a {type(sweep).__name__}: give a dict, as in {{k: np.linspace(0, 1, 100)}}, or "
+                "myriad.grid(k=..., B=...)")
+
+
+def _gather(components, sweep, start, time, size):
+    """All inputs by name, and the number of instances."""
+    given = {}
+    for source, values, kinds in (("the sweep", _sweep_values(sweep), None),
+                                  ("start=", {name_of(k): v for k, v in (start or {}).items()},
+                                   ("state", "accessory", "integer_accessory"))):
+        for name, value in values.items():
+            kind = components.place.get(name, (None,))[0]
+            if kind is None or (kinds is not None and kind not in kinds):
+                known = [n for n, (k, _) in components.place.items() if kinds is None or k in kinds]
+                raise unknown(name, known, f"component of the model that {source} can set")
+            if name in given:
+                raise Error(f"'{name}' is given in the sweep and in start=: give it once")
+            given[name] = _numbers(value, name)
+    given = {**{name: np.asarray(value) for name, value in components.defaults.items()}, **given}
+    missing = [f"'{n}'" for n in components.states if n not in given]
+    if missing:
+        raise Error(f"the initial value of {', '.join(missing)} is missing: give it in start=")
+    missing = [f"'{n}'" for n in components.parameters + components.shared + components.shared_integers
+               if n not in given]
+    if missing:
+        raise Error(f"the value of {', '.join(missing)} is missing: give it in the sweep")
+    try:
+        begin, end = time
+    except (TypeError, ValueError):
+        raise Error(f"time is {time!r}: give begin and end, as in time=(0, 10)") from None
+    domain = _numbers(begin, "begin of time"), _numbers(end, "end of time")
+    lengths = {name: len(a) for name, a in (*given.items(), ("begin of time", domain[0]), ("end of time", domain[1]))
+               if a.ndim == 1}
+    if size is not None:
+        lengths["size"] = size
+    if isinstance(sweep, Sweep):
+        lengths["the sweep"] = sweep.size
+    if len(set(lengths.values())) > 1:
+        (first, n), (other, m) = next(((a, b) for a in lengths.items() for b in lengths.items() if a[1] != b[1]))
+        raise Error(f"'{first}' has {n} values and '{other}' has {m}: give one for each instance, or single numbers; "
+                    "myriad.grid(...) combines all values with all")
+    return given, domain, next(iter(lengths.values()), 1)
+
+
+def _fill(ensemble, components, given, domain, names):
+    for kind, known, all_names in (("state", components.states, names[0]),
+                                   ("parameter", components.parameters, names[1]),
+                                   ("accessory", components.accessories, names[4])):
+        for number in range(len(known), len(all_names)):  # which an interpreted model does not use
+            ensemble.array(kind, number)[...] = 0
+    for name, array in given.items():
+        kind, number = components.place[name]
+        if kind in ("shared", "shared_integer"):
+            if array.ndim == 1:
+                raise Error(f"'{name}' is shared by all instances and has {len(array)} values: give one number, or "
+                            "make it a parameter")
+            ensemble.array(kind)[number] = array
+            continue
+        if kind == "integer_accessory" and array.dtype.kind not in "biu":
+            raise Error(f"'{name}' is an integer accessory: give whole numbers")
+        ensemble.array(kind, number)[...] = array
+    if domain[0].ndim == 0 and domain[1].ndim == 0:
+        ensemble.set_domain(float(domain[0]), float(domain[1]))
+    else:
+        ensemble.array("t_begin")[...] = domain[0]
+        ensemble.array("t_end")[...] = domain[1]
+
+
+def _per_state(value, components, name, count):
+    """One tolerance for all states, one for each in their order, or a dict by state; those that it leaves out get the
+    default. For `count` states, of which those beyond the model's are not used."""
+    if hasattr(value, "items"):
+        values = [1e-8] * len(components.states)
+        for key, tolerance in value.items():
+            state = name_of(key)
+            if state not in components.states:
+                raise unknown(state, components.states, "state of the model")
+            values[components.states.index(state)] = float(tolerance)
+    else:
+        values = [float(v) for v in np.atleast_1d(_numbers(value, name))]
+    return values + [1.0] * (count - len(components.states)) if len(values) == len(components.states) > 1 else values
+
+
+def _whole(value, name):
+    if isinstance(value, (bool, np.bool_)) or not float(value).is_integer():
+        raise Error(f"{name} is {value!r}: give a whole number")
+    return int(value)
+
+
+def _only(options, known, what):
+    for name in options:
+        if name not in known:
+            raise unknown(name, list(known), f"choice of {what}")
+
+
+_record_choices = ("from_phase", "states", "accessories", "time")
+_sample_choices = ("states", "capacity", "evenly", "times", "every", "minimum_spacing", "from_phase")
+
+
+def _set_records(options, record, components):
+    """What of records is asked for: the names of recorded components with kind and number."""
+    if record is None:
+        return {}
+    record = dict(record) if hasattr(record, "items") else {"states": record}
+    _only(record, _record_choices, "record=")
+    kinds = ("state", "accessory", "integer_accessory")
+    named = components.numbers(record.get("states", ()), "record=", kinds)
+    others = components.numbers(record.get("accessories", ()), "record=", kinds)
+    state, real, integer = (a + b for a, b in zip(named, others))
+    with_time = bool(record.get("time", False))
+    options.record(_whole(record.get("from_phase", 0), "record from_phase"), state, real, integer, with_time)
+    places = {components.states[c]: ("state", c) for c in state}
+    places.update((components.accessories[c], ("accessory", c)) for c in real)
+    places.update((components.integer_accessories[c], ("integer_accessory", c)) for c in integer)
+    if with_time:
+        places["t"] = ("time", 0)
+    return places
+
+
+def _set_samples(options, samples, components, phases, phase_length, size):
+    """What of dense output is asked for: the names of sampled states with their numbers."""
+    if samples is None:
+        return {}
+    if not hasattr(samples, "items"):
+        samples = {"evenly": samples} if np.ndim(samples) == 0 else {"times": samples}
+    _only(samples, _sample_choices, "samples=")
+    states, = components.numbers(samples.get("states", components.states), "samples=", ("state",))
+    evenly = _whole(samples.get("evenly", 0), "samples evenly")
+    every = _whole(samples.get("every", 0), "samples every")
+    from_phase = _whole(samples.get("from_phase", 0), "samples from_phase")
+    times = np.asarray(samples.get("times", ()), dtype=float)
+    if times.ndim == 2 and len(times) != size:
+        raise Error(f"the sample times have {len(times)} rows for {size} instances: give one row for each, or the same "
+                    "times for all in one dimension")
+    if times.ndim > 2:
+        raise Error("the sample times have more than two dimensions: give one row for each instance, or one for all")
+    own = times.ravel() if times.ndim == 2 else ()
+    capacity = samples.get("capacity")
+    if capacity is None:
+        if every:
+            raise Error("samples every n-th step need capacity=, the number of samples to keep per instance")
+        sampled = max(phases - from_phase, 1)
+        given = times.shape[-1] * (1 if phase_length else sampled)
+        capacity = evenly * sampled if evenly else given
+    options.sample(states, _whole(capacity, "samples capacity"), evenly, [] if times.ndim == 2 else times.tolist(),
+                   list(own), every, float(samples.get("minimum_spacing", 0)), from_phase)
+    return {components.states[c]: c for c in states}
+
+
+def _set_events(options, events, components, count):
+    """Options of events: the model's own, replaced by those that the call gives by name; for `count` events."""
+    changed = {}
+    for key, value in (events or {}).items():
+        name = key if isinstance(key, str) else getattr(key, "name", None)
+        if name not in components.event_names:
+            raise unknown(str(name), components.event_names, "event of the model")
+        _only(value, ("direction", "tolerance", "stop_after"), f"event '{name}'")
+        changed[name] = value
+    for event in components.events:
+        of_call = changed.get(event.name, {})
+        direction = of_call.get("direction", event.direction)
+        if direction not in _directions:
+            raise Error(f"the direction of event '{event.name}' is {direction!r}: give \"falling\", \"rising\" or "
+                        "\"either\"")
+        tolerance = of_call.get("tolerance", event.tolerance)
+        options.add_event(_directions[direction], _default_event_tolerance if tolerance is None else float(tolerance),
+                          _whole(of_call.get("stop_after", event.stop_after), "stop_after"))
+    for _ in range(len(components.events), count):
+        options.add_event(0, _default_event_tolerance, 0)
+
+
+def _progress_function(progress):
+    """The function to call with the numbers of instances done and of all, and what to do at the end."""
+    if not progress:
+        return None, lambda: None
+    if callable(progress):
+        return progress, lambda: None
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        raise Error("progress=True shows a bar of the package tqdm, which is missing: `pip install tqdm`, or give a "
+                    "function of two numbers, instances done and all") from None
+    bar = tqdm(unit="instance", unit_scale=True)
+
+    def show(done, total):
+        bar.total = total
+        bar.update(done - bar.n)
+
+    return show, bar.close
+
+
+def _device_name(device):
+    if device == "auto":
+        return "cpu"
+    if str(device).startswith("cuda"):
+        raise Error(f"device {device!r} is not available: this version of the Python package has no kernels for GPUs "
+                    "yet; use \"cpu\" or \"auto\"")
+    try:
+        return _core.check_device(str(device))
+    except Error:
+        raise Error(f"device {device!r} is unknown: use \"auto\", \"cpu\", or \"cpu:4\" for four threads") from None
+
+
+def _positive_infinity(value):
+    return math.inf if value is None else float(value)
+
+
+def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, method="cash_karp", control=(),
+          rtol=1e-8, atol=1e-8, step=None, minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1,
+          max_steps=10_000_000, phase_length=0, carry_on=False, events=None, sub_samples=1, accumulation_limit=50,
+          tolerance_scale=None, invalid="refuse", schedule="automatic", size=None, precision="double", device="auto",
+          interpreted=None, progress=None):
+    """Integrates a model for all instances of a sweep, and returns a `Run`.
+
+    model             from `myriad.model(...)`
+    sweep             values by component, `{k: np.linspace(0.2, 0.3, 1000), B: 0.3}`: arrays with one value for each
+                      instance, or numbers for all; or `myriad.grid(...)`, `myriad.zip(...)`
+    start             initial values of states (and accessories) by component, as in the sweep
+    time              begin and end of the time domain in the model's unit; each a number, or an array with one value
+                      for each instance; the end may be before the begin
+    phases            integration phases, each from begin to end unless `phase_length` or `carry_on` says otherwise
+    record            what to keep at the end of each phase: components, as in `[x, v]`, or
+                      `dict(from_phase=, states=, accessories=, time=)`
+    samples           dense output: a number of evenly spaced times, an array of times, or `dict(states=, evenly= |
+                      times= | every=, capacity=, minimum_spacing=, from_phase=)`
+    method, control   as in the C++ library: "cash_karp", "dormand_prince_5", "tsitouras_5", "verner_7",
+                      "dormand_prince_8", "runge_kutta_4", "rosenbrock_23", "rodas_5p"; control is one or several of
+                      "pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
+                      "tolerance_per_instance", the last with `tolerance_scale=`
+    rtol, atol        tolerances of the error per step: numbers, lists in the order of the states, or dicts by state
+    step              the fixed step, or the first one of an adaptive method
+    carry_on          phases begin where the last one ended, as for phases that events end
+    events            changes of `direction`, `tolerance` or `stop_after` of events by name
+    invalid           "refuse" inputs that are not finite, or "mark" their instances as invalid_input
+    size              number of instances, if no array gives it
+    precision         "double" or "float"
+    device            "auto", "cpu", "cpu:4" (threads)
+    interpreted       True runs the model without compiling it, several times slower; None does so only where there
+                      is no compiler, which the report tells
+    progress          True for a bar, or a function of the numbers of instances done and of all
+
+    Raises `myriad.Error` if something is missing or does not fit, before any work. Ctrl-C raises
+    `myriad.Interrupted`, whose `run` has what is done."""
+    begin = clock.perf_counter()
+    if precision not in ("double", "float"):
+        raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
+    where = _device_name(device)
+    components = Components(model)
+    given, domain, count = _gather(components, sweep, start, time, size)
+    written = method_type(method, control, samples is not None)
+    if method in fixed_step and step is None:
+        raise Error(f"{method} takes fixed steps: give step=")
+    options = _core.Options()
+    options.phases = _whole(phases, "phases")
+    options.step = math.nan if step is None else float(step)
+    options.minimum_step = float(minimum_step)
+    options.maximum_step = _positive_infinity(maximum_step)
+    options.growth_limit, options.shrink_limit = float(growth_limit), float(shrink_limit)
+    options.max_steps = _whole(max_steps, "max_steps")
+    options.phase_length = float(phase_length)
+    options.carry_on(bool(carry_on), False)
+    options.sub_samples = _whole(sub_samples, "sub_samples")
+    options.accumulation_limit = _whole(accumulation_limit, "accumulation_limit")
+    if invalid == "mark":
+        options.mark_invalid()
+    elif invalid != "refuse":
+        raise Error(f"invalid is {invalid!r}: give \"refuse\" or \"mark\"")
+    if schedule not in _schedules:
+        raise Error(f"there is no schedule {schedule!r}: choose one of {', '.join(_schedules)}")
+    options.set_schedule(_schedules[schedule])
+    recorded = _set_records(options, record, components)
+    sampled = _set_samples(options, samples, components, options.phases, options.phase_length, count)
+
+    why = None
+    if interpreted or (interpreted is None and compiler.known_compiler() is None):
+        why = "as asked" if interpreted else "as there is no C++ compiler"
+        if precision != "double" or control:
+            raise Error(f"a model is interpreted, {why}, in double precision and with the usual control alone: leave "
+                        "out precision= and control=, or install a C++ compiler")
+        kernel = tape.kernel(model, components, method, why)
+        names = tape.padded(components)
+    else:
+        kernel = compiler.kernel(*model.source(), written, precision)
+        names = components.names
+    options.set_tolerances(_per_state(rtol, components, "rtol", len(names[0])),
+                           _per_state(atol, components, "atol", len(names[0])))
+    _set_events(options, events, components, len(names[-1]))
+    kind = _core.Ensemble64 if precision == "double" else _core.Ensemble32
+    function, finish = _progress_function(progress)
+    try:
+        ensemble = kind(kernel.library, *names, count)
+        _fill(ensemble, components, given, domain, names)
+        if tolerance_scale is not None:
+            ensemble.array("tolerance_scale")[...] = _numbers(tolerance_scale, "tolerance_scale")
+        report, failure = _core.solve(kernel.library, where, ensemble, options, function)
+    except Error as error:
+        text = str(error)
+        for said, meant in _in_python:
+            text = text.replace(said, meant)
+        raise Error(text) from None
+    finally:
+        finish()
+    inputs = {name: array for name, array in given.items() if components.place[name][0] in (
+        "parameter", "shared", "shared_integer", "state")}
+    run = Run(components, ensemble, report, kernel, sweep, inputs, recorded, sampled, clock.perf_counter() - begin,
+              int(dict(record).get("from_phase", 0)) if hasattr(record, "items") else 0)
+    if failure is not None:
+        if isinstance(failure, KeyboardInterrupt):
+            raise Interrupted(run) from None
+        raise failure
+    return run

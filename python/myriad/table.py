@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""Tables: NumPy arrays that all instances share, as coefficients of a model's equations."""
+
+import hashlib
+
+import numpy as np
+
+from .errors import Error, at, users_line
+from .expression import as_number, make, to_real
+from .symbols import check_name
+
+__all__ = ["table"]
+
+_unrolled = 8  # vectors up to this length are multiplied term by term in the generated code
+
+
+def table(name, values):
+    """An array of one or two dimensions whose values all instances share: `A = myriad.table("A", array)`. `A[i, j]` is
+    an element and `A @ vector` the product with a vector of expressions, an array of expressions. Generated code names
+    its values and does not contain them, so that models with other values need not be compiled again."""
+    return Table(check_name(name, "a table"), values)
+
+
+class Table:
+    """An array that all instances share."""
+
+    __array_ufunc__ = None  # array @ table is refused by __rmatmul__, and not by NumPy
+
+    def __init__(self, name, values):
+        self.name, self.line = name, users_line()
+        array = np.asarray(values)
+        if array.dtype.kind not in "biuf":
+            raise Error(f"the table {name} has values of type {array.dtype}{at(self.line)}: give real numbers")
+        if array.ndim not in (1, 2) or not array.size:
+            raise Error(f"the table {name} has shape {array.shape}{at(self.line)}: give an array of one or two "
+                        "dimensions")
+        if np.isnan(array).any():
+            raise Error(f"the table {name} contains NaN{at(self.line)}: check how it was computed")
+        self.values = np.array(array, float)
+        self.values.setflags(write=False)
+        self.shape = self.values.shape
+        self._key = (name, self.shape, hashlib.sha256(self.values.tobytes()).hexdigest())
+
+    def __eq__(self, other):
+        return isinstance(other, Table) and self._key == other._key
+
+    def __hash__(self):
+        return hash(self._key)
+
+    def __repr__(self):
+        return f"<table {self.name} of shape {self.shape}>"
+
+    def __len__(self):
+        return self.shape[0]
+
+    def __getitem__(self, place):
+        try:
+            chosen = np.arange(self.values.size).reshape(self.shape)[place]
+        except (IndexError, TypeError):
+            raise Error(f"{self.name}[{place!r}] is no element of a table of shape {self.shape}{at(users_line())}: "
+                        "index it with whole numbers from 0") from None
+        if np.ndim(chosen) == 0:
+            return self._element(int(chosen))
+        elements = np.empty(chosen.shape, object)
+        for i in np.ndindex(chosen.shape):
+            elements[i] = self._element(int(chosen[i]))
+        return elements
+
+    def _element(self, number):
+        return make("element", value=(self, number))
+
+    def __matmul__(self, vector):
+        line = at(users_line())
+        vector = np.asarray(vector, dtype=object)
+        columns = self.shape[-1]
+        if vector.shape != (columns,):
+            raise Error(f"the table {self.name} of shape {self.shape} is multiplied by a vector of shape {vector.shape}"
+                        f"{line}: give one expression for each of its {columns} columns")
+        entries = tuple(to_real(as_number(e)) for e in vector)
+        if columns > _unrolled:
+            rows = [make("dot", entries, (self, row * columns)) for row in range(self.values.size // columns)]
+        else:
+            rows = [sum(self._element(start + j) * e for j, e in enumerate(entries))
+                    for start in range(0, self.values.size, columns)]
+        if len(self.shape) == 1:
+            return rows[0]
+        product = np.empty(len(rows), object)
+        product[:] = rows
+        return product
+
+    def __rmatmul__(self, vector):
+        raise Error(f"a vector is multiplied from the left by the table {self.name}{at(users_line())}: make a table of "
+                    "the transposed array, and write table @ vector")
+
+
+def tables_of(nodes):
+    """The tables that these nodes refer to, each once."""
+    return list(dict.fromkeys(n.value[0] for n in nodes if n.op in ("element", "dot")))
+
+
+def element_name(table, number):
+    """The name of an element, as in 'A[0,1]'."""
+    return f"{table.name}[{','.join(str(i) for i in np.unravel_index(number, table.shape))}]"

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""Lyapunov exponents: a model with solutions of its variational equations, by `myriad::with_tangents`."""
+
+import numpy as np
+
+from .errors import Error, at, users_line
+
+__all__ = ["with_tangents", "exponents"]
+
+
+def with_tangents(model, vectors=1):
+    """The model with tangent vectors: one gives the largest Lyapunov exponent, as many as there are states the full
+    spectrum. They are orthonormalised at the end of every phase, and their growth is summed from phase
+    `transient_phases` on, a shared integer that is 0 unless the sweep sets it: `exponents(run)` has the result. Phases
+    should be short enough (docs/writing_a_model.md). Explicit methods only."""
+    return WithTangents(model, vectors)
+
+
+class WithTangents:
+    """A model with tangent vectors. Component c of tangent i is the state `<c>_tangent_<i>`, and the growth of tangent
+    i the accessory `growth_<i>`, counted from 1."""
+
+    def __init__(self, model, vectors):
+        line = users_line()
+        n = len(model.states)
+        if isinstance(vectors, bool) or not isinstance(vectors, (int, np.integer)) or not 1 <= vectors <= n:
+            raise Error(f"{vectors!r} tangent vectors{at(line)}: a model of {n} states has from 1 to {n}")
+        self.model, self.vectors, self.name = model, int(vectors), model.name
+        numbers = range(1, self.vectors + 1)
+        tangents = [f"{state}_tangent_{i}" for i in numbers for state in model.states]
+        self._growth = [f"growth_{i}" for i in numbers]
+        self.states = [*model.states, *tangents]
+        self.parameters, self.shared = list(model.parameters), list(model.shared)
+        self.shared_integers = [*model.shared_integers, "transient_phases"]
+        self.accessories = [*model.accessories, *self._growth, "time_summed", "phase_began"]
+        self.integer_accessories, self.events = list(model.integer_accessories), model.events
+        every = [*self.states, *self.parameters, *self.shared, *self.shared_integers, *self.accessories,
+                 *self.integer_accessories, *(e.name for e in self.events)]
+        twice = next((name for name in every if every.count(name) > 1), None)
+        if twice is not None:
+            raise Error(f"the model has a component '{twice}'{at(line)}, which is the name of one that tangents add: "
+                        "rename it")
+        # The same orthonormal vectors for all instances, columns of a reflection that no symmetry leaves invariant.
+        mirror = 1 + np.modf(0.6180339887498949 * np.arange(1, n + 1))[0]
+        start = np.eye(n) - 2 * np.outer(mirror, mirror) / (mirror @ mirror)
+        self.shared_values = getattr(model, "shared_values", {})
+        self.defaults = {**self.shared_values, "transient_phases": 0,
+                         **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}
+
+    def cpp(self):
+        """The model and its tangents as the text of a C++ header."""
+        return self.source()[0]
+
+    def source(self):
+        """The text that kernels are compiled from, and the name of its struct."""
+        text, struct = self.model.source()
+        return (f"{text}\n#include <myriad/tangent.hpp>\n"
+                f"using {struct}_tangents = myriad::with_tangents<{struct}, {self.vectors}>;\n"), f"{struct}_tangents"
+
+    def __repr__(self):
+        return f"<{self.vectors} tangents of {self.model!r}>"
+
+
+def exponents(run):
+    """The Lyapunov exponents of a run of a model `with_tangents`, per unit of time, by the natural logarithm: one row
+    per instance, the largest first. NaN if no phase was summed."""
+    names = [name for name in run.accessories if name.startswith("growth_")]
+    if not names or "time_summed" not in run.accessories:
+        raise Error(f"the model of this run has no tangents{at(users_line())}: solve myriad.with_tangents(model)")
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.stack([run[name] / run["time_summed"] for name in names], axis=1)

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""Interpreted models: the operations of a traced model as a tape, which the core runs where there is no compiler."""
+
+import weakref
+
+from . import _core
+from .compiler import Kernel
+from .errors import Error
+from .expression import walk
+from .table import element_name
+
+methods = tuple(_core.interpreted_methods())
+_codes = {name: number for number, name in enumerate(_core.tape_operations())}
+_limits = dict(zip(("states", "parameters", "accessories", "integer accessories", "events", "registers"),
+                   _core.tape_limits))
+
+
+def _refuse(why):
+    return Error(f"the model cannot be interpreted, as {why}: install a C++ compiler (clang++ 14 or g++ 12 or newer), "
+                 "or `pip install ziglang`")
+
+
+class Writer:
+    """Writes the functions of one model, one after the other."""
+
+    def __init__(self, components):
+        self.place = components.place
+        self.events = components.event_names
+        self.codes, self.values, self.registers, self.functions = [], [], [], []
+
+    def _emit(self, code, to=0, a=0, b=0, c=0, value=0.0):
+        if code not in _codes:
+            raise _refuse(f"it uses {code}")
+        self.codes.append(_codes[code])
+        self.values.append(value)
+        self.registers.append((to, a, b, c))
+
+    def _symbol(self, node, to):
+        kind, name = node.value
+        if kind == "built-in":
+            self._emit(f"load_{name}", to)
+        elif kind == "event_count":
+            self._emit("load_event_count", to, self.events.index(name))
+        else:
+            self._emit(f"load_{kind}", to, self.place[name][1])
+
+    def function(self, roots, stores):
+        """One function: the values of `roots`, each stored by (code, number) in `stores`. Everything is computed before
+        anything is stored."""
+        begin = len(self.codes)
+        order = walk(roots)
+        uses = {}
+        for node in order:
+            for argument in node.args:
+                uses[id(argument)] = uses.get(id(argument), 0) + 1
+        for root in roots:
+            uses[id(root)] = uses.get(id(root), 0) + 1
+        free = list(range(_limits["registers"]))[::-1]
+        register = {}
+        for node in order:
+            arguments = [register[id(a)] for a in node.args]
+            for argument in node.args:
+                uses[id(argument)] -= 1
+            for argument in dict.fromkeys(map(id, node.args)):
+                if uses[argument] == 0:
+                    free.append(register[argument])
+            unread = [r for r in free if node.op != "dot" or r not in arguments]  # a product reads them several times
+            if len(unread) < (2 if node.op == "dot" else 1):
+                raise _refuse("one of its functions needs more intermediate values than the interpreter has")
+            to = register[id(node)] = unread[-1]
+            free.remove(to)
+            if node.op == "symbol":
+                self._symbol(node, to)
+            elif node.op == "element":
+                self._emit("load_shared", to, self.place[element_name(*node.value)][1])
+            elif node.op == "dot":
+                table, start = node.value
+                for j, argument in enumerate(arguments):
+                    term = unread[-2] if j else to
+                    self._emit("load_shared", term, self.place[element_name(table, start + j)][1])
+                    self._emit("multiply", term, term, argument)
+                    if j:
+                        self._emit("add", to, to, term)
+            elif node.op in ("constant", "truth"):
+                self._emit("constant", to, value=float(node.value))
+            else:
+                name = {"sincos.sine": "sin", "sincos.cosine": "cos", "sincospi.sine": "sinpi",
+                        "sincospi.cosine": "cospi"}.get(node.op, node.op)
+                self._emit(name, to, *arguments)
+        for root, (code, number) in zip(roots, stores):
+            self._emit(code, register[id(root)], number)
+        self.functions.append((begin, len(self.codes)))
+
+    def hook(self, assignments, what):
+        """A hook, from its assignments [(target, value)]."""
+        stores = []
+        for target, _ in assignments:
+            kind, name = target.value
+            if kind == "action":
+                if name == "end_instance" and what == "after_step":
+                    raise _refuse("after_step ends instances")
+                stores.append((f"store_{name}", 0))
+            elif kind == "built-in":
+                if name != "next_step":
+                    raise _refuse(f"{what} assigns {name}")
+                stores.append(("store_next_step", 0))
+            else:
+                stores.append((f"store_{kind}", self.place[name][1]))
+        self.function([value for _, value in assignments], stores)
+
+
+def library(model, components, method):
+    """The interpreter of the core with the tape of a traced model. Raises `Error` if the model or the method is beyond
+    it."""
+    if not hasattr(model, "rhs"):
+        raise _refuse("it has tangents" if hasattr(model, "vectors") else "it is written in C++")
+    if method not in methods:
+        raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
+    if model.reductions:
+        raise _refuse("it has extrema or integrals over a phase")
+    for kind, count in (("states", len(components.states)), ("parameters", len(components.parameters)),
+                        ("accessories", len(components.accessories)),
+                        ("integer accessories", len(components.integer_accessories)),
+                        ("events", len(components.events))):
+        if count > _limits[kind]:
+            raise _refuse(f"it has {count} {kind}, and the interpreter {_limits[kind]} at the most")
+    writer = Writer(components)
+    results = [("store_result", c) for c in range(max(len(model.rhs), len(model.events)))]
+    writer.function(model.rhs, results)
+    writer.function([e.function for e in model.events], results)
+    writer.hook(model.initialise, "initialise")
+    writer.hook(model.after_step, "after_step")
+    writer.hook(model.finalise, "finalise")
+    actions = [e.do for e in model.events] + [[]] * (_limits["events"] - len(model.events))
+    for number, assignments in enumerate(actions):
+        writer.hook(assignments, f"event {number}")
+    may_stop = any(t.value[0] == "action" for a in (model.after_step, *actions) for t, _ in a)
+    made = _core.Tape(writer.functions, writer.codes, writer.values, writer.registers)
+    return _core.Library(method, len(components.shared), len(components.shared_integers), may_stop, made)
+
+
+_known = weakref.WeakKeyDictionary()
+
+
+def kernel(model, components, method, why):
+    """The interpreter with a model; `why` is told in the report."""
+    of_model = _known.setdefault(model, {})
+    if method not in of_model:
+        of_model[method] = library(model, components, method)
+    return Kernel(of_model[method], f"interpreted, {why}", 0.0)
+
+
+def padded(components):
+    """The names of all components that the interpreter has: those of the model first."""
+    def fill(names, kind):
+        return [*names, *(f"unused {kind} {i}" for i in range(len(names), _limits[kind]))]
+
+    return (fill(components.states, "states"), fill(components.parameters, "parameters"), components.shared,
+            components.shared_integers, fill(components.accessories, "accessories"),
+            fill(components.integer_accessories, "integer accessories"), fill(components.event_names, "events"))

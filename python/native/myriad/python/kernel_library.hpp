@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// What a file that the Python package compiles includes after its model: MYRIAD_KERNEL_LIBRARY, which makes the shared
+// object's one exported function.
+#pragma once
+
+#include <algorithm>
+
+#include "myriad/python/kernel_interface.hpp"
+// after the interface, which needs no packs
+#include "myriad/kernel/model/hooks.hpp"
+#include "myriad/kernel/stepper/method_check.hpp"
+#include "myriad/methods.hpp"
+#include "myriad/model.hpp"
+#include "myriad/model/random.hpp"
+#include "myriad/model/tangent.hpp"
+#include "myriad/openmp/packs.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// The arguments in the form that the model's kernel takes.
+template <class Model, class R>
+kernel_arguments<Model, R> arguments_of(const python::any_arguments<R>& from) {
+    kernel_arguments<Model, R> a{};
+    static_cast<instance_range&>(a) = from;
+    static_cast<instance_arrays<array_pointer, R>&>(a) = from;
+    a.shared = from.shared;
+    a.cost = from.cost, a.order = from.order;
+    a.phases = from.phases, a.first_phase = from.first_phase;
+    a.common_t_begin = from.common_t_begin, a.common_t_end = from.common_t_end;
+    a.phase_length = from.phase_length, a.phases_per_time = from.phases_per_time;
+    a.carry_time = from.carry_time, a.carry_step = from.carry_step;
+    a.max_steps = from.max_steps;
+    a.step = from.step, a.minimum_step = from.minimum_step, a.maximum_step = from.maximum_step;
+    a.growth_limit = from.growth_limit, a.shrink_limit = from.shrink_limit;
+    std::copy_n(from.relative_tolerance, n_state<Model>, a.relative_tolerance);
+    std::copy_n(from.absolute_tolerance, n_state<Model>, a.absolute_tolerance);
+    std::copy_n(from.event, n_event<Model>, a.event);
+    std::copy_n(from.rising, n_event<Model> / 32 + 1, a.rising);
+    std::copy_n(from.falling, n_event<Model> / 32 + 1, a.falling);
+    a.sub_samples = from.sub_samples, a.accumulation_limit = from.accumulation_limit;
+    const auto& r = from.record;
+    a.record.values = r.values, a.record.integers = r.integers;
+    a.record.from_phase = r.from_phase, a.record.phases = r.phases, a.record.time_column = r.time_column;
+    std::copy_n(r.state_column, n_state<Model>, a.record.state_column);
+    std::copy_n(r.accessory_column, n_accessory<Model>, a.record.accessory_column);
+    std::copy_n(r.integer_accessory_column, n_integer_accessory<Model>, a.record.integer_accessory_column);
+    const auto& s = from.sample;
+    a.sample.time = s.time, a.sample.values = s.values, a.sample.stored = s.stored;
+    a.sample.times = s.times, a.sample.own_times = s.own_times;
+    a.sample.count = s.count, a.sample.every = s.every, a.sample.capacity = s.capacity;
+    a.sample.from_phase = s.from_phase, a.sample.minimum_spacing = s.minimum_spacing;
+    std::copy_n(s.column, n_state<Model>, a.sample.column);
+    return a;
+}
+
+template <class Model, class Method, class R>
+void run_library(const void* arguments, const run_options* options, int most_threads, python::team_starter start,
+                 run_statistics* result) {
+    if (!computes_as_written()) {
+        *result = {.computed_as_written = false};
+        return;
+    }
+    const auto a = detail::arguments_of<Model, R>(*static_cast<const python::any_arguments<R>*>(arguments));
+    *result = detail::run_packs<Model, Method, R, default_batches<Model, Method>()>(
+        a, *options, most_threads, [start](openmp::team& all) { start(&all); });
+}
+
+template <class Model, class Method, class R>
+inline constexpr python::kernel_library library_of{
+    .interface_version = python::interface_version,
+    .real_bytes = sizeof(R),
+    .n_state = n_state<Model>,
+    .n_parameter = n_parameter<Model>,
+    .n_shared = n_shared<Model>,
+    .n_shared_integer = n_shared_integer<Model>,
+    .n_accessory = n_accessory<Model>,
+    .n_integer_accessory = n_integer_accessory<Model>,
+    .n_event = n_event<Model>,
+    .embedded_order = Method::embedded_order,
+    .instruction_set = static_cast<std::int32_t>(openmp::instruction_set::MYRIAD_INSTRUCTION_SET),
+    .writes_parameters = writes_parameters<Model>,
+    .writes_time_domain = writes_time_domain<Model>,
+    .hooks_may_stop = hooks_may_stop<Model, R>(),
+    .scales_tolerances = scales_tolerances<Method>,
+    .chooses_first_step = chooses_first_step<Method>,
+    .samples_trajectory = samples_trajectory<Method>,
+    .run = &run_library<Model, Method, R>,
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+
+/// Makes the kernel of a model, a method and a real type the shared object's. The arguments may not contain commas.
+#define MYRIAD_KERNEL_LIBRARY(Model, Method, R)                                                                       \
+    static_assert(myriad::detail::check_linkage<Model, Method>());                                                    \
+    static_assert(myriad::detail::check_method<Method>());                                                            \
+    extern "C" __attribute__((visibility("default"))) const myriad::python::kernel_library* myriad_kernel_library() { \
+        return &myriad::detail::library_of<Model, Method, R>;                                                         \
+    }

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+// The extension module myriad._core: what the Python side of the package calls. Private; the package checks names and
+// shapes before it calls.
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include "myriad/host/core/instruction_set.hpp"
+#include "myriad/version.hpp"
+#include "run.hpp"
+#include "threads.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace myriad::python {
+namespace {
+
+/// A NumPy array of `count` values, which keeps its owner alive.
+template <class T>
+nb::object view(T* values, std::int64_t count, nb::handle owner) {
+    return nb::cast(nb::ndarray<nb::numpy, std::remove_const_t<T>, nb::ndim<1>>(
+                        const_cast<std::remove_const_t<T>*>(values), {static_cast<std::size_t>(count)}, owner),
+                    nb::rv_policy::reference);
+}
+/// One of `rows` times `columns` values, of which column after column is in memory.
+template <class T>
+nb::object table(const T* values, std::int64_t rows, std::int64_t columns, nb::handle owner) {
+    return nb::cast(nb::ndarray<nb::numpy, T, nb::ndim<2>>(
+                        const_cast<T*>(values), {static_cast<std::size_t>(rows), static_cast<std::size_t>(columns)},
+                        owner, {1, rows}),
+                    nb::rv_policy::reference);
+}
+
+template <class T>
+T& checked(T& array, int component) {
+    require(component >= 0 && component < array.components(), "there is no component ", component);
+    return array;
+}
+
+/// One component of one kind of an ensemble's data.
+template <class R>
+nb::object component(nb::handle self, const std::string& kind, int c) {
+    auto& e = nb::cast<ensemble<R>&>(self);
+    auto& d = e.data;
+    const std::int64_t n = d.size;
+    const auto of = [&](auto& array) { return view(checked(array, c).component(c), n, self); };
+    if (kind == "state") return of(d.state);
+    if (kind == "parameter") return of(d.parameter);
+    if (kind == "accessory") return of(d.accessory);
+    if (kind == "integer_accessory") return of(d.integer_accessory);
+    if (kind == "shared") return view(d.shared.data(), e.shape->n_shared, self);
+    if (kind == "shared_integer") return view(d.shared_integer.data(), e.shape->n_shared_integer, self);
+    if (kind == "t_begin") return of(d.own_domains().t_begin);
+    if (kind == "t_end") return of(d.own_domains().t_end);
+    if (kind == "tolerance_scale") return of(d.tolerance_scales());
+    if (kind == "t") return of(d.t);
+    if (kind == "phases_done") return of(d.phase);
+    if (kind == "status") return view(reinterpret_cast<std::uint8_t*>(d.status.data()), n, self);
+    if (kind == "accepted_steps") return view(d.counter(&host::ensemble_data<R>::arrays::accepted).data(), n, self);
+    if (kind == "rejected_steps") return view(d.counter(&host::ensemble_data<R>::arrays::rejected).data(), n, self);
+    if (kind == "located_steps") return view(d.counter(&host::ensemble_data<R>::arrays::located).data(), n, self);
+    if (kind == "rhs_evaluations") return view(d.counter(&host::ensemble_data<R>::arrays::evaluations).data(), n, self);
+    throw error(message("there is no array ", kind));
+}
+
+/// Calls Python's progress function, and looks for signals, a few times a second.
+class watcher {
+public:
+    explicit watcher(nb::handle function) : function_(function) {}
+
+    /// Throws `interruption` once Python has raised an exception, which is kept.
+    void operator()(std::int64_t done, std::int64_t total) {
+        const auto now = std::chrono::steady_clock::now();
+        if (done < total && now - last_ < std::chrono::milliseconds{50}) return;
+        last_ = now;
+        const nb::gil_scoped_acquire locked;
+        try {
+            if (PyErr_CheckSignals() != 0) throw nb::python_error();
+            if (!function_.is_none()) function_(done, total);
+        } catch (nb::python_error& raised) {
+            failure = nb::borrow(raised.value());
+            throw interruption{};
+        }
+    }
+
+    nb::object failure;
+
+private:
+    nb::handle function_;
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// The report, and the exception that ended the call early or None.
+template <class R>
+nb::tuple solve_from_python(const library& kernel, const std::string& where, ensemble<R>& instances, options o,
+                            nb::handle progress) {
+    watcher watch(progress);
+    o.progress = [&watch](std::int64_t done, std::int64_t total) { watch(done, total); };
+    std::unique_ptr<report<R>> made;
+    {
+        const nb::gil_scoped_release unlocked;
+        made = solve<R>(kernel, device::parse(where), instances, o);
+    }
+    const nb::object failure = watch.failure ? watch.failure : nb::none();
+    return nb::make_tuple(nb::cast(std::move(made)), failure);
+}
+
+/// The samples of a state, or their times for -1.
+template <class R>
+nb::object sampled(nb::handle self, int state) {
+    auto& s = nb::cast<ensemble<R>&>(self).samples;
+    const R* const values = state < 0 ? s.time.data() : s.component(state);
+    return table(values, s.size, s.capacity, self);
+}
+
+template <class R>
+nb::object recorded(nb::handle self, const std::string& kind, int c) {
+    auto& r = nb::cast<report<R>&>(self).records;
+    const auto of = [&](const auto& array, const std::vector<std::int16_t>& columns) {
+        return table(array.component(r.find(columns, c, kind.c_str())), r.size, r.phases, self);
+    };
+    if (kind == "state") return of(r.values, r.state);
+    if (kind == "accessory") return of(r.values, r.accessory);
+    if (kind == "integer_accessory") return of(r.integers, r.integer_accessory);
+    if (kind == "time") return of(r.values, {r.time});
+    throw error(message("there are no records of ", kind));
+}
+
+template <class R>
+void bind_precision(nb::module_& m, const char* ensemble_name, const char* report_name) {
+    nb::class_<ensemble<R>>(m, ensemble_name)
+        .def("__init__",
+             [](ensemble<R>* self, const library& kernel, std::vector<std::string> states,
+                std::vector<std::string> parameters, std::vector<std::string> shared,
+                std::vector<std::string> shared_integers, std::vector<std::string> accessories,
+                std::vector<std::string> integer_accessories, std::vector<std::string> events, std::int64_t size) {
+                 new (self) ensemble<R>(
+                     kernel.facts(),
+                     {std::move(states), std::move(parameters), std::move(shared), std::move(shared_integers),
+                      std::move(accessories), std::move(integer_accessories), std::move(events)},
+                     size);
+             })
+        .def("array", &component<R>, "kind"_a, "component"_a = 0)
+        .def("set_domain", [](ensemble<R>& e, R begin, R end) { e.data.set_domain(begin, end); })
+        .def("stored_samples",
+             [](nb::handle self) {
+                 auto& s = nb::cast<ensemble<R>&>(self).samples;
+                 return view(s.stored.data(), s.size, self);
+             })
+        .def("samples", &sampled<R>)
+        .def("restart", [](ensemble<R>& e) {
+            e.samples.clear();
+            e.data.restart();
+        });
+    using all = report<R>;
+    nb::class_<all>(m, report_name)
+        .def_ro("instances", &all::instances)
+        .def_ro("by_status", &all::by_status)
+        .def_ro("first_failed", &all::first_failed)
+        .def_ro("accepted_steps", &all::accepted_steps)
+        .def_ro("rejected_steps", &all::rejected_steps)
+        .def_ro("located_steps", &all::located_steps)
+        .def_ro("rhs_evaluations", &all::rhs_evaluations)
+        .def_ro("lanes", &all::lanes)
+        .def_ro("threads", &all::threads)
+        .def_ro("seconds", &all::seconds)
+        .def_ro("device", &all::device)
+        .def_ro("instruction_set", &all::instruction_set)
+        .def_ro("notes", &all::notes)
+        .def_ro("interrupted", &all::interrupted)
+        .def_prop_ro("failed", [](const all& r) { return r.failed(); })
+        .def_prop_ro("idle_share", [](const all& r) { return r.idle_share(); })
+        .def("records", &recorded<R>, "kind"_a, "component"_a = 0)
+        .def("__str__", [](const all& r) {
+            std::ostringstream text;
+            text << static_cast<const report_of<R>&>(r);
+            return text.str();
+        });
+    m.def("solve", &solve_from_python<R>, "library"_a, "device"_a, "ensemble"_a, "options"_a,
+          "progress"_a.none() = nb::none());
+}
+
+void bind_options(nb::module_& m) {
+    nb::class_<options>(m, "Options")
+        .def(nb::init<>())
+        .def_rw("phases", &options::phases)
+        .def_rw("step", &options::step)
+        .def_rw("minimum_step", &options::minimum_step)
+        .def_rw("maximum_step", &options::maximum_step)
+        .def_rw("growth_limit", &options::growth_limit)
+        .def_rw("shrink_limit", &options::shrink_limit)
+        .def_rw("max_steps", &options::max_steps)
+        .def_rw("phase_length", &options::phase_length)
+        .def_rw("sub_samples", &options::sub_samples)
+        .def_rw("accumulation_limit", &options::accumulation_limit)
+        .def("set_tolerances",
+             [](options& o, std::vector<double> relative, std::vector<double> absolute) {
+                 o.relative_tolerance = std::move(relative);
+                 o.absolute_tolerance = std::move(absolute);
+             })
+        .def("carry_on",
+             [](options& o, bool time, bool step) {
+                 o.phase_time = time ? phase_time::carry_on : phase_time::restart;
+                 o.phase_step = step ? phase_step::carry_on : phase_step::restart;
+             })
+        .def("mark_invalid", [](options& o) { o.invalid_instances = invalid_instances::mark; })
+        .def("add_event",
+             [](options& o, int direction, double tolerance, std::int64_t stop_after) {
+                 o.events.push_back({static_cast<myriad::direction>(direction), tolerance, stop_after});
+             })
+        .def("set_schedule", [](options& o, int number) { o.schedule = static_cast<myriad::schedule>(number); })
+        .def("record",
+             [](options& o, std::int64_t from_phase, const std::vector<int>& states,
+                const std::vector<int>& accessories, const std::vector<int>& integer_accessories, bool time) {
+                 o.record = {from_phase, states, accessories, integer_accessories, time};
+             })
+        .def("sample", [](options& o, const std::vector<int>& states, std::int64_t capacity, std::int64_t evenly,
+                          std::vector<double> times, std::vector<double> times_of_instances, std::int64_t every,
+                          double minimum_spacing, std::int64_t from_phase) {
+            o.samples = {states, capacity,        evenly,    std::move(times), std::move(times_of_instances),
+                         every,  minimum_spacing, from_phase};
+        });
+}
+
+}  // namespace
+}  // namespace myriad::python
+
+NB_MODULE(_core, m) {
+    using namespace myriad;
+    using namespace myriad::python;
+    nb::register_exception_translator(
+        [](const std::exception_ptr& thrown, void*) {
+            try {
+                std::rethrow_exception(thrown);
+            } catch (const error& e) {
+                PyErr_SetString(nb::module_::import_("myriad.errors").attr("Error").ptr(), e.what());
+            }
+        },
+        nullptr);
+    m.attr("version") = MYRIAD_VERSION;
+    m.attr("headers") = MYRIAD_HEADERS_DIGEST;
+    m.def("instruction_set", [] {
+        for (const auto set : host::all_instruction_sets)
+            if (host::cpu_has(set)) return std::string(host::name_of(set));
+        return std::string("generic");
+    });
+    m.def("usual_threads", &usual_threads);
+    m.def("status_names", [] {
+        std::vector<std::string> names;
+        for (int s = 0; s < status_count; ++s) names.emplace_back(name_of(static_cast<status>(s)));
+        return names;
+    });
+    m.def("check_device", [](const std::string& name) { return device::parse(name).name(); });
+    m.def("interpreted_methods", &interpreted_methods);
+    m.def("tape_operations", &tape_operations);
+    m.attr("tape_limits") =
+        nb::make_tuple(tape_states, tape_parameters, tape_accessories, tape_integers, tape_events, tape_registers);
+    nb::class_<interpreted>(m, "Tape").def("__init__", [](interpreted* self, const tape_functions& functions,
+                                                          const std::vector<int>& codes,
+                                                          const std::vector<double>& values,
+                                                          const std::vector<std::array<int, 4>>& registers) {
+        require(codes.size() == values.size() && codes.size() == registers.size(), "a tape's parts differ in length");
+        std::vector<tape_step> steps;
+        for (std::size_t i = 0; i < codes.size(); ++i) {
+            const auto narrow = [&](std::size_t k) {
+                require(registers[i][k] >= 0 && registers[i][k] <= 0xffff, "the interpreter has no component ",
+                        registers[i][k], ": install a C++ compiler");
+                return static_cast<std::uint16_t>(registers[i][k]);
+            };
+            steps.push_back({values[i], narrow(0), narrow(1), narrow(2), narrow(3), static_cast<tape_code>(codes[i])});
+        }
+        new (self) interpreted(functions, std::move(steps));
+    });
+    nb::class_<library>(m, "Library")
+        .def(nb::init<const std::string&>())
+        .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
+        .def_prop_ro("samples_trajectory", [](const library& l) { return l.facts().samples_trajectory; })
+        .def_prop_ro("adaptive", [](const library& l) { return l.facts().embedded_order > 0; })
+        .def_prop_ro("instruction_set", [](const library& l) {
+            return std::string(host::name_of(static_cast<openmp::instruction_set>(l.facts().instruction_set)));
+        });
+    bind_options(m);
+    bind_precision<double>(m, "Ensemble64", "Report64");
+    bind_precision<float>(m, "Ensemble32", "Report32");
+}

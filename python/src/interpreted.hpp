@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Models that are interpreted, for machines without a compiler and as a second opinion.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "myriad/python/kernel_interface.hpp"
+#include "tape.hpp"
+
+namespace myriad::python {
+
+/// First and last step of each function: rhs, events, initialise, after_step, finalise, after each event.
+using tape_functions = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// A tape with its memory. Throws `error` if it is not a valid one.
+class interpreted {
+public:
+    interpreted(const tape_functions& functions, std::vector<tape_step> steps);
+    interpreted(const interpreted&) = delete;
+    interpreted& operator=(const interpreted&) = delete;
+    const tape& get() const { return tape_; }
+
+private:
+    std::vector<tape_step> steps_;
+    tape tape_;
+};
+
+/// The kernel that interprets models by a method.
+const kernel_library& interpreter(const std::string& method);
+std::vector<std::string> interpreted_methods();
+std::vector<std::string> tape_operations();
+
+/// `start_team` for a kernel that interprets the calling thread's tape.
+void start_tape_team(openmp::team* all);
+
+}  // namespace myriad::python

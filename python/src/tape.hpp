@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// Interpreted models: a tape of a traced model's operations, run for all lanes of a pack at each of them. Free of the
+// standard library's containers, as it is compiled for an instruction set of its own.
+#pragma once
+
+#include <cstdint>
+
+// Operations with one, two and three arguments, by the names of the traced expressions, and what they call.
+#define MYRIAD_TAPE_UNARY(X) \
+    X(sqrt)                  \
+    X(cbrt)                  \
+    X(abs)                   \
+    X(floor)                 \
+    X(round)                 \
+    X(sin)                   \
+    X(cos)                   \
+    X(tan)                   \
+    X(asin)                  \
+    X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(exp) X(exp2) X(log) X(log2) X(log10) X(reciprocal) X(sinpi) X(cospi)
+#define MYRIAD_TAPE_BINARY(X) X(min) X(max) X(pow) X(atan2) X(hypot) X(copysign)
+#define MYRIAD_TAPE_INFIX(X) X(add, +) X(subtract, -) X(multiply, *) X(divide, /)
+#define MYRIAD_TAPE_COMPARISON(X) \
+    X(less, <) X(less_equal, <=) X(greater, >) X(greater_equal, >=) X(equal, ==) X(not_equal, !=)
+// What is loaded from and stored to a model's arguments; `a` is the number of the component.
+#define MYRIAD_TAPE_LOAD(X) \
+    X(state)                \
+    X(parameter)            \
+    X(shared)               \
+    X(shared_integer)       \
+    X(accessory)            \
+    X(integer_accessory) X(event_count) X(time) X(step) X(next_step) X(phase) X(instance) X(t_begin) X(t_end)
+#define MYRIAD_TAPE_STORE(X) \
+    X(result) X(state) X(parameter) X(accessory) X(integer_accessory) X(next_step) X(end_phase) X(end_instance)
+// The methods that the interpreter is compiled for.
+#define MYRIAD_TAPE_METHODS(X) X(cash_karp) X(dormand_prince_5) X(runge_kutta_4)
+
+namespace myriad::python {
+
+enum class tape_code : std::uint8_t {
+    constant,
+    negate,
+    fma,
+    select,
+    both,
+    either,
+    opposite,
+    is_finite,
+    powr,
+#define MYRIAD_TAPE_NAME(name, ...) name,
+    MYRIAD_TAPE_UNARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_BINARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_INFIX(MYRIAD_TAPE_NAME)
+        MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_NAME)
+#undef MYRIAD_TAPE_NAME
+#define MYRIAD_TAPE_NAME(name) load_##name,
+            MYRIAD_TAPE_LOAD(MYRIAD_TAPE_NAME)
+#undef MYRIAD_TAPE_NAME
+#define MYRIAD_TAPE_NAME(name) store_##name,
+                MYRIAD_TAPE_STORE(MYRIAD_TAPE_NAME)
+#undef MYRIAD_TAPE_NAME
+};
+
+/// The names of the codes, in their order.
+inline constexpr const char* tape_names[] = {
+    "constant",
+    "negate",
+    "fma",
+    "select",
+    "and",
+    "or",
+    "not",
+    "is_finite",
+    "powr",
+#define MYRIAD_TAPE_NAME(name, ...) #name,
+    MYRIAD_TAPE_UNARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_BINARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_INFIX(MYRIAD_TAPE_NAME)
+        MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_NAME)
+#undef MYRIAD_TAPE_NAME
+#define MYRIAD_TAPE_NAME(name) "load_" #name,
+            MYRIAD_TAPE_LOAD(MYRIAD_TAPE_NAME)
+#undef MYRIAD_TAPE_NAME
+#define MYRIAD_TAPE_NAME(name) "store_" #name,
+                MYRIAD_TAPE_STORE(MYRIAD_TAPE_NAME)
+#undef MYRIAD_TAPE_NAME
+};
+
+/// One operation on registers: `to` is its result's, or what a store stores; conditions are 1 and 0.
+struct tape_step {
+    double value;  ///< of a constant
+    std::uint16_t to, a, b, c;
+    tape_code code;
+};
+
+/// One function of a model.
+struct tape_function {
+    const tape_step* begin = nullptr;
+    const tape_step* end = nullptr;
+    bool empty() const { return begin == end; }
+};
+
+/// The most that the interpreter has of each: models with more need a compiler.
+inline constexpr int tape_registers = 128, tape_states = 8, tape_parameters = 12, tape_accessories = 6,
+                     tape_integers = 3, tape_events = 3;
+inline constexpr int tape_batches = 2;  ///< SIMD registers per pack
+
+/// A model.
+struct tape {
+    tape_function rhs, events, initialise, after_step, finalise, after_event[tape_events];
+};
+
+/// The tape that the calling thread runs.
+extern __thread const tape* current_tape;
+
+}  // namespace myriad::python

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+// The model that runs a tape; components beyond those of the tape are not used, and stay zero.
+#pragma once
+
+#include "myriad/python/kernel_library.hpp"
+#include "tape.hpp"
+
+namespace myriad::python {
+
+template <class R>
+inline constexpr bool is_dual = requires(R x) {
+    x.derivative;
+};
+
+/// Numbers of any kind as reals, lane by lane, and back.
+template <class R, class I>
+inline R real_lanes(const I& from) {
+    if constexpr (is_dual<R>) {
+        return R(real_lanes<decltype(R::value)>(from));
+    } else {
+        R to{};
+        for (int i = 0; i < lanes_of<R>; ++i)
+            detail::set_lane(to, i, static_cast<real_of<R>>(detail::get_lane(from, i)));
+        return to;
+    }
+}
+template <class I, class R>
+inline void store_integer(I& to, const R& from) {
+    for (int i = 0; i < lanes_of<R>; ++i) detail::set_lane(to, i, static_cast<std::int32_t>(detail::get_lane(from, i)));
+}
+
+/// The elementary functions, compiled once for each kind of numbers, in tape_functions.cpp.
+template <class R>
+void apply_function(tape_code code, const R& x, const R& y, R& result);
+
+/// What a hook of a tape wants for its instances.
+template <class R>
+struct tape_wishes {
+    mask_of<R> end_phase{}, end_instance{};
+};
+
+/// The arguments of rhs and events.
+template <class R, class States, class Inputs>
+struct function_source {
+    static constexpr bool in_hook = false;
+    const R& t;
+    const States& y;
+    const Inputs& p;
+    R* results;
+};
+/// The arguments of a hook.
+template <class R, class Lane>
+struct hook_source {
+    static constexpr bool in_hook = true;
+    Lane& p;
+    tape_wishes<R>& wishes;
+};
+
+/// Runs a function. One copy for each kind of arguments, since kernels call it at every stage.
+template <class R, class Source>
+[[gnu::noinline]] void run_tape(const tape_function& f, const Source& s) {
+    R r[tape_registers];
+    const auto truth = [](const auto& mask) { return myriad::select(mask, R(1), R(0)); };
+    for (const tape_step* step = f.begin; step != f.end; ++step) {
+        const auto [value, to, a, b, c, code] = *step;
+        switch (code) {
+            case tape_code::constant:
+                r[to] = R(static_cast<real_of<R>>(value));
+                break;
+            case tape_code::negate:
+                r[to] = -r[a];
+                break;
+            case tape_code::fma:
+                r[to] = myriad::fma(r[a], r[b], r[c]);
+                break;
+            case tape_code::select:
+                r[to] = myriad::select(r[a] != R(0), r[b], r[c]);
+                break;
+            case tape_code::both:
+                r[to] = r[a] * r[b];
+                break;
+            case tape_code::either:
+                r[to] = myriad::max(r[a], r[b]);
+                break;
+            case tape_code::opposite:
+                r[to] = R(1) - r[a];
+                break;
+            case tape_code::is_finite:
+                r[to] = truth(myriad::is_finite(r[a]));
+                break;
+#define MYRIAD_TAPE_CASE(name, op) \
+    case tape_code::name:          \
+        r[to] = r[a] op r[b];      \
+        break;
+                MYRIAD_TAPE_INFIX(MYRIAD_TAPE_CASE)
+#undef MYRIAD_TAPE_CASE
+#define MYRIAD_TAPE_CASE(name, op)   \
+    case tape_code::name:            \
+        r[to] = truth(r[a] op r[b]); \
+        break;
+                MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_CASE)
+#undef MYRIAD_TAPE_CASE
+            case tape_code::load_parameter:
+                r[to] = s.p.parameter[a];
+                break;
+            case tape_code::load_shared:
+                r[to] = R(static_cast<const real_of<R>*>(s.p.shared)[a]);
+                break;
+            case tape_code::load_shared_integer:
+                r[to] = R(static_cast<real_of<R>>(static_cast<const std::int32_t*>(s.p.shared_integer)[a]));
+                break;
+            case tape_code::load_accessory:
+                r[to] = s.p.accessory[a];
+                break;
+            case tape_code::load_integer_accessory:
+                r[to] = real_lanes<R>(s.p.integer_accessory[a]);
+                break;
+            default:
+                if (code >= tape_code::powr && code <= tape_code::copysign) {
+                    apply_function(code, r[a], r[b], r[to]);
+                } else if constexpr (Source::in_hook) {
+                    run_in_hook<R>(*step, s, r);
+                } else if (code == tape_code::load_state) {
+                    r[to] = s.y[a];
+                } else if (code == tape_code::load_time) {
+                    r[to] = s.t;
+                } else if (code == tape_code::store_result) {
+                    s.results[a] = r[to];
+                }
+        }
+    }
+}
+/// The operations that only hooks have.
+template <class R, class Source>
+inline void run_in_hook(const tape_step& step, const Source& s, R* r) {
+    auto& lane = s.p;
+    R& x = r[step.to];
+    const int c = step.a;
+    switch (step.code) {
+        case tape_code::load_state:
+            x = lane.y[c];
+            break;
+        case tape_code::load_time:
+            x = lane.t;
+            break;
+        case tape_code::load_step:
+            x = lane.h;
+            break;
+        case tape_code::load_next_step:
+            x = lane.h_next;
+            break;
+        case tape_code::load_t_begin:
+            x = lane.t_begin;
+            break;
+        case tape_code::load_t_end:
+            x = lane.t_end;
+            break;
+        case tape_code::load_phase:
+            x = real_lanes<R>(lane.phase);
+            break;
+        case tape_code::load_instance:
+            x = real_lanes<R>(lane.index);
+            break;
+        case tape_code::load_event_count:
+            x = real_lanes<R>(lane.event_count[c]);
+            break;
+        case tape_code::store_state:
+            lane.y[c] = x;
+            break;
+        case tape_code::store_parameter:
+            lane.parameter[c] = x;
+            break;
+        case tape_code::store_accessory:
+            lane.accessory[c] = x;
+            break;
+        case tape_code::store_integer_accessory:
+            store_integer(lane.integer_accessory[c], x);
+            break;
+        case tape_code::store_next_step:
+            lane.h_next = x;
+            break;
+        case tape_code::store_end_phase:
+            s.wishes.end_phase = x != R(0);
+            break;
+        case tape_code::store_end_instance:
+            s.wishes.end_instance = x != R(0);
+            break;
+        default:
+            break;
+    }
+}
+
+struct tape_model {
+    static constexpr bool writes_parameters = true;
+    static constexpr bool rare_events = true;
+    static constexpr int pack_batches = tape_batches;
+    enum state { n_state = tape_states };
+    enum parameter { n_parameter = tape_parameters };
+    enum shared { n_shared = 1 };
+    enum shared_integer { n_shared_integer = 1 };
+    enum accessory { n_accessory = tape_accessories };
+    enum integer_accessory { n_integer_accessory = tape_integers };
+    enum event { n_event = tape_events };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
+        R slopes[n_state];
+        for (R& slope : slopes) slope = R(0);
+        run(current_tape->rhs, t, y, p, slopes);
+        myriad::vec<R, n_state> all;
+        for (int c = 0; c < n_state; ++c) all[c] = slopes[c];
+        return all;
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
+        R values[n_event];
+        for (R& value : values) value = R(1);  // an event that is not there never happens
+        run(current_tape->events, t, y, p, values);
+        myriad::vec<R, n_event> all;
+        for (int c = 0; c < n_event; ++c) all[c] = values[c];
+        return all;
+    }
+    MYRIAD_FUNCTION static void initialise(auto& lane) { hook(current_tape->initialise, lane); }
+    template <class R>
+    MYRIAD_FUNCTION static auto after_step(auto& lane) {
+        tape_wishes<R> wishes;
+        wishes.end_phase = R(0) != R(0);
+        if (!current_tape->after_step.empty())
+            run_tape<R>(current_tape->after_step,
+                        hook_source<R, std::remove_reference_t<decltype(lane)>>{lane, wishes});
+        return wishes.end_phase;
+    }
+    MYRIAD_FUNCTION static myriad::action after_event(int event, auto& lane) {
+        return hook(current_tape->after_event[event], lane);
+    }
+    MYRIAD_FUNCTION static void finalise(auto& lane) { hook(current_tape->finalise, lane); }
+
+private:
+    template <class R>
+    MYRIAD_FUNCTION static void run(const tape_function& f, const auto& t, const myriad::vec<R, n_state>& y,
+                                    const auto& p, R* results) {
+        if (f.empty()) return;
+        const R time(t);
+        run_tape<R>(f,
+                    function_source<R, myriad::vec<R, n_state>, std::remove_cvref_t<decltype(p)>>{time, y, p, results});
+    }
+    /// A hook of one instance.
+    MYRIAD_FUNCTION static myriad::action hook(const tape_function& f, auto& lane) {
+        using R = std::remove_cvref_t<decltype(lane.h_next)>;
+        tape_wishes<R> wishes;
+        if (f.empty()) return myriad::action::proceed;
+        run_tape<R>(f, hook_source<R, std::remove_reference_t<decltype(lane)>>{lane, wishes});
+        if (wishes.end_instance) return myriad::action::end_instance;
+        return wishes.end_phase ? myriad::action::end_phase : myriad::action::proceed;
+    }
+};
+
+}  // namespace myriad::python

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+"""Shared by the tests: a cache of their own, and models whose solutions are known."""
+
+import os
+import tempfile
+
+import pytest
+
+_cache = tempfile.TemporaryDirectory(prefix="myriad-tests-")
+os.environ["MYRIAD_CACHE_DIR"] = _cache.name  # before the package is imported, and for the processes that tests start
+
+import myriad as my  # noqa: E402
+
+OSCILLATOR = """
+#include <myriad/model.hpp>
+struct oscillator {  // x'' = -w^2 x
+    enum state { x, v, n_state };
+    enum parameter { w, n_parameter };
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {y[v], -p[w] * p[w] * y[x]};
+    }
+};
+"""
+
+BALL = """
+#include <myriad/model.hpp>
+struct ball {  // falls, and bounces with a loss
+    enum state { height, speed, n_state };
+    enum parameter { loss, n_parameter };
+    enum shared { g, n_shared };
+    enum accessory { top, n_accessory };
+    enum integer_accessory { bounces, n_integer_accessory };
+    enum event { impact, n_event };
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {y[speed], -R(p.shared[g])};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_event>{y[height]};
+    }
+    MYRIAD_FUNCTION static void initialise(auto& lane) {
+        lane.accessory[top] = lane.y[height];
+        lane.integer_accessory[bounces] = 0;
+    }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) {
+        lane.y[speed] = -lane.parameter[loss] * lane.y[speed];
+        lane.integer_accessory[bounces] += 1;
+    }
+    MYRIAD_FUNCTION static void finalise(auto& lane) {
+        lane.accessory[top] = lane.y[height] + lane.y[speed] * lane.y[speed] / (2 * lane.shared[g]);
+    }
+};
+"""
+
+
+@pytest.fixture
+def oscillator():
+    """x'' = -w^2 x"""
+    return my.CppModel(OSCILLATOR, "oscillator", "x v", "w")
+
+
+@pytest.fixture
+def ball():
+    """A ball that bounces."""
+    return my.CppModel(BALL, "ball", "height speed", "loss", "g", accessories="top", integer_accessories="bounces",
+                       events={"impact": dict(direction="falling", tolerance=1e-10)})

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""What bad calls of `solve` get."""
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
+
+
+@pytest.mark.parametrize("change, message", [
+    (dict(start={"x": 1}), "initial value of 'v' is missing: give it in start="),
+    (dict(sweep={}), "value of 'w' is missing: give it in the sweep"),
+    (dict(sweep={"W": 1}), "'W' is no component of the model that the sweep can set: did you mean 'w'"),
+    (dict(start={"x": 1, "v": 0, "w": 1}), "'w' is no component of the model that start= can set"),
+    (dict(sweep={"w": [1.0, 2.0], "x": 1}), "'x' is given in the sweep and in start="),
+    (dict(start={"x": [1, 2, 3], "v": 0}), "'w' has 2 values and 'x' has 3"),
+    (dict(sweep={"w": [1.0, np.nan]}), r"parameter 0 \(w\) is not finite in 1 of 2 instances.*give invalid=\"mark\""),
+    (dict(sweep={"w": [1j, 2]}), "'w' is complex"),
+    (dict(sweep={"w": [[1.0, 2.0]]}), "'w' has 2 dimensions"),
+    (dict(sweep={"w": "fast"}), "'w' is 'fast': give a number"),
+    (dict(sweep=3), "the sweep is a int"),
+    (dict(sweep={3: 3}), "3 is no component"),
+    (dict(time=3), "time is 3: give begin and end"),
+    (dict(rtol=0), "rtol is 0 .must be positive"),
+    (dict(atol=[1e-9, 1e-9, 1e-9]), "atol has 3 values, but the model has 2 state components"),
+    (dict(rtol={"y": 1e-9}), "'y' is no state of the model"),
+    (dict(phases=0), "phases is 0"),
+    (dict(phases=1.5), "phases is 1.5: give a whole number"),
+    (dict(record=["z"]), "'z' is no component of the model that record= can name"),
+    (dict(record=dict(states=["x"], phase=1)), "'phase' is no choice of record="),
+    (dict(record=dict(states=["x"], from_phase=1)), "nothing would be recorded"),
+    (dict(method="euler"), "there is no method 'euler': choose one of cash_karp"),
+    (dict(method="runge_kutta_4"), "runge_kutta_4 takes fixed steps: give step="),
+    (dict(method="runge_kutta_4", step=0.1, control="pi_control"), "has no step-size control to choose"),
+    (dict(control="pi"), "there is no step-size control 'pi'"),
+    (dict(events={"hit": {}}), "'hit' is no event of the model: there is none"),
+    (dict(samples=dict(every=2)), "need capacity="),
+    (dict(samples=[0.5, 2.0]), "sample"),
+    (dict(device="cuda"), "no kernels for GPUs yet"),
+    (dict(device="tpu"), "device 'tpu' is unknown"),
+    (dict(invalid="ignore"), "give \"refuse\" or \"mark\""),
+    (dict(precision="half"), "give \"double\" or \"float\""),
+    (dict(size=3), "'w' has 2 values and 'size' has 3"),
+])
+def test_message(oscillator, change, message):
+    with pytest.raises(my.Error, match=message):
+        my.solve(oscillator, **{**CALL, **change})
+
+
+def test_shared_values_are_single_numbers(ball):
+    with pytest.raises(my.Error, match="'g' is shared by all instances and has 2 values"):
+        my.solve(ball, {"loss": 0.5, "g": [1.0, 2.0]}, start={"height": 1, "speed": 0}, time=(0, 1))
+
+
+def test_the_compilers_first_message(oscillator):
+    wrong = my.CppModel(oscillator.cpp().replace("y[v],", "y[v] + missing,"), "oscillator", "x v", "w")
+    with pytest.raises(my.Error, match="the model does not compile .*missing") as raised:
+        my.solve(wrong, **CALL)
+    assert len(str(raised.value).splitlines()) == 1
+
+
+def test_names_must_be_as_many_as_components(oscillator):
+    wrong = my.CppModel(oscillator.cpp(), "oscillator", "x v", "w u")
+    with pytest.raises(my.Error, match="the model has 1 components of kind parameter, and 2 names are given"):
+        my.solve(wrong, {"w": 1, "u": 1}, start={"x": 1, "v": 0}, time=(0, 1))
+
+
+def test_what_was_not_asked_for(oscillator):
+    run = my.solve(oscillator, **CALL)
+    with pytest.raises(KeyError, match="there is no 'y': the model has x, v, w"):
+        run["y"]
+    with pytest.raises(my.Error, match="no samples were taken"):
+        run.sample_times

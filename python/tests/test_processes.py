@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""Threads, forks and signals."""
+
+import concurrent.futures
+import multiprocessing
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+w = np.linspace(1, 2, 200)
+
+
+def solve(oscillator, device="cpu:2", end=20, **options):
+    return my.solve(oscillator, {"w": w}, start={"x": 1, "v": 0}, time=(0, end), device=device, **options)
+
+
+def test_several_threads_solve_at_once(oscillator):
+    expected = solve(oscillator)["x"].tobytes()
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        for run in pool.map(lambda _: solve(oscillator), range(12)):
+            assert run["x"].tobytes() == expected
+
+
+def _solve_in_child(oscillator, results):
+    results.put(solve(oscillator)["x"].tobytes())
+
+
+def test_a_fork_after_use_solves_with_threads_of_its_own(oscillator):
+    expected = solve(oscillator)["x"].tobytes()
+    fork = multiprocessing.get_context("fork")
+    results = fork.SimpleQueue()
+    child = fork.Process(target=_solve_in_child, args=(oscillator, results))
+    child.start()
+    child.join(60)
+    assert child.exitcode == 0
+    assert results.get() == expected
+
+
+def test_the_interpreter_runs_meanwhile(oscillator):
+    """Another thread of Python works while a call integrates."""
+    turns, over = 0, threading.Event()
+
+    def count():
+        nonlocal turns
+        while not over.is_set():
+            turns += 1
+            time.sleep(0.001)
+
+    counter = threading.Thread(target=count)
+    solve(oscillator)
+    counter.start()
+    run = solve(oscillator, end=100_000, device="cpu:1")
+    over.set()
+    counter.join()
+    assert run.report.seconds > 0.1 and turns > 5
+
+
+def test_an_interrupt_ends_a_run_with_what_is_done(oscillator):
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(my.Interrupted) as raised:
+        my.solve(oscillator, {"w": np.linspace(1, 2, 20_000)}, start={"x": 1, "v": 0}, time=(0, 10_000))
+    run = raised.value.run
+    assert isinstance(raised.value, KeyboardInterrupt)
+    assert 0 < run.done < 20_000 and run.report.by_status["not_started"] == 20_000 - run.done
+    done = run.status == my.status_names.index("success")
+    assert done.sum() == run.done and (run.t[done] == 10_000).all()
+    solve(oscillator)  # and the next one works
+
+
+def test_an_exception_of_the_progress_function_arrives(oscillator):
+    def refuse(done, total):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        solve(oscillator, progress=refuse)

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: MIT
+"""The program of the package's README runs, and draws."""
+
+import pathlib
+import re
+
+import numpy as np
+
+
+def test_the_program_of_the_readme():
+    import matplotlib
+    matplotlib.use("Agg")
+    readme = pathlib.Path(__file__).resolve().parents[1] / "README.md"
+    program, = re.findall(r"```python\n(.*?)```", readme.read_text(encoding="utf-8"), re.DOTALL)
+    names = {}
+    exec(program, names)  # pylint: disable=exec-used
+    run = names["run"]
+    assert run.report.by_status == {"success": 4608} and run["x"].shape == (4608, 32)
+    last = run["x"][-1]  # k = 0.3, an orbit of five periods of the forcing, which the C++ program finds too
+    np.testing.assert_allclose(last[5:], last[:-5], atol=1e-9)
+    np.testing.assert_allclose(last[-1], -1.13703428619, atol=1e-9)
+    assert abs(last[-1] - last[-2]) > 0.1

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""Models with tangent vectors; examples/lyapunov.py checks exponents."""
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+x, v = my.states("x v")
+decay = my.model({x: -my.parameter("k") * x, v: -3 * v}, name="decay")
+
+
+def test_tangents_are_states_that_start_orthonormal():
+    model = my.with_tangents(decay, 2)
+    tangents = ["x_tangent_1", "v_tangent_1", "x_tangent_2", "v_tangent_2"]
+    assert model.states == ["x", "v", *tangents]
+    start = np.array([model.defaults[name] for name in tangents]).reshape(2, 2)
+    np.testing.assert_allclose(start @ start.T, np.eye(2), atol=1e-15)
+
+
+def test_exponents_of_linear_equations_are_their_eigenvalues():
+    # In the transient phases, ten units of time, tangents turn towards the eigenvectors up to e^-20 at the least.
+    run = my.solve(my.with_tangents(decay, 2), {"k": [1.0, 2.0], "transient_phases": 20}, start={x: 1, v: 1},
+                   time=(0, 0.5), phases=50, rtol=1e-10, atol=1e-14)
+    np.testing.assert_allclose(my.exponents(run), [[-1, -3], [-2, -3]], atol=1e-8)
+
+
+@pytest.mark.parametrize("make, message", [
+    (lambda: my.with_tangents(decay, 3), "a model of 2 states has from 1 to 2"),
+    (lambda: my.with_tangents(decay, 0), "from 1 to 2"),
+    (lambda: my.with_tangents(my.model({my.state("growth_1"): 1})), "component 'growth_1'"),
+])
+def test_wrong_tangents_are_refused(make, message):
+    with pytest.raises(my.Error, match=message):
+        make()
+
+
+def test_runs_without_tangents_have_no_exponents():
+    class ARun:
+        accessories = {"growth_1": None}
+
+    with pytest.raises(my.Error, match="has no tangents"):
+        my.exponents(ARun())

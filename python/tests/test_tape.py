@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""Interpreted models against compiled ones and closed forms, and what they refuse."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import example_models
+import myriad as my
+
+
+def oscillator():
+    x, v = my.states("x v")
+    w = my.parameter("w")
+    return my.model({x: v, v: -w * w * x})
+
+
+def test_events_hooks_and_accessories_have_the_bits_of_compiled_ones():
+    duffing = example_models.duffing()
+    recorded = ["x", "v", "x_local_max", "v_second_zero", "x_global_max", "zeros"]
+    call = dict(sweep={"k": np.linspace(0.2, 0.3, 101), "B": 0.3}, start={"x": -0.5, "v": -0.1}, time=(0, 2 * np.pi),
+                phases=4, rtol=1e-9, record=recorded)
+    compiled, interpreted = my.solve(duffing, **call), my.solve(duffing, interpreted=True, **call)
+    for name in recorded:
+        assert compiled[name].tobytes() == interpreted[name].tobytes(), name
+    assert compiled.report.located_steps == interpreted.report.located_steps > 0
+    assert interpreted.report.kernel == "interpreted, as asked"
+    assert "kernel interpreted, as asked" in str(interpreted.report)
+
+
+@pytest.mark.parametrize("method, tolerance", [("cash_karp", 1e-7), ("dormand_prince_5", 1e-7),
+                                               ("runge_kutta_4", 1e-5)])
+def test_closed_form(method, tolerance):
+    w = np.linspace(1, 2, 19)
+    run = my.solve(oscillator(), {"w": w}, start={"x": 1, "v": 0}, time=(0, 3), rtol=1e-10, atol=[1e-10, 1e-10],
+                   step=0.01, method=method, samples=5, interpreted=True)
+    np.testing.assert_allclose(run["x"], np.cos(w[:, None] * run.sample_times), atol=tolerance)
+    np.testing.assert_allclose(run.states["v"], -w * np.sin(3 * w), atol=2 * tolerance)
+
+
+def test_every_function_has_the_value_of_numpy():
+    """y' = f(t) over one step of length 1e-3, so that y is about f times that."""
+    t, (y,) = my.time, my.states("y")
+    functions = {
+        "sqrt": np.sqrt, "cbrt": np.cbrt, "abs": np.abs, "floor": np.floor, "sin": np.sin, "cos": np.cos,
+        "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "sinh": np.sinh, "cosh": np.cosh,
+        "tanh": np.tanh, "exp": np.exp, "exp2": np.exp2, "log": np.log, "log2": np.log2, "log10": np.log10,
+        "reciprocal": lambda x: 1 / x, "sinpi": lambda x: np.sin(np.pi * x), "cospi": lambda x: np.cos(np.pi * x),
+        "round": np.round}
+    for name, function in functions.items():
+        run = my.solve(my.model({y: getattr(my, name)(0.4 + t)}), start={y: 0}, time=(0, 1e-3), interpreted=True,
+                       method="runge_kutta_4", step=1e-3)
+        assert run["y"][0] == pytest.approx(1e-3 * function(0.4005), rel=1e-6), name
+    two = {
+        my.minimum(t, 0.3): 0.0005, my.maximum(t, 0.3): 0.3, my.pow(0.4 + t, 1.5): 0.4005**1.5,
+        my.powr(0.4 + t, 1.5): 0.4005**1.5, my.atan2(0.4 + t, 2.0): np.arctan2(0.4005, 2),
+        my.hypot(0.4 + t, 2.0): np.hypot(0.4005, 2), my.copysign(0.4 + t, -1.0): -0.4005,
+        my.fma(t + 1, 2.0, 3.0): 5.001, my.where((t < 1) & ~(t > 0.5) | (t == 7), 2.0, 3.0): 2.0,
+        my.where((t >= 1) | (t != t), 2.0, -t): -0.0005, my.where(my.is_finite(1 / t), 1 + t * 2, 1.0): 1.001}
+    for expression, value in two.items():
+        run = my.solve(my.model({y: expression}), start={y: 0}, time=(0, 1e-3), interpreted=True,
+                       method="runge_kutta_4", step=1e-3)
+        assert run["y"][0] == pytest.approx(1e-3 * value, rel=1e-6), repr(expression)
+
+
+SCRIPT = """
+import myriad as my
+x, v = my.states("x v")
+run = my.solve(my.model({x: v, v: -x}), start={x: 1, v: 0}, time=(0, 1))
+print(run.report.kernel, float(run["x"][0]))
+"""
+
+
+def test_without_a_compiler_models_are_interpreted_and_the_report_tells(tmp_path):
+    environment = {name: value for name, value in os.environ.items() if name != "MYRIAD_CXX"}
+    told = subprocess.run([sys.executable, "-c", "import sys; sys.modules['ziglang'] = None\n" + SCRIPT],
+                          env={**environment, "PATH": str(tmp_path)}, capture_output=True, text=True, check=False)
+    assert told.stdout.startswith("interpreted, as there is no C++ compiler 0.5403"), told.stderr
+
+
+@pytest.mark.parametrize("change, message", [
+    (dict(method="dormand_prince_8"), "the interpreter has the methods cash_karp, dormand_prince_5, runge_kutta_4"),
+    (dict(control="pi_control"), "in double precision and with the usual control alone"),
+    (dict(precision="float"), "in double precision and with the usual control alone"),
+])
+def test_calls_beyond_the_interpreter(change, message):
+    with pytest.raises(my.Error, match=message):
+        my.solve(oscillator(), {"w": 1}, start={"x": 1, "v": 0}, time=(0, 1), interpreted=True, **change)
+
+
+def test_models_beyond_the_interpreter():
+    nine = my.states([f"x{i}" for i in range(9)])
+    with pytest.raises(my.Error, match="it has 9 states, and the interpreter 8 at the most: install a C"):
+        my.solve(my.model({x: -x for x in nine}), start={x: 1 for x in nine}, time=(0, 1), interpreted=True)
+    x, = my.states("x")
+    peak = my.accessory("peak")
+    with pytest.raises(my.Error, match="extrema or integrals over a phase"):
+        my.solve(my.model({x: -x}, accessories={peak: my.phase_maximum(x)}), start={x: 1}, time=(0, 1),
+                 interpreted=True)
+    with pytest.raises(my.Error, match="as it is written in C"):
+        my.solve(my.CppModel("struct a", "a", "x"), start={"x": 1}, time=(0, 1), interpreted=True)

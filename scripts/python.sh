@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Builds the wheel of the Python package, installs it in a fresh virtual environment, and runs its tests there.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=scripts/lib.sh
+source scripts/lib.sh
+
+wheels=build/wheels
+environment=build/python-environment
+
+usage() {
+    cat <<END
+Usage: scripts/python.sh [--required] [--help] [PYTEST ARGUMENT...]
+
+Builds the wheel of the Python package into $wheels, installs it with what its tests need in a fresh virtual
+environment, $environment, and runs the tests of python/tests with the arguments given. scikit-build-core,
+nanobind and the tests' packages come from PyPI. Exit status 77 if they cannot be installed.
+
+Options:
+  --required  exit status 1 instead of 77
+  --help      this text
+END
+}
+
+missing_status=77
+while (($#)); do
+    case $1 in
+        --help | -h) usage; exit 0 ;;
+        --required) missing_status=1 ;;
+        *) break ;;
+    esac
+    shift
+done
+
+require_packages g++ cmake ninja-build python3 python3-dev python3-venv libxsimd-dev
+rm -rf "$wheels" "$environment"
+mkdir -p "$wheels"
+pip=("$environment/bin/python" -m pip --quiet --disable-pip-version-check --retries 1 --timeout 20)
+if ! { python3 -m venv "$environment" &&
+    "${pip[@]}" install scikit-build-core nanobind matplotlib numpy pandas pytest scipy sympy xarray; } \
+    >"$environment.log" 2>&1; then
+    tail -n 5 "$environment.log" >&2 || true
+    say "The Python package was NOT tested: what it is built and tested with could not be installed ($environment.log)."
+    exit "$missing_status"
+fi
+started=$SECONDS
+quietly build/python-wheel.log "${pip[@]}" wheel --no-build-isolation --no-deps --wheel-dir "$wheels" .
+"${pip[@]}" install --no-deps "$wheels"/*.whl
+say "Built and installed $(basename "$wheels"/*.whl) in $(duration $((SECONDS - started)))"
+"$environment/bin/python" -m pytest -q "$@" python/tests
