@@ -56,6 +56,7 @@ void run_generated() {
                                 [](const myriad::chunk_columns& chunk, std::span<double> sums) {
                                     const auto x = chunk.values<double>("x_end"), v = chunk.values<double>("v_end");
                                     for (std::size_t i = 0; i < x.size(); ++i) {
+                                        if (myriad::is_failure(chunk.status(static_cast<std::int64_t>(i)))) continue;
                                         sums[0] += x[i] * x[i] * (x[i] * x[i] / 4 - 0.5);
                                         sums[1] += v[i] * v[i] / 2;
                                     }

@@ -35,6 +35,19 @@ void copy_or_zero(const T* from, std::int64_t instances, std::byte* to) {
     std::memset(to, 0, static_cast<std::size_t>(instances) * sizeof(T));
 }
 
+/// Writes the fill value where a phase did not end, since records have 0 there, which may also be a result.
+void mark_missing_phases(const std::int32_t* phases_done, std::int64_t from_phase, std::int64_t instances,
+                         std::int64_t recorded, std::byte* bytes) {
+    auto* const values = reinterpret_cast<std::int32_t*>(bytes);
+    host::in_parallel(
+        instances, std::max(grain / recorded, std::int64_t{64}), [=](std::int64_t first, std::int64_t last) {
+            for (std::int64_t i = first; i < last; ++i) {
+                const std::int64_t there = std::clamp<std::int64_t>(phases_done[i] - from_phase, 0, recorded);
+                fill(element::i32, values + i * recorded + there, static_cast<std::size_t>(recorded - there));
+            }
+        });
+}
+
 }  // namespace
 
 template <class R>
@@ -42,6 +55,8 @@ void chunk_solver_of<R>::prepare(std::int64_t first, std::int64_t count) {
     if (instances_ != nullptr && instances_->data().size != count) instances_.reset();
     if (instances_ == nullptr) instances_ = make_(count);
     instances_->restart();
+    auto& t = instances_->data().t;
+    t.fill_instances(0, count, host::ensemble_data<R>::unset);  // which restart leaves as it was
     first_ = instances_->data().first_index = first;
     set_components();
     set_domains();
@@ -122,8 +137,10 @@ void chunk_solver_of<R>::copy(const quantity& what, std::byte* to) const {
             return plan_.asked.axes.fill(*e, first_, size, reinterpret_cast<R*>(to));
         }
         case origin::record:
-            if (c.kind == component_kind::integer_accessory)
-                return transpose(instances_->recorded_integers(c.number), size, inner, to);
+            if (c.kind == component_kind::integer_accessory) {
+                transpose(instances_->recorded_integers(c.number), size, inner, to);
+                return mark_missing_phases(data.phase.data(), plan_.asked.options.record.from_phase, size, inner, to);
+            }
             return transpose(instances_->recorded(c.kind, c.number), size, inner, to);
         case origin::record_time:
             return transpose(instances_->record_times(), size, inner, to);

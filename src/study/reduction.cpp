@@ -31,16 +31,19 @@ using studies::reduction_state;
 using studies::variable;
 using inputs = std::vector<const variable*>;
 
-/// Calls `visit(j, value)` for value j of each instance that has not failed.
+/// Calls `visit(j, value)` for value j of each instance that has not failed; what was not computed is NaN.
 template <class Visit>
 void for_each_value(const chunk_columns& chunk, const std::string& name, Visit&& visit) {
     const auto visit_all = [&]<class T>(T) {
         const std::span<const T> all = chunk.values<T>(name);
         const std::size_t inner = chunk.size() > 0 ? all.size() / static_cast<std::size_t>(chunk.size()) : 0;
         const T* next = all.data();
+        T unset{};
+        studies::fill(studies::element_of<T>, &unset, 1);  // for real types NaN, which equals nothing
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
         for (std::int64_t i = 0; i < chunk.size(); ++i, next += inner) {
             if (is_failure(chunk.status(i))) continue;
-            for (std::size_t j = 0; j < inner; ++j) visit(j, static_cast<double>(next[j]));
+            for (std::size_t j = 0; j < inner; ++j) visit(j, next[j] == unset ? none : static_cast<double>(next[j]));
         }
     };
     switch (chunk.find(name).what->type) {
@@ -244,11 +247,10 @@ ensemble_reduction histogram_of(std::string_view of, const axis_values& edges) {
     std::vector<double> all;
     for (std::int64_t i = 0; i < edges.size(); ++i) {
         all.push_back(edges[i]);
-        require(i == 0 || all[all.size() -
-                              2]<all.back(), "the edges of the bins of a histogram of ", of, " do not increase: ", i> 0
-                    ? all[all.size() - 2]
-                    : 0.0,
-                " is followed by ", all.back());
+        if (i == 0) continue;
+        const double last = edges[i - 1];
+        require(last < edges[i], "the edges of the bins of a histogram of ", of, " do not increase: ", last,
+                " is followed by ", edges[i]);
     }
     studies::reduction_definition made;
     made.name = message(of, "_histogram");
@@ -264,7 +266,9 @@ ensemble_reduction histogram_of(std::string_view of, const axis_values& edges) {
             bins + 3,
             {result(of + "_histogram", element::i64, {{dimension, bins}}, {{"edges", all}}),
              result(of + "_outside", element::i64, {{of + "_side", 3}},
-                    {{"comment", "how many values are below the first edge, above the last one, and not finite"}})},
+                    {{"comment",
+                      "how many values are below the first edge, above the last one, and not finite or "
+                      "missing"}})},
             {studies::with_values(dimension, dimension, middles, {{"long_name", "middle of the bin"}})},
             [=] { return std::make_unique<histogram_state>(of, all); }};
     };

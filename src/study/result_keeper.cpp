@@ -44,24 +44,31 @@ public:
     void read(std::string_view name, std::int64_t first, std::int64_t count, void* to) const override {
         const std::size_t number = content_.find(name);
         const variable& v = content_.variables[number];
-        require(first >= 0 && count >= 0 && first + count <= items(v), "items ", first, " to ", first + count - 1,
-                " of ", name, " are asked for: there are ", items(v));
+        require(first >= 0 && count >= 0 && first <= items(v) && count <= items(v) - first, count, " items of ", name,
+                " from item ", first, " on are asked for: there are ", items(v));
         const std::lock_guard lock(mutex_);
-        std::memcpy(to, &values_[number][static_cast<std::size_t>(first) * item_bytes(v)],
-                    static_cast<std::size_t>(count) * item_bytes(v));
+        const std::size_t size = item_bytes(v);
+        const std::byte* const from = values_[number].data() + static_cast<std::size_t>(first) * size;
+        std::copy_n(from, static_cast<std::size_t>(count) * size, static_cast<std::byte*>(to));
     }
 
     std::optional<std::int64_t> claim_next() {
         const std::lock_guard lock(mutex_);
-        const auto found = std::find(states_.begin(), states_.end(), state::open);
+        const auto found = std::find(states_.begin() + first_open_, states_.end(), state::open);
+        first_open_ = found - states_.begin();
         if (found == states_.end()) return {};
         *found = state::claimed;
-        return found - states_.begin();
+        return first_open_;
     }
     void set(std::int64_t chunk, bool is_done) {
         const std::lock_guard lock(mutex_);
         states_[static_cast<std::size_t>(chunk)] = is_done ? state::done : state::open;
-        if (is_done) instances_done_ += range_of(content_, chunk).count;
+        if (is_done) {
+            ++chunks_done_;
+            instances_done_ += range_of(content_, chunk).count;
+        } else {
+            first_open_ = std::min(first_open_, chunk);
+        }
     }
     /// Without the lock, since nobody reads a chunk that is not done, nor writes one that is.
     void put(const column& values, std::int64_t first) {
@@ -75,7 +82,7 @@ public:
     }
     bool complete() const {
         const std::lock_guard lock(mutex_);
-        return std::all_of(states_.begin(), states_.end(), [](state s) { return s == state::done; });
+        return chunks_done_ == static_cast<std::int64_t>(states_.size());
     }
     std::int64_t instances_done() const {
         const std::lock_guard lock(mutex_);
@@ -97,7 +104,8 @@ private:
     mutable std::mutex mutex_;
     std::vector<state> states_;
     std::vector<std::string> written_;
-    std::int64_t instances_done_ = 0;
+    std::int64_t first_open_ = 0;  // no chunk before it is open
+    std::int64_t chunks_done_ = 0, instances_done_ = 0;
 };
 
 class memory_keeper final : public result_keeper {

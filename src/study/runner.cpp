@@ -44,6 +44,8 @@ using done_of_chunk = std::atomic<std::int64_t>;
 
 /// Another thread has found that the device is lost.
 class device_lost : public std::exception {};
+/// The run is to end, and the chunk under way takes too long.
+class given_up : public std::exception {};
 
 class run {
 public:
@@ -109,7 +111,6 @@ private:
             lock.lock();
         }
     }
-    /// An exception of the user's function ends the run.
     void show() {
         if (!settings_.progress || failure_told_) return;
         work_progress now;
@@ -136,6 +137,7 @@ private:
             outcome_.warnings.push_back(std::move(text));
         }
     }
+    /// An exception of the user's function ends the run.
     template <class Function>
     void call(Function&& function) {
         try {
@@ -151,6 +153,7 @@ private:
     void work_until_the_end(used_device& d, done_of_chunk& mine) {
         try {
             work(d, mine);
+        } catch (const given_up&) {  // by the next run it is done again
         } catch (const std::exception& e) {
             if (!d.failed) {
                 fail(std::current_exception());
@@ -236,8 +239,11 @@ private:
                 for (std::size_t q = 0; q < values.size(); ++q)
                     values[q].resize(static_cast<std::size_t>(range.count) * bytes_of(plan_.quantities[q]));
                 solver.prepare(range.first + at, count);
-                add(sum, integrate(
-                             d, solver, [&](std::int64_t done) { mine = at + done; }, seconds));
+                const auto progress = [&](std::int64_t done) {
+                    mine = at + done;
+                    if (done < count && is_over()) throw given_up();
+                };
+                add(sum, integrate(d, solver, progress, seconds));
                 for (std::size_t q = 0; q < values.size(); ++q)
                     solver.copy(plan_.quantities[q],
                                 &values[q][static_cast<std::size_t>(at) * bytes_of(plan_.quantities[q])]);
@@ -264,6 +270,8 @@ private:
             return how;
         } catch (const out_of_memory&) {
             throw;
+        } catch (const given_up&) {
+            throw;
         } catch (const std::exception& e) {
             // A GPU is lost with a driver's error. On the CPU, it is the model or the study that is wrong.
             if (d.where.which() != device::kind::cpu) drop(d, e.what());
@@ -279,7 +287,9 @@ private:
     }
     void halve(std::int64_t& piece, std::int64_t count, chunk_solver& solver, const std::string& why) {
         solver.clear();
-        if (count == 1) throw error(why);
+        if (count == 1)
+            throw out_of_memory(message("there is not enough memory for the values of chunks of ", content().chunk,
+                                        " instances: make chunk smaller, keep less, or use fewer devices (", why, ')'));
         piece = (count + 1) / 2;
         warn(message("memory is short, so ", piece, " instances are integrated at a time: ", why));
     }
@@ -332,6 +342,14 @@ private:
         stopping_ = true;
         changed_.notify_all();
     }
+    /// Whether the run was to end so long ago that chunks under way are given up.
+    bool is_over() {
+        if (!stopping_ && !(settings_.stops && settings_.stops())) return false;
+        const clock::rep now = clock::now().time_since_epoch().count();
+        clock::rep none = 0;
+        stopped_at_.compare_exchange_strong(none, now);
+        return clock::duration(now - stopped_at_) >= settings_.patience;
+    }
     void fail(std::exception_ptr why) {
         const std::lock_guard lock(mutex_);
         if (!failure_) failure_ = std::move(why);
@@ -379,7 +397,8 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::atomic<bool> stopping_{false};
-    int working_ = 0;  // threads
+    std::atomic<clock::rep> stopped_at_{0};  // when that was first seen, by the clock; 0: not yet
+    int working_ = 0;                        // threads
     std::int64_t earlier_, committed_;
     std::vector<std::string> warnings_;  // not told yet
     std::exception_ptr failure_;

@@ -3,6 +3,10 @@
 #include "myriad/study/stop_signals.hpp"
 
 #include <atomic>
+#include <cstdint>
+
+#include <signal.h>
+#include <time.h>
 
 #include "myriad/kernel/core/abi.hpp"
 
@@ -10,27 +14,53 @@ namespace myriad::studies::inline MYRIAD_ABI {
 
 namespace {
 
-std::atomic<bool> signal_came{false};
-static_assert(std::atomic<bool>::is_always_lock_free);  // as a handler needs
+/// A signal that a handler has to know of.
+struct watched_signal {
+    int number;
+    struct sigaction before {};           // the handler that was there
+    std::atomic<std::int64_t> since{-1};  // milliseconds of the clock when it came; -1: it did not
+};
+watched_signal watched[] = {{SIGINT}, {SIGTERM}};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);  // as a handler needs
 
-extern "C" void remember_signal(int) { signal_came = true; }
+std::int64_t now() {
+    timespec time{};
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return std::int64_t{1000} * time.tv_sec + time.tv_nsec / 1'000'000;
+}
+
+extern "C" void remember_signal(int number) {
+    constexpr std::int64_t repeats = 1000;  // milliseconds
+    for (watched_signal& w : watched) {
+        if (w.number != number) continue;
+        std::int64_t none = -1;
+        if (w.since.compare_exchange_strong(none, now()) || now() - none <= repeats) return;
+        sigaction(number, &w.before, nullptr);
+        raise(number);  // which comes when this handler returns
+    }
+}
 
 }  // namespace
 
 stop_signals::stop_signals() {
-    signal_came = false;
     struct sigaction handler {};
     handler.sa_handler = &remember_signal;
-    handler.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
+    handler.sa_flags = SA_RESTART;
     sigemptyset(&handler.sa_mask);
-    sigaction(SIGINT, &handler, &interrupt_);
-    sigaction(SIGTERM, &handler, &terminate_);
+    for (watched_signal& w : watched) {
+        w.since = -1;
+        sigaction(w.number, nullptr, &w.before);  // before it can be needed
+        sigaction(w.number, &handler, nullptr);
+    }
 }
 stop_signals::~stop_signals() {
-    sigaction(SIGINT, &interrupt_, nullptr);
-    sigaction(SIGTERM, &terminate_, nullptr);
+    for (const watched_signal& w : watched) sigaction(w.number, &w.before, nullptr);
 }
 
-bool stop_signals::came() const { return signal_came; }
+bool stop_signals::came() const {
+    for (const watched_signal& w : watched)
+        if (w.since >= 0) return true;
+    return false;
+}
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

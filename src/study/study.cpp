@@ -36,23 +36,34 @@ struct chunk_sizes {
 chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_plan& plan, bool in_memory,
                          const std::vector<device>& devices) {
     const std::int64_t n = plan.content.instances();
-    const auto kept = static_cast<double>(plan.bytes_per_instance());
-    const double worked_on = model.bytes_per_instance(plan.asked.options) + kept;
-    // Two threads for each device; half of what is free stays free.
-    double free = host::available_memory().bytes / 2;
-    if (in_memory) free -= kept * static_cast<double>(n);
-    const double of_thread = std::max(free, 0.0) / (2 * static_cast<double>(devices.size()));
+    const double worked_on =
+        model.bytes_per_instance(plan.asked.options) + static_cast<double>(plan.bytes_per_instance());
+    // Two threads for each device; half of what the results leave stays free.
+    double free = host::available_memory().bytes;
+    if (in_memory) free -= static_cast<double>(plan.content.bytes());
+    const double of_thread = std::max(free, 0.0) / 2 / (2 * static_cast<double>(devices.size()));
     constexpr double enough = 256e6;  // bytes: more instances make no device faster
-    const auto fitting = [&](double bytes) {
-        return static_cast<std::int64_t>(std::clamp(bytes / worked_on, 1.0, static_cast<double>(n)));
-    };
+    // Fewer would be slow on any device. If even they do not fit, the run finds out how many do.
+    const std::int64_t fewest = std::min<std::int64_t>(n, 1024);
+    const auto fitting = static_cast<std::int64_t>(std::min(of_thread, enough) / worked_on);
+    const std::int64_t most = std::clamp(fitting, fewest, n);
     // Enough instances to keep all lanes and threads busy, and as many chunks as let little be lost.
     const bool has_gpu =
         std::any_of(devices.begin(), devices.end(), [](const device& d) { return d.which() != device::kind::cpu; });
     const auto threads = static_cast<std::int64_t>(std::max(std::thread::hardware_concurrency(), 1u));
-    const std::int64_t least = has_gpu ? std::int64_t{1} << 20 : 1024 * threads;
-    const std::int64_t most = fitting(std::min(of_thread, enough));
+    const std::int64_t least = has_gpu ? std::int64_t{1} << 20 : 256 * threads;
     return {std::min(std::max((n + 31) / 32, least), most), most};
+}
+
+/// Refuses chunks whose values alone do not fit: they are in memory as a whole, however few instances are integrated at
+/// a time.
+void check_memory(const studies::study_plan& plan, const studies::layout& content, const std::vector<device>& devices,
+                  const char* advice) {
+    host::memory_need need;
+    need.add("values", static_cast<double>(plan.bytes_per_instance()) * static_cast<double>(content.chunk));
+    const std::int64_t at_once = std::min(2 * static_cast<std::int64_t>(devices.size()), content.chunks());
+    need.add("values of other chunks at the same time", need.bytes() * static_cast<double>(at_once - 1));
+    need.check(message("chunks of ", content.chunk, " instances"), advice);
 }
 
 }  // namespace
@@ -79,14 +90,38 @@ std::ostream& operator<<(std::ostream& stream, const study_result& r) {
     return stream << text;
 }
 
-std::size_t study_result::size_of(std::string_view name, element type, std::int64_t count) const {
+std::size_t study_result::size_of(std::string_view name, element type, std::int64_t first, std::int64_t count) const {
     const studies::variable& v = content().variables[content().find(name)];
     require(v.type == type, name, " has values of type ", studies::name_of(v.type), ", not ", studies::name_of(type));
-    require(count >= 0, count, " instances of ", name, " are asked for");
+    const std::int64_t items = items_of(content(), v);
+    require(first >= 0 && count >= 0 && first <= items && count <= items - first, count, " items of ", name,
+            " from item ", first, " on are asked for: there are ", items);
+    host::memory_need need;
+    need.add("values", static_cast<double>(count) * static_cast<double>(v.values_per_item()) *
+                           static_cast<double>(studies::size_of(type)));
+    need.check(message("reading ", count, " items of ", name), "read fewer at a time");
     return static_cast<std::size_t>(count * v.values_per_item());
 }
 
+std::vector<double> study_result::values_of_coordinate(const studies::coordinate& c) const {
+    std::int64_t length = 1;
+    const auto look_at = [&](const std::vector<studies::dimension>& all) {
+        for (const studies::dimension& d : all)
+            if (d.name == c.dimension) length = d.length;
+    };
+    look_at(content().axes);
+    for (const studies::variable& v : content().variables) look_at(v.inner);
+    host::memory_need need;
+    need.add("values", static_cast<double>(length) * sizeof(double));
+    need.check(message("reading all of ", c.name), "compute them by the function that made the axis");
+    std::vector<double> all(static_cast<std::size_t>(length));
+    c.values(0, all);
+    return all;
+}
+
 std::vector<double> study_result::values(std::string_view name) const {
+    for (const studies::coordinate& c : content().coordinates)
+        if (c.name == name) return values_of_coordinate(c);
     const studies::variable& v = content().variables[content().find(name)];
     const std::int64_t items = items_of(content(), v), inner = v.values_per_item();
     host::memory_need need;
@@ -178,7 +213,10 @@ studies::study_request any_study::request() const {
 }
 
 study_result any_study::run() {
-    stopped_ = false;
+    const struct stop_once {  // also if it is asked for before the run
+        std::atomic<bool>& stopped;
+        ~stop_once() { stopped = false; }
+    } once{stopped_};
     studies::run_settings settings{.devices = devices, .progress = progress, .warning = warning};
     if (settings.devices.empty()) settings.devices.push_back(device::best());
     for (const device& d : settings.devices) model_->check(d, options);
@@ -186,8 +224,11 @@ study_result any_study::run() {
     const chunk_sizes sizes = choose_sizes(*model_, plan, folder_.empty(), settings.devices);
     plan.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
     settings.piece = sizes.piece;
+    check_memory(plan, plan.content, settings.devices, "make chunk smaller, or keep less");
     const auto keeper = folder_.empty() ? studies::keep_in_memory(plan.content)
                                         : studies::keep_in_store(folder_, plan.content, store_options_);
+    check_memory(plan, keeper->content(), settings.devices,
+                 "use fewer devices, or start the study in a new folder with a smaller chunk");
 
     std::unique_ptr<studies::stop_signals> signals;
     if (stop_on_signals) signals = std::make_unique<studies::stop_signals>();

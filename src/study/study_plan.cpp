@@ -158,6 +158,7 @@ std::string describe(const study_request& asked, const study_plan& plan) {
     if (!reductions.empty()) made["reductions"] = reductions;
     if (!asked.generator.empty()) made["generator"] = asked.generator;
     if (!asked.notes.empty()) made["notes"] = asked.notes;
+    if (!asked.units.empty()) made["units"] = asked.units;
     return made.dump(2);
 }
 
@@ -170,6 +171,7 @@ public:
     explicit planner(study_plan& plan) : plan_(plan), asked_(plan.asked), names_(plan.asked.axes.names()) {}
 
     void make() {
+        check_texts();
         check_inputs();
         add_axes();
         add_records();
@@ -188,6 +190,24 @@ public:
     }
 
 private:
+    /// JSON has Unicode alone.
+    void check_texts() const {
+        const auto check = [](const std::string& what, const std::string& text) {
+            try {
+                (void)json(text).dump();
+            } catch (const json::exception&) {
+                throw error(message(what, " is no text in UTF-8: give it in that encoding"));
+            }
+        };
+        check("the title", asked_.title);
+        check("the generator's name", asked_.generator);
+        for (const auto& [key, text] : asked_.notes) {
+            check("the key of a note", key);
+            check("the note " + key, text);
+        }
+        for (const auto& [component, text] : asked_.units) check("the unit of " + component, text);
+        for (const ensemble_reduction& r : asked_.reductions) check("the name of a reduction", r.definition().name);
+    }
     /// What every instance must have, unless a generator gives it.
     void check_inputs() const {
         require(asked_.options.samples.times_of_instances.empty(),
@@ -228,7 +248,8 @@ private:
         for (const axes::entry& e : asked_.axes.entries()) {
             const std::string name = names_.initial_variable(e.what);
             if (e.values.random()) {
-                add(origin::axis, name, type_of(e.what), true, {}, unit_of(e.what), e.what).as.role = role::coordinate;
+                add(origin::axis, name, type_of(e.what), asked_.keep.random, {}, unit_of(e.what), e.what).as.role =
+                    role::coordinate;
                 continue;
             }
             const std::string along = e.dimension ? content.axes[static_cast<std::size_t>(*e.dimension)].name : "";

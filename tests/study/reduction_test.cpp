@@ -83,6 +83,25 @@ TEST_CASE("Extrema and means are of each phase, and leave failed instances and N
     CHECK(std::isnan(data.first_of(minimum_of("x"))[0]));
     CHECK(std::isnan(data.first_of(mean_of("x"))[1]));
 }
+TEST_CASE("Integers of phases that an instance did not reach are reduced as missing, not as 0", "[reduction]") {
+    const studies::variable n{.name = "n", .type = studies::element::i32, .inner = {{"phase", 2}}};
+    const studies::variable status{.name = "status", .type = studies::element::u8};
+    std::int32_t values[] = {4, 6, 8, 0};
+    studies::fill(studies::element::i32, &values[3], 1);
+    const std::uint8_t statuses[] = {0, 0};
+    const chunk_columns::column columns[] = {{&n, std::as_bytes(std::span(values))},
+                                             {&status, std::as_bytes(std::span(statuses))}};
+    const auto reduce = [&](const ensemble_reduction& r) {
+        const auto state = r.definition().plan({&n}).start();
+        state->add(chunk_columns(0, 2, columns));
+        return state->results();
+    };
+    CHECK(reduce(minimum_of("n"))[0] == std::vector<double>{4, 6});
+    CHECK(reduce(mean_of("n"))[0] == std::vector<double>{6, 6});
+    const auto histogram = reduce(histogram_of("n", linspace(0, 10, 3)));
+    CHECK(histogram[0] == std::vector<double>{1, 2});
+    CHECK(histogram[1] == std::vector<double>{0, 0, 1});
+}
 TEST_CASE("Reductions have the same bits whatever the chunks are", "[reduction]") {
     std::mt19937_64 random(3);
     std::vector<double> all(3000);

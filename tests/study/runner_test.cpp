@@ -49,6 +49,7 @@ public:
             solved integrate(const device& where, const std::function<void(std::int64_t)>& progress) override {
                 const auto count = static_cast<std::int64_t>(k.size());
                 integrated(where, first, count);
+                progress(count - 1);
                 progress(count);
                 solved how;
                 how.by_status[static_cast<std::size_t>(status::success)] = count;
@@ -85,6 +86,8 @@ struct test_run {
     std::int64_t chunk = 30;
     std::function<void(result_keeper&)> before = [](result_keeper&) {};
     std::vector<std::string> warnings = {};
+    std::function<bool()> stops = {};
+    std::chrono::milliseconds patience = std::chrono::seconds(10);
 
     run_outcome run() {
         const doubling model(integrate);
@@ -98,9 +101,11 @@ struct test_run {
         plan.content.chunk = chunk;
         const auto keeper = keep_in_memory(plan.content);
         before(*keeper);
-        const run_outcome outcome =
-            run_study(model, plan, *keeper,
-                      {.devices = devices, .warning = [this](const std::string& text) { warnings.push_back(text); }});
+        const run_outcome outcome = run_study(
+            model, plan, *keeper,
+            {.devices = devices, .stops = stops, .patience = patience, .warning = [this](const std::string& text) {
+                 warnings.push_back(text);
+             }});
         if (outcome.complete) {
             std::vector<double> x(1000);
             keeper->kept()->read("x_end", 0, 1000, x.data());
@@ -151,6 +156,20 @@ TEST_CASE("All devices get chunks, each chunk is done once", "[runner]") {
     CHECK(on_cpu > 0);
     CHECK(on_gpu > 0);
     CHECK(t.warnings.empty());
+}
+TEST_CASE("A chunk that takes too long when the run is to end is given up, and not counted", "[runner]") {
+    for (const bool patient : {true, false}) {
+        std::atomic<int> begun{0};
+        test_run t;
+        t.integrate = [&](auto&&...) { ++begun; };
+        t.stops = [&] { return begun >= 3; };
+        if (!patient) t.patience = std::chrono::milliseconds(0);
+        const run_outcome outcome = t.run();
+        CHECK(!outcome.complete);
+        CHECK((outcome.instances == 30 * begun) == patient);
+        CHECK(outcome.instances % 30 == 0);
+        CHECK(t.warnings.empty());
+    }
 }
 TEST_CASE("One thread integrates on a device at a time", "[runner]") {
     std::atomic<int> at_once{0}, most{0};

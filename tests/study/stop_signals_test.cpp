@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include <myriad/study/stop_signals.hpp>
+#include <unistd.h>
 
 #include "tests/catch.hpp"
 
@@ -30,5 +31,18 @@ TEST_CASE("A signal is remembered for as long as the object lives", "[stop_signa
     CHECK(others == 0);
     std::raise(SIGTERM);  // the handler that was there before
     CHECK(others == 1);
+    std::signal(SIGTERM, before);
+}
+TEST_CASE("A signal that is sent twice at once ends nothing, one that is sent again later does", "[stop_signals]") {
+    others = 0;
+    const auto before = std::signal(SIGTERM, [](int) { others = others + 1; });
+    {
+        const myriad::studies::stop_signals stop;
+        for (int i = 0; i < 3; ++i) std::raise(SIGTERM);
+        CHECK(others == 0);
+        usleep(1'100'000);
+        std::raise(SIGTERM);
+        CHECK(others == 1);
+    }
     std::signal(SIGTERM, before);
 }

@@ -67,6 +67,14 @@ TEST_CASE("A study keeps records, last values and statuses along its axes", "[st
     content.coordinates.back().values(1, phase);
     CHECK(phase == std::vector<double>{7, 8});
 }
+TEST_CASE("Random values are not kept if that is not wanted, and can be reduced", "[study_plan]") {
+    study_request asked = request();
+    asked.axes.add("a", random_normal(0, 1));
+    asked.keep.random = false;
+    asked.reductions = {mean_of("a_begin")};
+    CHECK(names_of(plan_study(asked).content) ==
+          std::vector<std::string>{"a_begin_mean_partial", "a_begin_mean", "x", "t", "status"});
+}
 TEST_CASE("What only a reduction needs is computed, and not kept", "[study_plan]") {
     study_request asked = request();
     asked.keep.records = asked.keep.status = false;
@@ -116,6 +124,9 @@ TEST_CASE("Descriptions differ exactly where results may", "[study_plan]") {
         description([](study_request& s) {
             s.notes = {{"model", "2"}};
         }),
+        description([](study_request& s) {
+            s.units = {{"t", "s"}};
+        }),
         plain,
     };
     for (const std::string& one : others) CHECK(std::count(std::begin(others), std::end(others), one) == 1);
@@ -145,4 +156,10 @@ TEST_CASE("Studies that lack something are refused", "[study_plan]") {
     asked.reductions = {};
     asked.options.samples = {.states = {0}, .capacity = 1, .times_of_instances = {1, 2, 3, 4, 5}};
     CHECK_THAT(message_of(asked), Contains("times_of_instances"));
+    asked.options.samples = {};
+    asked.title = "no UTF-8: \xff";
+    CHECK_THAT(message_of(asked), Contains("the title is no text in UTF-8"));
+    asked.title = "";
+    asked.units = {{"t", "\xe9"}};
+    CHECK_THAT(message_of(asked), Contains("the unit of t is no text in UTF-8"));
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Studies of real models: the same bits as by `solve`, however they are divided, stopped and started again.
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <random>
 #include <string>
@@ -230,6 +232,53 @@ TEST_CASE("Single precision, and instances that fail", "[study]") {
     CHECK(r.values("z_end_minimum")[0] == static_cast<double>(least));
     CHECK_THAT(message_of([&] { r.values_of<double>("z_end", 0, 1); }), Contains("float32, not float64"));
 }
+TEST_CASE("Instances that never ran have neither a last time nor recorded integers", "[study]") {
+    study<duffing, method> s;
+    describe(s);
+    s.chunk = 1;
+    s.generate("every second one is invalid", [](std::int64_t first, ensemble<duffing>& e) {
+        if (first % 2 == 1) e.parameter(duffing::k) = std::nan("");
+    });
+    const study_result r = s.run();
+    CHECK(r.count(status::invalid_input) == 50);
+    const auto t = r.values("t_last"), phases = r.values("phases");
+    for (std::size_t i = 0; i < 100; ++i) {
+        CHECK(std::isnan(t[i]) == (i % 2 == 1));
+        for (std::size_t j = 2 * i; j < 2 * i + 2; ++j) CHECK(std::isnan(phases[j]) == (i % 2 == 1));
+    }
+}
+TEST_CASE("Results are asked for within their bounds, and axes by their names", "[study]") {
+    study<duffing, method> s;
+    describe(s);
+    const study_result r = s.run();
+    CHECK(r.values("omega") == std::vector<double>{1, 1.1, 1.3, 0.7});
+    CHECK(r.values("B") == std::vector<double>{0.3});
+    CHECK(r.values("phase") == std::vector<double>{1, 2});
+    CHECK(r.values_of<double>("x_end", 100, 0).empty());
+    const std::int64_t most = std::numeric_limits<std::int64_t>::max();
+    const std::int64_t outside[][2] = {{most, 1}, {1, most}, {-1, 1}, {0, 1'000'000'000'000'000}, {101, 0}};
+    for (const auto& [first, count] : outside) {
+        CHECK_THAT(message_of([&, f = first, n = count] { r.values_of<double>("x_end", f, n); }),
+                   Contains("there are 100"));
+        double value = 0;
+        CHECK_THAT(message_of([&, f = first, n = count] { r.results().read("x_end", f, n, &value); }),
+                   Contains("there are 100"));
+    }
+}
+TEST_CASE("Chunks are large where little is kept of many instances", "[study]") {
+    study<duffing, method> s;
+    describe(s);
+    s.options.record = {};
+    s.options.samples = {};
+    s.keep = {.random = false, .status = false};
+    s.reduce(mean_of("x_end"));
+    s.repeat(20'000'000);  // of 100: their values would take more memory than there is
+    s.stop();              // before the run, which it ends too
+    const study_result r = s.run();
+    CHECK(!r.complete);
+    CHECK(r.instances == 0);
+    CHECK(r.content().chunk >= 1024);
+}
 TEST_CASE("A function may generate instances instead of axes", "[study]") {
     study<duffing, method> with_axes, generated, both;
     const auto set_rest = [](any_study& s) {
@@ -304,6 +353,8 @@ TEST_CASE("A study in a folder is stopped, goes on, and has the same bits", "[st
     CHECK(begun == 25);
     CHECK(difference(content_of(again), content_of(r)) == "");
 
+    s.unit("k", "1/s");  // which would be that of some files alone
+    CHECK_THAT(message_of([&] { s.run(); }), Contains("units"));
     s.options.relative_tolerance = 1e-6;
     CHECK_THAT(message_of([&] { s.run(); }), Contains("relative_tolerance"));
 }
@@ -396,6 +447,11 @@ TEST_CASE("Studies that cannot be run are refused before any work", "[study]") {
     CHECK_THAT(refusal([](any& s) { s.keep.end = {"y"}; }), Contains("\"y\" is no component of studied::duffing"));
     CHECK_THAT(refusal([](any& s) { s.repeat(std::int64_t{1} << 33); }),
                Contains("out of memory") && Contains("give it a folder"));
+    CHECK_THAT(refusal([](any& s) {
+                   s.repeat(std::int64_t{1} << 33);
+                   s.chunk = s.size();
+               }),
+               Contains("out of memory") && Contains("make chunk smaller"));
     const folder here;
     CHECK_THAT(refusal([&](any& s) {
                    s.repeat(std::int64_t{1} << 33);

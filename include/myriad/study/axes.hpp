@@ -86,7 +86,7 @@ public:
     };
     /// A dimension of the grid of instances.
     struct dimension {
-        std::string name;         ///< that of its component, or of all that are paired: "k", "x_v"
+        std::string name;         ///< as results call it: "k", "x_begin", or for paired ones "x_begin_v_begin"
         std::int64_t length;      ///< the number of its values
         std::int64_t stride = 1;  ///< instances from one value to the next
     };

@@ -50,9 +50,10 @@ struct reduction_definition {
 
 }  // namespace studies::inline MYRIAD_ABI
 
-/// A reduction of a variable over all instances that have not failed; values that are not finite are left out. Made by
-/// the functions below; variables are named as in results: "x" at recorded phases, "x_end", "x_sample". Its result does
-/// not depend on chunks, devices or their order, bit for bit.
+/// A reduction of a variable over all instances that have not failed (`sum_of`: over all); values that are not finite,
+/// or missing as those of phases that an instance did not reach, are left out. Made by the functions below; variables
+/// are named as in results: "x" at recorded phases, "x_end", "x_sample". Its result does not depend on chunks, devices
+/// or their order, bit for bit.
 class ensemble_reduction {
 public:
     /// Made by `histogram_of` and its like.
@@ -68,8 +69,8 @@ private:
 
 /// How many values lie in each bin between neighbouring edges, the upper edge of the last bin included, as
 /// numpy.histogram: variable "x_end_histogram" with dimension "x_end_bin"; and "x_end_outside", how many lie below,
-/// above, and are not finite. All phases or samples of an instance are counted. Throws `error` unless there are two or
-/// more edges, and they increase.
+/// above, and are not finite or missing. All phases or samples of an instance are counted. Throws `error` unless there
+/// are two or more edges, and they increase.
 [[nodiscard]] ensemble_reduction histogram_of(std::string_view variable, const axis_values& edges);
 /// The smallest value, for each phase or sample: "x_end_minimum"; NaN if there is none.
 [[nodiscard]] ensemble_reduction minimum_of(std::string_view variable);
@@ -78,8 +79,9 @@ private:
 /// The mean, for each phase or sample: "x_end_mean"; NaN if there is no value. The sum is exact and rounded once.
 [[nodiscard]] ensemble_reduction mean_of(std::string_view variable);
 /// The sum of what a function computes of each chunk of instances: a variable `name` of `size` numbers. The function
-/// adds to `sums`, which are zero at first, and is called by several threads at a time. Partial sums are added exactly;
-/// what the function itself rounds depends on the chunks. `name` stands for the function in the study's description:
+/// adds to `sums`, which are zero at first, and is called by several threads at a time. It sees all instances: those
+/// that failed it leaves out by `chunk.status(i)`, if they are not what it counts. Partial sums are added exactly; what
+/// the function itself rounds depends on the chunks. `name` stands for the function in the study's description:
 /// give another one when it changes. `inputs` are the variables that it asks for.
 [[nodiscard]] ensemble_reduction sum_of(
     std::string name, std::vector<std::string> inputs, std::int64_t size,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -24,8 +25,9 @@ struct run_settings {
     std::vector<device> devices;
     std::int64_t piece = 0;            ///< most instances to integrate at a time; 0: a chunk
     std::function<bool()> stops = {};  ///< whether to end after the chunks under way; called by all threads
-    std::function<void(const work_progress&)> progress = {};  ///< may be empty
-    std::function<void(const std::string&)> warning = {};     ///< may be empty
+    std::chrono::milliseconds patience = std::chrono::seconds(10);  ///< with them then; slower ones are given up
+    std::function<void(const work_progress&)> progress = {};        ///< may be empty
+    std::function<void(const std::string&)> warning = {};           ///< may be empty
 };
 
 /// How a run went.

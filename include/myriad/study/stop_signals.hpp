@@ -2,14 +2,13 @@
 // SIGINT and SIGTERM as a request to stop, for as long as a study runs. Host code only.
 #pragma once
 
-#include <signal.h>
-
 #include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
 /// During its lifetime the first of these signals is remembered; a second one of the same kind ends the program as it
-/// would have before. One at a time.
+/// would have before, unless it comes within a second: batch systems and launchers send one signal several times. One
+/// object at a time.
 class stop_signals {
 public:
     stop_signals();
@@ -19,9 +18,6 @@ public:
 
     /// Whether one came.
     bool came() const;
-
-private:
-    struct sigaction interrupt_, terminate_;  // what was there before
 };
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

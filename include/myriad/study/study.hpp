@@ -40,13 +40,13 @@ public:
     explicit study_result(std::shared_ptr<const studies::results> results) : results_(std::move(results)) {}
 
     /// All values of a variable as doubles, the instance outermost: those of a chunk that was not computed are NaN. The
-    /// last value for the grid is that of the last axis, then of the phase or sample. Throws `error` for an unknown
-    /// name, and if there is not enough memory.
+    /// last value for the grid is that of the last axis, then of the phase or sample. Of an axis, or another
+    /// coordinate: its values. Throws `error` for an unknown name, and if there is not enough memory.
     std::vector<double> values(std::string_view variable) const;
     /// The values of instances [first, first + count) in the variable's own type. Throws `error` if it has another one.
     template <class T>
     std::vector<T> values_of(std::string_view variable, std::int64_t first, std::int64_t count) const {
-        std::vector<T> read(size_of(variable, studies::element_of<T>, count));
+        std::vector<T> read(size_of(variable, studies::element_of<T>, first, count));
         results_->read(variable, first, count, read.data());
         return read;
     }
@@ -69,7 +69,8 @@ public:
     std::int64_t failed() const;
 
 private:
-    std::size_t size_of(std::string_view variable, studies::element type, std::int64_t count) const;
+    std::size_t size_of(std::string_view variable, studies::element type, std::int64_t first, std::int64_t count) const;
+    std::vector<double> values_of_coordinate(const studies::coordinate& c) const;
 
     std::shared_ptr<const studies::results> results_;
 };
@@ -131,7 +132,7 @@ public:
     std::vector<device> devices = {};  ///< all at the same time; none: `device::best()`
     std::int64_t chunk = 0;  ///< instances that are computed and stored together; 0: by memory and number. A store that
                              ///< exists keeps its own
-    bool stop_on_signals = false;  ///< SIGINT and SIGTERM end the run when the chunks under way are stored
+    bool stop_on_signals = false;  ///< SIGINT and SIGTERM end the run as `stop` does
     /// Called in the thread of `run` several times a second, the last time when it ends. An exception ends the run as
     /// `stop` does, and is rethrown. `progress_line()` shows a line.
     std::function<void(const work_progress&)> progress = {};
@@ -142,7 +143,8 @@ public:
     /// Computes what is not there yet. Throws `error` if something is wrong with the study, if the store is of another
     /// one or fails, or if all devices fail; what is in the store stays there.
     study_result run();
-    /// Ends the run when the chunks under way are done, for other threads and for callbacks.
+    /// Ends the run when the chunks under way are done, for other threads and for callbacks: this one, or if there is
+    /// none the next. A chunk that takes more than ten seconds longer is given up.
     void stop() { stopped_ = true; }
 
 private:

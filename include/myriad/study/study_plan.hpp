@@ -25,6 +25,7 @@ struct kept_values {
     std::vector<std::string> end = {};
     bool records = true;  ///< whether records are kept; otherwise they are for reductions alone
     bool samples = true;  ///< the same for samples
+    bool random = true;   ///< whether random values are kept, as "k" or "v_begin"; otherwise only reductions see them
     bool status = true;   ///< how each instance ended, as "status" with CF's flags
     bool work = false;    ///< "phases_done", and if counted steps and evaluations: "accepted_steps", "rejected_steps",
                           ///< "located_steps", "rhs_evaluations"
