@@ -140,20 +140,21 @@ writer::writer(file_system& files, std::string folder, std::chrono::milliseconds
         leave();
         throw;
     }
-    heartbeat_ = std::thread([this] { stay_alive(); });
+    heartbeat_ = std::make_unique<heartbeat>();
+    heartbeat_->thread = std::thread([this] { stay_alive(); });
 }
 
 writer::~writer() {
     if (owner_ != ::getpid()) {  // forked: there is no such thread here, and the rest is another process'
-        heartbeat_.detach();
+        static_cast<void>(heartbeat_.release());
         return;
     }
     {
-        const std::lock_guard lock(mutex_);
-        ending_ = true;
+        const std::lock_guard lock(heartbeat_->mutex);
+        heartbeat_->ending = true;
     }
-    end_.notify_all();
-    heartbeat_.join();
+    heartbeat_->end.notify_all();
+    heartbeat_->thread.join();
     const std::set<std::int64_t> held = std::exchange(held_, {});
     for (const std::int64_t chunk : held) release(chunk);
     leave();
@@ -300,8 +301,8 @@ void writer::remove_writer(const std::string& id) noexcept {
 
 void writer::stay_alive() {
     const std::string own = folder_ + "/writers/" + self_.id + "/alive";
-    std::unique_lock lock(mutex_);
-    while (!end_.wait_for(lock, expiry_ / 5, [this] { return ending_; })) {
+    std::unique_lock lock(heartbeat_->mutex);
+    while (!heartbeat_->end.wait_for(lock, expiry_ / 5, [this] { return heartbeat_->ending; })) {
         lock.unlock();
         files_.touch(own);  // if it fails, the next call that needs the file says so
         lock.lock();

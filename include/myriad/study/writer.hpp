@@ -11,6 +11,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -80,9 +81,15 @@ private:
     std::mutex mutex_;
     std::int64_t temporaries_ = 0;
     std::set<std::int64_t> held_;
-    bool ending_ = false;
-    std::condition_variable end_;
-    std::thread heartbeat_;
+
+    // The thread that renews the sign of life, and what ends it. In one place, which a forked process leaves alone.
+    struct heartbeat {
+        std::mutex mutex;
+        bool ending = false;
+        std::condition_variable end;
+        std::thread thread;
+    };
+    std::unique_ptr<heartbeat> heartbeat_;
 };
 
 }  // namespace myriad::studies::inline MYRIAD_ABI
