@@ -63,8 +63,8 @@ int netcdf_type(element type) {
     return NC_DOUBLE;
 }
 
-// Space on the disk that is given back when it is full, so that HDF5 can still write what it holds in memory: it can end
-// the process with a segmentation fault if not. The file has no name, so nothing is left of it whatever happens.
+// Space on the disk that is given back when it is full, so that HDF5 can still write what it holds in memory: else it
+// may end the process with a segmentation fault. The file has no name, so nothing is left of it whatever happens.
 class reserve {
 public:
     explicit reserve(const std::string& path)
