@@ -39,12 +39,6 @@ struct stored_array {
     std::vector<attribute> attributes;
 };
 
-std::string hexadecimal(std::uint32_t value) {
-    std::string text(8, '0');
-    for (std::size_t i = 8; i-- > 0; value >>= 4) text[i] = "0123456789abcdef"[value & 15];
-    return text;
-}
-
 std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count); }
 
 // What reading a file showed: its checksum, and what is wrong with it, if anything.
