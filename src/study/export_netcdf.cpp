@@ -23,7 +23,9 @@ void export_netcdf(const studies::results&, const std::string& path, const netcd
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <type_traits>
+#include <utility>
 
 #include <fcntl.h>
 #include <netcdf.h>
@@ -43,6 +45,7 @@ namespace {
 
 constexpr std::int64_t chunk_values = std::int64_t{1} << 17;  // 1 MB of doubles: what readers decompress at a time
 constexpr std::int64_t coordinate_part = std::int64_t{1} << 20;
+constexpr std::int64_t reserve_bytes = std::int64_t{1} << 22;  // more than HDF5 holds of a file's metadata
 
 int netcdf_type(element type) {
     switch (type) {
@@ -60,16 +63,43 @@ int netcdf_type(element type) {
     return NC_DOUBLE;
 }
 
+// Space on the disk that is given back when it is full, so that HDF5 can still write what it holds in memory: else it
+// may end the process with a segmentation fault. The file has no name, so nothing is left of it whatever happens.
+class reserve {
+public:
+    explicit reserve(const std::string& path)
+        : file_(std::in_place, file_system::real(), path, O_WRONLY | O_CREAT | O_EXCL) {
+        ::unlink(path.c_str());
+    }
+    void grow(std::int64_t bytes) {
+        bytes_ += bytes;
+        int code = EINTR;
+        while (code == EINTR) code = ::posix_fallocate(file_->descriptor(), 0, bytes_);
+        if (code != 0) throw file_error("writing", file_->path(), code);
+    }
+    void give_back() { file_.reset(); }
+
+private:
+    std::optional<open_file> file_;
+    std::int64_t bytes_ = 0;
+};
+
 // A file that is open for writing, removed unless it is finished.
 class netcdf_file {
 public:
-    netcdf_file(const std::string& path, std::string temporary) : path_(path), temporary_(std::move(temporary)) {
-        check(nc_create(temporary_.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_));
+    explicit netcdf_file(const std::string& path)
+        : path_(path), temporary_(message(path, ".part-", ::getpid())), reserve_(temporary_ + "-reserve") {
+        reserve_.grow(reserve_bytes);
+        errno = 0;
+        const int code = nc_create(temporary_.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_);
+        if (code != NC_NOERR) ::unlink(temporary_.c_str());
+        check(code);
         open_ = true;
     }
     netcdf_file(const netcdf_file&) = delete;
     netcdf_file& operator=(const netcdf_file&) = delete;
     ~netcdf_file() {
+        reserve_.give_back();
         if (open_) nc_close(id_);
         if (!temporary_.empty()) ::unlink(temporary_.c_str());
     }
@@ -84,9 +114,14 @@ public:
                       ": give a place that you may write to and that has space, and export again"});
     }
 
+    // What a variable holds in memory at most.
+    void reserve_more(std::int64_t bytes) { reserve_.grow(bytes); }
+
     void finish() {
+        errno = 0;
+        check(nc_close(id_));  // else closed once more at the end, with more space
         open_ = false;
-        check(nc_close(id_));
+        reserve_.give_back();
         file_system& files = file_system::real();
         open_file written(files, temporary_, O_RDONLY);
         written.sync();
@@ -97,6 +132,7 @@ public:
 
 private:
     std::string path_, temporary_;
+    reserve reserve_;
     int id_ = -1;
     bool open_ = false;
 };
@@ -243,6 +279,11 @@ private:
                 most = part == length ? std::max<std::int64_t>(1, most / part) : 1;
             }
             file_.check(nc_def_var_chunking(file_, id, NC_CHUNKED, piece.data()));
+            // Values come in the order of the pieces, so that memory for two of them is enough.
+            std::size_t held = 2 * size_of(type);
+            for (const std::size_t n : piece) held *= n;
+            file_.check(nc_set_var_chunk_cache(file_, id, held, 521, 1.0F));
+            file_.reserve_more(static_cast<std::int64_t>(held));
             if (options_.deflate > 0) file_.check(nc_def_var_deflate(file_, id, 1, 1, options_.deflate));
         }
         for (const attribute& a : attributes) put_attribute(file_, id, a, &type);
@@ -253,13 +294,18 @@ private:
     bool find_dimensions(const coordinate& c, std::vector<dimension>& found) const {
         if (c.dimension.empty()) return true;
         if (c.dimension == "chunk") return false;
-        for (const dimension& d : content_.axes)
-            if (d.name == c.dimension) return found.push_back(d), true;
-        if (c.dimension == "instance") return found = content_.axes, true;
+        std::vector<dimension> all = content_.axes;
         for (const variable& v : content_.variables)
-            for (const dimension& d : v.inner)
-                if (d.name == c.dimension && v.extent != along::chunks) return found.push_back(d), true;
-        return false;
+            if (v.extent != along::chunks) all.insert(all.end(), v.inner.begin(), v.inner.end());
+        const auto named =
+            std::find_if(all.begin(), all.end(), [&](const dimension& d) { return d.name == c.dimension; });
+        if (named != all.end())
+            found = {*named};
+        else if (c.dimension == "instance")
+            found = content_.axes;
+        else
+            return false;
+        return true;
     }
 
     void define() {
@@ -383,11 +429,14 @@ void export_netcdf(const results& from, const std::string& path, const netcdf_op
     // The libraries below are not made for several threads.
     static std::mutex one_at_a_time;
     const std::lock_guard lock(one_at_a_time);
-    errno = 0;
-    netcdf_file file(path, message(path, ".part-", ::getpid()));
-    exporter(from, file, options).run();
-    errno = 0;
-    file.finish();
+    const std::string place = file_place(path);
+    try {
+        netcdf_file file(place);
+        exporter(from, file, options).run();
+        file.finish();
+    } catch (const file_error& failure) {
+        throw failure.of_export();
+    }
 }
 
 }  // namespace myriad

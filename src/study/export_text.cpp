@@ -19,12 +19,19 @@ namespace {
 
 constexpr std::size_t text_part = std::size_t{1} << 20;
 
-std::string temporary_for(const std::string& path) { return message(path, ".part-", ::getpid()); }
-
-void finish(new_file& file, const std::string& path) {
-    file.finish();
-    file.rename_to(path);
-    sync_folder(file_system::real(), folder_of(path));
+// Calls write(file) and gives the file its name.
+template <class F>
+void export_file(const std::string& path, F write) {
+    const std::string place = file_place(path);
+    try {
+        new_file file(file_system::real(), message(place, ".part-", ::getpid()));
+        write(file);
+        file.finish();
+        file.rename_to(place);
+        sync_folder(file_system::real(), folder_of(place));
+    } catch (const file_error& failure) {
+        throw failure.of_export();
+    }
 }
 
 // The values of an axis' coordinate, in parts, since an axis can be as long as the study.
@@ -98,9 +105,7 @@ void append_names(std::string& text, const std::string& name, const std::vector<
         append_names(text, message(name, '[', i, ']'), inner, level + 1);
 }
 
-}  // namespace
-
-void export_csv(const results& from, const std::string& path) {
+void write_csv(const results& from, new_file& file) {
     const layout& content = from.content();
     std::string text;
     std::vector<axis_column> axes;
@@ -127,7 +132,6 @@ void export_csv(const results& from, const std::string& path) {
     for (const variable* v : variables) append_names(text, v->name, v->inner);
     text += '\n';
 
-    new_file file(file_system::real(), temporary_for(path));
     std::vector<std::vector<std::byte>> values(variables.size());
     for (std::int64_t chunk = 0; chunk < content.chunks(); ++chunk) {
         const chunk_range range = range_of(content, chunk);
@@ -166,10 +170,9 @@ void export_csv(const results& from, const std::string& path) {
         }
     }
     file.write(text);
-    finish(file, path);
 }
 
-void export_npy(const results& from, std::string_view name, const std::string& path) {
+void write_npy(const results& from, std::string_view name, new_file& file) {
     const layout& content = from.content();
     const variable& v = content.variables[content.find(name)];
     std::vector<dimension> shape = v.inner;
@@ -204,7 +207,6 @@ void export_npy(const results& from, std::string_view name, const std::string& p
     begin += static_cast<char>(header.size() & 255);
     begin += static_cast<char>(header.size() >> 8);
 
-    new_file file(file_system::real(), temporary_for(path));
     file.write(begin + header);
     std::vector<std::byte> values;
     const auto write = [&](std::int64_t first, std::int64_t count) {
@@ -212,12 +214,24 @@ void export_npy(const results& from, std::string_view name, const std::string& p
         from.read(v.name, first, count, values.data());
         file.write(values);
     };
-    if (v.extent == along::nothing) write(0, 1);
-    for (std::int64_t chunk = 0; chunk < content.chunks() && v.extent != along::nothing; ++chunk) {
+    if (v.extent == along::nothing) return write(0, 1);
+    for (std::int64_t chunk = 0; chunk < content.chunks(); ++chunk) {
         const chunk_range range = range_of(content, chunk);
-        v.extent == along::chunks ? write(chunk, 1) : write(range.first, range.count);
+        if (v.extent == along::chunks)
+            write(chunk, 1);
+        else
+            write(range.first, range.count);
     }
-    finish(file, path);
+}
+
+}  // namespace
+
+void export_csv(const results& from, const std::string& path) {
+    export_file(path, [&](new_file& file) { write_csv(from, file); });
+}
+
+void export_npy(const results& from, std::string_view name, const std::string& path) {
+    export_file(path, [&](new_file& file) { write_npy(from, name, file); });
 }
 
 }  // namespace myriad

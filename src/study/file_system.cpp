@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <system_error>
 #include <utility>
@@ -30,7 +31,7 @@ auto uninterrupted(F call) {
     return result;
 }
 
-std::string advice(int code) {
+std::string study_advice(int code) {
     switch (code) {
         case ENOSPC:
         case EDQUOT:
@@ -40,15 +41,46 @@ std::string advice(int code) {
         case EROFS:
             return ": give a folder that you may write to";
         case ENOTDIR:
-        case ENAMETOOLONG:
         case ELOOP:
             return ": give the path of a folder";
+        case ENAMETOOLONG:
+            return ": give a folder with a shorter path";
+        case ENOENT:
+            return ": a folder of the study was removed; start again, which makes it anew";
         case EMLINK:
         case ENOTSUP:
             return ": give a folder on a file system with hard links, as those of Linux and NFS";
         default:
             return ". What was finished is kept: start again when the disk works";
     }
+}
+
+std::string export_advice(int code) {
+    switch (code) {
+        case ENOSPC:
+        case EDQUOT:
+        case EFBIG:
+            return ": free space, or give a file on a larger disk, and export again";
+        case EACCES:
+        case EPERM:
+        case EROFS:
+            return ": give a file in a folder that you may write to";
+        case ENOENT:
+        case ENOTDIR:
+        case ELOOP:
+            return ": give a file in a folder that exists";
+        case ENAMETOOLONG:
+            return ": give a shorter name";
+        case EEXIST:
+            return ": remove it, if no other export writes it at the moment, and export again";
+        default:
+            return ": export again when the disk works";
+    }
+}
+
+std::string failure_of(std::string_view what, std::string_view path, int code) {
+    return message(what, ' ', path.empty() ? "a file without a name" : path,
+                   " failed: ", std::generic_category().message(code));
 }
 
 }  // namespace
@@ -112,7 +144,9 @@ int file_system::free_bytes(const std::string& folder, std::int64_t& result) {
 }
 
 file_error::file_error(std::string_view what, std::string_view path, int code)
-    : error(message(what, ' ', path, " failed: ", std::generic_category().message(code), advice(code))), code_(code) {}
+    : error(failure_of(what, path, code) + study_advice(code)), what_(what), path_(path), code_(code) {}
+
+error file_error::of_export() const { return error(failure_of(what_, path_, code_) + export_advice(code_)); }
 
 open_file::open_file(file_system& files, std::string path, int flags)
     : files_(&files), path_(std::move(path)), file_(uninterrupted([&] { return files.open(path_, flags); })) {
@@ -252,6 +286,21 @@ std::string folder_of(const std::string& path) {
     if (slash == std::string::npos) return ".";
     const std::size_t last = path.find_last_not_of('/', slash);
     return last == std::string::npos ? "/" : path.substr(0, last + 1);
+}
+
+std::string file_place(const std::string& path) {
+    require(!path.empty(), "the file has no name: give the path of a file");
+    std::filesystem::path place = path;
+    std::error_code unknown;  // what cannot be looked up shows when it is written
+    for (int links = 0; std::filesystem::is_symlink(place, unknown); ++links) {
+        if (links == 40) throw file_error("following the link", path, ELOOP).of_export();
+        place = place.parent_path() / std::filesystem::read_symlink(place, unknown);
+    }
+    const std::filesystem::file_status now = std::filesystem::status(place, unknown);
+    require(!std::filesystem::exists(now) || std::filesystem::is_regular_file(now), path,
+            std::filesystem::is_directory(now) ? " is a folder" : " is no regular file",
+            ", which an exported one cannot replace: give the path of a file");
+    return place.string();
 }
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

@@ -207,13 +207,13 @@ void flatten(const std::string& name, const json& value, json& flat) {
     }
 }
 
+}  // namespace
+
 std::string hexadecimal(std::uint32_t value) {
     char text[9];
     std::snprintf(text, sizeof text, "%08x", value);
     return text;
 }
-
-}  // namespace
 
 std::int64_t array_shape::items() const { return dimensions.empty() ? 1 : dimensions.front().length; }
 

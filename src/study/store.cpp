@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -37,12 +38,6 @@ struct stored_array {
     array_shape shape;
     std::vector<attribute> attributes;
 };
-
-std::string hexadecimal(std::uint32_t value) {
-    std::string text(8, '0');
-    for (std::size_t i = 8; i-- > 0; value >>= 4) text[i] = "0123456789abcdef"[value & 15];
-    return text;
-}
 
 std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count); }
 
@@ -89,6 +84,10 @@ file_check read_array_file(file_system& files, const std::string& path, const ar
     return check;
 }
 
+constexpr const char* repair_advice =
+    "): start the study again with the store's option check = resume_check::checksums, which reads all that is stored "
+    "and does what is damaged once more";
+
 // Writes a file of an array, filled up to its full length, to a temporary place.
 new_file write_array_file(file_system& files, const std::string& temporary, const array_shape& shape,
                           std::span<const std::byte> bytes, std::uint32_t& checksum) {
@@ -122,10 +121,17 @@ void read_coordinate(file_system& files, const std::string& folder, const stored
         const std::string path = folder + '/' + array.name + '/' + array.shape.file_name(file);
         const file_check check = read_array_file(files, path, array.shape, begin * 8, end * 8,
                                                  reinterpret_cast<std::byte*>(values.data() + (at - first)));
-        require(check.damage.empty(), path, " is damaged (", check.damage,
-                "): start the study again, which writes coordinates anew");
+        require(check.damage.empty(), path, " is damaged (", check.damage, repair_advice);
         at += end - begin;
     }
+}
+
+// Where it is also after the process has gone to another folder.
+std::string absolute(const std::string& folder) {
+    require(!folder.empty(), "the folder of a study has no name: give one");
+    std::error_code unknown;
+    const std::filesystem::path path = std::filesystem::absolute(folder, unknown);
+    return unknown ? folder : path.string();
 }
 
 // The layout of a folder with a store, or nothing if there is none yet. An error if there is something else.
@@ -219,13 +225,14 @@ struct store::implementation {
         made.rename_to(path_of(coordinates[c], file));
     }
 
+    void begin_array(const stored_array& array) {
+        const std::string place = folder + '/' + array.name;
+        make_folder(files, place);
+        write_text(files, self->temporary(), place + "/zarr.json", array_json(array.shape, array.attributes));
+    }
+
     // Everything but results. May be done by several processes at a time, with equal files.
     void write_arrays() {
-        const auto begin_array = [&](const stored_array& array) {
-            const std::string place = folder + '/' + array.name;
-            make_folder(files, place);
-            write_text(files, self->temporary(), place + "/zarr.json", array_json(array.shape, array.attributes));
-        };
         for (const stored_array& array : variables) begin_array(array);
         for (std::size_t c = 0; c < coordinates.size(); ++c) {
             begin_array(coordinates[c]);
@@ -239,6 +246,17 @@ struct store::implementation {
         // The last, as the sign that all this is there.
         make_folder(files, own("chunks"));
         sync_folder(files, own(""));
+    }
+
+    // The folders that someone removed; `check_chunks` and `check_rest` find what is missing in them.
+    void restore_arrays() {
+        const auto restore = [&](const std::vector<stored_array>& arrays) {
+            for (const stored_array& array : arrays)
+                if (!exists(folder + '/' + array.name + "/zarr.json")) begin_array(array);
+        };
+        restore(variables);
+        restore(coordinates);
+        make_folder(files, own("claims"));
     }
 
     bool exists(const std::string& path) const {
@@ -411,17 +429,35 @@ struct store::implementation {
         }
     }
 
+    // Before anything is written, and again when chunks were put back.
     void check_space() const {
-        std::int64_t chunk_bytes = 4096, left = 0, free = 0;
-        for (std::size_t v = 0; v < variables.size(); ++v)
-            if (content.variables[v].extent != along::nothing)
-                chunk_bytes += (variables[v].shape.file_bytes() + 4095) / 4096 * 4096;
+        std::int64_t left = 0, free = 0;
+        const auto add = [&](std::int64_t file_bytes, std::int64_t count) {
+            std::int64_t bytes = 0;
+            if (__builtin_mul_overflow((file_bytes + 4095) / 4096 * 4096, count, &bytes) ||
+                __builtin_add_overflow(left, bytes, &left))
+                left = std::numeric_limits<std::int64_t>::max();
+        };
+        bool coordinates_left = false;
+        for (const stored_array& array : coordinates)
+            for (std::int64_t file = 0; file < array.shape.files(); ++file) {
+                if (has_length(path_of(array, file), array.shape.file_bytes())) continue;
+                add(array.shape.file_bytes(), 1);
+                coordinates_left = true;
+            }
         const std::int64_t missing = content.chunks() - finished_count;
-        if (__builtin_mul_overflow(chunk_bytes, missing, &left)) left = std::numeric_limits<std::int64_t>::max();
+        for (std::size_t v = 0; v < variables.size(); ++v) {
+            if (content.variables[v].extent != along::nothing)
+                add(variables[v].shape.file_bytes(), missing);
+            else if (!exists(path_of(variables[v], 0)))
+                add(variables[v].shape.file_bytes(), 1);
+        }
+        add(1, missing);  // their records, of a block each
         if (files.free_bytes(folder, free) < 0) throw file_error("asking for the free space of", folder, errno);
         const auto [need, have] = host::bytes_texts(static_cast<double>(left), static_cast<double>(free));
-        require(left <= free, "the ", missing, " chunks that are left take ", need, ", and the disk of ", folder,
-                " has ", have, " free: free space, give a folder on a larger disk, or keep less");
+        require(left <= free, "the ", missing, " chunks ", coordinates_left ? "and the coordinates " : "",
+                "that are left take ", need, ", and the disk of ", folder, " has ", have,
+                " free: free space, give a folder on a larger disk, or keep less");
     }
 
     // -----------------------------------------------------------------------------------------------------------------
@@ -498,8 +534,9 @@ store::store(store&& other) noexcept = default;
 store& store::operator=(store&& other) noexcept = default;
 store::~store() = default;
 
-store store::create_or_resume(const std::string& folder, const layout& wanted, const store_options& options) {
+store store::create_or_resume(const std::string& given, const layout& wanted, const store_options& options) {
     wanted.check();
+    const std::string folder = absolute(given);
     require(options.expiry.count() > 0, "the expiry of claims is ", options.expiry.count(),
             " ms (must be positive): give seconds to minutes");
     file_system& files = options.files ? *options.files : file_system::real();
@@ -507,6 +544,13 @@ store store::create_or_resume(const std::string& folder, const layout& wanted, c
     std::optional<layout> stored = stored_layout(files, folder);
     if (stored) refuse_other(*stored, wanted, folder);
 
+    layout content = wanted;
+    if (stored) content.chunk = stored->chunk;
+    {
+        implementation before(files, folder, content);
+        before.refresh();
+        before.check_space();
+    }
     make_folder(files, folder + "/myriad");
     auto self = std::make_unique<writer>(files, folder + "/myriad", options.expiry);
     if (!stored) {
@@ -522,21 +566,24 @@ store store::create_or_resume(const std::string& folder, const layout& wanted, c
         }
         sync_folder(files, folder);
     }
-    layout content = wanted;
     content.chunk = stored->chunk;
     auto made = std::make_unique<implementation>(files, folder, content);
     made->self = std::move(self);
     made->given = wanted.coordinates;
-    if (!made->exists(made->own("chunks"))) made->write_arrays();
+    if (made->exists(made->own("chunks")))
+        made->restore_arrays();
+    else
+        made->write_arrays();
     made->self->remove_dead();
     made->refresh();
     made->check_chunks(options.check == resume_check::checksums, made->found);
     made->check_rest(options.check == resume_check::checksums, made->found);
-    made->check_space();
+    if (!made->found.empty()) made->check_space();
     return store(std::move(made));
 }
 
-store store::open(const std::string& folder, file_system* used) {
+store store::open(const std::string& given, file_system* used) {
+    const std::string folder = absolute(given);
     file_system& files = used ? *used : file_system::real();
     require(names_in(files, folder).has_value(), "there is no folder ", folder, ": give that of a study");
     std::optional<layout> stored = stored_layout(files, folder);
@@ -546,7 +593,8 @@ store store::open(const std::string& folder, file_system* used) {
     return store(std::move(made));
 }
 
-std::optional<layout> store::content_of(const std::string& folder) {
+std::optional<layout> store::content_of(const std::string& given) {
+    const std::string folder = absolute(given);
     std::optional<layout> stored = stored_layout(file_system::real(), folder);
     if (!stored) return stored;
     return implementation(file_system::real(), folder, std::move(*stored)).content;
@@ -688,8 +736,7 @@ void store::read(std::string_view name, std::int64_t first, std::int64_t count, 
         if (there) {
             const std::string path = s.path_of(s.variables[v], file);
             const file_check check = read_array_file(s.files, path, shape, begin * item, end * item, to);
-            require(check.damage.empty(), path, " is damaged (", check.damage,
-                    "): verify the store and start the study again, which does the chunk once more");
+            require(check.damage.empty(), path, " is damaged (", check.damage, repair_advice);
         } else {
             fill(shape.type, to, bytes_of((end - begin) * item) / size_of(shape.type));
         }

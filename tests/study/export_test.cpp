@@ -4,9 +4,14 @@
 #include "myriad/study/export.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 
 #include <netcdf.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "myriad/host/core/error.hpp"
 #include "tests/catch.hpp"
@@ -273,6 +278,78 @@ TEST_CASE("an export that fails says so and leaves nothing, and the file that wa
         if (entry.is_regular_file()) CHECK(tests::text_of(entry.path()) == "old");
     }
     CHECK(files == 4);
+}
+
+TEST_CASE("an export replaces what a symbolic link points to, and no device") {
+    tests::temporary_folder folder;
+    tests::run_synthetic(folder / "run", tests::synthetic_layout());
+    const store results = store::open(folder / "run");
+    const auto write_all = [&](const std::string& path, auto check) {
+        check([&] { myriad::export_netcdf(results, path); });
+        check([&] { myriad::export_csv(results, path); });
+        check([&] { myriad::export_npy(results, "x", path); });
+    };
+    std::ofstream(folder / "file") << "old";
+    std::filesystem::create_symlink("file", folder / "link");
+    std::filesystem::create_symlink("/dev/null", folder / "device");
+    write_all(folder / "link", [&](auto write) {
+        write();
+        CHECK(std::filesystem::is_symlink(folder / "link"));
+        CHECK(std::filesystem::file_size(folder / "file") > 100);
+    });
+    write_all(folder / "device", [&](auto write) { CHECK_THROWS_WITH(write(), Contains("is no regular file")); });
+    write_all(folder / "none/run.nc", [&](auto write) {
+        CHECK_THROWS_WITH(write(), Contains("No such file or directory: give a file in a folder that exists"));
+    });
+    CHECK(tests::contents(folder / "").size() == tests::contents(folder / "run").size() + 1);  // link and file are one
+}
+
+// In a process of its own, on a disk of `size` bytes: 0 if all went well there, including the end of the process, 77 if
+// such a disk cannot be made, else what went wrong.
+int export_on_small_disk(const store& results, const std::string& folder, const std::string& size) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const bool alone = ::unshare(CLONE_NEWNS) == 0 || ::unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0;
+        if (!alone || ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+            ::mount("tmpfs", folder.c_str(), "tmpfs", 0, ("size=" + size).c_str()) != 0)
+            ::_exit(77);
+        int wrong = 0;
+        try {
+            myriad::export_netcdf(results, folder + "/run.nc");
+            wrong = 1;
+        } catch (const myriad::error& failure) {
+            if (!Contains("No space left on device").match(failure.what())) wrong = 2;
+        }
+        if (!std::filesystem::is_empty(folder)) wrong = 3;
+        std::exit(wrong);  // HDF5 ends here too
+    }
+    int status = -1;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + status;
+}
+
+TEST_CASE("an export to a disk that gets full ends with an error, and the process in good order") {
+    tests::temporary_folder folder;
+    layout content;
+    content.axes = {{"a", 2000000}};  // 16 MB for each variable
+    content.chunk = 1000000;
+    content.variables = {{.name = "x"}, {.name = "y"}};
+    std::vector<double> values(1000000);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = tests::synthetic(static_cast<std::int64_t>(i), 1);
+    store results = store::create_or_resume(folder / "run", content);
+    for (int chunk = 0; chunk < 2; ++chunk)
+        results.commit(chunk, std::vector{column_of("x", values), column_of("y", values)}, {});
+    std::filesystem::create_directories(folder / "disk");
+    // From one that is too small for anything to one that lacks a little at the end.
+    for (const char* const size : {"64k", "8M", "12M", "20M", "24M", "28M"}) {
+        const int status = export_on_small_disk(results, folder / "disk", size);
+        if (status == 77) {
+            WARN("not tested: this user may not mount a disk");
+            return;
+        }
+        INFO(size);
+        CHECK(status == 0);
+    }
 }
 
 // Not a test: what check_exports.py reads, in the folder MYRIAD_TEST_FILES.

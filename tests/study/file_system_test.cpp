@@ -67,6 +67,24 @@ TEST_CASE("the folder of a path is known without asking the disk") {
     CHECK(folder_of("") == ".");
 }
 
+TEST_CASE("a file is written where a symbolic link points to, and replaces files alone") {
+    tests::temporary_folder folder;
+    std::filesystem::create_directories(folder / "data");
+    std::filesystem::create_symlink("data/file", folder / "link");
+    std::filesystem::create_symlink(folder / "link", folder / "second");
+    for (int turn = 0; turn < 2; ++turn) {  // without and with the file
+        CHECK(file_place(folder / "link") == folder / "data/file");
+        CHECK(file_place(folder / "second") == folder / "data/file");
+        CHECK(file_place(folder / "data/file") == folder / "data/file");
+        std::ofstream(folder / "data/file") << "old";
+    }
+    std::filesystem::create_symlink("round", folder / "round");
+    CHECK_THROWS_WITH(file_place(folder / "round"), Contains("Too many levels of symbolic links"));
+    CHECK_THROWS_WITH(file_place("/dev/null"), Contains("/dev/null is no regular file"));
+    CHECK_THROWS_WITH(file_place(folder / "data"), Contains("is a folder"));
+    CHECK_THROWS_WITH(file_place(""), Contains("has no name"));
+}
+
 TEST_CASE("errors name the file, the reason and what to do") {
     const auto text = [](int code) { return std::string(file_error("writing", "run/x/c.1", code).what()); };
     CHECK(text(ENOSPC) ==
@@ -76,6 +94,15 @@ TEST_CASE("errors name the file, the reason and what to do") {
     CHECK_THAT(text(EACCES), Contains("give a folder that you may write to"));
     CHECK_THAT(text(ENOTSUP), Contains("hard links"));
     CHECK_THAT(text(EIO), Contains("start again when the disk works"));
+    CHECK_THAT(text(ENAMETOOLONG), Contains("give a folder with a shorter path"));
+    CHECK_THAT(file_error("writing", "", EIO).what(), Contains("writing a file without a name failed"));
+    // Of a study nothing is said where there is none.
+    for (const int code : {ENOSPC, EIO, ENOTDIR, ENOENT, ENAMETOOLONG, EACCES}) {
+        const std::string exported = file_error("writing", "run.nc", code).of_export().what();
+        INFO(exported);
+        CHECK_THAT(exported, Contains("writing run.nc failed: ") && !Contains("finished") && !Contains("start again") &&
+                                 !Contains("move the folder"));
+    }
     try {
         open_file(disk(), "/nonexistent/file", O_RDONLY);
         FAIL("a file that is not there was opened");

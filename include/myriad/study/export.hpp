@@ -16,9 +16,10 @@ struct netcdf_options {
 };
 
 /// Writes netCDF-4, which is HDF5: for xarray, netCDF4, h5py, MATLAB and Julia. Variables have the dimensions of the
-/// grid, one for each axis, and then their own; the axes are coordinate variables. What is not done yet has the
-/// attribute
-/// `_FillValue`, and the global attribute `incomplete` says how much that is. Replaces a file of that name.
+/// grid, one for each axis, and then their own; the axes are coordinate variables. What is not done yet has the value
+/// of the attribute `_FillValue`, and the global attribute `incomplete` says how much that is. Replaces a file of that
+/// name, or that a symbolic link of that name points to, and refuses to replace anything else, as a device; so do the
+/// others.
 ///
 /// Global attributes are the entries of the study's description, with dots in their names
 /// ("options.relative_tolerance"), the description as a whole as JSON, and the devices. Throws `error` if data is

@@ -51,11 +51,14 @@ public:
 /// An error of a call, with its errno.
 class file_error : public error {
 public:
-    /// "<what> <path> failed: <reason>", and what to do if the disk is full.
+    /// "<what> <path> failed: <reason>", and what to do about it in a study.
     file_error(std::string_view what, std::string_view path, int code);
     int code() const { return code_; }
+    /// The same with what to do if it happened while a file was exported.
+    error of_export() const;
 
 private:
+    std::string what_, path_;
     int code_;
 };
 
@@ -77,6 +80,7 @@ public:
     void close();
     file_facts facts();
     const std::string& path() const { return path_; }
+    int descriptor() const { return file_; }
 
 private:
     file_system* files_;
@@ -122,5 +126,8 @@ std::optional<std::string> read_text(file_system& files, const std::string& path
 void write_text(file_system& files, const std::string& temporary_path, const std::string& path, std::string_view text);
 /// The folder that a path is in.
 std::string folder_of(const std::string& path);
+/// The place of a file to be written to a path: symbolic links are followed. Throws `error` if there is something else
+/// than a file, as a folder or a device, which a new file must not replace.
+std::string file_place(const std::string& path);
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

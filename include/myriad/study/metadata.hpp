@@ -49,6 +49,9 @@ std::vector<std::string> differences(const layout& stored, const layout& here);
 /// The global attributes that an exported file gets: the entries of the description, with dots in their names.
 std::vector<attribute> attributes_of(std::string_view description);
 
+/// A checksum as records have it: "1f2e3d4c".
+std::string hexadecimal(std::uint32_t value);
+
 /// What the record of a chunk holds.
 struct stored_chunk {
     chunk_record record;

@@ -94,7 +94,7 @@ public:
     /// be done again (`put_back`). The chunk size of a store that exists stays (`content().chunk`).
     ///
     /// Throws `error` if the folder holds another study, with what differs; if it holds other files; if the layout is
-    /// not consistent; and if the disk has less free space than the remaining chunks take.
+    /// not consistent; and if the disk has less free space than what is left to be written takes.
     static store create_or_resume(const std::string& folder, const studies::layout& content,
                                   const studies::store_options& options = {});
     /// Opens a store for reading, by anyone who may read the folder, also while a study runs. Throws `error` if there
@@ -113,7 +113,7 @@ public:
 
     /// The layout, with the chunk size of the store. Coordinates are read from the folder.
     const studies::layout& content() const override;
-    /// The folder, as it was given.
+    /// The folder, as an absolute path.
     const std::string& folder() const;
 
     /// Whether a chunk is done, as far as this process has seen: `claim_next` and `refresh` look at the folder.
