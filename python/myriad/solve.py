@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """`solve`: checks names and shapes, fills an ensemble of the core, integrates it and hands the arrays over."""
 
+import itertools
 import math
 import time as clock
 
@@ -8,7 +9,7 @@ import numpy as np
 
 from . import _core, compiler, tape
 from .components import Components, name_of, unknown
-from .errors import Error
+from .errors import Error, refuse_masked
 from .grid import Sweep
 from .methods import fixed_step, method_type
 from .run import Interrupted, Run
@@ -31,6 +32,7 @@ _in_python = (
 
 def _numbers(value, name):
     """A number, or an array of one dimension, of real numbers."""
+    refuse_masked(value, f"'{name}'")
     array = np.asarray(value)
     if array.dtype.kind == "c":
         raise Error(f"'{name}' is complex: a model is real, so give real and imaginary parts as two components")
@@ -40,6 +42,15 @@ def _numbers(value, name):
         raise Error(f"'{name}' has {array.ndim} dimensions: give one number per instance, in one dimension; "
                     "myriad.grid(...) makes a sweep over several axes")
     return array
+
+
+def _whole_numbers(array, name):
+    """The values of an integer component: whole numbers of 32 bits."""
+    wrong = np.flatnonzero((array != np.floor(array)) | ~(np.abs(array.astype(float)) < 1 << 31))
+    if wrong.size:
+        raise Error(f"'{name}' is an integer and has the value {array.flat[wrong[0]]}: give whole numbers between "
+                    f"{1 - (1 << 31)} and {(1 << 31) - 1}")
+    return array.astype(np.int32)
 
 
 def _sweep_values(sweep):
@@ -106,10 +117,10 @@ def _fill(ensemble, components, given, domain, names):
             if array.ndim == 1:
                 raise Error(f"'{name}' is shared by all instances and has {len(array)} values: give one number, or "
                             "make it a parameter")
-            ensemble.array(kind)[number] = array
+            ensemble.array(kind)[number] = _whole_numbers(array, name) if kind == "shared_integer" else array
             continue
-        if kind == "integer_accessory" and array.dtype.kind not in "biu":
-            raise Error(f"'{name}' is an integer accessory: give whole numbers")
+        if kind == "integer_accessory":
+            array = _whole_numbers(array, name)
         ensemble.array(kind, number)[...] = array
     if domain[0].ndim == 0 and domain[1].ndim == 0:
         ensemble.set_domain(float(domain[0]), float(domain[1]))
@@ -165,7 +176,8 @@ def _set_records(options, record, components):
     places.update((components.accessories[c], ("accessory", c)) for c in real)
     places.update((components.integer_accessories[c], ("integer_accessory", c)) for c in integer)
     if with_time:
-        places["t"] = ("time", 0)
+        names = itertools.chain(("t", "time"), (f"time_{i}" for i in itertools.count(1)))
+        places[next(n for n in names if n not in components.place)] = ("time", 0)
     return places
 
 
@@ -180,6 +192,7 @@ def _set_samples(options, samples, components, phases, phase_length, size):
     evenly = _whole(samples.get("evenly", 0), "samples evenly")
     every = _whole(samples.get("every", 0), "samples every")
     from_phase = _whole(samples.get("from_phase", 0), "samples from_phase")
+    refuse_masked(samples.get("times"), "samples times")
     times = np.asarray(samples.get("times", ()), dtype=float)
     if times.ndim == 2 and len(times) != size:
         raise Error(f"the sample times have {len(times)} rows for {size} instances: give one row for each, or the same "
@@ -272,7 +285,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
                       for each instance; the end may be before the begin
     phases            integration phases, each from begin to end unless `phase_length` or `carry_on` says otherwise
     record            what to keep at the end of each phase: components, as in `[x, v]`, or
-                      `dict(from_phase=, states=, accessories=, time=)`
+                      `dict(from_phase=, states=, accessories=, time=)`; `run["t"]` (`run["time"]` if the model has
+                      a t of its own) or `run[myriad.time]` are the recorded times
     samples           dense output: a number of evenly spaced times, an array of times, or `dict(states=, evenly= |
                       times= | every=, capacity=, minimum_spacing=, from_phase=)`
     method, control   as in the C++ library: "cash_karp", "dormand_prince_5", "tsitouras_5", "verner_7",
