@@ -45,7 +45,11 @@ class Components:
     def numbers(self, chosen, what, kinds):
         """The numbers of named components of each of some kinds."""
         found = {kind: [] for kind in kinds}
-        chosen = [chosen] if isinstance(chosen, str) or getattr(chosen, "op", None) == "symbol" else list(chosen)
+        chosen = [chosen] if isinstance(chosen, str) or getattr(chosen, "op", None) == "symbol" else chosen
+        try:
+            chosen = list(chosen)
+        except TypeError:
+            raise Error(f"{what}{chosen!r} names no components: give a list of them, as in {what}[x, v]") from None
         for key in chosen:
             name = name_of(key)
             kind, number = self.place.get(name, (None, None))

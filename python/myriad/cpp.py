@@ -240,6 +240,8 @@ class Writer:
         model = self.model
         out = ["// SPDX-License-Identifier: MIT", "// Written by Myriad's Python package from a traced model.",
                "#pragma once", "", "#include <myriad/model.hpp>", ""]
+        macros = [n for n in model.component_names if re.search("[A-Z]{2}", n)]  # maybe, in headers of C
+        out += [f"#undef {name}" for name in macros] + [""] * bool(macros)
         out += [f"/// {line}" for line in self.description()]
         out += [f"struct {name} {{"]
         out += ["    " + d for d in self.declarations()]

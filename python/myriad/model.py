@@ -432,9 +432,12 @@ class Model:
 
     def source(self):
         """The text that kernels are compiled from, the same for equal models, and the name of its struct."""
+        name = "traced_model"
+        while name in self.component_names:
+            name += "_"
         if self._source is None:
-            self._source = self.cpp("traced_model")
-        return self._source, "traced_model"
+            self._source = self.cpp(name)
+        return self._source, name
 
     @property
     def hash(self):

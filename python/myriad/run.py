@@ -190,6 +190,10 @@ class Run:
     def __len__(self):
         return self.size
 
+    def __reduce__(self):
+        raise Error("the results of a run cannot be pickled or copied: pickle run.to_xarray(), or the arrays that you "
+                    "need")
+
     @staticmethod
     def _free(name, taken):
         while name in taken:
