@@ -70,7 +70,10 @@ def _locked(path):
     if fcntl is None:
         yield
         return
-    file = os.open(path, os.O_RDONLY | os.O_CREAT, 0o666)  # reading suffices, and another user may have made it
+    try:
+        file = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)  # NFS locks only what can be written
+    except PermissionError:  # another user's, of which reading suffices elsewhere
+        file = os.open(path, os.O_RDONLY)
     try:
         with contextlib.suppress(OSError):
             fcntl.flock(file, fcntl.LOCK_EX)

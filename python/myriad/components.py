@@ -4,12 +4,16 @@
 import difflib
 
 from .errors import Error
+from .expression import is_sympy
+from .parse import sympy_name
 
 
 def name_of(key):
-    """The name of a component: a symbol's, or the text itself."""
+    """The name of a component: a symbol's, SymPy's too, or the text itself."""
     if isinstance(key, str):
         return key
+    if is_sympy(key):
+        return sympy_name(key)
     value = getattr(key, "value", None)
     if getattr(key, "op", None) == "symbol" and value[0] != "built-in":
         return value[1]

@@ -28,7 +28,8 @@ class Report:
 
     def __init__(self, report, kernel, seconds):
         self._report = report
-        #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why
+        #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
+        #: with a note if the cache cannot be used
         self.kernel = kernel.origin
         self.kernel_seconds = kernel.seconds  #: that it took to get the kernel
         self.total_seconds = seconds  #: of the whole call
