@@ -265,7 +265,8 @@ def _set_events(options, events, components, count):
                         "\"either\"")
         tolerance = of_call.get("tolerance", event.tolerance)
         tolerance = _default_event_tolerance if tolerance is None else _real(tolerance, "tolerance")
-        options.add_event(_directions[direction], tolerance, _whole(of_call.get("stop_after", event.stop_after), "stop_after"))
+        options.add_event(_directions[direction], tolerance,
+                          _whole(of_call.get("stop_after", event.stop_after), "stop_after"))
     for _ in range(len(components.events), count):
         options.add_event(0, _default_event_tolerance, 0)
 
