@@ -120,6 +120,8 @@ def test_a_folder_that_cannot_be_made(tmp_path, monkeypatch):
     found = cache.obtain("f", _writer("made"), read)
     assert found == cache.Obtained("made", False, tmp_path / "file" / "cache")
     assert cache.obtain("f", _writer("again"), read).hit
+    told, _, _ = run_script(MYRIAD_CACHE_DIR=str(tmp_path / "file" / "cache"))
+    assert told.startswith("compiled by") and f"the cache {tmp_path}/file/cache cannot be used" in told
 
 
 def test_a_damaged_entry_is_made_again(tmp_path, monkeypatch):
