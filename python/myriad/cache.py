@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The cache of compiled models on disk: one file per key, put there whole, so that readers need no lock."""
+"""The cache of compiled models on disk: one file per key, put there whole, so that readers need no lock. Behind its
+content a file has a digest, by which damage is noticed before the system loads it."""
 
 import contextlib
 import hashlib
@@ -7,6 +8,7 @@ import json
 import os
 import pathlib
 import tempfile
+from dataclasses import dataclass
 
 from .errors import Error
 
@@ -55,7 +57,7 @@ _own_folder = None
 
 
 def _folder_of_process():
-    """Where the cache is where its folder cannot be written: a folder that lasts as long as this process."""
+    """Where the cache is where its folder cannot be used: a folder that lasts as long as this process."""
     global _own_folder
     if _own_folder is None:
         _own_folder = tempfile.TemporaryDirectory(prefix="myriad-")
@@ -68,31 +70,85 @@ def _locked(path):
     if fcntl is None:
         yield
         return
-    with open(path, "a", encoding="utf-8") as file:
+    try:
+        file = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)  # NFS locks only what can be written
+    except PermissionError:  # another user's, of which reading suffices elsewhere
+        file = os.open(path, os.O_RDONLY)
+    try:
         with contextlib.suppress(OSError):
             fcntl.flock(file, fcntl.LOCK_EX)
         yield
+    finally:
+        os.close(file)
 
 
-def obtain(key, make):
-    """The file of a key, and whether it was there. If it was not, `make(folder)` writes it, and returns its path in
-    that folder; other processes that want the same wait for it."""
-    folder = directory()
-    path = folder / f"{key}.so"
-    if path.exists():
-        with contextlib.suppress(OSError):  # the time of its last use, for `_shrink`
-            os.utime(path)
-        return path, True
-    folder = _usable(folder) or _folder_of_process()
+_digest_size = hashlib.sha256().digest_size
+
+
+def _seal(path):
+    """Puts the digest of a file behind its content, which the loaders of shared objects do not look at."""
+    with open(path, "r+b") as file:
+        file.write(hashlib.sha256(file.read()).digest())
+
+
+def _is_whole(path):
+    """Whether a file is as `_seal` left it."""
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return False
+    return hashlib.sha256(content[:-_digest_size]).digest() == content[-_digest_size:]
+
+
+@dataclass(frozen=True)
+class Obtained:
+    """What `obtain` loaded, whether it was in the cache, and the folder that could not be used for it, if any."""
+
+    loaded: object
+    hit: bool
+    unusable: object = None
+
+
+def _find(path, load):
+    """What a file of the cache is loaded as, or None if it is missing, damaged, or cannot be loaded."""
+    if not _is_whole(path):
+        return None
+    with contextlib.suppress(OSError):  # the time of its last use, for `_shrink`
+        os.utime(path)
+    try:
+        return load(path)
+    except Error:
+        return None
+
+
+def obtain(key, make, load):
+    """What `load(path)` makes of the file of a key, as `Obtained`. If there is no such file that is whole and can be
+    loaded, `make(folder)` writes it, and returns its path in that folder; other processes that want the same wait for
+    it. A file that cannot be loaded is not kept."""
+    chosen = directory()
+    loaded = _find(chosen / f"{key}.so", load)
+    if loaded is not None:
+        return Obtained(loaded, True)
+    folder = _usable(chosen)
+    if folder is not None:
+        with contextlib.suppress(OSError):  # as where another user's files are in the way, or the disk is full
+            return Obtained(*_obtain_in(folder, key, make, load))
+    return Obtained(*_obtain_in(_folder_of_process(), key, make, load), chosen)
+
+
+def _obtain_in(folder, key, make, load):
     path = folder / f"{key}.so"
     with _locked(folder / f"{key}.lock"):
-        if path.exists():  # made by the process that held the lock
-            return path, True
+        loaded = _find(path, load)  # made by the process that held the lock
+        if loaded is not None:
+            return loaded, True
         with tempfile.TemporaryDirectory(prefix=f"{key}.", dir=folder) as workplace:
             made = pathlib.Path(make(pathlib.Path(workplace)))
+            _seal(made)
+            loaded = load(made)
             os.replace(made, path)
     _shrink(folder, keep=path)
-    return path, False
+    return loaded, False
 
 
 def _shrink(folder, keep):

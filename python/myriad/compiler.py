@@ -129,6 +129,14 @@ def _compile(by, flags, source, workplace):
     return made
 
 
+def _load(by, path):
+    try:
+        return _core.Library(str(path))
+    except Error as error:
+        raise Error(f"what {os.path.basename(by.command[0])} made of the model cannot be loaded: use a C++ compiler, "
+                    f"such as g++ and not gcc ({error})") from None
+
+
 @dataclass(frozen=True)
 class Kernel:
     """A loaded kernel and where it came from."""
@@ -157,7 +165,9 @@ def kernel(header, struct, method, real):
     source = source_of(header, struct, method, real)
     key = cache.key_of({"source": source, "version": _core.version, "headers": _core.headers, "flags": flags,
                         "compiler": by.identity})
-    path, hit = cache.obtain(key, lambda workplace: _compile(by, flags, source, workplace))
-    _loaded[asked] = _core.Library(str(path))
-    origin = "cache" if hit else f"compiled by {by.kind}"
+    obtained = cache.obtain(key, lambda workplace: _compile(by, flags, source, workplace), lambda path: _load(by, path))
+    _loaded[asked] = obtained.loaded
+    origin = "cache" if obtained.hit else f"compiled by {by.kind}"
+    if obtained.unusable is not None:
+        origin += f" (the cache {obtained.unusable} cannot be used: MYRIAD_CACHE_DIR names another folder)"
     return Kernel(_loaded[asked], origin, time.perf_counter() - begin)

@@ -4,12 +4,16 @@
 import difflib
 
 from .errors import Error
+from .expression import is_sympy
+from .parse import sympy_name
 
 
 def name_of(key):
-    """The name of a component: a symbol's, or the text itself."""
+    """The name of a component: a symbol's, SymPy's too, or the text itself."""
     if isinstance(key, str):
         return key
+    if is_sympy(key):
+        return sympy_name(key)
     value = getattr(key, "value", None)
     if getattr(key, "op", None) == "symbol" and value[0] != "built-in":
         return value[1]
@@ -45,7 +49,11 @@ class Components:
     def numbers(self, chosen, what, kinds):
         """The numbers of named components of each of some kinds."""
         found = {kind: [] for kind in kinds}
-        chosen = [chosen] if isinstance(chosen, str) or getattr(chosen, "op", None) == "symbol" else list(chosen)
+        chosen = [chosen] if isinstance(chosen, str) or getattr(chosen, "op", None) == "symbol" else chosen
+        try:
+            chosen = list(chosen)
+        except TypeError:
+            raise Error(f"{what}{chosen!r} names no components: give a list of them, as in {what}[x, v]") from None
         for key in chosen:
             name = name_of(key)
             kind, number = self.place.get(name, (None, None))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A recorded model as the header that a C++ user would write: enumerations, rhs, events and hooks."""
 
+import itertools
 import re
 
 from .expression import condition, integer, number_text, real, text, walk, write
@@ -55,7 +56,8 @@ class Names:
         self.lane = self._free("lane", "instance", "lane_")
 
     def _free(self, *candidates):
-        return next(c for c in candidates if c not in self.taken)
+        numbered = (f"{candidates[0]}_{i}" for i in itertools.count(1))
+        return next(c for c in itertools.chain(candidates, numbered) if c not in self.taken)
 
 
 class Body:
@@ -238,6 +240,8 @@ class Writer:
         model = self.model
         out = ["// SPDX-License-Identifier: MIT", "// Written by Myriad's Python package from a traced model.",
                "#pragma once", "", "#include <myriad/model.hpp>", ""]
+        macros = [n for n in model.component_names if re.search("[A-Z]{2}", n)]  # maybe, in headers of C
+        out += [f"#undef {name}" for name in macros] + [""] * bool(macros)
         out += [f"/// {line}" for line in self.description()]
         out += [f"struct {name} {{"]
         out += ["    " + d for d in self.declarations()]

@@ -4,6 +4,8 @@
 import os
 import sys
 
+import numpy as np
+
 _here = os.path.dirname(os.path.abspath(__file__)) + os.sep
 
 
@@ -17,6 +19,14 @@ def users_line():
     while frame is not None and frame.f_code.co_filename.startswith(_here):
         frame = frame.f_back
     return None if frame is None else (frame.f_code.co_filename, frame.f_lineno)
+
+
+def refuse_masked(values, what):
+    """Refuses a masked array, whose hidden values would count as given."""
+    if isinstance(values, np.ma.MaskedArray):
+        if np.ma.is_masked(values):
+            raise Error(f"{what} has masked values{at(users_line())}: every value is needed, so fill them, as by "
+                        ".filled(0.0), or leave out their instances")
 
 
 def at(line):

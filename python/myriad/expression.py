@@ -11,7 +11,7 @@ import weakref
 
 import numpy as np
 
-from .errors import Error, at, users_line
+from .errors import Error, at, refuse_masked, users_line
 
 __all__ = ["sqrt", "cbrt", "abs", "floor", "round", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinpi",
            "cospi", "sinh", "cosh", "tanh", "exp", "exp2", "log", "log2", "log10", "pow", "powr", "reciprocal",
@@ -76,10 +76,16 @@ def constant(number):
     raise TypeError
 
 
+def is_sympy(value):
+    """Whether it is an object of SymPy, which is not imported for this."""
+    return any((base.__module__ or "").partition(".")[0] == "sympy" for base in type(value).__mro__)
+
+
 def as_node(value):
     """A node from an expression, a number, an array without axes, or a SymPy expression without free symbols."""
     if isinstance(value, Node):
         return value
+    refuse_masked(value, "a constant")
     if isinstance(value, np.ndarray) and value.ndim == 0:
         return as_node(value[()])
     try:
@@ -89,7 +95,7 @@ def as_node(value):
     if isinstance(value, np.ndarray):
         raise Error(f"an array of shape {value.shape} stands where one number is needed{at(users_line())}: take an "
                     "element of it, or give one equation per element")
-    if type(value).__module__.partition(".")[0] == "sympy":
+    if is_sympy(value):
         raise Error(f"the SymPy expression `{value}` is mixed with Myriad's symbols{at(users_line())}: write the whole "
                     "equation in SymPy's symbols, or all of it in Myriad's")
     raise Error(f"{value!r} of type {type(value).__name__} is not an expression{at(users_line())}: use numbers and "
@@ -251,22 +257,57 @@ class _NumpyFunctions:
         if function is None or method != "__call__" or options:
             raise Error(f"numpy.{ufunc.__name__} cannot be applied to expressions of a model{at(users_line())}: use "
                         "the functions of myriad")
-        arrays = [x if isinstance(x, np.ndarray) else _in_array(x) for x in inputs]
-        return np.frompyfunc(function, len(arrays), 1)(*arrays)
+        return elementwise(function, *inputs)
 
     def __array_function__(self, function, types, args, options):
-        if function is np.where and len(args) == 3 and not options:
-            return where(*args)
-        if function is np.clip and len(args) == 3 and not options:
-            return minimum(maximum(args[0], args[1]), args[2])
+        if function in _array_functions and len(args) == 3 and not options:
+            return elementwise(_array_functions[function], *args)
         raise Error(f"numpy.{function.__name__} cannot be applied to expressions of a model{at(users_line())}: use the "
                     "functions of myriad")
 
 
-def _in_array(x):
-    array = np.empty((), object)
-    array[()] = x
-    return array
+class Vector(np.ndarray):
+    """An array of expressions: NumPy's functions of it are this module's, element by element."""
+
+    def __array_ufunc__(self, ufunc, method, *inputs, out=None, **options):
+        function = _numpy_functions().get(ufunc)
+        if function is not None and method == "__call__" and not options:
+            result = elementwise(function, *inputs)
+        else:  # sums and products, of which NumPy's work on objects
+            plain = [x.view(np.ndarray) if isinstance(x, Vector) else x for x in inputs]
+            result = getattr(ufunc, method)(*plain, **options)
+            result = result.view(Vector) if isinstance(result, np.ndarray) and result.dtype == object else result
+        if out is None:
+            return result
+        out[0][...] = result
+        return out[0]
+
+    def __array_function__(self, function, types, args, options):
+        if function in _array_functions and len(args) == 3 and not options:
+            return elementwise(_array_functions[function], *args)
+        return super().__array_function__(function, types, args, options)
+
+
+def vector(expressions):
+    """A `Vector` of some expressions."""
+    made = np.empty(len(expressions), object)
+    made[:] = expressions
+    return made.view(Vector)
+
+
+def elementwise(function, *inputs):
+    """A function of arrays from one of their elements."""
+    arrays = []
+    for x in inputs:
+        if isinstance(x, (list, tuple)):
+            x = np.array(x, object)
+        if not isinstance(x, np.ndarray):  # np.array(x) might look into it
+            array = np.empty((), object)
+            array[()] = x
+            x = array
+        arrays.append(x.view(np.ndarray))
+    result = np.frompyfunc(function, len(arrays), 1)(*arrays)
+    return result.view(Vector) if isinstance(result, np.ndarray) else result
 
 
 class Expression(Node, _NumpyFunctions):
@@ -306,27 +347,45 @@ class Expression(Node, _NumpyFunctions):
 
     def _refuse_number(self, *_):
         raise Error(f"`{text(self)}` is not a number yet, while the model is recorded{at(users_line())}: use the "
-                    "functions of myriad (myriad.sin, not math.sin)")
+                    "functions of myriad (myriad.sin, not math.sin), and keep it in arrays of objects, as "
+                    "np.zeros_like(y) or np.zeros(2, dtype=object) makes them")
 
     __float__ = __int__ = __index__ = __complex__ = __trunc__ = __ceil__ = _refuse_number
 
 
+def _both(a, b):
+    return _logical("and", a, b)
+
+
+def _either(a, b):
+    return _logical("or", a, b)
+
+
+def _equal(a, b):
+    a, b = as_condition(a), as_condition(b)
+    return make("truth", value=True, type=condition) if a is b else (a & b) | (~a & ~b)
+
+
+def _differ(a, b):
+    return ~_equal(a, b)
+
+
 class Condition(Node, _NumpyFunctions):
-    """True or false, by instance: what a comparison gives. Joined by & and |, inverted by ~."""
+    """True or false, by instance: what a comparison gives. Joined by & and |, inverted by ~; two are equal where both
+    hold or neither does."""
 
     __slots__ = ()
-
-    def __and__(self, other):
-        return _logical("and", self, other)
-
-    def __or__(self, other):
-        return _logical("or", self, other)
+    __hash__ = Node.__hash__
+    __and__, __rand__ = _binary(_both)
+    __or__, __ror__ = _binary(_either)
+    __xor__, __rxor__ = _binary(_differ)
+    __eq__, _ = _binary(_equal)
+    __ne__, _ = _binary(_differ)
+    del _
 
     def __invert__(self):
         return make("truth", value=not self.value, type=condition) if self.op == "truth" else make(
             "not", (self,), type=condition)
-
-    __rand__, __ror__ = __and__, __or__
 
 
 def _logical(op, a, b):
@@ -497,12 +556,14 @@ def _numpy_functions():
             np.positive: operator.pos, np.less: operator.lt, np.less_equal: operator.le, np.greater: operator.gt,
             np.greater_equal: operator.ge, np.equal: operator.eq, np.not_equal: operator.ne,
             np.logical_and: operator.and_, np.logical_or: operator.or_, np.logical_not: operator.invert,
-            np.bitwise_and: operator.and_, np.bitwise_or: operator.or_, np.invert: operator.invert,
+            np.logical_xor: operator.xor, np.bitwise_and: operator.and_, np.bitwise_or: operator.or_,
+            np.bitwise_xor: operator.xor, np.invert: operator.invert,
         })
     return _numpy_table
 
 
 _numpy_table = {}
+_array_functions = {np.where: where, np.clip: lambda x, low, high: minimum(maximum(x, low), high)}
 
 
 def _add_numpys_methods():

@@ -5,8 +5,9 @@ axes, the last one varying fastest; a zip takes the values of equally long array
 
 import numpy as np
 
-from .errors import Error, at, users_line
-from .expression import Node
+from .errors import Error, at, refuse_masked, users_line
+from .expression import Node, is_sympy
+from .parse import sympy_name
 
 __all__ = ["grid", "zip", "Sweep"]
 
@@ -16,13 +17,14 @@ def _name(key, line):
         return key.value[1]
     if isinstance(key, str):
         return key
-    if type(key).__module__.partition(".")[0] == "sympy":
-        return str(key)
+    if is_sympy(key):
+        return sympy_name(key)
     raise Error(f"{key!r} names nothing to sweep over{at(line)}: use a symbol, as from myriad.parameter, or its name")
 
 
 def _numbers(name, values, line):
     """Values as an array of whole numbers or of double precision, without NaN."""
+    refuse_masked(values, name)
     try:
         array = np.asarray(values)
         if array.dtype.kind == "c":

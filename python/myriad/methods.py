@@ -13,7 +13,7 @@ def method_type(name, chosen=(), samples=False):
     """The C++ type of a method with choices of its control, and with dense output if samples are wanted."""
     if name not in methods:
         raise Error(f"there is no method {name!r}: choose one of {', '.join(methods)}")
-    chosen = (chosen,) if isinstance(chosen, str) else tuple(chosen)
+    chosen = tuple(chosen) if isinstance(chosen, (list, tuple, set)) else (chosen,)
     for choice in chosen:
         if choice not in controls:
             raise Error(f"there is no step-size control {choice!r}: choose of {', '.join(controls)}")

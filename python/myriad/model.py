@@ -9,8 +9,9 @@ import numpy as np
 from . import symbols as sym
 from .cpp import Writer, generic_problem
 from .errors import Error, at, users_line
-from .expression import Node, as_condition, as_number, evaluate, integer, real, symbols_of, text, to_real, walk
-from .parse import from_sympy, is_sympy, parse, parse_equations, sympy_name
+from .expression import (Node, as_condition, as_number, evaluate, integer, is_sympy, real, symbols_of, text, to_real,
+                         vector, walk)
+from .parse import from_sympy, parse, parse_equations, sympy_name
 from .table import element_name, tables_of
 
 __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
@@ -159,7 +160,15 @@ class Model:
         return value
 
     def _target(self, key, what):
-        if isinstance(key, str) or is_sympy(key):
+        if is_sympy(key):
+            if what != "equations" and hasattr(key, "expr"):
+                raise Error(f"{what}{at(self.line)} assigns the derivative `{key}`: assign the state itself")
+            key = sympy_name(key)
+            if key not in self._names:
+                raise Error(f"{what}{at(self.line)}: '{key}' is unknown: name it in parameters=\"...\", or use a "
+                            "symbol, as from myriad.accessory")
+            key = self._names[key]
+        elif isinstance(key, str):
             key = self._value(key, what)
         if not isinstance(key, Node) or key.op != "symbol":
             raise Error(f"{what}{at(self.line)}: {key!r} stands where a component is assigned: use a symbol, as from "
@@ -212,8 +221,7 @@ class Model:
             raise Error(f"the states of {name} have no names{at(self.line)}: give them in the order of y, as in "
                         "states=\"x v\"")
         unknowns = [s for s in self._declared.values() if s.value[0] == "state"]
-        y = np.empty(len(unknowns), object)
-        y[:] = unknowns
+        y = vector(unknowns)
         try:
             arguments = list(inspect.signature(function).parameters.values())
         except (TypeError, ValueError):
@@ -424,9 +432,12 @@ class Model:
 
     def source(self):
         """The text that kernels are compiled from, the same for equal models, and the name of its struct."""
+        name = "traced_model"
+        while name in self.component_names:
+            name += "_"
         if self._source is None:
-            self._source = self.cpp("traced_model")
-        return self._source, "traced_model"
+            self._source = self.cpp(name)
+        return self._source, name
 
     @property
     def hash(self):

@@ -7,7 +7,7 @@ import operator
 import re
 
 from . import expression as ex
-from .errors import Error
+from .errors import Error, at, users_line
 
 _binary = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
            ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.Pow: operator.pow, ast.BitAnd: operator.and_,
@@ -117,14 +117,17 @@ def parse_equations(source, names, where):
 # ----------------------------------------------------------------------------------------------------------------------
 
 
-def is_sympy(value):
-    """Whether it is an object of SymPy, which is not imported for this."""
-    return any(base.__module__.partition(".")[0] == "sympy" for base in type(value).__mro__)
-
-
 def sympy_name(key):
-    """The name of a symbol, of a function of time such as x(t), or of what a derivative is of."""
-    key = key.expr if hasattr(key, "expr") else key
+    """The name of a symbol, of a function of time such as x(t), or of what a first derivative is of."""
+    import sympy
+
+    if isinstance(key, sympy.Derivative):
+        if key.derivative_count != 1:
+            raise Error(f"`{key}` is a derivative of order {key.derivative_count}{at(users_line())}: make the first "
+                        "derivative a state of its own, as in {x: v, v: ...}")
+        key = key.expr
+    if not isinstance(key, (sympy.Symbol, sympy.core.function.AppliedUndef)):
+        raise Error(f"`{key}`{at(users_line())} is no name: use a symbol x, a function x(t), or its first derivative")
     return str(key.func if key.args else key)
 
 
@@ -145,8 +148,10 @@ def from_sympy(value, names, what):
 
     @functools.lru_cache(maxsize=None)
     def convert(e):
-        if isinstance(e, (sympy.Symbol, sympy.core.function.AppliedUndef, sympy.Derivative)):
+        if isinstance(e, (sympy.Symbol, sympy.core.function.AppliedUndef)):
             return find(sympy_name(e))
+        if isinstance(e, sympy.Derivative):
+            raise Error(f"{what}: `{e}` is a derivative within an expression: write what it is equal to")
         if isinstance(e, sympy.Integer):
             return ex.constant(int(e))
         if e in (sympy.true, sympy.false):

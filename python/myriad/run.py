@@ -7,8 +7,11 @@ from . import _core
 from .components import name_of
 from .errors import Error
 from .grid import Sweep
+from .symbols import time
 
 status_names = tuple(_core.status_names())
+# What datasets and tables call what they have besides components, whose names there get a _ behind.
+_own_names = ("instance", "phase", "sample", "time", "t_last", "status")
 _first_failure = status_names.index("max_steps")
 
 
@@ -25,7 +28,8 @@ class Report:
 
     def __init__(self, report, kernel, seconds):
         self._report = report
-        #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why
+        #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
+        #: with a note if the cache cannot be used
         self.kernel = kernel.origin
         self.kernel_seconds = kernel.seconds  #: that it took to get the kernel
         self.total_seconds = seconds  #: of the whole call
@@ -163,6 +167,8 @@ class Run:
         return {name: self._ensemble.samples(c) for name, c in self._sampled.items()}
 
     def __getitem__(self, name):
+        if name is time:
+            return self._times()
         name = name_of(name)
         if name in self._sampled:
             return self._ensemble.samples(self._sampled[name])
@@ -173,12 +179,37 @@ class Run:
                 return found[name]
         raise KeyError(f"there is no {name!r}: the model has {', '.join(self._components.place)}")
 
+    def _times(self):
+        """The recorded times, or those of the samples."""
+        for place in self._recorded.values():
+            if place == ("time", 0):
+                return self._records.records(*place)
+        if self._sampled:
+            return self.sample_times
+        raise KeyError("the times were not recorded: give record=dict(..., time=True) or samples= to solve")
+
     def __len__(self):
         return self.size
 
+    def __reduce__(self):
+        raise Error("the results of a run cannot be pickled or copied: pickle run.to_xarray(), or the arrays that you "
+                    "need")
+
+    @staticmethod
+    def _free(name, taken):
+        while name in taken:
+            name += "_"
+        return name
+
+    def _column(self, name):
+        """The name of a component's result in a dataset or table, which have names of their own."""
+        return self._free(f"{name}_", self._components.place) if name in _own_names else name
+
     def _in_dataset(self, name):
         """The name of an input in a dataset, where a state's own name is that of its result."""
-        return f"{name}_start" if name in self._components.states else name
+        if name in self._components.states:
+            return self._free(f"{name}_start", self._components.place)
+        return self._column(name) if name in self._components.place else name
 
     def _axes(self):
         """The dimensions of the instances and their lengths."""
@@ -188,7 +219,8 @@ class Run:
 
     def to_xarray(self):
         """The results as an `xarray.Dataset`: records along `phase`, samples along `sample`, and along `instance`, or
-        the axes of a grid, whose values are coordinates, as are parameters."""
+        the axes of a grid, whose values are coordinates, as are parameters. A component with a name that the dataset
+        has for something else, such as `phase`, has a _ behind it."""
         try:
             import xarray
         except ImportError:
@@ -200,13 +232,14 @@ class Run:
 
         variables, coordinates = {}, {}
         for name, array in self.records.items():
-            variables[name] = unstacked(array, "phase")
+            variables[self._column(name)] = unstacked(array, "phase")
         for name, array in self.samples.items():
-            variables[f"{name}_samples" if name in variables else name] = unstacked(array, "sample")
+            other = self._free(f"{name}_samples", self._components.place)
+            variables[other if name in self._recorded else self._column(name)] = unstacked(array, "sample")
         if self._sampled:
             coordinates["time"] = unstacked(self.sample_times, "sample")
         for name, array in {**self.states, **self.accessories}.items():
-            variables.setdefault(name, unstacked(array))
+            variables.setdefault(self._column(name), unstacked(array))
         variables["t_last"] = (*unstacked(self.t), {"long_name": "time at which the last phase ended"})
         variables["status"] = (*unstacked(self.status), {
             "flag_values": np.arange(len(status_names), dtype=np.uint8), "flag_meanings": " ".join(status_names)})
@@ -218,8 +251,8 @@ class Run:
             coordinates[self._in_dataset(name)] = (self._in_dataset(axis), np.asarray(values))
         for name, array in self.parameters.items():
             if name not in along:
-                coordinates[name] = unstacked(array)
-        coordinates.update(self.shared)
+                coordinates[self._column(name)] = unstacked(array)
+        coordinates.update((self._column(name), value) for name, value in self.shared.items())
         for name, value in self.start.items():
             if name not in along and np.ndim(value) == 1:
                 coordinates[self._in_dataset(name)] = unstacked(value)
@@ -227,7 +260,8 @@ class Run:
 
     def to_pandas(self):
         """The results as a `pandas.DataFrame`: one row for each instance and recorded phase, or each instance and
-        sample, or each instance, with the parameters as columns."""
+        sample, or each instance, with the parameters as columns. A component with the name of another
+        column, such as `phase`, has a _ behind it."""
         try:
             import pandas
         except ImportError:
@@ -242,11 +276,11 @@ class Run:
         if self._sampled:
             table["time"] = self.sample_times.ravel()
         for name, array in self.parameters.items():
-            table[name] = np.repeat(array, columns)
-        table.update((name, array.ravel()) for name, array in long.items())
+            table[self._column(name)] = np.repeat(array, columns)
+        table.update((self._column(name), array.ravel()) for name, array in long.items())
         for name, array in {**self.states, **self.accessories}.items():
             if not long:
-                table[name] = array
+                table[self._column(name)] = array
         names = pandas.Categorical.from_codes(self.status, status_names)
         table["status"] = names.repeat(columns)
         frame = pandas.DataFrame(table)

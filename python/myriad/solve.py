@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """`solve`: checks names and shapes, fills an ensemble of the core, integrates it and hands the arrays over."""
 
+import itertools
 import math
 import time as clock
 
@@ -8,7 +9,7 @@ import numpy as np
 
 from . import _core, compiler, tape
 from .components import Components, name_of, unknown
-from .errors import Error
+from .errors import Error, refuse_masked
 from .grid import Sweep
 from .methods import fixed_step, method_type
 from .run import Interrupted, Run
@@ -22,6 +23,9 @@ _in_python = (
     ("set it with ensemble.shared(...) before solving", "give it a value in the sweep"),
     ("name it in options::record", "name it in record="),
     ("give options::step", "give step="),
+    ("set it with ensemble.t_begin() = ... before solving", "give it in time="),
+    ("set it with ensemble.t_end() = ... before solving", "give it in time="),
+    ("samples.", "samples "),
     ("use an ensemble of doubles", "give precision=\"double\""),
     ("relative_tolerance", "rtol"),
     ("absolute_tolerance", "atol"),
@@ -31,6 +35,7 @@ _in_python = (
 
 def _numbers(value, name):
     """A number, or an array of one dimension, of real numbers."""
+    refuse_masked(value, f"'{name}'")
     array = np.asarray(value)
     if array.dtype.kind == "c":
         raise Error(f"'{name}' is complex: a model is real, so give real and imaginary parts as two components")
@@ -40,6 +45,15 @@ def _numbers(value, name):
         raise Error(f"'{name}' has {array.ndim} dimensions: give one number per instance, in one dimension; "
                     "myriad.grid(...) makes a sweep over several axes")
     return array
+
+
+def _whole_numbers(array, name):
+    """The values of an integer component: whole numbers of 32 bits."""
+    wrong = np.flatnonzero((array != np.floor(array)) | ~(np.abs(array.astype(float)) < 1 << 31))
+    if wrong.size:
+        raise Error(f"'{name}' is an integer and has the value {array.flat[wrong[0]]}: give whole numbers between "
+                    f"{1 - (1 << 31)} and {(1 << 31) - 1}")
+    return array.astype(np.int32)
 
 
 def _sweep_values(sweep):
@@ -57,9 +71,9 @@ def _sweep_values(sweep):
 def _gather(components, sweep, start, time, size):
     """All inputs by name, and the number of instances."""
     given = {}
+    initial = {name_of(k): v for k, v in _by_name(start, "start", "start={x: 1, v: 0}").items()}
     for source, values, kinds in (("the sweep", _sweep_values(sweep), None),
-                                  ("start=", {name_of(k): v for k, v in (start or {}).items()},
-                                   ("state", "accessory", "integer_accessory"))):
+                                  ("start=", initial, ("state", "accessory", "integer_accessory"))):
         for name, value in values.items():
             kind = components.place.get(name, (None,))[0]
             if kind is None or (kinds is not None and kind not in kinds):
@@ -84,7 +98,7 @@ def _gather(components, sweep, start, time, size):
     lengths = {name: len(a) for name, a in (*given.items(), ("begin of time", domain[0]), ("end of time", domain[1]))
                if a.ndim == 1}
     if size is not None:
-        lengths["size"] = size
+        lengths["size"] = _whole(size, "size", 1 << 62)
     if isinstance(sweep, Sweep):
         lengths["the sweep"] = sweep.size
     if len(set(lengths.values())) > 1:
@@ -106,10 +120,10 @@ def _fill(ensemble, components, given, domain, names):
             if array.ndim == 1:
                 raise Error(f"'{name}' is shared by all instances and has {len(array)} values: give one number, or "
                             "make it a parameter")
-            ensemble.array(kind)[number] = array
+            ensemble.array(kind)[number] = _whole_numbers(array, name) if kind == "shared_integer" else array
             continue
-        if kind == "integer_accessory" and array.dtype.kind not in "biu":
-            raise Error(f"'{name}' is an integer accessory: give whole numbers")
+        if kind == "integer_accessory":
+            array = _whole_numbers(array, name)
         ensemble.array(kind, number)[...] = array
     if domain[0].ndim == 0 and domain[1].ndim == 0:
         ensemble.set_domain(float(domain[0]), float(domain[1]))
@@ -127,16 +141,42 @@ def _per_state(value, components, name, count):
             state = name_of(key)
             if state not in components.states:
                 raise unknown(state, components.states, "state of the model")
-            values[components.states.index(state)] = float(tolerance)
+            values[components.states.index(state)] = _real(tolerance, f"{name} of '{state}'")
     else:
         values = [float(v) for v in np.atleast_1d(_numbers(value, name))]
+    if len(values) not in (1, len(components.states)):
+        raise Error(f"{name} has {len(values)} values, but the model has {len(components.states)} state components: "
+                    "give one value for all, or one for each")
     return values + [1.0] * (count - len(components.states)) if len(values) == len(components.states) > 1 else values
 
 
-def _whole(value, name):
-    if isinstance(value, (bool, np.bool_)) or not float(value).is_integer():
+_largest = (1 << 31) - 1
+
+
+def _whole(value, name, largest=_largest):
+    try:
+        is_whole = not isinstance(value, (bool, np.bool_, str)) and float(value).is_integer()
+    except (TypeError, ValueError, OverflowError):
+        is_whole = False
+    if not is_whole:
         raise Error(f"{name} is {value!r}: give a whole number")
+    if not -largest <= value <= largest:
+        raise Error(f"{name} is {value}: give a number up to {largest}")
     return int(value)
+
+
+def _real(value, name):
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise Error(f"{name} is {value!r}: give a number") from None
+
+
+def _by_name(value, name, example):
+    """The dict that an option is."""
+    if value is not None and not hasattr(value, "items"):
+        raise Error(f"{name} is {value!r}: give a dict by name, as in {example}")
+    return value or {}
 
 
 def _only(options, known, what):
@@ -165,7 +205,8 @@ def _set_records(options, record, components):
     places.update((components.accessories[c], ("accessory", c)) for c in real)
     places.update((components.integer_accessories[c], ("integer_accessory", c)) for c in integer)
     if with_time:
-        places["t"] = ("time", 0)
+        names = itertools.chain(("t", "time"), (f"time_{i}" for i in itertools.count(1)))
+        places[next(n for n in names if n not in components.place)] = ("time", 0)
     return places
 
 
@@ -180,7 +221,14 @@ def _set_samples(options, samples, components, phases, phase_length, size):
     evenly = _whole(samples.get("evenly", 0), "samples evenly")
     every = _whole(samples.get("every", 0), "samples every")
     from_phase = _whole(samples.get("from_phase", 0), "samples from_phase")
-    times = np.asarray(samples.get("times", ()), dtype=float)
+    refuse_masked(samples.get("times"), "samples times")
+    try:
+        times = np.asarray(samples.get("times", ()), dtype=float)
+    except (TypeError, ValueError):
+        raise Error(f"samples times are {samples['times']!r}: give numbers") from None
+    if sum((evenly != 0, every != 0, times.size > 0)) != 1:
+        raise Error("samples= asks for no samples, or in several ways: give the number of evenly spaced times, the "
+                    "times, or dict(every=, capacity=) for every n-th step")
     if times.ndim == 2 and len(times) != size:
         raise Error(f"the sample times have {len(times)} rows for {size} instances: give one row for each, or the same "
                     "times for all in one dimension")
@@ -195,14 +243,15 @@ def _set_samples(options, samples, components, phases, phase_length, size):
         given = times.shape[-1] * (1 if phase_length else sampled)
         capacity = evenly * sampled if evenly else given
     options.sample(states, _whole(capacity, "samples capacity"), evenly, [] if times.ndim == 2 else times.tolist(),
-                   list(own), every, float(samples.get("minimum_spacing", 0)), from_phase)
+                   list(own), every, _real(samples.get("minimum_spacing", 0), "samples minimum_spacing"),
+                   from_phase)
     return {components.states[c]: c for c in states}
 
 
 def _set_events(options, events, components, count):
     """Options of events: the model's own, replaced by those that the call gives by name; for `count` events."""
     changed = {}
-    for key, value in (events or {}).items():
+    for key, value in _by_name(events, "events", "events={\"impact\": dict(stop_after=5)}").items():
         name = key if isinstance(key, str) else getattr(key, "name", None)
         if name not in components.event_names:
             raise unknown(str(name), components.event_names, "event of the model")
@@ -215,7 +264,8 @@ def _set_events(options, events, components, count):
             raise Error(f"the direction of event '{event.name}' is {direction!r}: give \"falling\", \"rising\" or "
                         "\"either\"")
         tolerance = of_call.get("tolerance", event.tolerance)
-        options.add_event(_directions[direction], _default_event_tolerance if tolerance is None else float(tolerance),
+        tolerance = _default_event_tolerance if tolerance is None else _real(tolerance, "tolerance")
+        options.add_event(_directions[direction], tolerance,
                           _whole(of_call.get("stop_after", event.stop_after), "stop_after"))
     for _ in range(len(components.events), count):
         options.add_event(0, _default_event_tolerance, 0)
@@ -249,15 +299,17 @@ def _device_name(device):
                     "yet; use \"cpu\" or \"auto\"")
     try:
         return _core.check_device(str(device))
-    except Error:
+    except Error as error:
+        if "unknown" not in str(error):  # but has a number of threads that cannot be
+            raise Error(str(error).replace("the device", f"device {device!r}")) from None
         raise Error(f"device {device!r} is unknown: use \"auto\", \"cpu\", or \"cpu:4\" for four threads") from None
 
 
 def _positive_infinity(value):
-    return math.inf if value is None else float(value)
+    return math.inf if value is None else _real(value, "maximum_step")
 
 
-def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, method="cash_karp", control=(),
+def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, method=None, control=(),
           rtol=1e-8, atol=1e-8, step=None, minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1,
           max_steps=10_000_000, phase_length=0, carry_on=False, events=None, sub_samples=1, accumulation_limit=50,
           tolerance_scale=None, invalid="refuse", schedule="automatic", size=None, precision="double", device="auto",
@@ -272,10 +324,12 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
                       for each instance; the end may be before the begin
     phases            integration phases, each from begin to end unless `phase_length` or `carry_on` says otherwise
     record            what to keep at the end of each phase: components, as in `[x, v]`, or
-                      `dict(from_phase=, states=, accessories=, time=)`
+                      `dict(from_phase=, states=, accessories=, time=)`; `run["t"]` (`run["time"]` if the model has
+                      a t of its own) or `run[myriad.time]` are the recorded times
     samples           dense output: a number of evenly spaced times, an array of times, or `dict(states=, evenly= |
                       times= | every=, capacity=, minimum_spacing=, from_phase=)`
-    method, control   as in the C++ library: "cash_karp", "dormand_prince_5", "tsitouras_5", "verner_7",
+    method, control   as in the C++ library: "cash_karp" (default), "dormand_prince_5" (default with samples, which it
+                      interpolates more accurately), "tsitouras_5", "verner_7",
                       "dormand_prince_8", "runge_kutta_4", "rosenbrock_23", "rodas_5p"; control is one or several of
                       "pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
                       "tolerance_per_instance", the last with `tolerance_scale=`
@@ -297,6 +351,11 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     if precision not in ("double", "float"):
         raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
     where = _device_name(device)
+    if not hasattr(model, "source"):
+        raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
+                    "myriad.solve(myriad.model({x: v, v: -x}), ...)")
+    if method is None:
+        method = "cash_karp" if samples is None else "dormand_prince_5"
     components = Components(model)
     given, domain, count = _gather(components, sweep, start, time, size)
     written = method_type(method, control, samples is not None)
@@ -304,12 +363,13 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
         raise Error(f"{method} takes fixed steps: give step=")
     options = _core.Options()
     options.phases = _whole(phases, "phases")
-    options.step = math.nan if step is None else float(step)
-    options.minimum_step = float(minimum_step)
+    options.step = math.nan if step is None else _real(step, "step")
+    options.minimum_step = _real(minimum_step, "minimum_step")
     options.maximum_step = _positive_infinity(maximum_step)
-    options.growth_limit, options.shrink_limit = float(growth_limit), float(shrink_limit)
-    options.max_steps = _whole(max_steps, "max_steps")
-    options.phase_length = float(phase_length)
+    options.growth_limit = _real(growth_limit, "growth_limit")
+    options.shrink_limit = _real(shrink_limit, "shrink_limit")
+    options.max_steps = _whole(max_steps, "max_steps", 1 << 62)
+    options.phase_length = _real(phase_length, "phase_length")
     options.carry_on(bool(carry_on), False)
     options.sub_samples = _whole(sub_samples, "sub_samples")
     options.accumulation_limit = _whole(accumulation_limit, "accumulation_limit")
@@ -343,7 +403,10 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
         ensemble = kind(kernel.library, *names, count)
         _fill(ensemble, components, given, domain, names)
         if tolerance_scale is not None:
-            ensemble.array("tolerance_scale")[...] = _numbers(tolerance_scale, "tolerance_scale")
+            scale = _numbers(tolerance_scale, "tolerance_scale")
+            if scale.ndim and len(scale) != count:
+                raise Error(f"'tolerance_scale' has {len(scale)} values for {count} instances: give one for each")
+            ensemble.array("tolerance_scale")[...] = scale
         report, failure = _core.solve(kernel.library, where, ensemble, options, function)
     except Error as error:
         text = str(error)

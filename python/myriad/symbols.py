@@ -30,7 +30,7 @@ _reserved = set("""state parameter shared shared_integer accessory integer_acces
 observe reductions initialise after_step after_event finalise writes_parameters writes_time_domain
 accessories_are_outputs scalar_only rare_events pack_batches max_block_size
 myriad std linux unix errno assert NULL NAN INFINITY EOF BUFSIZ RAND_MAX HUGE_VAL OVERFLOW UNDERFLOW DOMAIN SING PLOSS
-TLOSS stdin stdout stderr major minor""".split())
+TLOSS stdin stdout stderr major minor alloca offsetof issubnormal math_errhandling sched_priority""".split())
 _reserved_pattern = re.compile(
     r"n_(state|parameter|shared|shared_integer|accessory|integer_accessory|event|observed|tangent|original|vectors)|"
     r"M_[A-Z0-9_]+|MYRIAD_.*|[A-Z0-9]+_(MAX|MIN|EPSILON|DIG)|FP_[A-Z]+")

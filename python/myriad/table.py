@@ -5,7 +5,7 @@ import hashlib
 
 import numpy as np
 
-from .errors import Error, at, users_line
+from .errors import Error, at, refuse_masked, users_line
 from .expression import as_number, make, to_real
 from .symbols import check_name
 
@@ -28,6 +28,7 @@ class Table:
 
     def __init__(self, name, values):
         self.name, self.line = name, users_line()
+        refuse_masked(values, f"the table {name}")
         array = np.asarray(values)
         if array.dtype.kind not in "biuf":
             raise Error(f"the table {name} has values of type {array.dtype}{at(self.line)}: give real numbers")

@@ -44,6 +44,11 @@ def test_a_second_process_finds_the_kernel(tmp_path):
     tmp_path.chmod(0o700)
 
 
+def read(path):
+    """Stands for loading a library: the content of its file without the digest."""
+    return path.read_bytes()[:-32].decode()
+
+
 def _obtain(folder, start, made, results):
     os.environ["MYRIAD_CACHE_DIR"] = folder
 
@@ -57,8 +62,8 @@ def _obtain(folder, start, made, results):
         return file
 
     start.wait()
-    path, hit = cache.obtain("0123", make)
-    results.put((path.read_text(), hit))
+    found = cache.obtain("0123", make, read)
+    results.put((found.loaded, found.hit))
 
 
 def test_64_processes_at_once_make_it_once(tmp_path):
@@ -86,15 +91,15 @@ def test_the_limit_removes_what_was_not_used_for_longest(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
     monkeypatch.setenv("MYRIAD_CACHE_SIZE", "2500")
     for age, key in ((300, "a"), (200, "b")):
-        path, _ = cache.obtain(key, _writer("x" * 1000))
-        os.utime(path, (time.time() - age, time.time() - age))
-    assert cache.obtain("a", _writer("never made"))[1]  # which makes b the older one
-    cache.obtain("c", _writer("x" * 1000))
+        cache.obtain(key, _writer("x" * 1000), read)
+        os.utime(tmp_path / f"{key}.so", (time.time() - age, time.time() - age))
+    assert cache.obtain("a", _writer("never made"), read).hit  # which makes b the older one
+    cache.obtain("c", _writer("x" * 1000), read)
     assert sorted(p.name for p in tmp_path.glob("*.so")) == ["a.so", "c.so"]
     assert cache.clear() == 2 and not list(tmp_path.iterdir())
     monkeypatch.setenv("MYRIAD_CACHE_SIZE", "1 GB")
     with pytest.raises(my.Error, match="MYRIAD_CACHE_SIZE is '1 GB': give a number of bytes"):
-        cache.obtain("d", _writer("x"))
+        cache.obtain("d", _writer("x"), read)
 
 
 def test_a_failed_compilation_leaves_nothing(tmp_path, monkeypatch):
@@ -105,16 +110,51 @@ def test_a_failed_compilation_leaves_nothing(tmp_path, monkeypatch):
         raise my.Error("no")
 
     with pytest.raises(my.Error):
-        cache.obtain("e", fail)
+        cache.obtain("e", fail, read)
     assert [p.name for p in tmp_path.iterdir()] == ["e.lock"]
 
 
 def test_a_folder_that_cannot_be_made(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "file" / "cache"))
-    path, hit = cache.obtain("f", _writer("made"))
-    assert path.read_text() == "made" and not hit
-    assert cache.obtain("f", _writer("again"))[1]
+    found = cache.obtain("f", _writer("made"), read)
+    assert found == cache.Obtained("made", False, tmp_path / "file" / "cache")
+    assert cache.obtain("f", _writer("again"), read).hit
+    told, _, _ = run_script(MYRIAD_CACHE_DIR=str(tmp_path / "file" / "cache"))
+    assert told.startswith("compiled by") and f"the cache {tmp_path}/file/cache cannot be used" in told
+
+
+def test_a_damaged_entry_is_made_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    cache.obtain("g", _writer("whole"), read)
+    file = tmp_path / "g.so"
+    for damaged in (b"", file.read_bytes()[:20], b"X" + file.read_bytes()[1:]):
+        file.write_bytes(damaged)
+        assert cache.obtain("g", _writer("new"), read) == cache.Obtained("new", False)
+        assert cache.obtain("g", _writer("never made"), read) == cache.Obtained("new", True)
+
+
+def test_what_cannot_be_loaded_is_not_kept(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+
+    def refuse(path):
+        raise my.Error("undefined symbol")
+
+    with pytest.raises(my.Error, match="undefined symbol"):
+        cache.obtain("h", _writer("made"), refuse)
+    assert not list(tmp_path.glob("*.so"))
+    cache.obtain("h", _writer("old"), read)
+
+    def refuse_old(path):
+        return refuse(path) if read(path) == "old" else read(path)
+
+    assert cache.obtain("h", _writer("new"), refuse_old) == cache.Obtained("new", False)
+
+
+def test_a_lock_that_cannot_be_opened(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    (tmp_path / "j.lock").symlink_to(tmp_path / "nowhere" / "else")  # which stops root too
+    assert cache.obtain("j", _writer("made"), read) == cache.Obtained("made", False, tmp_path)
 
 
 def test_what_a_key_depends_on():

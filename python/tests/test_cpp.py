@@ -5,6 +5,7 @@ import pathlib
 import shutil
 import subprocess
 
+import numpy as np
 import pytest
 
 import example_models
@@ -104,3 +105,9 @@ def test_every_operation_compiles_for_all_kinds_of_numbers_and_has_the_value_of_
     for (x, v, k), line in zip(points, printed, strict=True):
         expected = model.derivatives(0.25, [x, v], k=k, B=0.3, C=0.8, n=1, mode=1)
         assert [float(s) for s in line.split()] == pytest.approx(list(expected), rel=1e-13, nan_ok=True)
+
+
+def test_names_of_macros_and_of_the_struct():
+    model = my.model({"traced_model": "R_OK - EIO * traced_model"}, parameters="R_OK EIO")
+    run = my.solve(model, {"R_OK": [1.0, 2.0], "EIO": 1.0}, start={"traced_model": 0}, time=(0, 1), rtol=1e-9)
+    assert np.allclose(run["traced_model"], [1 - np.exp(-1), 2 - 2 * np.exp(-1)])

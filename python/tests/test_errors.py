@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What bad calls of `solve` get."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -43,10 +45,34 @@ CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
     (dict(invalid="ignore"), "give \"refuse\" or \"mark\""),
     (dict(precision="half"), "give \"double\" or \"float\""),
     (dict(size=3), "'w' has 2 values and 'size' has 3"),
+    (dict(size=2**63), "size is 9223372036854775808: give a number up to"),
+    (dict(phases=10**30), "phases is 10+: give a number up to"),
+    (dict(phases="two"), "phases is 'two': give a whole number"),
+    (dict(step="short"), "step is 'short': give a number"),
+    (dict(start=[1, 0]), r"start is \[1, 0\]: give a dict by name"),
+    (dict(events=[1]), r"events is \[1\]: give a dict by name"),
+    (dict(record=3), "record=3 names no components"),
+    (dict(control=3), "there is no step-size control 3"),
+    (dict(tolerance_scale=[1, 2, 3]), "'tolerance_scale' has 3 values for 2 instances"),
+    (dict(time=(0, np.nan)), "t_end is NaN in all 2 instances.*; give it in time="),
+    (dict(samples=0), "samples= asks for no samples"),
+    (dict(samples=[]), "samples= asks for no samples"),
+    (dict(samples=10**10), "samples evenly is 10000000000: give a number up to"),
+    (dict(device="cpu:9999"), "device 'cpu:9999' has 9999 threads .must be from 1 to 4096"),
 ])
 def test_message(oscillator, change, message):
     with pytest.raises(my.Error, match=message):
         my.solve(oscillator, **{**CALL, **change})
+
+
+def test_equations_are_no_model():
+    with pytest.raises(my.Error, match=r"the model is a dict: make it by myriad.model\(...\)"):
+        my.solve({"x": "v", "v": "-x"}, start={"x": 1, "v": 0}, time=(0, 1))
+
+
+def test_runs_are_not_pickled(oscillator):
+    with pytest.raises(my.Error, match="pickle run.to_xarray"):
+        pickle.dumps(my.solve(oscillator, **CALL))
 
 
 def test_shared_values_are_single_numbers(ball):

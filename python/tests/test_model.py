@@ -310,3 +310,54 @@ def test_messages_name_the_users_line():
         my.model({x: v})
     with pytest.raises(my.Error, match=r"test_model.py:\d+"):
         x * float("nan")
+
+
+def test_conditions_are_compared_and_not_their_identity():
+    one, other = x > 0, my.time > -1
+    equal, differ = my.where(one == other, 1.0, 2.0), my.where(one != other, 1.0, 2.0)
+    for values in ([1.0, 0.0], [-1.0, 0.0], [1.0, -2.0], [-1.0, -2.0]):
+        known = {x: values[0], my.time: values[1]}
+        same = (values[0] > 0) == (values[1] > -1)
+        assert evaluate([equal, differ], known) == ([1.0, 2.0] if same else [2.0, 1.0])
+    assert (one == True) is one and (one ^ True) is ~one and (one == one).value  # noqa: E712
+
+
+def test_copies_of_symbols_are_the_symbols():
+    for copied in (copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))):
+        assert copied(x) is x and copied([x * 2])[0] is x * 2
+
+
+def test_sympys_derivatives():
+    sympy = pytest.importorskip("sympy")
+    t = sympy.Symbol("t")
+    x, v = (sympy.Function(name)(t) for name in "xv")
+    assert my.model({x.diff(t): v, v.diff(t): -x * t}).cpp("it") == my.model("x' = v; v' = -(t * x)").cpp("it")
+    for wrong, message in (({x.diff(t, 2): -x}, "derivative of order 2"),
+                           ({x: v, v: -x - x.diff(t)}, "is a derivative within an expression")):
+        with pytest.raises(my.Error, match=message):
+            my.model(wrong)
+
+
+def test_numpys_functions_of_the_vector_of_states():
+    def f(t, y):
+        slope = np.zeros_like(y)
+        slope[0] = np.where(y > 0, y, 0.5)[1]
+        slope[1] = -np.clip(y, -1, 1)[0]
+        slope *= 2
+        return slope + np.array([[1.0, 2.0], [3.0, 4.0]]) @ np.sin(y)
+
+    found = my.model(f, states="x v").derivatives(0.0, [3.0, -2.0])
+    assert np.allclose(found, [1 + np.sin(3) - 2 * np.sin(2), -2 + 3 * np.sin(3) - 4 * np.sin(2)])
+
+    def in_numbers(t, y):
+        slope = np.zeros(2)
+        slope[0] = y[1]
+        return slope
+
+    with pytest.raises(my.Error, match=r"np.zeros_like\(y\)"):
+        my.model(in_numbers, states="x v")
+
+
+def test_names_of_arguments_that_are_all_taken():
+    model = my.model({"y": "s + u + state_", "s": "y", "u": "y", "state_": "1"})
+    assert "y_1[s] + y_1[u] + y_1[state_]" in model.cpp()
