@@ -76,7 +76,9 @@ def main():
     if arguments.budget:
         arguments.budget = arguments.budget.resolve()
         rows, reference = read_budget(arguments.budget, shlex.split(entries[0]["command"])[0])
-        entries = [e for e in entries if any(e["file"].endswith("/" + name) for name in rows)]
+        # A file that is part of several programs is compiled once.
+        entries = list({e["file"]: e for e in reversed(entries)
+                        if any(e["file"].endswith("/" + name) for name in rows)}.values())
     elif arguments.slowest:
         targets = slowest(arguments.build, arguments.slowest)
         entries = [e for target in targets for e in entries if f" -o {target} " in e["command"]]

@@ -20,9 +20,9 @@ import time
 
 # name: (header, text, replacement, the problem that shows it). The text must occur exactly once.
 MUTATIONS = {
-    "swapped_direction": ("kernel/event/side_follower.hpp",
-                          "side > R(0) ? args.falling[j / 32] : side < R(0) ? args.rising[j / 32]",
-                          "side > R(0) ? args.rising[j / 32] : side < R(0) ? args.falling[j / 32]",
+    "swapped_direction": ("kernel/event/locator.hpp",
+                          "sides.args.falling)) | (~above & masks::from_bits(sides.args.rising))",
+                          "sides.args.rising)) | (~above & masks::from_bits(sides.args.falling))",
                           "bouncing_ball"),
     "unseen_direction": ("kernel/event/locator.hpp", "(above & masks::from_bits(sides.args.falling))",
                          "(above & masks::from_bits(sides.args.rising))", "bouncing_ball"),
