@@ -62,9 +62,16 @@ def test_the_interpreter_runs_meanwhile(oscillator):
 
 
 def test_an_interrupt_ends_a_run_with_what_is_done(oscillator):
-    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    begun = threading.Event()
+
+    def interrupt():
+        begun.wait(60)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Thread(target=interrupt).start()
     with pytest.raises(my.Interrupted) as raised:
-        my.solve(oscillator, {"w": np.linspace(1, 2, 20_000)}, start={"x": 1, "v": 0}, time=(0, 10_000))
+        my.solve(oscillator, {"w": np.linspace(1, 2, 20_000)}, start={"x": 1, "v": 0}, time=(0, 10_000),
+                 progress=lambda done, total: begun.set() if done else None)
     run = raised.value.run
     assert isinstance(raised.value, KeyboardInterrupt)
     assert 0 < run.done < 20_000 and run.report.by_status["not_started"] == 20_000 - run.done
