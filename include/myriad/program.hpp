@@ -12,7 +12,7 @@
 
 #include "myriad/host/model/numbering.hpp"
 #include "myriad/kernel/core/abi.hpp"
-#include "myriad/kernel/methods/dense.hpp"
+#include "myriad/methods.hpp"
 #include "myriad/study/chunk_solver.hpp"
 #include "myriad/study/component_names.hpp"
 #include "myriad/study/layout.hpp"
@@ -43,7 +43,8 @@ const std::vector<program_model>& registered_models();
 
 /// What `add_model` compares.
 inline constexpr std::size_t sizes_of_shared_types =
-    sizeof(program_model) + 256 * (sizeof(options) + 256 * (sizeof(studies::study_plan) + 256 * sizeof(report_of<double>)));
+    sizeof(program_model) +
+    256 * (sizeof(options) + 256 * (sizeof(studies::study_plan) + 256 * sizeof(report_of<double>)));
 
 /// A type as users write it: without the library's namespaces.
 std::string plain_name(std::string_view type);
@@ -68,10 +69,10 @@ bool register_model() {
 /// Makes a model and the methods that MYRIAD_INSTANTIATE has compiled for it known to the program:
 /// `MYRIAD_REGISTER_MODEL(duffing, myriad::cash_karp, myriad::tsitouras_5)`. It stands at namespace scope, in a file
 /// of host code, which is none of the model files. One such line for each model.
-#define MYRIAD_REGISTER_MODEL(Model, ...)                                              \
+#define MYRIAD_REGISTER_MODEL(Model, ...)                                               \
     [[maybe_unused]] static const bool MYRIAD_NAME_WITH_LINE(myriad_model_, __LINE__) = \
         myriad::programs::register_model<Model, double, __VA_ARGS__>();
 /// The same in single precision, for what MYRIAD_INSTANTIATE_FLOAT has compiled.
-#define MYRIAD_REGISTER_MODEL_FLOAT(Model, ...)                                              \
+#define MYRIAD_REGISTER_MODEL_FLOAT(Model, ...)                                               \
     [[maybe_unused]] static const bool MYRIAD_NAME_WITH_LINE(myriad_float_model_, __LINE__) = \
         myriad::programs::register_model<Model, float, __VA_ARGS__>();

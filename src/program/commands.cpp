@@ -113,9 +113,9 @@ const program_model& find_model(const study_file::model_choice& wanted) {
     if (model == nullptr) {
         std::vector<std::string> names;
         for (const program_model& m : registered_models()) names.push_back(plain_name(m.names.model()));
-        throw wrong_at(wanted.model_place,
-                       message("model: this program has no model \"", wanted.model, '"',
-                               names.empty() ? ": name its header, header = \"model.hpp\"" : suggestion(wanted.model, names)));
+        throw wrong_at(wanted.model_place, message("model: this program has no model \"", wanted.model, '"',
+                                                   names.empty() ? ": name its header, header = \"model.hpp\""
+                                                                 : suggestion(wanted.model, names)));
     }
     return *model;
 }
@@ -150,10 +150,10 @@ void compile_model(const study_file::model_choice& wanted, const model_source& s
     const std::vector<std::string> structs = structs_of(source.text);
     const std::string last = name.substr(name.rfind(':') == std::string::npos ? 0 : name.rfind(':') + 1);
     if (wanted.model == name && std::find(structs.begin(), structs.end(), last) == structs.end())
-        throw wrong_at(wanted.model_place, message("model: ", source.name, " defines no \"", wanted.model, '"',
-                                                   suggestion(last, structs)));
-    constexpr const char* methods[] = {"runge_kutta_4", "cash_karp",  "dormand_prince_5", "tsitouras_5",
-                                       "verner_7",      "dormand_prince_8", "rosenbrock_23", "rodas_5p"};
+        throw wrong_at(wanted.model_place,
+                       message("model: ", source.name, " defines no \"", wanted.model, '"', suggestion(last, structs)));
+    constexpr const char* methods[] = {"runge_kutta_4", "cash_karp",        "dormand_prince_5", "tsitouras_5",
+                                       "verner_7",      "dormand_prince_8", "rosenbrock_23",    "rodas_5p"};
     const std::string method = plain_name(wanted.method);
     const bool is_plain = method.find_first_of("<:") == std::string::npos;
     if (is_plain && std::find(std::begin(methods), std::end(methods), method) == std::end(methods) &&
@@ -183,9 +183,9 @@ void show_model(const program_model& model) {
     using enum studies::component_kind;
     std::cout << plain_name(model.names.model()) << '\n';
     constexpr std::pair<studies::component_kind, const char*> kinds[] = {
-        {state, "states"},           {parameter, "parameters"},
-        {shared, "shared"},          {shared_integer, "shared integers"},
-        {accessory, "accessories"},  {integer_accessory, "integer accessories"}};
+        {state, "states"},          {parameter, "parameters"},
+        {shared, "shared"},         {shared_integer, "shared integers"},
+        {accessory, "accessories"}, {integer_accessory, "integer accessories"}};
     for (const auto& [kind, what] : kinds) {
         std::vector<std::string> names;
         for (const studies::component& c : model.names.all())
@@ -328,8 +328,9 @@ int resume(const run_request& asked) {
     const std::string folder = there.folder();
     const std::string path = kept_study(folder);
     if (!fs::is_regular_file(path))
-        throw input_error(message("the folder ", folder, " was not made by `myriad run`: start the program that made it "
-                                                         "again, which goes on"));
+        throw input_error(message("the folder ", folder,
+                                  " was not made by `myriad run`: start the program that made it "
+                                  "again, which goes on"));
     const std::string text = read_file(path);
     study_file file(path, text);
     study_file::model_choice wanted = file.model();
@@ -478,7 +479,8 @@ int parse_and_run(int argc, const char* const* argv) {
     list_command->callback([&] { status = list(files, asked.model); });
 
     const auto add_run_options = [&](CLI::App* command) {
-        command->add_option("--device", asked.devices, "Where to compute, instead of what the file says; may be repeated")
+        command
+            ->add_option("--device", asked.devices, "Where to compute, instead of what the file says; may be repeated")
             ->type_name("NAME");
         command->add_option("--export", asked.exported, "When all is done, write a file: .nc or .csv")
             ->type_name("FILE");
@@ -518,8 +520,7 @@ int parse_and_run(int argc, const char* const* argv) {
         ->type_name("NAME");
     plot_command->add_option("--over", picture.over, "One axis, or two with a comma (default: the longest ones)")
         ->type_name("AXES");
-    plot_command
-        ->add_option("--at", picture.at, "For another axis the value nearest to this; may be repeated")
+    plot_command->add_option("--at", picture.at, "For another axis the value nearest to this; may be repeated")
         ->type_name("AXIS=VALUE");
     plot_command
         ->add_option("--value", picture.value,

@@ -65,8 +65,9 @@ std::string find_compiler() {
     }
     for (const char* name : {"g++", "clang++"})
         if (const std::string found = find_program(name); !found.empty()) return found;
-    throw error("there is no C++ compiler to compile the model with: install g++ 12 or clang++ 14 or newer, or name "
-                "one in the environment variable MYRIAD_CXX");
+    throw error(
+        "there is no C++ compiler to compile the model with: install g++ 12 or clang++ 14 or newer, or name "
+        "one in the environment variable MYRIAD_CXX");
 }
 bool is_clang(const std::string& compiler) { return fs::path(compiler).filename().string().find("clang") == 0; }
 
@@ -177,9 +178,8 @@ std::string kernel_file(const compile_request& wanted) {
 constexpr const char* register_symbol = "myriad_register_compiled_model";
 std::string host_file(const compile_request& wanted) {
     const char* const real = wanted.real == studies::element::f32 ? "float" : "double";
-    return message("#include <myriad/methods.hpp>\n#include <myriad/program.hpp>\n", wanted.source.text,
-                   types_of(wanted), "extern \"C\" void ", register_symbol,
-                   "() { myriad::programs::register_model<myriad_compiled::model, ", real,
+    return message("#include <myriad/program.hpp>\n", wanted.source.text, types_of(wanted), "extern \"C\" void ",
+                   register_symbol, "() { myriad::programs::register_model<myriad_compiled::model, ", real,
                    ", myriad_compiled::method>(); }\n");
 }
 
@@ -348,8 +348,9 @@ void compile_and_load(const compile_request& wanted, const std::string& flags,
     if (!usable) {
         own.emplace(fs::temp_directory_path(problem));
         folder = own->path;
-        require(!folder.empty(), "neither the cache nor a temporary folder can be written: set MYRIAD_CACHE_DIR to a "
-                                 "folder that can");
+        require(!folder.empty(),
+                "neither the cache nor a temporary folder can be written: set MYRIAD_CACHE_DIR to a "
+                "folder that can");
     }
     const fs::path path = folder / file.filename();
     const key_lock lock(fs::path(path).replace_extension(".lock"));

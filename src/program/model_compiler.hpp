@@ -19,8 +19,8 @@ struct compile_request {
 };
 
 /// Registers the model with that method. `flags` is the file that says where the library's headers are: a folder, from
-/// its own or absolute, or an option of the compiler in each line. `tell` is called with what takes time. Throws `error`
-/// with the first messages of the compiler if it refuses the model, and if there is no compiler.
+/// its own or absolute, or an option of the compiler in each line. `tell` is called with what takes time. Throws
+/// `error` with the first messages of the compiler if it refuses the model, and if there is no compiler.
 ///
 /// Shared objects are kept in the folder $MYRIAD_CACHE_DIR, or myriad in the user's folder of caches, under a name that
 /// depends on the model, the library, the compiler and the CPU; where that cannot be written, for this process alone.

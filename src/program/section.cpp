@@ -22,8 +22,8 @@ std::size_t distance(std::string_view a, std::string_view b) {
                 least[i][j] = i + j;
                 continue;
             }
-            least[i][j] = std::min({least[i - 1][j] + 1, least[i][j - 1] + 1,
-                                    least[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            least[i][j] = std::min(
+                {least[i - 1][j] + 1, least[i][j - 1] + 1, least[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
                 least[i][j] = std::min(least[i][j], least[i - 2][j - 2] + 1);
         }
@@ -105,8 +105,9 @@ double number_in(const toml_value& v, std::string_view key) {
     if (const auto* const n = v.as<std::int64_t>()) return static_cast<double>(*n);
     if (const auto* const text = v.as<std::string>()) {
         if (const std::optional<double> n = multiple_of_pi(*text)) return *n;
-        throw wrong(v, key, message("must be a number, and is the string ", quoted(*text),
-                                    ": write 1.5, or a multiple of pi as \"2 pi\""));
+        throw wrong(v, key,
+                    message("must be a number, and is the string ", quoted(*text),
+                            ": write 1.5, or a multiple of pi as \"2 pi\""));
     }
     throw wrong(v, key, message("must be a number, and is ", v.kind()));
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <map>
 #include <utility>
 
 #include "myriad/host/backend/device.hpp"
@@ -78,9 +77,8 @@ axis_values axis_in(const toml_value& v, const std::string& key) {
 /// Whether `{name = ...}` are the components of a kind, and not the values of a component of that name.
 bool is_kind(const toml_value::entry& e) {
     const auto* const table = e.value.as<toml_value::table>();
-    if (table == nullptr || std::any_of(table->begin(), table->end(), [](const auto& inner) {
-            return maker_of(inner.key) != nullptr;
-        }))
+    if (table == nullptr ||
+        std::any_of(table->begin(), table->end(), [](const auto& inner) { return maker_of(inner.key) != nullptr; }))
         return false;
     constexpr component_kind kinds[] = {state, parameter, accessory, integer_accessory, shared, shared_integer};
     return std::any_of(std::begin(kinds), std::end(kinds), [&](component_kind k) { return name_of(k) == e.key; });
@@ -119,7 +117,7 @@ void with_component(const component_names& all, const std::string& name, const t
         if (text.find("is no component of") == std::string::npos) throw;
         const std::string meant = suggestion(name, names_of(all, kinds));
         if (meant.find("did you mean") == std::string::npos) throw;
-        throw input_error(text + meant.substr(1));
+        throw input_error(text + meant);
     }
 }
 
@@ -187,7 +185,8 @@ void study_file::describe(any_study& study, const program_model& model, const st
     read_options(study, model);
     root_.with("keep", [&](const toml_value&, const std::string&) { read_kept(study.keep); });
     read_reductions(study);
-    read_texts("units", [&](const std::string& component, std::string unit) { study.unit(component, std::move(unit)); });
+    read_texts("units",
+               [&](const std::string& component, std::string unit) { study.unit(component, std::move(unit)); });
     read_texts("notes", [&](const std::string& key, std::string text) { study.note(key, std::move(text)); });
     root_.with("title", [&](const toml_value& v, const std::string& name) { study.title(text_in(v, name)); });
     root_.with("seed", [&](const toml_value& v, const std::string& name) {
@@ -197,7 +196,8 @@ void study_file::describe(any_study& study, const program_model& model, const st
     });
     root_.with("chunk", [&](const toml_value& v, const std::string& name) {
         study.chunk = integer_in(v, name);
-        if (study.chunk < 0) throw wrong(v, name, message("is ", study.chunk, " (must be positive, or 0 for a choice)"));
+        if (study.chunk < 0)
+            throw wrong(v, name, message("is ", study.chunk, " (must be positive, or 0 for a choice)"));
     });
     root_.with("devices", [&](const toml_value& v, const std::string& key) {
         for (const toml_value* const item : items_in(v)) {
@@ -248,18 +248,19 @@ void study_file::read_dimension(any_study& study, const toml_value& table, const
         with_component(*names_, name, *places[0].first, places[0].second, settable, [&] { study.axis(name, all); });
         return;
     }
-    // The place of the one that does not fit, or cannot be paired, or is no component.
-    std::size_t at = 0;
-    for (std::size_t i = paired.size(); i-- > 0;) {
-        const axis_values& all = paired[i].second;
-        if (all.random() || all.size() != paired[0].second.size()) at = i;
-    }
+    std::vector<std::string> full_names;
     for (std::size_t i = 0; i < paired.size(); ++i) {
-        const auto& [name, all] = paired[i];
+        const std::string& name = paired[i].first;
         with_component(*names_, name, *places[i].first, places[i].second, settable,
-                       [&] { static_cast<void>(names_->find(name, settable)); });
+                       [&] { full_names.push_back(names_->find(name, settable).full_name()); });
     }
-    placed(*places[at].first, places[at].second, [&] { study.zip(paired); });
+    try {
+        study.zip(paired);
+    } catch (const error& e) {
+        std::size_t i = paired.size() - 1;  // the last one that the message is about
+        while (i > 0 && std::string_view(e.what()).find(full_names[i] + ' ') == std::string_view::npos) --i;
+        throw wrong(*places[i].first, places[i].second, e.what());
+    }
 }
 
 void study_file::read_values(any_study& study) {
@@ -323,8 +324,9 @@ void study_file::read_events(const toml_value& v, const std::string& path, optio
     to.events.assign(model.events.size(), event_options{});
     if (const auto* const array = v.as<toml_value::array>()) {
         if (array->size() != model.events.size())
-            throw wrong(v, path, message("has ", array->size(), " events, and the model has ", model.events.size(),
-                                         ": give one table for each, or tables with their names"));
+            throw wrong(v, path,
+                        message("has ", array->size(), " events, and the model has ", model.events.size(),
+                                ": give one table for each, or tables with their names"));
         for (std::size_t e = 0; e < array->size(); ++e) to.events[e] = event_in((*array)[e], path);
         return;
     }
@@ -333,7 +335,8 @@ void study_file::read_events(const toml_value& v, const std::string& path, optio
         const std::string key = checked.full(e.key);
         const auto found = std::find(model.events.begin(), model.events.end(), e.key);
         if (found == model.events.end())
-            throw wrong(e.value, key, message("the model has no event \"", e.key, '"', suggestion(e.key, model.events)));
+            throw wrong(e.value, key,
+                        message("the model has no event \"", e.key, '"', suggestion(e.key, model.events)));
         to.events[static_cast<std::size_t>(found - model.events.begin())] = event_in(e.value, key);
     }
 }
@@ -341,9 +344,8 @@ void study_file::read_events(const toml_value& v, const std::string& path, optio
 void study_file::read_record(section& from, record_options& to, const component_names& names) {
     from.read("from_phase", to.from_phase);
     const auto read = [&](std::string_view key, component_list& list, component_kind kind) {
-        from.with(key, [&](const toml_value& v, const std::string& name) {
-            list = components_in(v, name, names, kind);
-        });
+        from.with(key,
+                  [&](const toml_value& v, const std::string& name) { list = components_in(v, name, names, kind); });
     };
     read("states", to.states, state);
     read("accessories", to.accessories, accessory);
@@ -352,9 +354,8 @@ void study_file::read_record(section& from, record_options& to, const component_
 }
 
 void study_file::read_samples(section& from, sample_options& to, const component_names& names) {
-    from.with("states", [&](const toml_value& v, const std::string& name) {
-        to.states = components_in(v, name, names, state);
-    });
+    from.with("states",
+              [&](const toml_value& v, const std::string& name) { to.states = components_in(v, name, names, state); });
     from.read("capacity", to.capacity);
     from.read("evenly", to.evenly);
     from.with("times", [&](const toml_value& v, const std::string& name) { to.times = numbers_in(v, name); });
@@ -376,14 +377,11 @@ void study_file::read_options(any_study& study, const program_model& model) {
         from.read("growth_limit", o.growth_limit);
         from.read("shrink_limit", o.shrink_limit);
         from.read("max_steps", o.max_steps);
-        from.read("phase_time", o.phase_time,
-                  {{"restart", phase_time::restart}, {"carry_on", phase_time::carry_on}});
+        from.read("phase_time", o.phase_time, {{"restart", phase_time::restart}, {"carry_on", phase_time::carry_on}});
         from.read("phase_length", o.phase_length);
-        from.read("phase_step", o.phase_step,
-                  {{"restart", phase_step::restart}, {"carry_on", phase_step::carry_on}});
-        from.with("events", [&](const toml_value& events, const std::string& key) {
-            read_events(events, key, o, model);
-        });
+        from.read("phase_step", o.phase_step, {{"restart", phase_step::restart}, {"carry_on", phase_step::carry_on}});
+        from.with("events",
+                  [&](const toml_value& events, const std::string& key) { read_events(events, key, o, model); });
         from.read("sub_samples", o.sub_samples);
         from.read("accumulation_limit", o.accumulation_limit);
         from.with("record", [&](const toml_value& table, const std::string& key) {
@@ -418,7 +416,15 @@ void study_file::read_options(any_study& study, const program_model& model) {
 void study_file::read_kept(kept_values& keep) {
     const toml_value& v = *root_.find("keep");
     section from(v, "keep");
-    from.with("end", [&](const toml_value& list, const std::string& name) { keep.end = texts_in(list, name); });
+    from.with("end", [&](const toml_value& list, const std::string& key) {
+        keep.end = texts_in(list, key);
+        static constexpr auto kinds = {state, parameter, accessory, integer_accessory};
+        for (const toml_value* const item : items_in(list)) {
+            const std::string& name = text_in(*item, key);
+            if (name != "t")
+                with_component(*names_, name, *item, key, kinds, [&] { static_cast<void>(names_->find(name, kinds)); });
+        }
+    });
     from.read("records", keep.records);
     from.read("samples", keep.samples);
     from.read("random", keep.random);
@@ -471,54 +477,52 @@ void study_file::read_texts(std::string_view key, const std::function<void(const
 
 namespace {
 
-/// All keys of a table and of those in it, but for components in tables of their kind.
-void collect(const toml_value& v, std::multimap<std::string_view, text_place>& keys) {
-    if (const auto* const table = v.as<toml_value::table>()) {
-        for (const toml_value::entry& e : *table) {
-            keys.emplace(e.key, e.value.place);
-            collect(e.value, keys);
-        }
-    } else if (const auto* const array = v.as<toml_value::array>()) {
-        for (const toml_value& item : *array) collect(item, keys);
+/// The entry of a table; null if there is none, or if the value is no table.
+const toml_value* entry_of(const toml_value& v, std::string_view key) {
+    const auto* const table = v.as<toml_value::table>();
+    if (table == nullptr) return nullptr;
+    for (const toml_value::entry& e : *table)
+        if (e.key == key) return &e.value;
+    return nullptr;
+}
+
+/// As far as the words of "options.record.states" are keys, each of a table in the last one: the last of them.
+const toml_value* follow(const toml_value& from, std::string_view path) {
+    const toml_value* found = nullptr;
+    for (const toml_value* at = &from; at != nullptr && !path.empty();) {
+        const std::size_t end = std::min(path.find('.'), path.size());
+        at = entry_of(*at, path.substr(0, end));
+        if (at != nullptr) found = at;
+        path.remove_prefix(std::min(end + 1, path.size()));
     }
+    return found;
 }
 
 }  // namespace
 
 input_error study_file::placed_error(const error& found) const {
     const std::string text = found.what();
-    std::multimap<std::string_view, text_place> keys, components;
-    text_place place{path_, 0, 0}, store = place;
-    for (const toml_value::entry& e : *document_.as<toml_value::table>()) {
-        if (e.key == "store") store = e.value.place;
-        if (e.key == "axes" || e.key == "set" || e.key == "units" || e.key == "notes") {
-            collect(e.value, components);
-        } else if (e.key != "model" && e.key != "store") {
-            keys.emplace(e.key, e.value.place);
-            collect(e.value, keys);
-        }
-    }
-    // The first word of the message that is a key. Words that are keys by accident come later than what it is about.
+    const auto is_part = [&](std::size_t i) {
+        return std::isalnum(static_cast<unsigned char>(text[i])) != 0 || text[i] == '_' || text[i] == '.';
+    };
     constexpr std::string_view differs = "differs in";
     const bool of_store = text.find(differs) != std::string::npos;
-    std::size_t at = of_store ? text.find(differs) + differs.size() : 0;
-    while (at < text.size() && place.line == 0) {
-        const auto is_part = [&](std::size_t i) {
-            return std::isalnum(static_cast<unsigned char>(text[i])) != 0 || text[i] == '_';
-        };
+    const bool is_of_folder =
+        !of_store && (text.starts_with("the folder") || text.find("the disk of") != std::string::npos);
+    const toml_value* key = is_of_folder ? entry_of(document_, "store") : nullptr;
+    // The first word of the message that is a key. Words that are keys by accident come later than what it is about.
+    for (std::size_t at = of_store ? text.find(differs) : 0; at < text.size() && key == nullptr && !is_of_folder;) {
         std::size_t end = at;
         while (end < text.size() && is_part(end)) ++end;
-        const std::string_view word(text.data() + at, end - at);
-        const bool is_component = at > 0 && text[at - 1] == '.';
-        if (const auto key = keys.find(word); key != keys.end()) {
-            place = key->second;
-        } else if (const auto c = components.find(word); is_component && c != components.end()) {
-            place = c->second;
+        const std::string_view path(text.data() + at, end - at);
+        for (const std::string_view table : {"options", "keep", ""}) {
+            const toml_value* const from = table.empty() ? &document_ : entry_of(document_, table);
+            if (key == nullptr && from != nullptr && path != "model" && path != "store") key = follow(*from, path);
         }
         at = end + 1;
     }
-    if (place.line == 0 && (of_store || text.find("chunks") != std::string::npos)) place = store;
-    return input_error(position(place) + text);
+    if (key == nullptr && of_store) key = entry_of(document_, "store");
+    return input_error(position(key != nullptr ? key->place : text_place{path_, 0, 0}) + text);
 }
 
 }  // namespace myriad::programs

@@ -38,8 +38,8 @@ public:
     const std::string& folder() const { return folder_; }
     const studies::store_options& store_options() const { return store_options_; }
 
-    /// Sets all that the file says, but for devices if others are given. Throws `input_error` for what is wrong, unknown
-    /// keys too.
+    /// Sets all that the file says, but for devices if others are given. Throws `input_error` for what is wrong,
+    /// unknown keys too.
     void describe(any_study& study, const program_model& model, const std::vector<device>& instead = {});
     /// An error that the study has found, with the place of the key that it is about, as far as that can be told.
     input_error placed_error(const error& found) const;

@@ -249,8 +249,7 @@ study_result any_study::run() {
     } once{stopped_};
     planned_run planned = plan();
     auto& settings = planned.settings;
-    const auto keeper =
-        folder_.empty() ? studies::keep_in_memory(planned.plan.content) : open_store(planned);
+    const auto keeper = folder_.empty() ? studies::keep_in_memory(planned.plan.content) : open_store(planned);
     std::unique_ptr<studies::stop_signals> signals;
     if (stop_on_signals) signals = std::make_unique<studies::stop_signals>();
     settings.stops = [&] { return stopped_ || (signals != nullptr && signals->came()); };

@@ -141,9 +141,9 @@ public:
     /// error.
     std::function<void(const std::string&)> warning;
 
-    /// What `run` does first. Throws `error` if something is wrong with the study. With a folder, makes it or looks at the
-    /// one that is there: throws `error` if it holds another study or something else, and if the disk has too little
-    /// free space.
+    /// What `run` does first. Throws `error` if something is wrong with the study. With a folder, makes it or looks at
+    /// the one that is there: throws `error` if it holds another study or something else, and if the disk has too
+    /// little free space.
     void check() const;
     /// Computes what is not there yet. Throws `error` if something is wrong with the study, if the store is of another
     /// one or fails, or if all devices fail; what is in the store stays there.
