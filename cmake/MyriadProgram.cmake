@@ -24,8 +24,8 @@ set_target_properties(myriad_command PROPERTIES OUTPUT_NAME myriad ENABLE_EXPORT
                       RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")
 target_include_directories(myriad_command PRIVATE "${PROJECT_SOURCE_DIR}/src")
 # Compiled models call what the program itself does not.
-target_link_options(myriad_command PRIVATE "LINKER:--whole-archive" "$<TARGET_FILE:myriad>" "$<TARGET_FILE:myriad_study>"
-                    "LINKER:--no-whole-archive")
+target_link_options(myriad_command PRIVATE "LINKER:--whole-archive" "$<TARGET_FILE:myriad>"
+                    "$<TARGET_FILE:myriad_study>" "LINKER:--no-whole-archive")
 target_link_libraries(myriad_command PRIVATE myriad_program myriad_openmp)
 
 # myriad_write_model_flags(<file> <folder>...) writes where the headers of the library, of Eigen and of xsimd are. A

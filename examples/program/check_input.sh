@@ -37,7 +37,8 @@ bad '^bad\.toml:11:' -e 's/^\[set\]/[set/'
 bad '^bad\.toml:9:1: axes\.k: paired axes have different lengths' \
     -e 's/^\[axes\]/[[axes]]/' -e '/^k = /{h;d}' -e '/^x = /{G}'
 bad '^bad\.toml:10:1: axes\.k: parameter\.k is given twice' -e '/^k = /{p;s/^/[[axes]]\n/}' -e 's/^\[axes\]/[[axes]]/'
-bad '^bad\.toml:18:1: reduce\.minimum: there is no such key: did you mean "minimum_of"\?' -e '17i [[reduce]]\nminimum = "x"'
+bad '^bad\.toml:18:1: reduce\.minimum: there is no such key: did you mean "minimum_of"\?' \
+    -e '17i [[reduce]]\nminimum = "x"'
 bad '^bad\.toml:4:1: the .* chunks .*(free|disk)' -e 's/0\.3, 64/0.3, 1e11/' 
 bad '^bad\.toml:4:1: .*is not empty and holds no study' -e 's/"results"/"."/'
 sed 's/^k = .*/k = "2 pi"/' good.toml >bad.toml

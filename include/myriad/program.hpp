@@ -22,16 +22,16 @@ namespace myriad::programs::inline MYRIAD_ABI {
 
 /// A method for which a model was compiled, and its real type.
 struct program_method {
-    std::string name;  ///< as in C++, without `myriad::`: "dense<cash_karp>"
-    studies::element real = studies::element::f64;
-    std::function<std::shared_ptr<const studies::any_model>()> make;
+    std::string name;                               ///< as in C++, without `myriad::`: "dense<cash_karp>"
+    studies::element real = studies::element::f64;  ///< f64 or f32
+    std::function<std::shared_ptr<const studies::any_model>()> make;  ///< what a study needs of the model
 };
 
 /// A model that the program knows.
 struct program_model {
-    studies::component_names names;
-    std::vector<std::string> events;  ///< names of its events, empty where it has no enumerator for one
-    std::vector<program_method> methods;
+    studies::component_names names;       ///< of the model and its components
+    std::vector<std::string> events;      ///< names of its events, empty where it has no enumerator for one
+    std::vector<program_method> methods;  ///< for which it was compiled
 };
 
 /// Adds a model, or methods to one of the same name. `sizes` are those of the types that the program shares with the
@@ -49,6 +49,7 @@ inline constexpr std::size_t sizes_of_shared_types =
 /// A type as users write it: without the library's namespaces.
 std::string plain_name(std::string_view type);
 
+/// Adds a model with these methods: what the macros below call.
 template <class Model, class R, class... Methods>
 bool register_model() {
     program_model made{.names = studies::names_of_components<Model>(), .events = {}, .methods = {}};

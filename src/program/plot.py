@@ -98,7 +98,7 @@ def choose_variable(data, wanted):
     """The variable to draw: the first result that has an axis of the grid, or the one that is named."""
     coordinates = {name for name in data.names() if data.dims(name) == [name]}
     usable = [name for name in data.names()
-              if name not in coordinates and any(axis in coordinates or axis in data.names() for axis in data.dims(name))]
+              if name not in coordinates and any(axis in data.names() for axis in data.dims(name))]
     if wanted is not None:
         if wanted not in data.names():
             raise figures.PlotError(f"there is no variable {wanted}: there are {', '.join(usable)}")
