@@ -17,6 +17,7 @@ std::string_view toml_value::kind() const {
 }
 
 std::string position(const text_place& place) {
+    if (place.file.empty()) return "";
     if (place.line == 0) return message(place.file, ": ");
     return message(place.file, ':', place.line, ':', place.column, ": ");
 }
