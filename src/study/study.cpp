@@ -212,28 +212,48 @@ studies::study_request any_study::request() const {
             .title = title_};
 }
 
+/// What a run begins with.
+struct any_study::planned_run {
+    studies::run_settings settings;
+    studies::study_plan plan;
+};
+
+any_study::planned_run any_study::plan() const {
+    studies::run_settings settings{.devices = devices, .progress = progress, .warning = warning};
+    if (settings.devices.empty()) settings.devices.push_back(device::best());
+    for (const device& d : settings.devices) model_->check(d, options);
+    studies::study_plan made = studies::plan_study(request());
+    const chunk_sizes sizes = choose_sizes(*model_, made, folder_.empty(), settings.devices);
+    made.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
+    settings.piece = sizes.piece;
+    check_memory(made, made.content, settings.devices, "make chunk smaller, or keep less");
+    return {std::move(settings), std::move(made)};
+}
+
+std::unique_ptr<studies::result_keeper> any_study::open_store(const planned_run& planned) const {
+    auto keeper = studies::keep_in_store(folder_, planned.plan.content, store_options_);
+    check_memory(planned.plan, keeper->content(), planned.settings.devices,
+                 "use fewer devices, or start the study in a new folder with a smaller chunk");
+    return keeper;
+}
+
+void any_study::check() const {
+    const planned_run planned = plan();
+    if (!folder_.empty()) open_store(planned);
+}
+
 study_result any_study::run() {
     const struct stop_once {  // also if it is asked for before the run
         std::atomic<bool>& stopped;
         ~stop_once() { stopped = false; }
     } once{stopped_};
-    studies::run_settings settings{.devices = devices, .progress = progress, .warning = warning};
-    if (settings.devices.empty()) settings.devices.push_back(device::best());
-    for (const device& d : settings.devices) model_->check(d, options);
-    studies::study_plan plan = studies::plan_study(request());
-    const chunk_sizes sizes = choose_sizes(*model_, plan, folder_.empty(), settings.devices);
-    plan.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
-    settings.piece = sizes.piece;
-    check_memory(plan, plan.content, settings.devices, "make chunk smaller, or keep less");
-    const auto keeper = folder_.empty() ? studies::keep_in_memory(plan.content)
-                                        : studies::keep_in_store(folder_, plan.content, store_options_);
-    check_memory(plan, keeper->content(), settings.devices,
-                 "use fewer devices, or start the study in a new folder with a smaller chunk");
-
+    planned_run planned = plan();
+    auto& settings = planned.settings;
+    const auto keeper = folder_.empty() ? studies::keep_in_memory(planned.plan.content) : open_store(planned);
     std::unique_ptr<studies::stop_signals> signals;
     if (stop_on_signals) signals = std::make_unique<studies::stop_signals>();
     settings.stops = [&] { return stopped_ || (signals != nullptr && signals->came()); };
-    studies::run_outcome outcome = studies::run_study(*model_, plan, *keeper, settings);
+    studies::run_outcome outcome = studies::run_study(*model_, planned.plan, *keeper, settings);
 
     study_result made(keeper->kept());
     made.complete = outcome.complete;

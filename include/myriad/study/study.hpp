@@ -31,6 +31,7 @@ namespace myriad {
 
 namespace studies::inline MYRIAD_ABI {
 class any_model;
+class result_keeper;
 }  // namespace studies::inline MYRIAD_ABI
 
 /// The results of a study, in memory or in its store.
@@ -140,6 +141,10 @@ public:
     /// error.
     std::function<void(const std::string&)> warning;
 
+    /// What `run` does first. Throws `error` if something is wrong with the study. With a folder, makes it or looks at
+    /// the one that is there: throws `error` if it holds another study or something else, and if the disk has too
+    /// little free space.
+    void check() const;
     /// Computes what is not there yet. Throws `error` if something is wrong with the study, if the store is of another
     /// one or fails, or if all devices fail; what is in the store stays there.
     study_result run();
@@ -148,7 +153,11 @@ public:
     void stop() { stopped_ = true; }
 
 private:
+    struct planned_run;
+
     studies::study_request request() const;
+    planned_run plan() const;
+    std::unique_ptr<studies::result_keeper> open_store(const planned_run& planned) const;
 
     std::shared_ptr<const studies::any_model> model_;
     axes axes_;
