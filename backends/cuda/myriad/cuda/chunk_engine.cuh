@@ -21,14 +21,17 @@
 
 namespace myriad::cuda {
 
-template <class Model, class Method, class R>
-class chunk_engine final : public engine<Model, R> {
-    using arguments = kernel_arguments<Model, R>;
+/// The kernels are those of a class like `compiled_kernel`.
+template <class Kernel>
+class chunk_engine final : public engine_for<typename Kernel::arguments> {
+    using arguments = typename Kernel::arguments;
+    using R = typename Kernel::real;
 
 public:
-    explicit chunk_engine(const engine_options& options)
-        : device_(options.device), while_starting_(std::in_place, options.device), launcher_(options.device, options),
-          scheduler_(options.schedule) {
+    explicit chunk_engine(const engine_options& options, Kernel kernel = {})
+        : device_(options.device), while_starting_(std::in_place, options.device),
+          launcher_(options.device, options, std::move(kernel)),
+          scheduler_(options.schedule, launcher_.traits().costs_differ) {
         while_starting_.reset();
     }
     ~chunk_engine() override {
@@ -43,7 +46,7 @@ public:
         const current_device here(device_);
         arguments all = host;
         const auto arrays = [&](auto&& add) { for_each_array(all, add); };
-        const auto records = [&](auto&& add) { for_each_record(all.record, add); };
+        const auto records = [&](auto&& add) { for_each_record(all, add); };
         std::size_t per_instance = scheduler_.bytes_per_instance();
         const auto add = [&](auto* array, std::int64_t components, array_access, array_kind) {
             per_instance += bytes_of(array, components);
@@ -115,7 +118,7 @@ public:
         now.size = count_;
         now.first_index = host.first_index + first_;
         now.shared = shared_on_device_;
-        walk_records(now.record, [&](auto*& array, auto* on_device, std::int64_t components, array_access, array_kind) {
+        walk_records(now, [&](auto*& array, auto* on_device, std::int64_t components, array_access, array_kind) {
             clear(on_device, components);
             array = on_device;
         });
@@ -144,7 +147,7 @@ public:
             if (access != array_access::read) add(target, source, components, kind);
         });
         row_list of_arrays = std::exchange(list, {});
-        walk_records(to.record, [&](auto*& target, auto* source, std::int64_t components, array_access,
+        walk_records(to, [&](auto*& target, auto* source, std::int64_t components, array_access,
                                     array_kind kind) { add(target, source, components, kind); });
         // Records have memory of their own, which may precede that of the arrays.
         const bool after = records_.data() > memory_.data();
@@ -189,7 +192,7 @@ public:
         MYRIAD_CUDA(cudaEventElapsedTime(&milliseconds, begun_.get(), done_.get()));
         return 1e-3 * static_cast<double>(milliseconds);
     }
-    typename engine<Model, R>::interval kernel_interval(void* clock) override {
+    any_engine::interval kernel_interval(void* clock) override {
         const current_device here(device_);
         check(cudaEventSynchronize(done_.get()), "the integration on the GPU");
         const auto seconds = [&](const event& e) {
@@ -241,7 +244,7 @@ private:
         for_each_array(host, placing(next, count_, visit));
     }
     template <class Visit>
-    void walk_records(record_arguments<Model, R>& host, Visit&& visit) {
+    void walk_records(arguments& host, Visit&& visit) {
         auto* next = static_cast<std::byte*>(records_.data());
         for_each_record(host, placing(next, count_, visit));
     }
@@ -286,7 +289,8 @@ private:
         memory.reserve(bytes, per_instance, memory_.bytes() + records_.bytes());
     }
 
-    void prepare_sample_times(sample_arguments<Model, R>& sample) {
+    template <class Sample>
+    void prepare_sample_times(Sample& sample) {
         if (sample.times == nullptr) return;
         const std::size_t bytes = static_cast<std::size_t>(sample.count) * sizeof(R);
         if (bytes > sample_times_.bytes()) wait();
@@ -296,8 +300,9 @@ private:
     }
 
     void upload_shared(const shared_parameters<R>& shared) {
-        constexpr std::size_t real = static_cast<std::size_t>(n_shared<Model>) * sizeof(R),
-                              integer = static_cast<std::size_t>(n_shared_integer<Model>) * sizeof(std::int32_t);
+        const kernel_traits& of = launcher_.traits();
+        const std::size_t real = static_cast<std::size_t>(of.n_shared) * sizeof(R),
+                          integer = static_cast<std::size_t>(of.n_shared_integer) * sizeof(std::int32_t);
         shared_.reserve(padded(real + 256 + integer, 1));
         auto* const reals = static_cast<R*>(shared_.data());
         auto* const integers =
@@ -310,9 +315,9 @@ private:
 
     int device_;
     std::optional<current_device> while_starting_;  // the members below are created on this device
-    kernel_launcher<Model, Method, R> launcher_;
+    kernel_launcher<Kernel> launcher_;
     device_memory memory_, records_, sample_times_, shared_;
-    phase_scheduler<Model, Method, R> scheduler_;
+    phase_scheduler<Kernel> scheduler_;
     stream stream_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};
     little_transfer little_;
