@@ -9,22 +9,10 @@
 
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/cost_order.cuh"
+#include "myriad/cuda/launch_traits.hpp"
 #include "myriad/host/backend/backend.hpp"
 
 namespace myriad::cuda {
-
-/// The places for which a model's kernel is compiled: the constant bank for few shared parameters, the others for many.
-constexpr bool is_compiled(shared_placement placement, int shared_bytes) {
-    return (shared_bytes <= 1024) == (placement == shared_placement::constant_bank);
-}
-
-/// What the launch of a kernel depends on besides its compiled resources.
-struct kernel_traits {
-    int n_shared, n_shared_integer;
-    int shared_bytes;    // of both
-    int max_block_size;  // as the model or the library limits it
-    bool costs_differ;   // whether instances may differ in cost
-};
 
 /// The grid of a launch, and where it goes.
 struct launch_shape {

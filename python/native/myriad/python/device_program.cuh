@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// What NVRTC compiles before a model: MYRIAD_DEVICE_PROGRAM, which makes the kernels of a model, a method and a real
+// type, found by their names.
+#pragma once
+
+#include "myriad/cuda/cost_order_kernels.cuh"
+#include "myriad/cuda/kernel.cuh"
+#include "myriad/cuda/launch_traits.hpp"
+#include "myriad/kernel/model/concepts.hpp"
+#include "myriad/methods.hpp"
+#include "myriad/model.hpp"
+#include "myriad/model/random.hpp"
+#include "myriad/model/tangent.hpp"
+#include "myriad/python/device_layout.hpp"
+#include "myriad/python/facts_of.hpp"
+
+#pragma nv_diag_suppress 1427  // offsetof in structs with bases, whose layout is plain all the same
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+template <class Model, class R, shared_placement placement>
+constexpr python::argument_layout layout_of() {
+    using all = launch_arguments<Model, R, placement>;
+    using one = kernel_arguments<Model, R>;
+    using record = record_arguments<Model, R>;
+    using sample = sample_arguments<Model, R>;
+    static_assert(__builtin_offsetof(one, shrink_limit) == __builtin_offsetof(python::any_arguments<R>, shrink_limit));
+    static_assert(__builtin_offsetof(record, time_column) ==
+                  __builtin_offsetof(python::any_record<R>, time_column));
+    static_assert(__builtin_offsetof(sample, minimum_spacing) ==
+                  __builtin_offsetof(python::any_sample<R>, minimum_spacing));
+    python::argument_layout l{};
+    l.relative_tolerance = __builtin_offsetof(one, relative_tolerance);
+    l.absolute_tolerance = __builtin_offsetof(one, absolute_tolerance);
+    l.event = __builtin_offsetof(one, event);
+    l.rising = __builtin_offsetof(one, rising);
+    l.falling = __builtin_offsetof(one, falling);
+    l.sub_samples = __builtin_offsetof(one, sub_samples);
+    l.record = __builtin_offsetof(one, record);
+    l.record_columns[0] = l.record + __builtin_offsetof(record, state_column);
+    l.record_columns[1] = l.record + __builtin_offsetof(record, accessory_column);
+    l.record_columns[2] = l.record + __builtin_offsetof(record, integer_accessory_column);
+    l.sample = __builtin_offsetof(one, sample);
+    l.sample_columns = l.sample + __builtin_offsetof(sample, column);
+    l.queue = __builtin_offsetof(all, queue);
+    if constexpr (placement == shared_placement::constant_bank) {
+        l.shared = __builtin_offsetof(all, shared);
+        l.shared_integer = __builtin_offsetof(all, shared_integer);
+    }
+    l.size = sizeof(all);
+    return l;
+}
+
+template <class Model, class Method, class R, shared_placement placement>
+inline constexpr python::device_facts device_facts_of{
+    .model = facts_of<Model, Method, R>,
+    .layout = layout_of<Model, R, placement>(),
+    .shared_placement = placement,
+    .shared_bytes = shared_parameter_bytes<Model, R>,
+    .max_block_size = max_block_size<Model>(),
+    .costs_differ = costs_differ<Model, Method>,
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+
+/// Makes the kernel of a model, a method and a real type, with the model's shared parameters in the place of that name.
+/// The arguments may not contain commas.
+#define MYRIAD_DEVICE_PROGRAM(Model, Method, R, place)                                                          \
+    static_assert(myriad::detail::check_linkage<Model, Method>());                                              \
+    static_assert(myriad::cuda::is_compiled(myriad::shared_placement::place,                                    \
+                                            myriad::detail::shared_parameter_bytes<Model, R>));                 \
+    extern "C" __device__ myriad::python::device_facts myriad_device_facts =                                    \
+        myriad::detail::device_facts_of<Model, Method, R, myriad::shared_placement::place>;                     \
+    extern "C" __global__ void __launch_bounds__(myriad::detail::max_block_size<Model>()) myriad_integrate(     \
+        const __grid_constant__                                                                                 \
+            myriad::detail::launch_arguments<Model, R, myriad::shared_placement::place> arguments) {            \
+        myriad::detail::integrate_thread<Model, Method, R, myriad::shared_placement::place>(arguments);         \
+    }
