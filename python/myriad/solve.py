@@ -7,7 +7,7 @@ import time as clock
 
 import numpy as np
 
-from . import _core, compiler, tape
+from . import _core, compiler, nvrtc, tape
 from .components import Components, name_of, unknown
 from .errors import Error, refuse_masked
 from .grid import Sweep
@@ -291,18 +291,23 @@ def _progress_function(progress):
     return show, bar.close
 
 
-def _device_name(device):
+def _device_name(device, interpreted):
+    """The name of a device as the core knows it, and why "auto" takes no GPU where there is one."""
+    device = str(device)
     if device == "auto":
-        return "cpu"
-    if str(device).startswith("cuda"):
-        raise Error(f"device {device!r} is not available: this version of the Python package has no kernels for GPUs "
-                    "yet; use \"cpu\" or \"auto\"")
+        if interpreted or _core.no_gpu() or not _core.may_use_gpus():
+            return "cpu", None
+        if nvrtc.find() is None:
+            return "cpu", "the GPU was not used, as there is no NVRTC: `pip install 'myriad[cuda]'`"
+        return "cuda:0", None
     try:
-        return _core.check_device(str(device))
+        return _core.check_device(device), None
     except Error as error:
-        if "unknown" not in str(error):  # but has a number of threads that cannot be
-            raise Error(str(error).replace("the device", f"device {device!r}")) from None
-        raise Error(f"device {device!r} is unknown: use \"auto\", \"cpu\", or \"cpu:4\" for four threads") from None
+        text = str(error)
+        if "is unknown" in text:
+            raise Error(f"device {device!r} is unknown: use \"auto\", \"cpu\", \"cpu:4\" for four threads, \"cuda\", or "
+                        "\"cuda:1\" for the second GPU") from None
+        raise Error(text.replace("the device has", f"device {device!r} has")) from None
 
 
 def _positive_infinity(value):
@@ -340,7 +345,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     invalid           "refuse" inputs that are not finite, or "mark" their instances as invalid_input
     size              number of instances, if no array gives it
     precision         "double" or "float"
-    device            "auto", "cpu", "cpu:4" (threads)
+    device            "cpu", "cpu:4" (threads), "cuda", "cuda:1" (the second GPU), or "auto", the first GPU if there is
+                      one, and NVRTC to compile for it, and the CPU otherwise
     interpreted       True runs the model without compiling it, several times slower; None does so only where there
                       is no compiler, which the report tells
     progress          True for a bar, or a function of the numbers of instances done and of all
@@ -350,7 +356,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     begin = clock.perf_counter()
     if precision not in ("double", "float"):
         raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
-    where = _device_name(device)
+    where, no_gpu = _device_name(device, interpreted)
+    on_gpu = where.startswith("cuda")
     if not hasattr(model, "source"):
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
@@ -384,7 +391,13 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     sampled = _set_samples(options, samples, components, options.phases, options.phase_length, count)
 
     why = None
-    if interpreted or (interpreted is None and compiler.known_compiler() is None):
+    if on_gpu:
+        if interpreted:
+            raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
+        names = components.names
+        kernel = nvrtc.kernel(*model.source(), written, precision, (len(names[2]), len(names[3])),
+                              int(where.partition(":")[2] or 0))
+    elif interpreted or (interpreted is None and compiler.known_compiler() is None):
         why = "as asked" if interpreted else "as there is no C++ compiler"
         if precision != "double" or control:
             raise Error(f"a model is interpreted, {why}, in double precision and with the usual control alone: leave "

@@ -181,6 +181,9 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
         .def_ro("seconds", &all::seconds)
         .def_ro("device", &all::device)
         .def_ro("instruction_set", &all::instruction_set)
+        .def_ro("kernel_seconds", &all::kernel_seconds)
+        .def_prop_ro("registers", [](const all& r) { return r.kernel.registers; })
+        .def_prop_ro("block_size", [](const all& r) { return r.kernel.block_size; })
         .def_ro("notes", &all::notes)
         .def_ro("interrupted", &all::interrupted)
         .def_prop_ro("failed", [](const all& r) { return r.failed(); })
@@ -193,6 +196,21 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
         });
     m.def("solve", &solve_from_python<R>, "library"_a, "device"_a, "ensemble"_a, "options"_a,
           "progress"_a.none() = nb::none());
+}
+
+/// What kernels are compiled for on a GPU.
+nb::dict gpu_facts(int number) {
+    std::string why_none;
+    const auto all = cuda::list_devices(why_none);
+    cuda::require_device({.device = number});
+    int shared_bytes = 0;
+    MYRIAD_CUDA(cudaDeviceGetAttribute(&shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, number));
+    const auto& one = all.at(static_cast<std::size_t>(number));
+    nb::dict facts;
+    facts["name"] = one.name;
+    facts["capability"] = one.capability;
+    facts["shared_bytes"] = shared_bytes;
+    return facts;
 }
 
 void bind_options(nb::module_& m) {
@@ -266,6 +284,10 @@ NB_MODULE(_core, m) {
         return names;
     });
     m.def("check_device", [](const std::string& name) { return device::parse(name).name(); });
+    m.def("gpu", &gpu_facts);
+    m.def("no_gpu", &device::no_gpu);
+    m.def("may_use_gpus", &host::may_use_gpus);
+    m.def("driver_version", &driver_version);
     m.def("interpreted_methods", &interpreted_methods);
     m.def("tape_operations", &tape_operations);
     m.attr("tape_limits") =
@@ -289,10 +311,14 @@ NB_MODULE(_core, m) {
     nb::class_<library>(m, "Library")
         .def(nb::init<const std::string&>())
         .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
+        .def("__init__",
+             [](library* self, const nb::bytes& image, int device) {
+                 new (self) library(std::string(image.c_str(), image.size()), device);
+             })
         .def_prop_ro("samples_trajectory", [](const library& l) { return l.facts().samples_trajectory; })
         .def_prop_ro("adaptive", [](const library& l) { return l.facts().embedded_order > 0; })
         .def_prop_ro("instruction_set", [](const library& l) {
-            return std::string(host::name_of(static_cast<openmp::instruction_set>(l.facts().instruction_set)));
+            return std::string(host::name_of(static_cast<openmp::instruction_set>(l.cpu().instruction_set)));
         });
     bind_options(m);
     bind_precision<double>(m, "Ensemble64", "Report64");

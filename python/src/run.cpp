@@ -22,21 +22,27 @@ library::library(const std::string& path) {
     require(handle != nullptr, "the compiled model could not be loaded: ", handle != nullptr ? "" : dlerror());
     const auto function = reinterpret_cast<kernel_library_function>(dlsym(handle, kernel_library_symbol));
     require(function != nullptr, path, " holds no compiled model");
-    facts_ = *function();
-    require(facts_.interface_version == interface_version, path, " was compiled for another version of Myriad");
-    const auto set = static_cast<openmp::instruction_set>(facts_.instruction_set);
+    cpu_ = *function();
+    require(cpu_.model.interface_version == interface_version, path, " was compiled for another version of Myriad");
+    const auto set = static_cast<openmp::instruction_set>(cpu_.instruction_set);
     require(host::cpu_has(set), "the model was compiled for ", host::name_of(set), ", which this CPU lacks");
 }
 
 library::library(const std::string& method, int shared, int shared_integers, bool may_stop,
                  std::shared_ptr<const interpreted> model)
-    : facts_(interpreter(method)), model_(std::move(model)) {
-    facts_.n_shared = shared;
-    facts_.n_shared_integer = shared_integers;
-    facts_.hooks_may_stop = may_stop;
-    const auto set = static_cast<openmp::instruction_set>(facts_.instruction_set);
+    : cpu_(interpreter(method)), model_(std::move(model)) {
+    cpu_.model.n_shared = shared;
+    cpu_.model.n_shared_integer = shared_integers;
+    cpu_.model.hooks_may_stop = may_stop;
+    const auto set = static_cast<openmp::instruction_set>(cpu_.instruction_set);
     require(host::cpu_has(set), "this CPU lacks the instructions of ", host::name_of(set),
             ", for which models are interpreted: install a C++ compiler");
+}
+
+library::library(std::string image, int device) {
+    auto program = std::make_unique<device_program>(std::move(image));
+    cpu_.model = program->on(device).facts.model;
+    gpu_ = program.release();
 }
 
 namespace {
@@ -48,7 +54,7 @@ host::component_label label(const host::model_shape& shape, int c, std::string_v
 
 }  // namespace
 
-named_shape::named_shape(const kernel_library& of, component_names its_names)
+named_shape::named_shape(const model_facts& of, component_names its_names)
     : model_shape{
           of.n_state,
           of.n_parameter,
@@ -84,7 +90,7 @@ double rounded(double value) {
 }
 
 template <class R>
-void check_options(const named_shape& shape, const kernel_library& kernel, const options& o) {
+void check_options(const named_shape& shape, const model_facts& kernel, const options& o) {
     const host::model_components components{{shape.n_state, "state"},
                                             {shape.n_accessory, "accessory"},
                                             {shape.n_integer_accessory, "integer accessory"},
@@ -103,12 +109,13 @@ void check_options(const named_shape& shape, const kernel_library& kernel, const
 template <class R>
 class prepared_call {
 public:
-    prepared_call(ensemble<R>& e, const options& o, const kernel_library& kernel)
+    prepared_call(ensemble<R>& e, const options& o, const model_facts& kernel)
         : records(affordable(e, o, kernel).record.empty()
                       ? host::record_data<R>()
                       : host::record_data<R>(*e.shape, o.record, o.phases, e.data.size)),
           sample_times_(o.samples.times.begin(), o.samples.times.end()) {
         const named_shape& shape = *e.shape;
+        arguments.shape = &shape;
         const auto states = static_cast<std::size_t>(shape.n_state);
         relative_tolerance_.resize(states);
         absolute_tolerance_.resize(states);
@@ -134,18 +141,18 @@ public:
     prepared_call(const prepared_call&) = delete;
     prepared_call& operator=(const prepared_call&) = delete;
 
-    any_arguments<R> arguments{};
+    shaped_arguments<R> arguments{};
     host::record_data<R> records;
 
 private:
-    static host::method_traits traits_of(const kernel_library& kernel) {
+    static host::method_traits traits_of(const model_facts& kernel) {
         return {kernel.embedded_order > 0, kernel.scales_tolerances, kernel.chooses_first_step};
     }
     static host::step_sizes steps_of(const host::method_traits& method) {
         return method.adaptive ? host::step_sizes::kept : host::step_sizes::fixed;
     }
     /// The options, if there is enough memory for them; otherwise throws `error`.
-    static const options& affordable(const ensemble<R>& e, const options& o, const kernel_library& kernel) {
+    static const options& affordable(const ensemble<R>& e, const options& o, const model_facts& kernel) {
         host::memory_need need;
         if (!o.record.empty()) need.add("records", host::record_data<R>::bytes_for(o.record, o.phases, e.data.size));
         if (!o.samples.empty() && e.samples.capacity == 0)
@@ -218,7 +225,7 @@ std::size_t used(const std::vector<std::string>& names) {
 template <class R>
 detail::run_statistics run_library(const host::any_run& all, const detail::run_options& o,
                                    const host::part_of_run* part) {
-    any_arguments<R> now = *static_cast<const any_arguments<R>*>(all.arguments);
+    any_arguments<R> now = *static_cast<const shaped_arguments<R>*>(all.arguments);
     if (part != nullptr && part->is_first) {
         now.cost = part->cost;
         now.phases = 1;
@@ -229,10 +236,24 @@ detail::run_statistics run_library(const host::any_run& all, const detail::run_o
     detail::run_statistics used;
     const library& kernel = *static_cast<const library*>(all.kernel);
     current_tape = kernel.model();
-    kernel.facts().run(&now, &o, o.threads > 0 ? o.threads : usual_threads(),
+    kernel.cpu().run(&now, &o, o.threads > 0 ? o.threads : usual_threads(),
                        current_tape != nullptr ? &start_tape_team : &start_team, &used);
     return used;
 }
+
+/// Makes engines for a program.
+template <class R>
+struct engines {
+    device_program* program;
+
+    std::unique_ptr<cuda::engine_for<shaped_arguments<R>>> operator()(const cuda::engine_options& how) const {
+        return std::make_unique<device_engine<R>>(how, loaded_kernel<R>(program->on(how.device)));
+    }
+    /// Where the program expects the shared parameters.
+    shared_placement placement(const device& where) const {
+        return program == nullptr ? shared_placement::automatic : program->on(where.number()).facts.shared_placement;
+    }
+};
 
 }  // namespace
 
@@ -240,8 +261,9 @@ template <class R>
 std::unique_ptr<report<R>> solve(const library& with, const device& where, ensemble<R>& instances, const options& o) {
     const detail::default_arithmetic here;
     auto& data = instances.data;
-    const kernel_library& kernel = with.facts();
+    const model_facts& kernel = with.facts();
     require(kernel.real_bytes == sizeof(R), "the kernel and the ensemble differ in precision");
+    host::check_kernel(where, (with.gpu() != nullptr) == (where.which() == device::kind::cuda));
     const auto claim = data.take();
     check_options<R>(*instances.shape, kernel, o);
     host::check_ended(data, o, data.size);
@@ -251,15 +273,20 @@ std::unique_ptr<report<R>> solve(const library& with, const device& where, ensem
     const host::phases_left left = host::find_phases_left(data, o, data.size, endless);
     left.require_for(0, o.phases);
     host::data_check<R> check(data, o, data.size, endless);
-    check.run();
+    // On a GPU the data of large ensembles are checked chunk by chunk, while the GPU works on others.
+    if (where.which() == device::kind::cpu || data.size <= host::worth_chunks) check.run();
     data.expect_phases(o.phases);
 
     auto result = std::make_unique<report<R>>();
     prepared_call<R> call(instances, o, kernel);
-    const host::any_run run{&with,     &call.arguments, &run_library<R>,
-                            data.size, o.phases,        static_cast<openmp::instruction_set>(kernel.instruction_set)};
+    const host::any_run run{
+        &with, &call.arguments, &run_library<R>,
+        data.size, o.phases, static_cast<openmp::instruction_set>(with.cpu().instruction_set)};
+    const engines<R> make{with.gpu()};
+    const cuda::engine_options how{where.number(), o.block_size, make.placement(where), o.schedule};
+    host::chunks_of on_gpu(with.gpu(), make, how, call.arguments);
     try {
-        host::integrate_all<R>(where, o, &run, nullptr, data, check, *result);
+        host::integrate_all<R>(where, o, &run, &on_gpu, data, check, *result);
     } catch (const interruption&) {
         result->interrupted = true;
         result->device = where.name();

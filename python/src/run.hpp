@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "device_library.hpp"
 #include "interpreted.hpp"
 #include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"
@@ -21,7 +22,8 @@
 
 namespace myriad::python {
 
-/// A shared object with a kernel, loaded for the life of the process: its code may be running.
+/// A kernel of a model, loaded for the life of the process, as its code may be running: a shared object, the
+/// interpreter, or a program for GPUs.
 class library {
 public:
     /// Throws `error` if the file is no kernel library of this version, or not for this CPU.
@@ -29,13 +31,21 @@ public:
     /// The interpreter with a model of that many shared values; `may_stop`: its hooks may end phases.
     library(const std::string& method, int shared, int shared_integers, bool may_stop,
             std::shared_ptr<const interpreted> model);
-    const kernel_library& facts() const { return facts_; }
+    /// A program that NVRTC made, loaded on a GPU. Throws `error` if its driver refuses it.
+    library(std::string image, int device);
+
+    const model_facts& facts() const { return cpu_.model; }
+    /// The kernel of a shared object or the interpreter.
+    const kernel_library& cpu() const { return cpu_; }
     /// What an interpreter runs; null for compiled kernels.
     const tape* model() const { return model_ ? &model_->get() : nullptr; }
+    /// The program for GPUs; null for the CPU's kernels.
+    device_program* gpu() const { return gpu_; }
 
 private:
-    kernel_library facts_;
+    kernel_library cpu_{};
     std::shared_ptr<const interpreted> model_;
+    device_program* gpu_ = nullptr;  // never destroyed
 };
 
 /// The names of a model's components, in their order.
@@ -45,14 +55,14 @@ struct component_names {
 
 /// The shape of a model with names of its own.
 struct named_shape : host::model_shape {
-    named_shape(const kernel_library& of, component_names its_names);
+    named_shape(const model_facts& of, component_names its_names);
     component_names names;
 };
 
 /// An ensemble of a model that is known by its shape.
 template <class R>
 struct ensemble {
-    ensemble(const kernel_library& of, component_names names, std::int64_t size)
+    ensemble(const model_facts& of, component_names names, std::int64_t size)
         : shape(std::make_unique<named_shape>(of, std::move(names))), data(*shape, size) {}
 
     std::unique_ptr<named_shape> shape;

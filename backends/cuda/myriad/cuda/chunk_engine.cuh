@@ -29,17 +29,17 @@ class chunk_engine final : public engine_for<typename Kernel::arguments> {
 
 public:
     explicit chunk_engine(const engine_options& options, Kernel kernel = {})
-        : device_(options.device), while_starting_(std::in_place, options.device),
+        : device_(options.device), now_current_(std::in_place, options.device),
           launcher_(options.device, options, std::move(kernel)),
           scheduler_(options.schedule, launcher_.traits().costs_differ) {
-        while_starting_.reset();
+        now_current_.reset();
     }
     ~chunk_engine() override {
-        int before = device_;
-        cudaGetDevice(&before);
-        cudaSetDevice(device_);
+        try {
+            now_current_.emplace(device_);  // until the other members are destroyed
+        } catch (const error&) {  // CUDA may be gone at exit
+        }
         cudaStreamSynchronize(stream_.get());
-        cudaSetDevice(before);
     }
 
     void reserve(const arguments& host, std::int64_t count) override {
@@ -314,7 +314,7 @@ private:
     }
 
     int device_;
-    std::optional<current_device> while_starting_;  // the members below are created on this device
+    std::optional<current_device> now_current_;  // while the members below are created and destroyed
     kernel_launcher<Kernel> launcher_;
     device_memory memory_, records_, sample_times_, shared_;
     phase_scheduler<Kernel> scheduler_;

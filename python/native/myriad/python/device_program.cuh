@@ -36,6 +36,7 @@ constexpr python::argument_layout layout_of() {
     l.rising = __builtin_offsetof(one, rising);
     l.falling = __builtin_offsetof(one, falling);
     l.sub_samples = __builtin_offsetof(one, sub_samples);
+    l.accumulation_limit = __builtin_offsetof(one, accumulation_limit);
     l.record = __builtin_offsetof(one, record);
     l.record_columns[0] = l.record + __builtin_offsetof(record, state_column);
     l.record_columns[1] = l.record + __builtin_offsetof(record, accessory_column);
@@ -61,6 +62,34 @@ inline constexpr python::device_facts device_facts_of{
     .costs_differ = costs_differ<Model, Method>,
 };
 
+/// Adds up the values of a warp's threads; its first thread has the sum.
+__device__ __forceinline__ unsigned long long sum_of_warp(unsigned long long value) {
+    for (int distance = 16; distance > 0; distance /= 2) value += __shfl_down_sync(0xffffffff, value, distance);
+    return value;
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+
+/// Adds all values to `sum`. Blocks of whole warps.
+extern "C" __global__ void myriad_sum(const std::int64_t* values, std::int64_t size, unsigned long long* sum) {
+    unsigned long long own = 0;
+    const std::int64_t all = static_cast<std::int64_t>(gridDim.x) * blockDim.x;
+    for (std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x; i < size; i += all)
+        own += static_cast<unsigned long long>(values[i]);
+    own = myriad::detail::sum_of_warp(own);
+    if (threadIdx.x % 32 == 0) atomicAdd(sum, own);
+}
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Lowers `first` to the index of the first value that is not finite.
+template <class R>
+__device__ __forceinline__ void find_not_finite(const R* values, std::int64_t size, unsigned long long* first) {
+    const std::int64_t all = static_cast<std::int64_t>(gridDim.x) * blockDim.x;
+    for (std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x; i < size; i += all)
+        if (!functions<R>::is_finite(values[i])) atomicMin(first, static_cast<unsigned long long>(i));
+}
+
 }  // namespace myriad::detail::inline MYRIAD_TARGET
 
 /// Makes the kernel of a model, a method and a real type, with the model's shared parameters in the place of that name.
@@ -71,6 +100,10 @@ inline constexpr python::device_facts device_facts_of{
                                             myriad::detail::shared_parameter_bytes<Model, R>));                 \
     extern "C" __device__ myriad::python::device_facts myriad_device_facts =                                    \
         myriad::detail::device_facts_of<Model, Method, R, myriad::shared_placement::place>;                     \
+    extern "C" __global__ void myriad_find_not_finite(const R* values, std::int64_t size,                       \
+                                                      unsigned long long* first) {                              \
+        myriad::detail::find_not_finite(values, size, first);                                                   \
+    }                                                                                                           \
     extern "C" __global__ void __launch_bounds__(myriad::detail::max_block_size<Model>()) myriad_integrate(     \
         const __grid_constant__                                                                                 \
             myriad::detail::launch_arguments<Model, R, myriad::shared_placement::place> arguments) {            \
