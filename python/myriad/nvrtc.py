@@ -164,9 +164,9 @@ def kernel(header, struct, method, real, shared, device):
     types, and a GPU by its number; `shared`: the numbers of real and integer shared parameters. Raises `Error` if
     there is no NVRTC, or with its first message if it refuses the model."""
     begin = time.perf_counter()
-    gpu = _core.gpu(device)
-    place = placement(shared[0] * (8 if real == "double" else 4) + shared[1] * 4, gpu["shared_bytes"])
-    asked = (header, struct, method, real, place, gpu["capability"], os.environ.get("MYRIAD_NVRTC"))
+    _, capability, shared_bytes = _core.gpu(device)
+    place = placement(shared[0] * (8 if real == "double" else 4) + shared[1] * 4, shared_bytes)
+    asked = (header, struct, method, real, place, capability, os.environ.get("MYRIAD_NVRTC"))
     if asked in _loaded:
         return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
     path = find()
@@ -175,12 +175,12 @@ def kernel(header, struct, method, real, shared, device):
     source = source_of(header, struct, method, real, place)
     facts = path.stat()
     key = cache.key_of({"source": source, "version": _core.version, "headers": _core.headers, "options": _options[:-1],
-                        "capability": gpu["capability"],
+                        "capability": capability,
                         "nvrtc": f"{path.resolve()} {facts.st_size} {facts.st_mtime_ns}"})
 
     def make(workplace):
         made = workplace / "model.so"
-        made.write_bytes(library().compile(source, gpu["capability"])[0])
+        made.write_bytes(library().compile(source, capability)[0])
         return made
 
     obtained = cache.obtain(key, make, lambda made: _core.Library(made.read_bytes(), device))

@@ -19,6 +19,7 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/core/instruction_set.hpp"
 #include "myriad/version.hpp"
 #include "run.hpp"
@@ -198,21 +199,6 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
           "progress"_a.none() = nb::none());
 }
 
-/// What kernels are compiled for on a GPU.
-nb::dict gpu_facts(int number) {
-    std::string why_none;
-    const auto all = cuda::list_devices(why_none);
-    cuda::require_device({.device = number});
-    int shared_bytes = 0;
-    MYRIAD_CUDA(cudaDeviceGetAttribute(&shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, number));
-    const auto& one = all.at(static_cast<std::size_t>(number));
-    nb::dict facts;
-    facts["name"] = one.name;
-    facts["capability"] = one.capability;
-    facts["shared_bytes"] = shared_bytes;
-    return facts;
-}
-
 void bind_options(nb::module_& m) {
     nb::class_<options>(m, "Options")
         .def(nb::init<>())
@@ -284,7 +270,10 @@ NB_MODULE(_core, m) {
         return names;
     });
     m.def("check_device", [](const std::string& name) { return device::parse(name).name(); });
-    m.def("gpu", &gpu_facts);
+    m.def("gpu", [](int device) {
+        const gpu_facts facts = facts_of_gpu(device);
+        return nb::make_tuple(facts.name, facts.capability, facts.shared_bytes);
+    });
     m.def("no_gpu", &device::no_gpu);
     m.def("may_use_gpus", &host::may_use_gpus);
     m.def("driver_version", &driver_version);

@@ -181,7 +181,7 @@ const char* cudaGetErrorString(cudaError_t status) {
 const char* cudaGetErrorName(cudaError_t status) {
     const char* name = nullptr;
     if (the().error_name.exists()) the().error_name(status, &name);
-    return name != nullptr ? name : "no name";
+    return name != nullptr ? name : "cudaErrorInsufficientDriver";
 }
 
 cudaError_t cudaGetDeviceCount(int* count) {

@@ -9,6 +9,16 @@
 
 namespace myriad::python {
 
+gpu_facts facts_of_gpu(int device) {
+    cuda::require_device({.device = device});
+    std::string why_none;
+    const auto all = cuda::list_devices(why_none);
+    int shared_bytes = 0;
+    MYRIAD_CUDA(cudaDeviceGetAttribute(&shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+    const auto& one = all.at(static_cast<std::size_t>(device));
+    return {one.name, one.capability, shared_bytes};
+}
+
 const device_program::kernels& device_program::on(int device) {
     cuda::require_device({.device = device});
     const std::lock_guard lock(mutex_);

@@ -38,6 +38,15 @@ void for_each_record(shaped_arguments<R>& a, Visit&& visit) {
     detail::for_each_record_of(a.record, reals, integers, visit);
 }
 
+/// What kernels are compiled for on a GPU.
+struct gpu_facts {
+    std::string name;
+    int capability;    ///< 90 for 9.0
+    int shared_bytes;  ///< the most shared memory of a block
+};
+/// Throws `error` if there is no GPU of that number.
+gpu_facts facts_of_gpu(int device);
+
 /// A program as machine code or PTX, and the devices it was loaded on; kept for the life of the process.
 class device_program {
 public:

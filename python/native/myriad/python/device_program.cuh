@@ -98,8 +98,10 @@ __device__ __forceinline__ void find_not_finite(const R* values, std::int64_t si
     static_assert(myriad::detail::check_linkage<Model, Method>());                                              \
     static_assert(myriad::cuda::is_compiled(myriad::shared_placement::place,                                    \
                                             myriad::detail::shared_parameter_bytes<Model, R>));                 \
-    extern "C" __device__ myriad::python::device_facts myriad_device_facts =                                    \
+    extern "C" {                                                                                                \
+    __device__ myriad::python::device_facts myriad_device_facts =                                               \
         myriad::detail::device_facts_of<Model, Method, R, myriad::shared_placement::place>;                     \
+    }                                                                                                           \
     extern "C" __global__ void myriad_find_not_finite(const R* values, std::int64_t size,                       \
                                                       unsigned long long* first) {                              \
         myriad::detail::find_not_finite(values, size, first);                                                   \
