@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _core, compiler, nvrtc, tape
 from .components import Components, name_of, unknown
+from .device import DeviceInput, is_on_gpu
 from .errors import Error, refuse_masked
 from .grid import Sweep
 from .methods import fixed_step, method_type
@@ -33,8 +34,29 @@ _in_python = (
 )
 
 
+class _Along:
+    """Values of a grid along one of its axes, as an array of one value per instance that is not made until needed."""
+
+    ndim = 1
+
+    def __init__(self, sweep, name):
+        self._sweep, self._name = sweep, name
+        self.values, self.repeat = sweep.along(name)
+        self.dtype = self.values.dtype
+
+    def __len__(self):
+        return self._sweep.size
+
+    def __array__(self, dtype=None, copy=None):
+        return self._sweep.values(self._name).astype(dtype or self.dtype, copy=False)
+
+
 def _numbers(value, name):
-    """A number, or an array of one dimension, of real numbers."""
+    """A number, or an array of one dimension, of real numbers; arrays on a GPU stay there."""
+    if isinstance(value, _Along):
+        return value
+    if is_on_gpu(value):
+        return DeviceInput(value, name)
     refuse_masked(value, f"'{name}'")
     array = np.asarray(value)
     if array.dtype.kind == "c":
@@ -61,7 +83,7 @@ def _sweep_values(sweep):
     if sweep is None:
         return {}
     if isinstance(sweep, Sweep):
-        return {**{name: sweep.values(name) for name in sweep.coordinates}, **sweep.constants}
+        return {**{name: _Along(sweep, name) for name in sweep.coordinates}, **sweep.constants}
     if hasattr(sweep, "items"):
         return {name_of(key): value for key, value in sweep.items()}
     raise Error(f"the sweep is a {type(sweep).__name__}: give a dict, as in {{k: np.linspace(0, 1, 100)}}, or "
@@ -108,7 +130,7 @@ def _gather(components, sweep, start, time, size):
     return given, domain, next(iter(lengths.values()), 1)
 
 
-def _fill(ensemble, components, given, domain, names):
+def _fill(ensemble, components, given, domain, names, real):
     for kind, known, all_names in (("state", components.states, names[0]),
                                    ("parameter", components.parameters, names[1]),
                                    ("accessory", components.accessories, names[4])):
@@ -116,15 +138,26 @@ def _fill(ensemble, components, given, domain, names):
             ensemble.array(kind, number)[...] = 0
     for name, array in given.items():
         kind, number = components.place[name]
-        if kind in ("shared", "shared_integer"):
+        if isinstance(array, DeviceInput):
+            if kind not in ("state", "parameter"):
+                raise Error(f"'{name}' is on a GPU, which only states and parameters can be: copy it to the host")
+            if array.dtype != real:
+                raise Error(f"'{name}' on the GPU has type {array.dtype}, and the run is in {real}: convert it there, or "
+                            "give precision=")
+            ensemble.set_on_device(kind, number, array.address)
+        elif kind in ("state", "parameter"):
+            values, repeat = (array.values, array.repeat) if isinstance(array, _Along) else (array, 1)
+            ensemble.spread(kind, number, np.ascontiguousarray(np.atleast_1d(values), dtype=real), repeat)
+        elif kind in ("shared", "shared_integer"):
             if array.ndim == 1:
                 raise Error(f"'{name}' is shared by all instances and has {len(array)} values: give one number, or "
                             "make it a parameter")
             ensemble.array(kind)[number] = _whole_numbers(array, name) if kind == "shared_integer" else array
-            continue
-        if kind == "integer_accessory":
-            array = _whole_numbers(array, name)
-        ensemble.array(kind, number)[...] = array
+        else:
+            array = np.asarray(array)
+            ensemble.array(kind, number)[...] = _whole_numbers(array, name) if kind == "integer_accessory" else array
+    if any(isinstance(array, DeviceInput) for array in domain):
+        raise Error("the times are on a GPU: copy them to the host")
     if domain[0].ndim == 0 and domain[1].ndim == 0:
         ensemble.set_domain(float(domain[0]), float(domain[1]))
     else:
@@ -395,8 +428,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
         if interpreted:
             raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
         names = components.names
-        kernel = nvrtc.kernel(*model.source(), written, precision, (len(names[2]), len(names[3])),
-                              int(where.partition(":")[2] or 0))
+        gpu = int(where.partition(":")[2])
+        kernel = nvrtc.kernel(*model.source(), written, precision, (len(names[2]), len(names[3])), gpu)
     elif interpreted or (interpreted is None and compiler.known_compiler() is None):
         why = "as asked" if interpreted else "as there is no C++ compiler"
         if precision != "double" or control:
@@ -414,9 +447,13 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     function, finish = _progress_function(progress)
     try:
         ensemble = kind(kernel.library, *names, count)
-        _fill(ensemble, components, given, domain, names)
+        _fill(ensemble, components, given, domain, names, np.dtype("f8" if precision == "double" else "f4"))
+        if on_gpu and any(isinstance(array, DeviceInput) for array in given.values()):
+            _core.wait_for_gpu(gpu)  # for what other libraries do there
         if tolerance_scale is not None:
             scale = _numbers(tolerance_scale, "tolerance_scale")
+            if isinstance(scale, DeviceInput):
+                raise Error("'tolerance_scale' is on a GPU: copy it to the host")
             if scale.ndim and len(scale) != count:
                 raise Error(f"'tolerance_scale' has {len(scale)} values for {count} instances: give one for each")
             ensemble.array("tolerance_scale")[...] = scale
@@ -431,7 +468,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     inputs = {name: array for name, array in given.items() if components.place[name][0] in (
         "parameter", "shared", "shared_integer", "state")}
     run = Run(components, ensemble, report, kernel, sweep, inputs, recorded, sampled, clock.perf_counter() - begin,
-              int(dict(record).get("from_phase", 0)) if hasattr(record, "items") else 0)
+              int(dict(record).get("from_phase", 0)) if hasattr(record, "items") else 0, [no_gpu] if no_gpu else [])
     if failure is not None:
         if isinstance(failure, KeyboardInterrupt):
             raise Interrupted(run) from None

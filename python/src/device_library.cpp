@@ -19,6 +19,11 @@ gpu_facts facts_of_gpu(int device) {
     return {one.name, one.capability, shared_bytes};
 }
 
+void wait_for_gpu(int device) {
+    const cuda::current_device here(device);
+    MYRIAD_CUDA(cudaDeviceSynchronize());
+}
+
 const device_program::kernels& device_program::on(int device) {
     cuda::require_device({.device = device});
     const std::lock_guard lock(mutex_);

@@ -46,6 +46,8 @@ struct gpu_facts {
 };
 /// Throws `error` if there is no GPU of that number.
 gpu_facts facts_of_gpu(int device);
+/// Waits for all work on the GPU, also of other libraries.
+void wait_for_gpu(int device);
 
 /// A program as machine code or PTX, and the devices it was loaded on; kept for the life of the process.
 class device_program {

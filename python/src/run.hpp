@@ -59,22 +59,40 @@ struct named_shape : host::model_shape {
     component_names names;
 };
 
-/// An ensemble of a model that is known by its shape.
+/// An array of a component's values, one per instance, in the memory of a GPU.
+template <class R>
+struct device_input {
+    R* component;     ///< the component in the ensemble's own memory
+    const R* values;  ///< on the device; there until the call ends
+};
+
+/// The part of a call whose results stay on a GPU until they are asked for (resident.hpp).
+template <class R>
+class resident;
+
+/// An ensemble of a model that is known by its shape. Its memory is kept for the next one of its kind.
 template <class R>
 struct ensemble {
-    ensemble(const model_facts& of, component_names names, std::int64_t size)
-        : shape(std::make_unique<named_shape>(of, std::move(names))), data(*shape, size) {}
+    ensemble(const model_facts& of, component_names names, std::int64_t size);
+    ensemble(const ensemble&) = delete;
+    ensemble& operator=(const ensemble&) = delete;
+    ~ensemble();
 
-    std::unique_ptr<named_shape> shape;
+    std::shared_ptr<named_shape> shape;
     host::ensemble_data<R> data;
     host::sample_data<R> samples;
+    std::vector<device_input<R>> on_device;
+    std::shared_ptr<resident<R>> gpu;  ///< null if all results are in the memory above
 };
+extern template struct ensemble<double>;
+extern template struct ensemble<float>;
 
 /// A report with its records.
 template <class R>
 struct report : report_of<R> {
     host::record_data<R> records;
-    bool interrupted = false;  ///< by the progress function
+    bool interrupted = false;          ///< by the progress function
+    std::shared_ptr<resident<R>> gpu;  ///< has the records; null if they are in the memory above
 };
 
 /// Thrown by a progress function: the call ends with what is done.

@@ -71,6 +71,12 @@ public:
     }
 
     void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances) override {
+        upload(host, first, count, of_instances, [](const void*) { return false; });
+    }
+    /// The same without the components, by the address of their first value, that are `elsewhere`.
+    template <class Elsewhere>
+    void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances,
+                Elsewhere&& elsewhere) {
         const current_device here(device_);
         finish_download();
         first_ = first;
@@ -85,7 +91,16 @@ public:
         };
         row_list list;
         walk(from, [&](auto*& source, auto* target, std::int64_t components, array_access, array_kind kind) {
-            if (!is_cleared(kind)) list.push_back(rows_of(source, host.size, target, components));
+            if (is_cleared(kind)) return;
+            std::int64_t done = 0;  // components
+            const auto add_until = [&](std::int64_t end) {
+                if (end > done)
+                    list.push_back(rows_of(source + done * host.size, host.size, target + done * count_, end - done));
+                done = end + 1;
+            };
+            for (std::int64_t c = 0; c < components; ++c)
+                if (elsewhere(source + c * host.size)) add_until(c);
+            add_until(components);
         });
         copy_directly(take_pinned(list), cudaMemcpyHostToDevice, stream_.get());
         if (little_transfer::takes(list)) {
@@ -162,6 +177,42 @@ public:
             (*fetching_)->begin_download(lower, stream_.get());
         }
     }
+
+    /// The device's address of a value in one of the arrays of the arguments, of which all instances were uploaded last,
+    /// and how kernels use the array; null if it is in none of them.
+    struct place_on_device {
+        std::byte* address = nullptr;
+        array_access access = array_access::read;
+    };
+    place_on_device find(const arguments& host, const void* value) {
+        place_on_device found;
+        const auto look = [&](auto*& array, auto* on_device, std::int64_t components, array_access access, array_kind) {
+            const auto offset = static_cast<const std::byte*>(value) - reinterpret_cast<const std::byte*>(array);
+            if (offset >= 0 && offset < static_cast<std::ptrdiff_t>(bytes_of(array, components * count_)))
+                found = {reinterpret_cast<std::byte*>(on_device) + offset, access};
+        };
+        arguments all = host;
+        walk(all, look);
+        walk_records(all, look);
+        return found;
+    }
+    /// Copies from this device's memory to the host's, and waits.
+    void fetch(void* to, const std::byte* from, std::size_t bytes) {
+        const current_device here(device_);
+        finish_download();
+        const row_list list{{static_cast<std::byte*>(to), const_cast<std::byte*>(from), bytes, 1, bytes}};
+        if (is_pinned(to)) {
+            copy_directly(list, cudaMemcpyDeviceToHost, stream_.get());
+        } else if (little_transfer::takes(list)) {
+            little_.begin_download(list, stream_.get());
+        } else {
+            fetching_ = std::make_unique<pooled_staging>(device_);
+            (*fetching_)->begin_download(list, stream_.get());
+        }
+        wait();
+    }
+    /// For further work on the device.
+    cudaStream_t in_stream() const { return stream_.get(); }
 
     void wait() override {
         const current_device here(device_);
