@@ -8,6 +8,8 @@ import pytest
 
 _cache = tempfile.TemporaryDirectory(prefix="myriad-tests-")
 os.environ["MYRIAD_CACHE_DIR"] = _cache.name  # before the package is imported, and for the processes that tests start
+if os.environ.get("MYRIAD_TEST_DEVICE") != "cuda":  # as in the tests of the C++ library
+    os.environ["CUDA_VISIBLE_DEVICES"] = "-1"
 
 import myriad as my  # noqa: E402
 
