@@ -68,3 +68,7 @@ def ball():
     """A ball that bounces."""
     return my.CppModel(BALL, "ball", "height speed", "loss", "g", accessories="top", integer_accessories="bounces",
                        events={"impact": dict(direction="falling", tolerance=1e-10)})
+
+
+def pytest_addoption(parser):
+    parser.addoption("--all", action="store_true", help="also what takes minutes: all models and GPUs")
