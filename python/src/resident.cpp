@@ -2,6 +2,7 @@
 // Calls whose results stay on a GPU.
 #include "resident.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <exception>
@@ -16,6 +17,18 @@ namespace myriad::python {
 
 using detail::array_access;
 using detail::array_kind;
+
+namespace {
+
+/// Launches a kernel whose threads take several of so many values each.
+cudaError_t launch_over(const void* kernel, std::int64_t size, void** arguments, cudaStream_t stream) {
+    constexpr std::int64_t threads = 256, per_block = 8 * threads, most_blocks = 512;
+    const std::int64_t blocks = std::min((size + per_block - 1) / per_block, most_blocks);
+    return cudaLaunchKernel(kernel, dim3(static_cast<unsigned>(blocks)), dim3(static_cast<unsigned>(threads)),
+                            arguments, 0, stream);
+}
+
+}  // namespace
 
 template <class R>
 resident<R>::resident(const library& kernel, const device& where, const options& o,
@@ -79,7 +92,6 @@ void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
     require(!mark_invalid, "arrays on a GPU cannot be marked where they are not finite: copy them to the host, or give "
                            "invalid=\"refuse\"");
     constexpr unsigned long long none = std::numeric_limits<unsigned long long>::max();
-    constexpr unsigned blocks = 256, threads = 256;
     const device_program::kernels& all = program_.on(how_.device);
     const std::int64_t size = instances.data.size;
     const auto stream = engine_->in_stream();
@@ -93,8 +105,7 @@ void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
         void *values = to, *first = scratch_.data();
         std::int64_t count = size;
         void* arguments[] = {&values, &count, &first};
-        cuda::check(cudaLaunchKernel(all.find_not_finite, dim3(blocks), dim3(threads), arguments, 0, stream),
-                    "the check of the inputs");
+        cuda::check(launch_over(all.find_not_finite, size, arguments, stream), "the check of the inputs");
         unsigned long long found = none;
         engine_->fetch(&found, static_cast<const std::byte*>(scratch_.data()), sizeof found);
         if (found == none) continue;
@@ -140,8 +151,7 @@ host::work_count resident<R>::work() {
         if (counters[c] == nullptr) continue;
         void *values = engine_->find(a, counters[c]).address, *sum = static_cast<std::int64_t*>(scratch_.data()) + c;
         void* arguments[] = {&values, &size, &sum};
-        cuda::check(cudaLaunchKernel(program_.on(how_.device).sum, dim3(256), dim3(256), arguments, 0, stream),
-                    "the sum of all steps");
+        cuda::check(launch_over(program_.on(how_.device).sum, size, arguments, stream), "the sum of all steps");
     }
     engine_->fetch(&sums, static_cast<const std::byte*>(scratch_.data()), sizeof sums);
     return sums;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A driver of GPUs, libcuda.so.1, that computes on this CPU: device memory is the host's, streams do their work at once,
 // and programs are shared objects of device.hpp, whose threads are run one block at a time, each with a stack of its own.
-// MYRIAD_SIMULATED_GPUS says how many devices there are, and MYRIAD_SIMULATED_CAPABILITY which.
+// MYRIAD_SIMULATED_GPUS says how many devices there are, MYRIAD_SIMULATED_CAPABILITY which, and
+// MYRIAD_SIMULATED_MEGABYTES what memory each has.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -22,12 +23,11 @@ namespace {
 
 constexpr int success = 0, invalid_value = 1, out_of_memory = 2, no_device = 100, invalid_context = 201,
               no_kernel_image = 209, not_found = 500;
-constexpr std::size_t memory_per_device = std::size_t{1} << 30;
-
 int number_from(const char* variable, int otherwise) {
     const char* const text = std::getenv(variable);
     return text != nullptr ? std::atoi(text) : otherwise;
 }
+const std::size_t memory_per_device = static_cast<std::size_t>(number_from("MYRIAD_SIMULATED_MEGABYTES", 1024)) << 20;
 int devices() { return number_from("MYRIAD_SIMULATED_GPUS", 1); }
 
 thread_local int current = -1;  // device; contexts are its number plus one
