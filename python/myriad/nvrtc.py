@@ -114,9 +114,9 @@ class _Nvrtc:
             return f"-arch=sm_{same[-1]}", "CUBIN"
         older = [a for a in self.architectures if a < capability]
         if not older:
-            raise Error(f"NVRTC {self.version} compiles for GPUs of compute capability {_dotted(self.architectures[0])} "
-                        f"and newer, and this one has {_dotted(capability)}: install an older one, such as `pip "
-                        "install nvidia-cuda-nvrtc-cu12`")
+            raise Error(f"NVRTC {self.version} compiles for GPUs of compute capability "
+                        f"{_dotted(self.architectures[0])} and newer, and this one has {_dotted(capability)}: install "
+                        "an older one, such as `pip install nvidia-cuda-nvrtc-cu12`")
         return f"-arch=compute_{older[-1]}", "PTX"
 
     def compile(self, source, capability, options=()):

@@ -142,8 +142,8 @@ def _fill(ensemble, components, given, domain, names, real):
             if kind not in ("state", "parameter"):
                 raise Error(f"'{name}' is on a GPU, which only states and parameters can be: copy it to the host")
             if array.dtype != real:
-                raise Error(f"'{name}' on the GPU has type {array.dtype}, and the run is in {real}: convert it there, or "
-                            "give precision=")
+                raise Error(f"'{name}' on the GPU has type {array.dtype}, and the run is in {real}: convert it there, "
+                            "or give precision=")
             ensemble.set_on_device(kind, number, array.address)
         elif kind in ("state", "parameter"):
             values, repeat = (array.values, array.repeat) if isinstance(array, _Along) else (array, 1)
@@ -328,8 +328,10 @@ def _device_name(device, interpreted):
     """The name of a device as the core knows it, and why "auto" takes no GPU where there is one."""
     device = str(device)
     if device == "auto":
-        if interpreted or _core.no_gpu() or not _core.may_use_gpus():
+        if interpreted or _core.no_gpu():
             return "cpu", None
+        if not _core.may_use_gpus():
+            return "cpu", "the GPU was not used, as this process was forked from one that has used it"
         if nvrtc.find() is None:
             return "cpu", "the GPU was not used, as there is no NVRTC: `pip install 'myriad[cuda]'`"
         return "cuda:0", None
@@ -338,8 +340,8 @@ def _device_name(device, interpreted):
     except Error as error:
         text = str(error)
         if "is unknown" in text:
-            raise Error(f"device {device!r} is unknown: use \"auto\", \"cpu\", \"cpu:4\" for four threads, \"cuda\", or "
-                        "\"cuda:1\" for the second GPU") from None
+            raise Error(f"device {device!r} is unknown: use \"auto\", \"cpu\", \"cpu:4\" for four threads, \"cuda\", "
+                        "or \"cuda:1\" for the second GPU") from None
         raise Error(text.replace("the device has", f"device {device!r} has")) from None
 
 

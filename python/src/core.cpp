@@ -61,9 +61,7 @@ template <class R, class Use>
 auto with_component(ensemble<R>& e, const std::string& kind, int c, Use&& use) {
     auto& d = e.data;
     const auto of = [&](auto& array) { return use(checked(array, c).component(c)); };
-    const auto counter = [&](auto which) {
-        return use(const_cast<std::int64_t*>(d.counter(which).data()));
-    };
+    const auto counter = [&](auto which) { return use(const_cast<std::int64_t*>(d.counter(which).data())); };
     using arrays = typename host::ensemble_data<R>::arrays;
     if (kind == "state") return of(d.state);
     if (kind == "parameter") return of(d.parameter);
@@ -105,19 +103,18 @@ nb::object device_table(resident<R>* gpu, const T* values, std::int64_t rows, st
         return nb::cast(nb::ndarray<T, nb::ndim<1>, nb::device::cuda>(there, {n}, owner, {1}, nb::dtype<T>(),
                                                                       nb::device::cuda::value, gpu->number()),
                         nb::rv_policy::reference);
-    return nb::cast(nb::ndarray<T, nb::ndim<2>, nb::device::cuda>(
-                        there, {n, static_cast<std::size_t>(columns)}, owner, {1, rows}, nb::dtype<T>(),
-                        nb::device::cuda::value, gpu->number()),
-                    nb::rv_policy::reference);
+    return nb::cast(
+        nb::ndarray<T, nb::ndim<2>, nb::device::cuda>(there, {n, static_cast<std::size_t>(columns)}, owner, {1, rows},
+                                                      nb::dtype<T>(), nb::device::cuda::value, gpu->number()),
+        nb::rv_policy::reference);
 }
 
 /// The same for one component, where a GPU has it.
 template <class R>
 nb::object device_component(nb::handle self, const std::string& kind, int c) {
     auto& e = nb::cast<ensemble<R>&>(self);
-    return with_component(e, kind, c, [&](auto* values) {
-        return device_table(e.gpu.get(), values, e.data.size, -1, self);
-    });
+    return with_component(e, kind, c,
+                          [&](auto* values) { return device_table(e.gpu.get(), values, e.data.size, -1, self); });
 }
 
 template <class R>
@@ -131,6 +128,7 @@ void spread(ensemble<R>& e, const std::string& kind, int c,
             const nb::ndarray<const R, nb::ndim<1>, nb::c_contig, nb::device::cpu>& values, std::int64_t repeat) {
     const auto n = static_cast<std::int64_t>(values.size());
     require(n > 0 && repeat > 0, "there are no values");
+    if (n == 1) repeat = e.data.size;
     R* const to = settable(e, kind, c);
     const R* const from = values.data();
     host::in_parallel(e.data.size, 32'768, [=](std::int64_t first, std::int64_t last) {
@@ -164,9 +162,9 @@ nb::tuple facts_of_own_array(const nb::ndarray<nb::ro>& array) {
         strides.append(array.stride(d));
     }
     const auto type = array.dtype();
-    const char* const kind = type.code == static_cast<std::uint8_t>(nb::dlpack::dtype_code::Float)  ? "float"
+    const char* const kind = type.code == static_cast<std::uint8_t>(nb::dlpack::dtype_code::Float) ? "float"
                              : type.code == static_cast<std::uint8_t>(nb::dlpack::dtype_code::Int) ? "int"
-                                                                                                    : "uint";
+                                                                                                   : "uint";
     return nb::make_tuple(reinterpret_cast<std::uintptr_t>(array.data()), nb::tuple(shape),
                           message(kind, int{type.bits}), array.device_id(), nb::tuple(strides));
 }
@@ -415,10 +413,8 @@ NB_MODULE(_core, m) {
     nb::class_<library>(m, "Library")
         .def(nb::init<const std::string&>())
         .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
-        .def("__init__",
-             [](library* self, const nb::bytes& image, int device) {
-                 new (self) library(std::string(image.c_str(), image.size()), device);
-             })
+        .def("__init__", [](library* self, const nb::bytes& image,
+                            int device) { new (self) library(std::string(image.c_str(), image.size()), device); })
         .def_prop_ro("samples_trajectory", [](const library& l) { return l.facts().samples_trajectory; })
         .def_prop_ro("adaptive", [](const library& l) { return l.facts().embedded_order > 0; })
         .def_prop_ro("instruction_set", [](const library& l) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The part of the CUDA runtime that backends/cuda uses, on top of the driver's library, libcuda.so.1.
-#include <cuda_runtime.h>
-
 #include <array>
 #include <atomic>
 #include <mutex>
 
+#include <cuda_runtime.h>
 #include <dlfcn.h>
 
 namespace {

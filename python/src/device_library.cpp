@@ -111,9 +111,9 @@ void loaded_kernel<R>::launch(shared_placement, const arguments& a, unsigned lon
     put(at.sample_columns, a.sample.column, m.n_state);
     put(at.queue, &queue, 1);
     void* all[] = {parameters_.data()};
-    cuda::check(cudaLaunchKernel(all_->integrate, dim3(how.blocks), dim3(how.threads), all, how.shared_bytes,
-                                 how.stream),
-                "the launch of the integration kernel");
+    cuda::check(
+        cudaLaunchKernel(all_->integrate, dim3(how.blocks), dim3(how.threads), all, how.shared_bytes, how.stream),
+        "the launch of the integration kernel");
 }
 
 template class loaded_kernel<double>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ensembles of models that are known by their shape, whose memory is used again: to get that of a million instances from
-// the system takes longer than to integrate many a model.
+// Ensembles of models that are known by their shape, whose memory is used again: to get that of a million instances
+// from the system takes longer than to integrate many a model.
 #include <cstddef>
 #include <mutex>
 #include <utility>
@@ -87,7 +87,7 @@ ensemble<R>::ensemble(const model_facts& of, component_names names, std::int64_t
 
 template <class R>
 ensemble<R>::~ensemble() {
-    const bool clean = gpu != nullptr && gpu->left_bookkeeping(data);
+    const bool clean = gpu != nullptr ? gpu->left_bookkeeping(data) : data.untouched;
     kept_memory<R>::all().give(*shape, std::move(data), clean);
 }
 

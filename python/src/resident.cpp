@@ -50,8 +50,8 @@ resident<R>::~resident() {
 }
 
 template <class R>
-std::function<std::unique_ptr<cuda::engine_for<shaped_arguments<R>>>(const cuda::engine_options&)>
-resident<R>::maker() const {
+std::function<std::unique_ptr<cuda::engine_for<shaped_arguments<R>>>(const cuda::engine_options&)> resident<R>::maker()
+    const {
     return [&program = program_](const cuda::engine_options& how) {
         return std::make_unique<device_engine<R>>(how, loaded_kernel<R>(program.on(how.device)));
     };
@@ -89,8 +89,9 @@ bool resident<R>::fits(const ensemble<R>& instances) {
 template <class R>
 void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
     if (instances.on_device.empty()) return;
-    require(!mark_invalid, "arrays on a GPU cannot be marked where they are not finite: copy them to the host, or give "
-                           "invalid=\"refuse\"");
+    require(!mark_invalid,
+            "arrays on a GPU cannot be marked where they are not finite: copy them to the host, or give "
+            "invalid=\"refuse\"");
     constexpr unsigned long long none = std::numeric_limits<unsigned long long>::max();
     const device_program::kernels& all = program_.on(how_.device);
     const std::int64_t size = instances.data.size;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A call on a GPU whose results stay there: they are copied to the host when they are asked for, or used where they are.
+// A call on a GPU whose results stay there: they are copied to the host when they are asked for, or used where they
+// are.
 #pragma once
 
 #include <cstddef>

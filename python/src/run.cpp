@@ -128,7 +128,7 @@ detail::run_statistics run_library(const host::any_run& all, const detail::run_o
     const library& kernel = *static_cast<const library*>(all.kernel);
     current_tape = kernel.model();
     kernel.cpu().run(&now, &o, o.threads > 0 ? o.threads : usual_threads(),
-                       current_tape != nullptr ? &start_tape_team : &start_team, &used);
+                     current_tape != nullptr ? &start_tape_team : &start_team, &used);
     return used;
 }
 
@@ -161,15 +161,16 @@ std::unique_ptr<report<R>> solve(const library& with, const device& where, ensem
     auto call = std::make_shared<prepared_call<R>>(instances, o, kernel);
     try {
         if (!on_gpu) {
-            const host::any_run run{&with,     &call->arguments, &run_library<R>,
-                                    data.size, o.phases,         static_cast<openmp::instruction_set>(
-                                                             with.cpu().instruction_set)};
+            const host::any_run run{&with,           &call->arguments,
+                                    &run_library<R>, data.size,
+                                    o.phases,        static_cast<openmp::instruction_set>(with.cpu().instruction_set)};
             host::integrate_all<R>(where, o, &run, nullptr, data, check, *result);
         } else if (auto gpu = std::make_shared<resident<R>>(with, where, o, call); gpu->fits(instances)) {
             gpu->integrate(instances, o, check, *result);
             instances.gpu = result->gpu = gpu;
         } else {
-            require(instances.on_device.empty(), "the sweep has arrays on the GPU, whose memory does not suffice to "
+            require(instances.on_device.empty(),
+                    "the sweep has arrays on the GPU, whose memory does not suffice to "
                     "integrate all of it at once: divide it into smaller parts");
             host::chunks_of chunks(gpu->key(), gpu->maker(), gpu->engine_options(), call->arguments);
             host::integrate_all<R>(where, o, nullptr, &chunks, data, check, *result);

@@ -80,12 +80,12 @@ double staged[32'768];
 
 #define SIMULATED_KERNEL(name) \
     extern "C" void run_##name(void** arguments) { simulated::call(&name, arguments); }
-#define SIMULATED_PROGRAM                                                            \
-    using namespace myriad::detail;                                                  \
+#define SIMULATED_PROGRAM                                                                 \
+    using namespace myriad::detail;                                                       \
     extern "C" void set_place(const simulated::place* where) { simulated::now = *where; } \
-    SIMULATED_KERNEL(myriad_integrate)                                               \
-    SIMULATED_KERNEL(myriad_sum)                                                     \
-    SIMULATED_KERNEL(myriad_find_not_finite)                                         \
-    SIMULATED_KERNEL(count_all_costs)                                                \
-    SIMULATED_KERNEL(sum_costs)                                                      \
+    SIMULATED_KERNEL(myriad_integrate)                                                    \
+    SIMULATED_KERNEL(myriad_sum)                                                          \
+    SIMULATED_KERNEL(myriad_find_not_finite)                                              \
+    SIMULATED_KERNEL(count_all_costs)                                                     \
+    SIMULATED_KERNEL(sum_costs)                                                           \
     SIMULATED_KERNEL(place_by_cost)

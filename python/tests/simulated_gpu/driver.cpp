@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A driver of GPUs, libcuda.so.1, that computes on this CPU: device memory is the host's, streams do their work at once,
-// and programs are shared objects of device.hpp, whose threads are run one block at a time, each with a stack of its own.
-// MYRIAD_SIMULATED_GPUS says how many devices there are, MYRIAD_SIMULATED_CAPABILITY which, and
+// A driver of GPUs, libcuda.so.1, that computes on this CPU: device memory is the host's, streams do their work at
+// once, and programs are shared objects of device.hpp, whose threads are run one block at a time, each with a stack of
+// its own. MYRIAD_SIMULATED_GPUS says how many devices there are, MYRIAD_SIMULATED_CAPABILITY which, and
 // MYRIAD_SIMULATED_MEGABYTES what memory each has.
 #include <cstddef>
 #include <cstdint>
@@ -280,8 +280,8 @@ DRIVER cuModuleGetFunction(const void** function, void* module, const char* name
     void* const run = dlsym(module, (std::string("run_") + name).c_str());
     void* const set_place = dlsym(module, "set_place");
     if (run == nullptr || set_place == nullptr) return not_found;
-    *function = new kernel{reinterpret_cast<void (*)(void**)>(run),
-                           reinterpret_cast<void (*)(const place*)>(set_place)};
+    *function =
+        new kernel{reinterpret_cast<void (*)(void**)>(run), reinterpret_cast<void (*)(const place*)>(set_place)};
     return success;
 }
 DRIVER cuModuleGetGlobal_v2(std::uintptr_t* memory, std::size_t* bytes, void* module, const char* name) {

@@ -37,7 +37,7 @@ public:
     ~chunk_engine() override {
         try {
             now_current_.emplace(device_);  // until the other members are destroyed
-        } catch (const error&) {  // CUDA may be gone at exit
+        } catch (const error&) {            // CUDA may be gone at exit
         }
         cudaStreamSynchronize(stream_.get());
     }
@@ -162,8 +162,9 @@ public:
             if (access != array_access::read) add(target, source, components, kind);
         });
         row_list of_arrays = std::exchange(list, {});
-        walk_records(to, [&](auto*& target, auto* source, std::int64_t components, array_access,
-                                    array_kind kind) { add(target, source, components, kind); });
+        walk_records(to, [&](auto*& target, auto* source, std::int64_t components, array_access, array_kind kind) {
+            add(target, source, components, kind);
+        });
         // Records have memory of their own, which may precede that of the arrays.
         const bool after = records_.data() > memory_.data();
         row_list& lower = after ? of_arrays : list;
@@ -178,8 +179,8 @@ public:
         }
     }
 
-    /// The device's address of a value in one of the arrays of the arguments, of which all instances were uploaded last,
-    /// and how kernels use the array; null if it is in none of them.
+    /// The device's address of a value in one of the arrays of the arguments, of which all instances were uploaded
+    /// last, and how kernels use the array; null if it is in none of them.
     struct place_on_device {
         std::byte* address = nullptr;
         array_access access = array_access::read;

@@ -66,9 +66,8 @@ public:
         const int block = facts_.block_size = block_for(arguments.size);
         auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
         if (queue != nullptr) blocks = std::min(blocks, blocks_at_once(block));
-        kernel_.launch(
-            facts_.shared_placement, arguments, queue,
-            {blocks, static_cast<unsigned>(block), static_cast<std::size_t>(facts_.shared_bytes), where});
+        kernel_.launch(facts_.shared_placement, arguments, queue,
+                       {blocks, static_cast<unsigned>(block), static_cast<std::size_t>(facts_.shared_bytes), where});
     }
 
 private:

@@ -91,8 +91,9 @@ constexpr int columns_in(const std::int16_t (&column)[n]) {
     return detail::columns_in(column, n);
 }
 
-/// Calls `visit(pointer, components, access, kind)` for every array that the arguments of a kernel of such a model have,
-/// the pointer by reference: component c of instance i is at `pointer[c * size + i]`. `sampled`: columns of samples.
+/// Calls `visit(pointer, components, access, kind)` for every array that the arguments of a kernel of such a model
+/// have, the pointer by reference: component c of instance i is at `pointer[c * size + i]`. `sampled`: columns of
+/// samples.
 template <class R, class Arguments, class Visit>
 void for_each_array_of(const host::model_shape& model, Arguments& a, int sampled, Visit&& visit) {
     const auto visit_array = [&](auto*& array, std::int64_t components, array_access how, array_kind what) {

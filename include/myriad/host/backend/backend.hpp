@@ -88,8 +88,8 @@ public:
     virtual void integrate(const Arguments& host) = 0;
     /// Copies what kernels write back to where it was uploaded from, and the records of the last call into
     /// `host.record`. Components for which `wanted(kind, component)` is false are left out.
-    virtual void download(const Arguments& host,
-                          bool (*wanted)(void*, array_kind, std::int64_t) = nullptr, void* context = nullptr) = 0;
+    virtual void download(const Arguments& host, bool (*wanted)(void*, array_kind, std::int64_t) = nullptr,
+                          void* context = nullptr) = 0;
 };
 
 /// The engines for a model.

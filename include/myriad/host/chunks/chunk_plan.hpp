@@ -26,8 +26,7 @@ public:
     /// As the options say, or enough chunks to overlap most of the transfers, each large enough to keep the GPU and the
     /// bus busy.
     template <class Arguments>
-    chunk_plan(const options& o, Arguments& arguments, const cuda::any_engine& worker)
-        : chunk_plan(arguments.size) {
+    chunk_plan(const options& o, Arguments& arguments, const cuda::any_engine& worker) : chunk_plan(arguments.size) {
         std::int64_t copied = 0;
         const auto add = [&](auto* array, std::int64_t components, array_access access, array_kind) {
             const auto all = components * static_cast<std::int64_t>(sizeof(*array));

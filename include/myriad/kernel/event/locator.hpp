@@ -114,8 +114,8 @@ private:
         if constexpr (Method::first_same_as_last) ends.slope_end = trial.slope_end();
         return ends;
     }
-    __attribute__((noinline)) void look_out_of_line(const mask& busy, const trial_ends& ends, const sight& seen, mask& accepted,
-                                            fired& events) {
+    __attribute__((noinline)) void look_out_of_line(const mask& busy, const trial_ends& ends, const sight& seen,
+                                                    mask& accepted, fired& events) {
         for_each_lane(busy, [&](int i) MYRIAD_LAMBDA {
             if (look_closer(i, ends, seen, events) == trial_outcome::is_redone) set_lane(accepted, i, false);
         });

@@ -185,7 +185,7 @@ private:
 
     /// Out of line; otherwise its operands would stay live throughout the loop.
     __attribute__((noinline)) void search_out_of_line(step_type& step, const slopes& first, const slopes& last,
-                                              const mask& search) {
+                                                      const mask& search) {
         search_inside(step, first, last, search);
     }
 

@@ -25,8 +25,7 @@ constexpr python::argument_layout layout_of() {
     using record = record_arguments<Model, R>;
     using sample = sample_arguments<Model, R>;
     static_assert(__builtin_offsetof(one, shrink_limit) == __builtin_offsetof(python::any_arguments<R>, shrink_limit));
-    static_assert(__builtin_offsetof(record, time_column) ==
-                  __builtin_offsetof(python::any_record<R>, time_column));
+    static_assert(__builtin_offsetof(record, time_column) == __builtin_offsetof(python::any_record<R>, time_column));
     static_assert(__builtin_offsetof(sample, minimum_spacing) ==
                   __builtin_offsetof(python::any_sample<R>, minimum_spacing));
     python::argument_layout l{};
@@ -94,20 +93,19 @@ __device__ __forceinline__ void find_not_finite(const R* values, std::int64_t si
 
 /// Makes the kernel of a model, a method and a real type, with the model's shared parameters in the place of that name.
 /// The arguments may not contain commas.
-#define MYRIAD_DEVICE_PROGRAM(Model, Method, R, place)                                                          \
-    static_assert(myriad::detail::check_linkage<Model, Method>());                                              \
-    static_assert(myriad::cuda::is_compiled(myriad::shared_placement::place,                                    \
-                                            myriad::detail::shared_parameter_bytes<Model, R>));                 \
-    extern "C" {                                                                                                \
-    __device__ myriad::python::device_facts myriad_device_facts =                                               \
-        myriad::detail::device_facts_of<Model, Method, R, myriad::shared_placement::place>;                     \
-    }                                                                                                           \
-    extern "C" __global__ void myriad_find_not_finite(const R* values, std::int64_t size,                       \
-                                                      unsigned long long* first) {                              \
-        myriad::detail::find_not_finite(values, size, first);                                                   \
-    }                                                                                                           \
-    extern "C" __global__ void __launch_bounds__(myriad::detail::max_block_size<Model>()) myriad_integrate(     \
-        const __grid_constant__                                                                                 \
-            myriad::detail::launch_arguments<Model, R, myriad::shared_placement::place> arguments) {            \
-        myriad::detail::integrate_thread<Model, Method, R, myriad::shared_placement::place>(arguments);         \
+#define MYRIAD_DEVICE_PROGRAM(Model, Method, R, place)                                                                 \
+    static_assert(myriad::detail::check_linkage<Model, Method>());                                                     \
+    static_assert(                                                                                                     \
+        myriad::cuda::is_compiled(myriad::shared_placement::place, myriad::detail::shared_parameter_bytes<Model, R>)); \
+    extern "C" {                                                                                                       \
+    __device__ myriad::python::device_facts myriad_device_facts =                                                      \
+        myriad::detail::device_facts_of<Model, Method, R, myriad::shared_placement::place>;                            \
+    }                                                                                                                  \
+    extern "C" __global__ void myriad_find_not_finite(const R* values, std::int64_t size, unsigned long long* first) { \
+        myriad::detail::find_not_finite(values, size, first);                                                          \
+    }                                                                                                                  \
+    extern "C" __global__ void __launch_bounds__(myriad::detail::max_block_size<Model>()) myriad_integrate(            \
+        const __grid_constant__ myriad::detail::launch_arguments<Model, R, myriad::shared_placement::place>            \
+            arguments) {                                                                                               \
+        myriad::detail::integrate_thread<Model, Method, R, myriad::shared_placement::place>(arguments);                \
     }

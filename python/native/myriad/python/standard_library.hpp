@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The part of the C++ standard library that kernels and models use, for NVRTC, which has none: it includes this file for
-// each of the library's headers (myriad/nvrtc.py).
+// The part of the C++ standard library that kernels and models use, for NVRTC, which has none: it includes this file
+// for each of the library's headers (myriad/nvrtc.py).
 #pragma once
 
 using int8_t = signed char;
@@ -200,10 +200,10 @@ struct common_type {};
 template <class T>
 struct common_type<T> : type_identity<decay_t<T>> {};
 template <class A, class B>
-    requires requires { typename type_identity<myriad_common<A, B>>; }
+requires requires { typename type_identity<myriad_common<A, B>>; }
 struct common_type<A, B> : type_identity<myriad_common<A, B>> {};
 template <class A, class B, class... More>
-    requires(sizeof...(More) > 0) && requires { typename common_type<A, B>::type; }
+requires(sizeof...(More) > 0) && requires { typename common_type<A, B>::type; }
 struct common_type<A, B, More...> : common_type<typename common_type<A, B>::type, More...> {};
 template <class... T>
 using common_type_t = typename common_type<T...>::type;
@@ -213,7 +213,9 @@ using common_type_t = typename common_type<T...>::type;
 template <class A, class B>
 concept same_as = is_same_v<A, B> && is_same_v<B, A>;
 template <class From, class To>
-concept convertible_to = is_convertible_v<From, To> && requires { static_cast<To>(declval<From>()); };
+concept convertible_to = is_convertible_v<From, To> && requires {
+    static_cast<To>(declval<From>());
+};
 template <class Derived, class Base>
 concept derived_from = is_base_of_v<Base, Derived>;
 template <class T>
@@ -225,7 +227,9 @@ concept unsigned_integral = integral<T> && !signed_integral<T>;
 template <class T>
 concept floating_point = is_floating_point_v<T>;
 template <class F, class... Arguments>
-concept invocable = requires(F&& f, Arguments&&... a) { static_cast<F&&>(f)(static_cast<Arguments&&>(a)...); };
+concept invocable = requires(F&& f, Arguments&&... a) {
+    static_cast<F&&>(f)(static_cast<Arguments&&>(a)...);
+};
 
 // <utility>
 
@@ -258,8 +262,20 @@ struct integer_sequence {
     using value_type = T;
     static constexpr size_t size() noexcept { return sizeof...(numbers); }
 };
+template <class, class>
+struct myriad_joined;
+template <class T, T... a, T... b>
+struct myriad_joined<integer_sequence<T, a...>, integer_sequence<T, b...>>
+    : type_identity<integer_sequence<T, a..., (static_cast<T>(sizeof...(a)) + b)...>> {};
+template <class T, size_t n>
+struct myriad_below : myriad_joined<typename myriad_below<T, n / 2>::type, typename myriad_below<T, n - n / 2>::type> {
+};
+template <class T>
+struct myriad_below<T, 0> : type_identity<integer_sequence<T>> {};
+template <class T>
+struct myriad_below<T, 1> : type_identity<integer_sequence<T, T(0)>> {};
 template <class T, T n>
-using make_integer_sequence = __make_integer_seq<integer_sequence, T, n>;
+using make_integer_sequence = typename myriad_below<T, static_cast<size_t>(n)>::type;
 template <size_t... numbers>
 using index_sequence = integer_sequence<size_t, numbers...>;
 template <size_t n>
@@ -426,22 +442,18 @@ constexpr To bit_cast(const From& from) noexcept {
 
 // <cmath>, whose functions NVRTC has at global scope
 
-#define MYRIAD_FUNCTION_OF_ONE(name)              \
-    inline double name(double x) { return ::name(x); } \
+#define MYRIAD_FUNCTION_OF_ONE(name)                    \
+    inline double name(double x) { return ::name(x); }  \
     inline float name(float x) { return ::name##f(x); } \
-    template <class T>                            \
-        requires is_integral_v<T>                 \
-    inline double name(T x) {                     \
-        return ::name(static_cast<double>(x));    \
-    }
-#define MYRIAD_FUNCTION_OF_TWO(name)                              \
-    inline double name(double x, double y) { return ::name(x, y); }    \
-    inline float name(float x, float y) { return ::name##f(x, y); }    \
-    template <class A, class B>                                   \
-        requires is_arithmetic_v<A> && is_arithmetic_v<B>         \
-    inline double name(A x, B y) {                                \
-        return ::name(static_cast<double>(x), static_cast<double>(y)); \
-    }
+    template <class T>                                  \
+    requires is_integral_v<T>                           \
+    inline double name(T x) { return ::name(static_cast<double>(x)); }
+#define MYRIAD_FUNCTION_OF_TWO(name)                                \
+    inline double name(double x, double y) { return ::name(x, y); } \
+    inline float name(float x, float y) { return ::name##f(x, y); } \
+    template <class A, class B>                                     \
+    requires is_arithmetic_v<A> && is_arithmetic_v<B>               \
+    inline double name(A x, B y) { return ::name(static_cast<double>(x), static_cast<double>(y)); }
 MYRIAD_FUNCTION_OF_ONE(acos)
 MYRIAD_FUNCTION_OF_ONE(acosh)
 MYRIAD_FUNCTION_OF_ONE(asin)
