@@ -67,12 +67,13 @@ test_python() {
     export PYTHONPATH=$packages
     if [[ ! -e $packages/myriad ]]; then
         say "Building the wheel"
-        python3 - "$PWD/$deps" >"$output/python_build.log" 2>&1 <<'END' || { tail -20 "$output/python_build.log"; return 1; }
+        python3 - "$PWD/$deps" >"$output/python_build.log" 2>&1 <<'END' ||
 import os, sys
 from scikit_build_core.build import build_wheel
 xsimd = {"cmake.define.MYRIAD_XSIMD_INCLUDE_DIR": sys.argv[1]} if os.path.isdir(sys.argv[1] + "/xsimd") else {}
 print(build_wheel("build/python-gpu-wheel", xsimd))
 END
+            { tail -20 "$output/python_build.log"; return 1; }
         python3 -m zipfile -e build/python-gpu-wheel/*.whl "$packages"
     fi
     local status=0

@@ -95,8 +95,10 @@ def main():
     parser.add_argument("--calls", type=int, default=20, help="calls that are timed (default: 20)")
     parser.add_argument("--device", default="cuda", help="Myriad's device (default: cuda)")
     parser.add_argument("--output", help="file for the rows (default: standard output alone)")
-    parser.add_argument("--check", action="store_true", help="exit status 1 if Myriad takes longer than it may on an H200")
-    parser.add_argument("--only", nargs=2, metavar=("PROGRAM", "PRECISION"), help="one of the measurements, in this process")
+    parser.add_argument("--check", action="store_true",
+                        help="exit status 1 if Myriad takes longer than it should on an H200")
+    parser.add_argument("--only", nargs=2, metavar=("PROGRAM", "PRECISION"),
+                        help="one of the measurements, in this process")
     options = parser.parse_args()
     if options.only:
         program, precision = options.only

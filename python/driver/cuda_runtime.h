@@ -111,8 +111,6 @@ namespace myriad::python {
 cudaError_t load_module(void** module, const void* image);
 /// A kernel of it.
 cudaError_t find_kernel(const void** kernel, void* module, const char* name);
-/// Copies a variable of it to the host.
-cudaError_t read_variable(void* value, std::size_t bytes, void* module, const char* name);
 /// The version of CUDA that the driver has, 13000 for 13.0; 0 without a driver.
 int driver_version();
 

@@ -13,6 +13,7 @@ from . import _core, cache
 from .compiler import Kernel, first_message
 from .errors import Error
 
+_oldest = 12, 6  # older ones crash
 _include = pathlib.Path(__file__).parent / "include"
 _options = ["-std=c++20", "-default-device", f"-I{_include}"]
 # NVRTC has no standard library: the part that kernels use is one header.
@@ -91,6 +92,9 @@ class _Nvrtc:
         major, minor = ctypes.c_int(), ctypes.c_int()
         self._call("nvrtcVersion", ctypes.byref(major), ctypes.byref(minor))
         self.version = f"{major.value}.{minor.value}"
+        if (major.value, minor.value) < _oldest:
+            raise Error(f"NVRTC {self.version} is too old: install {_oldest[0]}.{_oldest[1]} or newer, by `pip install "
+                        "nvidia-cuda-nvrtc`, or `nvidia-cuda-nvrtc-cu12` for a driver of CUDA 12")
 
     def _call(self, name, *arguments):
         status = getattr(self._functions, name)(*arguments)

@@ -69,7 +69,6 @@ struct driver {
     function<void*, int, device_pointer> pointer_attribute;
     function<device_pointer, device_pointer, std::size_t, cudaStream_t> copy;
     function<const copy_of_rows*, cudaStream_t> copy_rows;
-    function<void*, device_pointer, std::size_t> copy_to_host;
     function<device_pointer, unsigned char, std::size_t, cudaStream_t> set;
     function<cudaStream_t*, unsigned> create_stream;
     function<cudaStream_t> destroy_stream, wait_for_stream, query_stream;
@@ -86,7 +85,6 @@ struct driver {
         launch;
     function<void**, const void*> load;
     function<const void**, void*, const char*> kernel_of;
-    function<device_pointer*, std::size_t*, void*, const char*> variable_of;
 
     driver() {
         void* const library = dlopen("libcuda.so.1", RTLD_NOW | RTLD_LOCAL);
@@ -120,7 +118,6 @@ struct driver {
         find(pointer_attribute, "cuPointerGetAttribute");
         find(copy, "cuMemcpyAsync");
         find(copy_rows, "cuMemcpy2DAsync_v2");
-        find(copy_to_host, "cuMemcpyDtoH_v2");
         find(set, "cuMemsetD8Async");
         find(create_stream, "cuStreamCreate");
         find(destroy_stream, "cuStreamDestroy_v2");
@@ -138,7 +135,6 @@ struct driver {
         find(launch, "cuLaunchKernel");
         find(load, "cuModuleLoadData");
         find(kernel_of, "cuModuleGetFunction");
-        find(variable_of, "cuModuleGetGlobal_v2");
         if (complete) status = init(0);
     }
 };
@@ -302,12 +298,6 @@ namespace myriad::python {
 cudaError_t load_module(void** module, const void* image) { return the().load(module, image); }
 cudaError_t find_kernel(const void** kernel, void* module, const char* name) {
     return the().kernel_of(kernel, module, name);
-}
-cudaError_t read_variable(void* value, std::size_t bytes, void* module, const char* name) {
-    device_pointer where = 0;
-    std::size_t size = 0;
-    if (const auto status = the().variable_of(&where, &size, module, name); status != cudaSuccess) return status;
-    return size == bytes ? the().copy_to_host(value, where, bytes) : cudaErrorInvalidValue;
 }
 int driver_version() {
     int found = 0;

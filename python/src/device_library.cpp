@@ -9,6 +9,23 @@
 
 namespace myriad::python {
 
+namespace {
+
+device_facts told_by(const void* kernel) {
+    cuda::device_memory memory;
+    memory.reserve(sizeof(device_facts));
+    const cuda::stream where;
+    void* to = memory.data();
+    void* arguments[] = {&to};
+    cuda::check(cudaLaunchKernel(kernel, dim3(1), dim3(1), arguments, 0, where.get()), "reading a kernel's facts");
+    device_facts facts{};
+    MYRIAD_CUDA(cudaMemcpyAsync(&facts, to, sizeof facts, cudaMemcpyDeviceToHost, where.get()));
+    cuda::check(cudaStreamSynchronize(where.get()), "reading a kernel's facts");
+    return facts;
+}
+
+}  // namespace
+
 gpu_facts facts_of_gpu(int device) {
     cuda::require_device({.device = device});
     std::string why_none;
@@ -38,12 +55,14 @@ const device_program::kernels& device_program::on(int device) {
             "driver's version");
     cuda::check(status, "loading the model's kernel");
     kernels found;
-    cuda::check(read_variable(&found.facts, sizeof found.facts, module, "myriad_device_facts"), "reading its facts");
-    require(found.facts.model.interface_version == interface_version,
-            "the model's kernel was compiled for another version of Myriad");
     const auto find = [module](const void*& kernel, const char* name) {
         cuda::check(find_kernel(&kernel, module, name), name);
     };
+    const void* tell_facts = nullptr;
+    find(tell_facts, "myriad_tell_facts");
+    found.facts = told_by(tell_facts);
+    require(found.facts.model.interface_version == interface_version && found.facts.layout.size > 0,
+            "the model's kernel was compiled for another version of Myriad");
     find(found.integrate, "myriad_integrate");
     find(found.sum, "myriad_sum");
     find(found.find_not_finite, "myriad_find_not_finite");
@@ -78,24 +97,21 @@ void loaded_kernel<R>::set_shared(const detail::shared_parameters<R>& shared) {
     put(f.layout.shared_integer, shared.integer, f.model.n_shared_integer);
 }
 
-namespace {
-
-/// Bytes from the beginning of an object to the end of one of its members.
+template <class R>
 template <class Object, class Member>
-int bytes_until(const Object& object, const Member& last) {
-    return static_cast<int>(reinterpret_cast<const std::byte*>(&last + 1) -
-                            reinterpret_cast<const std::byte*>(&object));
+void loaded_kernel<R>::put_head(std::uint32_t offset, const Object& object, const Member& last, std::uint32_t bytes) {
+    const auto* const begin = reinterpret_cast<const std::byte*>(&object);
+    require(reinterpret_cast<const std::byte*>(&last + 1) - begin == std::ptrdiff_t{bytes},
+            "the model's kernel was compiled for another version of Myriad");
+    put(offset, begin, static_cast<int>(bytes));
 }
-
-}  // namespace
 
 template <class R>
 void loaded_kernel<R>::launch(shared_placement, const arguments& a, unsigned long long* queue,
                               const cuda::launch_shape& how) {
     const model_facts& m = all_->facts.model;
     const argument_layout& at = all_->facts.layout;
-    const any_arguments<R>& head = a;
-    put(0, reinterpret_cast<const std::byte*>(&head), bytes_until(head, a.shrink_limit));
+    put_head(0, static_cast<const any_arguments<R>&>(a), a.shrink_limit, at.head);
     put(at.relative_tolerance, a.relative_tolerance, m.n_state);
     put(at.absolute_tolerance, a.absolute_tolerance, m.n_state);
     put(at.event, a.event, m.n_event);
@@ -103,11 +119,11 @@ void loaded_kernel<R>::launch(shared_placement, const arguments& a, unsigned lon
     put(at.falling, a.falling, m.n_event / 32 + 1);
     put(at.sub_samples, &a.sub_samples, 1);
     put(at.accumulation_limit, &a.accumulation_limit, 1);
-    put(at.record, reinterpret_cast<const std::byte*>(&a.record), bytes_until(a.record, a.record.time_column));
+    put_head(at.record, a.record, a.record.time_column, at.record_head);
     put(at.record_columns[0], a.record.state_column, m.n_state);
     put(at.record_columns[1], a.record.accessory_column, m.n_accessory);
     put(at.record_columns[2], a.record.integer_accessory_column, m.n_integer_accessory);
-    put(at.sample, reinterpret_cast<const std::byte*>(&a.sample), bytes_until(a.sample, a.sample.minimum_spacing));
+    put_head(at.sample, a.sample, a.sample.minimum_spacing, at.sample_head);
     put(at.sample_columns, a.sample.column, m.n_state);
     put(at.queue, &queue, 1);
     void* all[] = {parameters_.data()};

@@ -89,6 +89,9 @@ private:
     /// Writes values to a place of the launch parameters.
     template <class T>
     void put(std::uint32_t offset, const T* values, int count);
+    /// Writes an object up to a member, which must be as many bytes.
+    template <class Object, class Member>
+    void put_head(std::uint32_t offset, const Object& object, const Member& last, std::uint32_t bytes);
 
     const device_program::kernels* all_;
     std::vector<std::uint64_t> parameters_;  // 64-bit, for their alignment

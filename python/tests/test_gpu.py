@@ -66,9 +66,10 @@ def test_every_method_solves_the_oscillator(method, precision):
                    method=method, precision=precision, device="cuda", **step)
     assert run["x"].dtype == ("f8" if precision == "double" else "f4")
     exact = np.cos(frequency[:, None] * np.linspace(0, 5, 11))
-    # dense output of the stiff methods is of lower order
-    assert np.abs(run["x"] - exact).max() < (3e-5 if method.startswith("ro") else 1e-5 if precision == "double" else 2e-3)
-    assert np.abs(run.states["x"] - exact[:, -1]).max() < (1e-5 if precision == "double" else 2e-3)
+    # a thousand times the tolerance per step, and more for the interpolants of stiff methods, of lower order
+    allowed = 1e-5 if precision == "double" else 2e-3
+    assert np.abs(run["x"] - exact).max() < (max(allowed, 3e-5) if method.startswith("ro") else allowed)
+    assert np.abs(run.states["x"] - exact[:, -1]).max() < allowed
 
 
 def test_the_bits_of_an_instance_depend_on_nothing_else():

@@ -112,6 +112,12 @@ def test_a_gpu_newer_than_nvrtc_gets_ptx_and_an_older_one_a_message():
         library.target(35)
 
 
+def test_an_nvrtc_that_is_too_old_is_refused(monkeypatch):
+    monkeypatch.setattr(nvrtc, "_oldest", (1000, 0))
+    with pytest.raises(my.Error, match="NVRTC .* is too old: install 1000.0 or newer"):
+        nvrtc._Nvrtc(nvrtc.library()._functions)
+
+
 def test_the_first_message_of_nvrtc_is_told():
     with pytest.raises(my.Error, match="the model does not compile .NVRTC .*: identifier \"nothing\" is undefined$"):
         nvrtc.library().compile("double a = nothing; double b = nothing_either;", 90)

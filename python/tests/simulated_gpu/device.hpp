@@ -84,6 +84,7 @@ double staged[32'768];
     using namespace myriad::detail;                                                       \
     extern "C" void set_place(const simulated::place* where) { simulated::now = *where; } \
     SIMULATED_KERNEL(myriad_integrate)                                                    \
+    SIMULATED_KERNEL(myriad_tell_facts)                                                   \
     SIMULATED_KERNEL(myriad_sum)                                                          \
     SIMULATED_KERNEL(myriad_find_not_finite)                                              \
     SIMULATED_KERNEL(count_all_costs)                                                     \

@@ -218,9 +218,6 @@ DRIVER cuMemcpyAsync(std::uintptr_t to, std::uintptr_t from, std::size_t bytes, 
     std::memcpy(reinterpret_cast<void*>(to), reinterpret_cast<const void*>(from), bytes);
     return success;
 }
-DRIVER cuMemcpyDtoH_v2(void* to, std::uintptr_t from, std::size_t bytes) {
-    return cuMemcpyAsync(reinterpret_cast<std::uintptr_t>(to), from, bytes, nullptr);
-}
 DRIVER cuMemcpy2DAsync_v2(const void*, void*) { return invalid_value; }  // for pinned memory alone
 DRIVER cuMemsetD8Async(std::uintptr_t memory, unsigned char value, std::size_t bytes, void*) {
     NEEDS_CONTEXT;
@@ -282,15 +279,5 @@ DRIVER cuModuleGetFunction(const void** function, void* module, const char* name
     if (run == nullptr || set_place == nullptr) return not_found;
     *function =
         new kernel{reinterpret_cast<void (*)(void**)>(run), reinterpret_cast<void (*)(const place*)>(set_place)};
-    return success;
-}
-DRIVER cuModuleGetGlobal_v2(std::uintptr_t* memory, std::size_t* bytes, void* module, const char* name) {
-    void* const found = dlsym(module, name);
-    if (found == nullptr) return not_found;
-    *memory = reinterpret_cast<std::uintptr_t>(found);
-    Dl_info facts{};
-    void* symbol = nullptr;
-    dladdr1(found, &facts, &symbol, RTLD_DL_SYMENT);
-    *bytes = symbol != nullptr ? static_cast<const Elf64_Sym*>(symbol)->st_size : 0;
     return success;
 }

@@ -8,9 +8,10 @@
 
 namespace myriad::python {
 
-/// Offsets in bytes of those launch parameters whose place depends on the model. What comes before the tolerances is as
-/// in `any_arguments`.
+/// Offsets in bytes of those launch parameters whose place depends on the model. Heads are what is as in
+/// `any_arguments` and its parts, up to the sizes here.
 struct argument_layout {
+    std::uint32_t head, record_head, sample_head;
     std::uint32_t relative_tolerance, absolute_tolerance, event, rising, falling, sub_samples, accumulation_limit;
     std::uint32_t record, record_columns[3];  ///< of states, accessories and integer accessories
     std::uint32_t sample, sample_columns;
@@ -18,7 +19,7 @@ struct argument_layout {
     std::uint32_t size;
 };
 
-/// What a compiled program tells of itself, in the device's variable `myriad_device_facts`.
+/// What a compiled program tells of itself, by its kernel `myriad_tell_facts`.
 struct device_facts {
     model_facts model;
     argument_layout layout;

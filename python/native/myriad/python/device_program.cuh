@@ -14,52 +14,55 @@
 #include "myriad/python/device_layout.hpp"
 #include "myriad/python/facts_of.hpp"
 
-#pragma nv_diag_suppress 1427  // offsetof in structs with bases, whose layout is plain all the same
-
 namespace myriad::detail::inline MYRIAD_TARGET {
 
+/// Where the launch parameters are, by way of addresses in a memory that need not hold them: not every NVRTC has
+/// offsetof.
 template <class Model, class R, shared_placement placement>
-constexpr python::argument_layout layout_of() {
-    using all = launch_arguments<Model, R, placement>;
-    using one = kernel_arguments<Model, R>;
-    using record = record_arguments<Model, R>;
-    using sample = sample_arguments<Model, R>;
-    static_assert(__builtin_offsetof(one, shrink_limit) == __builtin_offsetof(python::any_arguments<R>, shrink_limit));
-    static_assert(__builtin_offsetof(record, time_column) == __builtin_offsetof(python::any_record<R>, time_column));
-    static_assert(__builtin_offsetof(sample, minimum_spacing) ==
-                  __builtin_offsetof(python::any_sample<R>, minimum_spacing));
+__device__ __forceinline__ python::argument_layout layout_of(const void* memory) {
+    using arguments = launch_arguments<Model, R, placement>;
+    const auto& all = *static_cast<const arguments*>(memory);
+    const auto& one = all.ensemble;
+    const auto at = [memory](const auto& member) {
+        return static_cast<std::uint32_t>(reinterpret_cast<const char*>(&member) - static_cast<const char*>(memory));
+    };
     python::argument_layout l{};
-    l.relative_tolerance = __builtin_offsetof(one, relative_tolerance);
-    l.absolute_tolerance = __builtin_offsetof(one, absolute_tolerance);
-    l.event = __builtin_offsetof(one, event);
-    l.rising = __builtin_offsetof(one, rising);
-    l.falling = __builtin_offsetof(one, falling);
-    l.sub_samples = __builtin_offsetof(one, sub_samples);
-    l.accumulation_limit = __builtin_offsetof(one, accumulation_limit);
-    l.record = __builtin_offsetof(one, record);
-    l.record_columns[0] = l.record + __builtin_offsetof(record, state_column);
-    l.record_columns[1] = l.record + __builtin_offsetof(record, accessory_column);
-    l.record_columns[2] = l.record + __builtin_offsetof(record, integer_accessory_column);
-    l.sample = __builtin_offsetof(one, sample);
-    l.sample_columns = l.sample + __builtin_offsetof(sample, column);
-    l.queue = __builtin_offsetof(all, queue);
+    l.head = at(one.shrink_limit) + sizeof one.shrink_limit;
+    l.relative_tolerance = at(one.relative_tolerance);
+    l.absolute_tolerance = at(one.absolute_tolerance);
+    l.event = at(one.event);
+    l.rising = at(one.rising);
+    l.falling = at(one.falling);
+    l.sub_samples = at(one.sub_samples);
+    l.accumulation_limit = at(one.accumulation_limit);
+    l.record = at(one.record);
+    l.record_head = at(one.record.time_column) + sizeof one.record.time_column - l.record;
+    l.record_columns[0] = at(one.record.state_column);
+    l.record_columns[1] = at(one.record.accessory_column);
+    l.record_columns[2] = at(one.record.integer_accessory_column);
+    l.sample = at(one.sample);
+    l.sample_head = at(one.sample.minimum_spacing) + sizeof one.sample.minimum_spacing - l.sample;
+    l.sample_columns = at(one.sample.column);
+    l.queue = at(all.queue);
     if constexpr (placement == shared_placement::constant_bank) {
-        l.shared = __builtin_offsetof(all, shared);
-        l.shared_integer = __builtin_offsetof(all, shared_integer);
+        l.shared = at(all.shared);
+        l.shared_integer = at(all.shared_integer);
     }
-    l.size = sizeof(all);
+    l.size = sizeof all;
     return l;
 }
 
 template <class Model, class Method, class R, shared_placement placement>
-inline constexpr python::device_facts device_facts_of{
-    .model = facts_of<Model, Method, R>,
-    .layout = layout_of<Model, R, placement>(),
-    .shared_placement = placement,
-    .shared_bytes = shared_parameter_bytes<Model, R>,
-    .max_block_size = max_block_size<Model>(),
-    .costs_differ = costs_differ<Model, Method>,
-};
+__device__ __forceinline__ void tell_facts(python::device_facts* to) {
+    *to = {
+        .model = facts_of<Model, Method, R>,
+        .layout = layout_of<Model, R, placement>(to),
+        .shared_placement = placement,
+        .shared_bytes = shared_parameter_bytes<Model, R>,
+        .max_block_size = max_block_size<Model>(),
+        .costs_differ = costs_differ<Model, Method>,
+    };
+}
 
 /// Adds up the values of a warp's threads; its first thread has the sum.
 __device__ __forceinline__ unsigned long long sum_of_warp(unsigned long long value) {
@@ -97,9 +100,8 @@ __device__ __forceinline__ void find_not_finite(const R* values, std::int64_t si
     static_assert(myriad::detail::check_linkage<Model, Method>());                                                     \
     static_assert(                                                                                                     \
         myriad::cuda::is_compiled(myriad::shared_placement::place, myriad::detail::shared_parameter_bytes<Model, R>)); \
-    extern "C" {                                                                                                       \
-    __device__ myriad::python::device_facts myriad_device_facts =                                                      \
-        myriad::detail::device_facts_of<Model, Method, R, myriad::shared_placement::place>;                            \
+    extern "C" __global__ void myriad_tell_facts(myriad::python::device_facts* to) {                                   \
+        myriad::detail::tell_facts<Model, Method, R, myriad::shared_placement::place>(to);                             \
     }                                                                                                                  \
     extern "C" __global__ void myriad_find_not_finite(const R* values, std::int64_t size, unsigned long long* first) { \
         myriad::detail::find_not_finite(values, size, first);                                                          \
