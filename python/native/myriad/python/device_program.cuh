@@ -52,6 +52,9 @@ __device__ __forceinline__ python::argument_layout layout_of(const void* memory)
     return l;
 }
 
+template <class Model>
+inline constexpr int most_threads = max_block_size<Model>();
+
 template <class Model, class Method, class R, shared_placement placement>
 __device__ __forceinline__ void tell_facts(python::device_facts* to) {
     *to = {
@@ -59,7 +62,7 @@ __device__ __forceinline__ void tell_facts(python::device_facts* to) {
         .layout = layout_of<Model, R, placement>(to),
         .shared_placement = placement,
         .shared_bytes = shared_parameter_bytes<Model, R>,
-        .max_block_size = max_block_size<Model>(),
+        .max_block_size = most_threads<Model>,
         .costs_differ = costs_differ<Model, Method>,
     };
 }
