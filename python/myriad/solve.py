@@ -327,14 +327,19 @@ def _progress_function(progress):
 def _device_name(device, interpreted):
     """The name of a device as the core knows it, and why "auto" takes no GPU where there is one."""
     device = str(device)
+    # first: the driver finds no GPU in a fork
+    forked = (device == "auto" or device.startswith("cuda")) and not _core.may_use_gpus()
     if device == "auto":
+        if forked:
+            return "cpu", "a GPU was not looked for, as this process was forked from one that has done so"
         if interpreted or _core.no_gpu():
             return "cpu", None
-        if not _core.may_use_gpus():
-            return "cpu", "the GPU was not used, as this process was forked from one that has used it"
         if nvrtc.find() is None:
             return "cpu", "the GPU was not used, as there is no NVRTC: `pip install 'myriad[cuda]'`"
         return "cuda:0", None
+    if forked:
+        raise Error(f"device {device!r} is not available, as this process was forked from one that has looked for GPUs: "
+                    "fork before that, start processes by \"spawn\", or use \"cpu\"")
     try:
         return _core.check_device(device), None
     except Error as error:

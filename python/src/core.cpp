@@ -385,7 +385,7 @@ NB_MODULE(_core, m) {
         return nb::make_tuple(facts.name, facts.capability, facts.shared_bytes);
     });
     m.def("no_gpu", &device::no_gpu);
-    m.def("wait_for_gpu", &wait_for_gpu);
+    m.def("wait_for_gpu", &wait_for_gpu, nb::call_guard<nb::gil_scoped_release>());
     m.def("facts_of_device_array", &facts_of_device_array);
     m.def("facts_of_own_array", &facts_of_own_array);
     m.def("may_use_gpus", &host::may_use_gpus);

@@ -12,7 +12,7 @@ namespace {
 using device_pointer = std::uintptr_t;
 using context = void*;
 
-/// A function of the driver, in the version whose name ends in _v2 where there are two.
+/// A function of the driver.
 template <class... Arguments>
 class function {
 public:
@@ -90,8 +90,9 @@ struct driver {
         void* const library = dlopen("libcuda.so.1", RTLD_NOW | RTLD_LOCAL);
         if (library == nullptr) return;
         bool complete = true;
-        const auto find = [&](auto& f, const char* name) {
+        const auto find = [&](auto& f, const char* name, const char* newer = nullptr) {
             f.find(library, name);
+            if (!f.exists() && newer != nullptr) f.find(library, newer);
             complete = complete && f.exists();
         };
         find(init, "cuInit");
@@ -128,7 +129,7 @@ struct driver {
         find(destroy_event, "cuEventDestroy_v2");
         find(synchronize_event, "cuEventSynchronize");
         find(record, "cuEventRecord");
-        find(elapsed, "cuEventElapsedTime");
+        find(elapsed, "cuEventElapsedTime", "cuEventElapsedTime_v2");
         find(kernel_attribute, "cuFuncGetAttribute");
         find(set_kernel_attribute, "cuFuncSetAttribute");
         find(occupancy, "cuOccupancyMaxActiveBlocksPerMultiprocessor");

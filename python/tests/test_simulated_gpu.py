@@ -11,7 +11,7 @@ import simulated_gpu
 pytestmark = pytest.mark.skipif(shutil.which("g++") is None, reason="there is no g++")
 
 MODEL = """
-import ctypes, gc, os
+import concurrent.futures, ctypes, os
 import numpy as np, myriad as my
 from myriad import _core
 x, v, k, B, t = *my.states("x v"), my.parameter("k"), my.shared("B"), my.time
@@ -135,6 +135,10 @@ assert second.report.device == "cuda:1" and second.report.kernel == "memory"
 assert second.device["x"].__dlpack_device__() == (2, 1)
 assert "this machine has 2 GPUs" in message(lambda: solve("cuda:2", 5))
 assert "there is no 'B' on the GPU" in message(lambda: second.device["B"], KeyError)
+with concurrent.futures.ThreadPoolExecutor(4) as pool:
+    several = list(pool.map(lambda i: solve(f"cuda:{i % 2}", 100 + i), range(8)))
+assert [r.report.device for r in several] == ["cuda:0", "cuda:1"] * 4
+assert all(np.array_equal(r["x"], solve("cuda", 100 + i)["x"]) for i, r in enumerate(several))
 assert solve("auto", 5, interpreted=True).report.device == "cpu"
 from myriad import nvrtc
 nvrtc.find = lambda: None
