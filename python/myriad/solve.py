@@ -327,8 +327,9 @@ def _progress_function(progress):
 def _device_name(device, interpreted):
     """The name of a device as the core knows it, and why "auto" takes no GPU where there is one."""
     device = str(device)
-    # first: the driver finds no GPU in a fork
-    forked = (device == "auto" or device.startswith("cuda")) and not _core.may_use_gpus()
+    # first, as the driver finds no GPU in a fork
+    forked = ((device == "auto" or device.startswith("cuda")) and _core.driver_version() > 0
+              and not _core.may_use_gpus())
     if device == "auto":
         if forked:
             return "cpu", "a GPU was not looked for, as this process was forked from one that has done so"
