@@ -176,6 +176,10 @@ def kernel(header, struct, method, real, shared, device):
     path = find()
     if path is None:
         library()  # says so
+    driver = _core.driver_version() // 1000
+    if _major(path) > driver:
+        raise Error(f"NVRTC of CUDA {_major(path)} compiles for newer drivers than this one, of CUDA {driver}: update "
+                    f"the driver, or `pip install nvidia-cuda-nvrtc-cu{driver}`")
     source = source_of(header, struct, method, real, place)
     facts = path.stat()
     key = cache.key_of({"source": source, "version": _core.version, "headers": _core.headers, "options": _options[:-1],

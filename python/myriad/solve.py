@@ -3,6 +3,7 @@
 
 import itertools
 import math
+import re
 import time as clock
 
 import numpy as np
@@ -27,6 +28,8 @@ _in_python = (
     ("set it with ensemble.t_begin() = ... before solving", "give it in time="),
     ("set it with ensemble.t_end() = ... before solving", "give it in time="),
     ("samples.", "samples "),
+    ("integrate fewer instances at a time: a smaller options::chunk_size or solver capacity",
+     "integrate the sweep in smaller parts"),
     ("use an ensemble of doubles", "give precision=\"double\""),
     ("relative_tolerance", "rtol"),
     ("absolute_tolerance", "atol"),
@@ -339,8 +342,8 @@ def _device_name(device, interpreted):
             return "cpu", "the GPU was not used, as there is no NVRTC: `pip install 'myriad[cuda]'`"
         return "cuda:0", None
     if forked:
-        raise Error(f"device {device!r} is not available, as this process was forked from one that has looked for GPUs: "
-                    "fork before that, start processes by \"spawn\", or use \"cpu\"")
+        raise Error(f"device {device!r} is not available, as this process was forked from one that has looked for "
+                    "GPUs: fork before that, start processes by \"spawn\", or use \"cpu\"")
     try:
         return _core.check_device(device), None
     except Error as error:
@@ -470,6 +473,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
         text = str(error)
         for said, meant in _in_python:
             text = text.replace(said, meant)
+        text = re.sub(r"integrate fewer instances at a time, with .* an options::chunk_size of at most (\d+)",
+                      r"integrate the sweep in parts of at most \1 instances", text)
         raise Error(text) from None
     finally:
         finish()

@@ -11,7 +11,7 @@ import simulated_gpu
 pytestmark = pytest.mark.skipif(shutil.which("g++") is None, reason="there is no g++")
 
 MODEL = """
-import concurrent.futures, ctypes, os
+import concurrent.futures, ctypes, os, pathlib
 import numpy as np, myriad as my
 from myriad import _core
 x, v, k, B, t = *my.states("x v"), my.parameter("k"), my.shared("B"), my.time
@@ -87,6 +87,9 @@ print(hash(gpu["x"].tobytes()), hash(gpu.steps().tobytes()), gpu.report.accepted
 assert "is not on a GPU: the run was on the CPU, or in parts" in message(lambda: gpu.device["x"])
 assert "whose memory does not suffice" in message(lambda: my.solve(
     model, {k: OnGpu(np.full(2_000_000, 0.2)), B: 0.3}, start={x: 1, v: 0}, time=(0, 1), device="cuda"))
+said = message(lambda: my.solve(model, {k: np.full(50, 0.2), B: 0.3}, start={x: 1, v: 0}, time=(0, 1), device="cuda",
+                                samples=dict(every=1, capacity=900_000)))
+assert "out of device memory" in said and "integrate the sweep in parts of at most" in said, said
 """, PYTHONHASHSEED=0, MYRIAD_SIMULATED_MEGABYTES=200)
     assert chunks == whole
 
@@ -141,6 +144,9 @@ assert [r.report.device for r in several] == ["cuda:0", "cuda:1"] * 4
 assert all(np.array_equal(r["x"], solve("cuda", 100 + i)["x"]) for i, r in enumerate(several))
 assert solve("auto", 5, interpreted=True).report.device == "cpu"
 from myriad import nvrtc
+nvrtc.find = lambda: pathlib.Path("libnvrtc.so.14")
+assert "NVRTC of CUDA 14 compiles for newer drivers than this one, of CUDA 13" in message(
+    lambda: solve("cuda", 5, precision="float"))
 nvrtc.find = lambda: None
 without = solve("auto", 5)
 assert without.report.device == "cpu" and "no NVRTC" in str(without.report)
