@@ -7,6 +7,7 @@ import importlib.util
 import os
 import pathlib
 import re
+import sys
 import time
 
 from . import _core, cache
@@ -23,7 +24,8 @@ _standard = {name: "#include <myriad/python/standard_library.hpp>\n" for name in
 
 
 def _candidates():
-    """Where NVRTC may be: $MYRIAD_NVRTC, the wheels nvidia-cuda-nvrtc (-cu12), and CUDA's own folders."""
+    """Where NVRTC may be: $MYRIAD_NVRTC, the wheels nvidia-cuda-nvrtc (-cu12), Conda's, Debian's and CUDA's own
+    folders."""
     if chosen := os.environ.get("MYRIAD_NVRTC"):
         return [pathlib.Path(chosen)]
     found = []
@@ -33,7 +35,8 @@ def _candidates():
     for home in (os.environ.get("CUDA_HOME"), os.environ.get("CUDA_PATH"), "/usr/local/cuda"):
         if home:
             found += pathlib.Path(home).glob("lib64/libnvrtc.so.[0-9][0-9]")
-    found += pathlib.Path("/usr/lib/x86_64-linux-gnu").glob("libnvrtc.so.[0-9][0-9]")
+    found += pathlib.Path(sys.prefix).glob("lib/libnvrtc.so.[0-9][0-9]")
+    found += pathlib.Path("/usr/lib").glob("*-linux-gnu/libnvrtc.so.[0-9][0-9]")
     return found
 
 
@@ -181,10 +184,9 @@ def kernel(header, struct, method, real, shared, device):
         raise Error(f"NVRTC of CUDA {_major(path)} compiles for newer drivers than this one, of CUDA {driver}: update "
                     f"the driver, or `pip install nvidia-cuda-nvrtc-cu{driver}`")
     source = source_of(header, struct, method, real, place)
-    facts = path.stat()
     key = cache.key_of({"source": source, "version": _core.version, "headers": _core.headers, "options": _options[:-1],
                         "capability": capability,
-                        "nvrtc": f"{path.resolve()} {facts.st_size} {facts.st_mtime_ns}"})
+                        "nvrtc": f"{path.name} {path.stat().st_size}"})  # its version, without loading it
 
     def make(workplace):
         made = workplace / "model.so"
