@@ -16,6 +16,20 @@ from myriad.methods import fixed_step, methods
 pytestmark = pytest.mark.skipif(os.environ.get("MYRIAD_TEST_DEVICE") != "cuda" or bool(_core.no_gpu()),
                                 reason="MYRIAD_TEST_DEVICE is not cuda, or there is no GPU")
 
+
+def tangents():
+    return my.with_tangents(example_models.duffing(), 2)
+
+
+def network():
+    """Twelve oscillators whose shared table of weights is too large for the constant bank."""
+    phi = np.array(my.states([f"phi_{i}" for i in range(12)]))
+    weights = my.table("W", np.random.default_rng(1).uniform(size=(12, 12)))
+    sine, cosine = np.sin(phi), np.cos(phi)
+    pull = cosine * (weights @ sine) - sine * (weights @ cosine)
+    return my.model(dict(zip(phi, np.linspace(-1, 1, 12) + my.parameter("coupling") * pull)))
+
+
 # Sweeps of examples, short enough not to be chaotic: inputs, initial values and options.
 sweeps = {
     "duffing": (example_models.duffing, dict(k=np.linspace(0.2, 0.3, 3000), B=0.3), dict(x=-0.5, v=-0.1),
@@ -31,6 +45,10 @@ sweeps = {
                         record=["overshoot", "t_overshoot", "dissipated"])),
     "stiff": (example_models.oregonator, dict(f=np.linspace(0.8, 1.2, 200), epsilon=0.04, q=8e-4, ratio=0.01),
               dict(x=0.5, y=0.5, z=0.5), dict(time=(0, 30), method="rodas_5p", rtol=1e-7, record=["x", "z_least"])),
+    "tangents": (tangents, dict(k=np.linspace(0.2, 0.3, 300), B=0.3), dict(x=-0.5, v=-0.1),
+                 dict(time=(0, 1), phases=4, method="verner_7", record=["x", "growth_1", "growth_2"])),
+    "tables": (network, dict(coupling=np.linspace(0, 0.3, 300)), {f"phi_{i}": 0.1 * i for i in range(12)},
+               dict(time=(0, 5))),
     "hooks that write": (example_models.continuation, dict(mu=np.linspace(0.1, 0.5, 300), increment=0.05), dict(x=0.1),
                          dict(time=(0, 1), phases=4, carry_on=True, record=["x"])),
 }

@@ -20,6 +20,19 @@ pytestmark = pytest.mark.skipif(nvrtc.find() is None, reason="there is no NVRTC"
 nvcc = shutil.which("nvcc")
 include = pathlib.Path(my.__file__).parent / "include"
 
+
+def lyapunov():
+    """Tangents, derived from the model's own right-hand side."""
+    return my.with_tangents(example_models.duffing(), 2)
+
+
+def epidemic():
+    """A model in C++ that draws random numbers."""
+    text = (test_cpp.root / "examples/monte_carlo/epidemic.hpp").read_text()
+    return my.CppModel(text, "epidemic", "s i", "R0 duration", "R0_mean R0_deviation duration_least duration_most",
+                       "seed", "peak day", events="turning_point")
+
+
 # What is compiled for each method: models with every kind of hook and event, outputs along the solution, tables.
 cases = [
     (example_models.duffing, "cash_karp", (), False, "double"),
@@ -29,9 +42,11 @@ cases = [
     (example_models.bouncing_ball, "dormand_prince_8", ("tolerance_per_instance",), False, "float"),
     (example_models.settling, "runge_kutta_4", (), True, "float"),
     (example_models.oregonator, "rosenbrock_23", (), False, "double"),
+    (lyapunov, "tsitouras_5", (), False, "double"),
+    (epidemic, "cash_karp", (), False, "float"),
     (example_models.continuation, "rodas_5p", ("pid_control", "mixed_scale"), True, "double"),
 ]
-models = (*example_models.headers, test_cpp.every_operation)
+models = (*example_models.headers, test_cpp.every_operation, epidemic)
 every_model = [(model, "cash_karp", (), False, real) for model in models for real in ("double", "float")]
 every_method = [(model, method, (), True, "double") for model in models for method in methods]
 architectures = (75, 80, 90, 100, 103)
