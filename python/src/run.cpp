@@ -166,8 +166,8 @@ std::unique_ptr<report<R>> solve(const library& with, const device& where, ensem
                                     o.phases,        static_cast<openmp::instruction_set>(with.cpu().instruction_set)};
             host::integrate_all<R>(where, o, &run, nullptr, data, check, *result);
         } else if (auto gpu = std::make_shared<resident<R>>(with, where, o, call); gpu->fits(instances)) {
-            gpu->integrate(instances, o, check, *result);
             instances.gpu = result->gpu = gpu;
+            gpu->integrate(instances, o, check, *result);
         } else {
             require(instances.on_device.empty(),
                     "the sweep has arrays on the GPU, whose memory does not suffice to "

@@ -127,6 +127,21 @@ assert "is not finite in 1 of 100 instances" in message(lambda: my.solve(
 """)
 
 
+def test_an_interrupted_run_has_its_results(run):
+    run("""
+def stop(done, total):
+    raise KeyboardInterrupt
+try:
+    solve("cuda", 50, record=[x], progress=stop)
+except my.Interrupted as interrupted:
+    whole = solve("cuda", 50, record=[x])
+    assert np.array_equal(interrupted.run["x"], whole["x"]) and np.array_equal(interrupted.run["v"], whole["v"])
+    assert interrupted.run.done == 50 and interrupted.run.device["x"].shape == (50, 1)
+else:
+    raise AssertionError("was not interrupted")
+""")
+
+
 def test_devices_are_chosen_by_name_and_by_what_is_there(run):
     run("""
 assert solve("auto", 5).report.device == "cuda:0"
