@@ -165,7 +165,9 @@ run_step() {
             fi ;;
         python)
             local status=0 log=build/python.log
-            quietly "$log" scripts/python.sh || status=$?
+            local all=()
+            if [[ $every_kernel == yes ]]; then all=(--all); fi
+            quietly "$log" scripts/python.sh "${all[@]}" || status=$?
             if ((status == 77)); then
                 say "python: skipped, $(tail -n 1 "$log")"
                 summary+=("python: SKIPPED, the package was not tested: see $log")

@@ -68,6 +68,13 @@ class Sweep:
         shape[place] = len(values)
         return np.ascontiguousarray(np.broadcast_to(values.reshape(shape), self.shape)).reshape(self.size)
 
+    def along(self, name):
+        """The values of a name along its axis, and how many instances in a row have each: instance i has
+        `values[i // repeat % len(values)]`."""
+        axis, values = self.coordinates[name]
+        place = [a for a, _ in self.axes].index(axis)
+        return values, int(np.prod(self.shape[place + 1:], dtype=np.int64))
+
     def unstack(self, values):
         """An array with a row per instance as one with the axes of the sweep: (size, ...) to shape + (...)."""
         values = np.asarray(values)

@@ -21,29 +21,32 @@
 
 namespace myriad::cuda {
 
-template <class Model, class Method, class R>
-class chunk_engine final : public engine<Model, R> {
-    using arguments = kernel_arguments<Model, R>;
+/// The kernels are those of a class like `compiled_kernel`.
+template <class Kernel>
+class chunk_engine final : public engine_for<typename Kernel::arguments> {
+    using arguments = typename Kernel::arguments;
+    using R = typename Kernel::real;
 
 public:
-    explicit chunk_engine(const engine_options& options)
-        : device_(options.device), while_starting_(std::in_place, options.device), launcher_(options.device, options),
-          scheduler_(options.schedule) {
-        while_starting_.reset();
+    explicit chunk_engine(const engine_options& options, Kernel kernel = {})
+        : device_(options.device), now_current_(std::in_place, options.device),
+          launcher_(options.device, options, std::move(kernel)),
+          scheduler_(options.schedule, launcher_.traits().costs_differ) {
+        now_current_.reset();
     }
     ~chunk_engine() override {
-        int before = device_;
-        cudaGetDevice(&before);
-        cudaSetDevice(device_);
+        try {
+            now_current_.emplace(device_);  // until the other members are destroyed
+        } catch (const error&) {            // CUDA may be gone at exit
+        }
         cudaStreamSynchronize(stream_.get());
-        cudaSetDevice(before);
     }
 
     void reserve(const arguments& host, std::int64_t count) override {
         const current_device here(device_);
         arguments all = host;
         const auto arrays = [&](auto&& add) { for_each_array(all, add); };
-        const auto records = [&](auto&& add) { for_each_record(all.record, add); };
+        const auto records = [&](auto&& add) { for_each_record(all, add); };
         std::size_t per_instance = scheduler_.bytes_per_instance();
         const auto add = [&](auto* array, std::int64_t components, array_access, array_kind) {
             per_instance += bytes_of(array, components);
@@ -68,6 +71,12 @@ public:
     }
 
     void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances) override {
+        upload(host, first, count, of_instances, [](const void*) { return false; });
+    }
+    /// The same without the components, by the address of their first value, that are `elsewhere`.
+    template <class Elsewhere>
+    void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances,
+                Elsewhere&& elsewhere) {
         const current_device here(device_);
         finish_download();
         first_ = first;
@@ -82,7 +91,16 @@ public:
         };
         row_list list;
         walk(from, [&](auto*& source, auto* target, std::int64_t components, array_access, array_kind kind) {
-            if (!is_cleared(kind)) list.push_back(rows_of(source, host.size, target, components));
+            if (is_cleared(kind)) return;
+            std::int64_t done = 0;  // components
+            const auto add_until = [&](std::int64_t end) {
+                if (end > done)
+                    list.push_back(rows_of(source + done * host.size, host.size, target + done * count_, end - done));
+                done = end + 1;
+            };
+            for (std::int64_t c = 0; c < components; ++c)
+                if (elsewhere(source + c * host.size)) add_until(c);
+            add_until(components);
         });
         copy_directly(take_pinned(list), cudaMemcpyHostToDevice, stream_.get());
         if (little_transfer::takes(list)) {
@@ -115,7 +133,7 @@ public:
         now.size = count_;
         now.first_index = host.first_index + first_;
         now.shared = shared_on_device_;
-        walk_records(now.record, [&](auto*& array, auto* on_device, std::int64_t components, array_access, array_kind) {
+        walk_records(now, [&](auto*& array, auto* on_device, std::int64_t components, array_access, array_kind) {
             clear(on_device, components);
             array = on_device;
         });
@@ -144,8 +162,9 @@ public:
             if (access != array_access::read) add(target, source, components, kind);
         });
         row_list of_arrays = std::exchange(list, {});
-        walk_records(to.record, [&](auto*& target, auto* source, std::int64_t components, array_access,
-                                    array_kind kind) { add(target, source, components, kind); });
+        walk_records(to, [&](auto*& target, auto* source, std::int64_t components, array_access, array_kind kind) {
+            add(target, source, components, kind);
+        });
         // Records have memory of their own, which may precede that of the arrays.
         const bool after = records_.data() > memory_.data();
         row_list& lower = after ? of_arrays : list;
@@ -159,6 +178,42 @@ public:
             (*fetching_)->begin_download(lower, stream_.get());
         }
     }
+
+    /// The device's address of a value in one of the arrays of the arguments, of which all instances were uploaded
+    /// last, and how kernels use the array; null if it is in none of them.
+    struct place_on_device {
+        std::byte* address = nullptr;
+        array_access access = array_access::read;
+    };
+    place_on_device find(const arguments& host, const void* value) {
+        place_on_device found;
+        const auto look = [&](auto*& array, auto* on_device, std::int64_t components, array_access access, array_kind) {
+            const auto offset = static_cast<const std::byte*>(value) - reinterpret_cast<const std::byte*>(array);
+            if (offset >= 0 && offset < static_cast<std::ptrdiff_t>(bytes_of(array, components * count_)))
+                found = {reinterpret_cast<std::byte*>(on_device) + offset, access};
+        };
+        arguments all = host;
+        walk(all, look);
+        walk_records(all, look);
+        return found;
+    }
+    /// Copies from this device's memory to the host's, and waits.
+    void fetch(void* to, const std::byte* from, std::size_t bytes) {
+        const current_device here(device_);
+        finish_download();
+        const row_list list{{static_cast<std::byte*>(to), const_cast<std::byte*>(from), bytes, 1, bytes}};
+        if (is_pinned(to)) {
+            copy_directly(list, cudaMemcpyDeviceToHost, stream_.get());
+        } else if (little_transfer::takes(list)) {
+            little_.begin_download(list, stream_.get());
+        } else {
+            fetching_ = std::make_unique<pooled_staging>(device_);
+            (*fetching_)->begin_download(list, stream_.get());
+        }
+        wait();
+    }
+    /// For further work on the device.
+    cudaStream_t in_stream() const { return stream_.get(); }
 
     void wait() override {
         const current_device here(device_);
@@ -189,7 +244,7 @@ public:
         MYRIAD_CUDA(cudaEventElapsedTime(&milliseconds, begun_.get(), done_.get()));
         return 1e-3 * static_cast<double>(milliseconds);
     }
-    typename engine<Model, R>::interval kernel_interval(void* clock) override {
+    any_engine::interval kernel_interval(void* clock) override {
         const current_device here(device_);
         check(cudaEventSynchronize(done_.get()), "the integration on the GPU");
         const auto seconds = [&](const event& e) {
@@ -241,7 +296,7 @@ private:
         for_each_array(host, placing(next, count_, visit));
     }
     template <class Visit>
-    void walk_records(record_arguments<Model, R>& host, Visit&& visit) {
+    void walk_records(arguments& host, Visit&& visit) {
         auto* next = static_cast<std::byte*>(records_.data());
         for_each_record(host, placing(next, count_, visit));
     }
@@ -286,7 +341,8 @@ private:
         memory.reserve(bytes, per_instance, memory_.bytes() + records_.bytes());
     }
 
-    void prepare_sample_times(sample_arguments<Model, R>& sample) {
+    template <class Sample>
+    void prepare_sample_times(Sample& sample) {
         if (sample.times == nullptr) return;
         const std::size_t bytes = static_cast<std::size_t>(sample.count) * sizeof(R);
         if (bytes > sample_times_.bytes()) wait();
@@ -296,8 +352,9 @@ private:
     }
 
     void upload_shared(const shared_parameters<R>& shared) {
-        constexpr std::size_t real = static_cast<std::size_t>(n_shared<Model>) * sizeof(R),
-                              integer = static_cast<std::size_t>(n_shared_integer<Model>) * sizeof(std::int32_t);
+        const kernel_traits& of = launcher_.traits();
+        const std::size_t real = static_cast<std::size_t>(of.n_shared) * sizeof(R),
+                          integer = static_cast<std::size_t>(of.n_shared_integer) * sizeof(std::int32_t);
         shared_.reserve(padded(real + 256 + integer, 1));
         auto* const reals = static_cast<R*>(shared_.data());
         auto* const integers =
@@ -309,10 +366,10 @@ private:
     }
 
     int device_;
-    std::optional<current_device> while_starting_;  // the members below are created on this device
-    kernel_launcher<Model, Method, R> launcher_;
+    std::optional<current_device> now_current_;  // while the members below are created and destroyed
+    kernel_launcher<Kernel> launcher_;
     device_memory memory_, records_, sample_times_, shared_;
-    phase_scheduler<Model, Method, R> scheduler_;
+    phase_scheduler<Kernel> scheduler_;
     stream stream_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};
     little_transfer little_;

@@ -76,21 +76,25 @@ public:
 /// Downloaded data are on the host after the next `wait`, not before. Only one thread at a time may use an engine, but
 /// another may call `idle` and `affordable` meanwhile. Arguments are the host's, for the whole ensemble; `first` and
 /// `count` select the instances. Errors of the device, including those of earlier work, are thrown as `error`.
-template <class Model, class R>
-class engine : public any_engine {
+template <class Arguments>
+class engine_for : public any_engine {
 public:
     /// Allocates memory for chunks of `count` instances; larger chunks allocate more when they are uploaded.
-    virtual void reserve(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
+    virtual void reserve(const Arguments& host, std::int64_t count) = 0;
     /// Copies the chunk to the device.
-    virtual void upload(const kernel_arguments<Model, R>& host, std::int64_t first, std::int64_t count,
+    virtual void upload(const Arguments& host, std::int64_t first, std::int64_t count,
                         past of_instances = past::kept) = 0;
     /// Integrates the chunk that was uploaded last, with the options of `host`, which must have the same arrays.
-    virtual void integrate(const kernel_arguments<Model, R>& host) = 0;
+    virtual void integrate(const Arguments& host) = 0;
     /// Copies what kernels write back to where it was uploaded from, and the records of the last call into
     /// `host.record`. Components for which `wanted(kind, component)` is false are left out.
-    virtual void download(const kernel_arguments<Model, R>& host,
-                          bool (*wanted)(void*, array_kind, std::int64_t) = nullptr, void* context = nullptr) = 0;
+    virtual void download(const Arguments& host, bool (*wanted)(void*, array_kind, std::int64_t) = nullptr,
+                          void* context = nullptr) = 0;
 };
+
+/// The engines for a model.
+template <class Model, class R>
+using engine = engine_for<kernel_arguments<Model, R>>;
 
 /// The engine for a model, method and real type. Throws `error` if the device does not exist or cannot run the kernel.
 template <class Model, class Method, class R, class Counts = component_counts<Model>>

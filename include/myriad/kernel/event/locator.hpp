@@ -132,8 +132,8 @@ private:
         if constexpr (Method::first_same_as_last) ends.slope_end = trial.slope_end();
         return ends;
     }
-    [[gnu::noinline]] void look_out_of_line(const mask& busy, const trial_ends& ends, const sight& seen, mask& accepted,
-                                            fired& events) {
+    __attribute__((noinline)) void look_out_of_line(const mask& busy, const trial_ends& ends, const sight& seen,
+                                                    mask& accepted, fired& events) {
         for_each_lane(busy, [&](int i) MYRIAD_LAMBDA {
             if (!get_lane(accepted, i)) return give_up(i);
             if (look_closer(i, ends, seen, events) == trial_outcome::is_redone) set_lane(accepted, i, false);
