@@ -22,6 +22,9 @@
 #include "myriad/host/core/instruction_set.hpp"
 #include "myriad/version.hpp"
 #include "run.hpp"
+#if defined(MYRIAD_WITH_STUDY)
+#include "study.hpp"
+#endif
 #include "threads.hpp"
 
 namespace nb = nanobind;
@@ -297,4 +300,7 @@ NB_MODULE(_core, m) {
     bind_options(m);
     bind_precision<double>(m, "Ensemble64", "Report64");
     bind_precision<float>(m, "Ensemble32", "Report32");
+#if defined(MYRIAD_WITH_STUDY)
+    bind_study(m);
+#endif
 }

@@ -83,6 +83,26 @@ double rounded(double value) {
     return static_cast<double>(static_cast<R>(value));
 }
 
+host::method_traits traits_of(const kernel_library& kernel) {
+    return {kernel.embedded_order > 0, kernel.scales_tolerances, kernel.chooses_first_step};
+}
+host::step_sizes steps_of(const host::method_traits& method) {
+    return method.adaptive ? host::step_sizes::kept : host::step_sizes::fixed;
+}
+/// What a call takes for `size` instances, besides what they and their samples have already.
+template <class R>
+void add_memory_of_call(host::memory_need& need, const host::model_shape& shape, std::int64_t size,
+                        const host::ensemble_data<R>* there, bool has_samples, const options& o,
+                        const kernel_library& kernel) {
+    if (!o.record.empty()) need.add("records", host::record_data<R>::bytes_for(o.record, o.phases, size));
+    if (!o.samples.empty() && !has_samples) need.add("samples", host::sample_data<R>::bytes_for(o.samples, size));
+    need.add("sample times", static_cast<double>(sizeof(R) * o.samples.times_of_instances.size()));
+    const host::method_traits method = traits_of(kernel);
+    host::ensemble_data<R>::add_memory_of_call(need, shape, size, there, o, steps_of(method), method.scales_tolerances);
+}
+
+}  // namespace
+
 template <class R>
 void check_options(const named_shape& shape, const kernel_library& kernel, const options& o) {
     const host::model_components components{{shape.n_state, "state"},
@@ -98,6 +118,19 @@ void check_options(const named_shape& shape, const kernel_library& kernel, const
                                      &rounded<R>};
     limits.check(o);
 }
+template void check_options<double>(const named_shape&, const kernel_library&, const options&);
+template void check_options<float>(const named_shape&, const kernel_library&, const options&);
+
+template <class R>
+double bytes_per_instance(const named_shape& shape, const kernel_library& kernel, const options& o) {
+    host::memory_need need = host::ensemble_data<R>::memory_of(shape, 1);
+    add_memory_of_call<R>(need, shape, 1, nullptr, false, o, kernel);
+    return need.bytes();
+}
+template double bytes_per_instance<double>(const named_shape&, const kernel_library&, const options&);
+template double bytes_per_instance<float>(const named_shape&, const kernel_library&, const options&);
+
+namespace {
 
 /// A call's arguments, and the memory they point to besides the ensemble's.
 template <class R>
@@ -138,22 +171,10 @@ public:
     host::record_data<R> records;
 
 private:
-    static host::method_traits traits_of(const kernel_library& kernel) {
-        return {kernel.embedded_order > 0, kernel.scales_tolerances, kernel.chooses_first_step};
-    }
-    static host::step_sizes steps_of(const host::method_traits& method) {
-        return method.adaptive ? host::step_sizes::kept : host::step_sizes::fixed;
-    }
     /// The options, if there is enough memory for them; otherwise throws `error`.
     static const options& affordable(const ensemble<R>& e, const options& o, const kernel_library& kernel) {
         host::memory_need need;
-        if (!o.record.empty()) need.add("records", host::record_data<R>::bytes_for(o.record, o.phases, e.data.size));
-        if (!o.samples.empty() && e.samples.capacity == 0)
-            need.add("samples", host::sample_data<R>::bytes_for(o.samples, e.data.size));
-        need.add("sample times", static_cast<double>(sizeof(R) * o.samples.times_of_instances.size()));
-        const host::method_traits method = traits_of(kernel);
-        host::ensemble_data<R>::add_memory_of_call(need, *e.shape, e.data.size, &e.data, o, steps_of(method),
-                                                   method.scales_tolerances);
+        add_memory_of_call<R>(need, *e.shape, e.data.size, &e.data, e.samples.capacity > 0, o, kernel);
         need.check(message("this call for ", std::int64_t{e.data.size}, " instances"),
                    "ask for fewer phases, components or samples at a time, or integrate the sweep in smaller parts");
         return o;

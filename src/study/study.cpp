@@ -212,12 +212,8 @@ studies::study_request any_study::request() const {
             .title = title_};
 }
 
-study_result any_study::run() {
-    const struct stop_once {  // also if it is asked for before the run
-        std::atomic<bool>& stopped;
-        ~stop_once() { stopped = false; }
-    } once{stopped_};
-    studies::run_settings settings{.devices = devices, .progress = progress, .warning = warning};
+studies::study_plan any_study::plan_for(studies::run_settings& settings) const {
+    settings.devices = devices;
     if (settings.devices.empty()) settings.devices.push_back(device::best());
     for (const device& d : settings.devices) model_->check(d, options);
     studies::study_plan plan = studies::plan_study(request());
@@ -225,6 +221,27 @@ study_result any_study::run() {
     plan.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
     settings.piece = sizes.piece;
     check_memory(plan, plan.content, settings.devices, "make chunk smaller, or keep less");
+    return plan;
+}
+
+study_result any_study::result_of(const studies::result_keeper& keeper, studies::run_outcome outcome) {
+    study_result made(keeper.kept());
+    made.complete = outcome.complete;
+    made.instances = outcome.instances;
+    made.seconds = outcome.seconds;
+    made.by_status = outcome.by_status;
+    made.notes = std::move(outcome.notes);
+    made.warnings = std::move(outcome.warnings);
+    return made;
+}
+
+study_result any_study::run() {
+    const struct stop_once {  // also if it is asked for before the run
+        std::atomic<bool>& stopped;
+        ~stop_once() { stopped = false; }
+    } once{stopped_};
+    studies::run_settings settings{.progress = progress, .warning = warning};
+    const studies::study_plan plan = plan_for(settings);
     const auto keeper = folder_.empty() ? studies::keep_in_memory(plan.content)
                                         : studies::keep_in_store(folder_, plan.content, store_options_);
     check_memory(plan, keeper->content(), settings.devices,
@@ -233,16 +250,45 @@ study_result any_study::run() {
     std::unique_ptr<studies::stop_signals> signals;
     if (stop_on_signals) signals = std::make_unique<studies::stop_signals>();
     settings.stops = [&] { return stopped_ || (signals != nullptr && signals->came()); };
-    studies::run_outcome outcome = studies::run_study(*model_, plan, *keeper, settings);
+    return result_of(*keeper, studies::run_study(*model_, plan, *keeper, settings));
+}
 
-    study_result made(keeper->kept());
-    made.complete = outcome.complete;
-    made.instances = outcome.instances;
-    made.seconds = outcome.seconds;
-    made.by_status = outcome.by_status;
-    made.notes = std::move(outcome.notes);
-    made.warnings = std::move(outcome.warnings);
-    return made;
+studies::handed_out_run any_study::hand_out() {
+    studies::run_settings settings;
+    studies::study_plan plan = plan_for(settings);
+    auto keeper = folder_.empty() ? studies::keep_in_memory(plan.content)
+                                  : studies::keep_in_store(folder_, plan.content, store_options_);
+    return {std::move(plan), std::move(keeper)};
+}
+
+std::optional<studies::computed_chunk> any_study::compute(std::int64_t number, std::int64_t chunk_size) {
+    const struct stop_once {
+        std::atomic<bool>& stopped;
+        ~stop_once() { stopped = false; }
+    } once{stopped_};
+    studies::run_settings settings{.progress = progress, .warning = warning};
+    studies::study_plan plan = plan_for(settings);
+    require(chunk_size > 0 && chunk_size <= size(), "chunks of ", chunk_size, " instances are asked for, of a study of ",
+            size());
+    plan.content.chunk = chunk_size;
+    require(number >= 0 && number < plan.content.chunks(), "there is no chunk ", number, " in a study of ",
+            plan.content.chunks());
+    check_memory(plan, plan.content, settings.devices, "use fewer devices, or make chunk smaller");
+    studies::one_chunk_keeper keeper(plan.content, number);
+    settings.stops = [&] { return stopped_ || keeper.done(); };
+    studies::run_outcome outcome = studies::run_study(*model_, plan, keeper, settings);
+    if (!keeper.done()) return {};
+    keeper.values.notes = std::move(outcome.notes);
+    return std::move(keeper.values);
+}
+
+study_result any_study::finish(studies::handed_out_run& run) {
+    const studies::run_settings settings{.devices = {}, .stops = [] { return true; }};
+    studies::run_outcome outcome = studies::run_study(*model_, run.plan(), run.keeper(), settings);
+    outcome.instances = run.instances();
+    outcome.by_status = run.by_status();
+    outcome.notes = run.notes();
+    return result_of(run.keeper(), std::move(outcome));
 }
 
 }  // namespace myriad
