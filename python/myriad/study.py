@@ -33,6 +33,7 @@ _terms = (
     ("options.samples", "samples="),
     ("start the study in a new folder with a smaller chunk", "give another store= and a smaller chunk="),
     ("make chunk smaller", "make chunk= smaller"),
+    ("repeat is given", "draws= is given"),
 )
 
 
@@ -312,6 +313,9 @@ def _compute(payload, chunk, chunk_size, devices):
     return _received.study._core.compute(chunk, chunk_size)
 
 
+_lost = (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError, OSError)
+
+
 class _ExecutedRun:
     """A run whose chunks the workers of an executor compute."""
 
@@ -376,9 +380,9 @@ class _ExecutedRun:
             values = future.result()
         except BaseException as error:
             self._handed.release(chunk)
-            if isinstance(error, (Error, KeyboardInterrupt)):
-                raise
-            raise self._died(error) from error
+            if isinstance(error, _lost) or type(error).__name__ == "KilledWorker":  # Dask's
+                raise self._died(error) from error
+            raise
         self._handed.commit(chunk, values)
 
     def _died(self, error):

@@ -233,10 +233,11 @@ def _netcdf_package():
     except ImportError:
         pass
     try:
+        import h5py  # noqa: F401, without which h5netcdf does not write
         from h5netcdf.legacyapi import Dataset
         return Dataset
     except ImportError:
-        raise Error("to_netcdf needs the package netCDF4 or h5netcdf: `pip install netCDF4`; the wheel is built without "
+        raise Error("to_netcdf needs the package netCDF4, or h5netcdf and h5py: `pip install netCDF4`; the wheel is built without "
                     "the library for netCDF itself") from None
 
 

@@ -240,7 +240,7 @@ study_result any_study::run() {
         std::atomic<bool>& stopped;
         ~stop_once() { stopped = false; }
     } once{stopped_};
-    studies::run_settings settings{.progress = progress, .warning = warning};
+    studies::run_settings settings{.devices = {}, .progress = progress, .warning = warning};
     const studies::study_plan plan = plan_for(settings);
     const auto keeper = folder_.empty() ? studies::keep_in_memory(plan.content)
                                         : studies::keep_in_store(folder_, plan.content, store_options_);
@@ -266,7 +266,7 @@ std::optional<studies::computed_chunk> any_study::compute(std::int64_t number, s
         std::atomic<bool>& stopped;
         ~stop_once() { stopped = false; }
     } once{stopped_};
-    studies::run_settings settings{.progress = progress, .warning = warning};
+    studies::run_settings settings{.devices = {}, .progress = progress, .warning = warning};
     studies::study_plan plan = plan_for(settings);
     require(chunk_size > 0 && chunk_size <= size(), "chunks of ", chunk_size, " instances are asked for, of a study of ",
             size());
