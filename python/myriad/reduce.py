@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Reductions over all instances of a study, which need not keep what they reduce: `reduce=` of `myriad.study`.
 
-Variables are named as in results: "x" at recorded phases, "x_end" at the end, "x_sample". Instances that failed are left
-out, but by `total`. Results do not depend on how the instances are divided into chunks, bit for bit."""
+Variables are named as in results: "x" at recorded phases, "x_end" at the end, "x_sample". Instances that failed are
+left out, but by `total`. Results do not depend on how the instances are divided into chunks, bit for bit."""
 
 import numpy as np
 
@@ -64,8 +64,8 @@ def mean(variable):
 
 
 def total(name, inputs, size, function):
-    """The sum over chunks of `size` numbers that a function computes of each chunk: variable `name`. The function gets a
-    dict of arrays, the inputs by name and "status", with a row for each instance of the chunk, failed ones too, and
+    """The sum over chunks of `size` numbers that a function computes of each chunk: variable `name`. The function gets
+    a dict of arrays, the inputs by name and "status", with a row for each instance of the chunk, failed ones too, and
     returns the numbers. `name` stands for it in the study's description: give another one when it changes. Threads take
     turns in calling it; for executors it must pickle."""
     inputs = [inputs] if isinstance(inputs, str) else list(inputs)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Studies: ensembles of any size along axes by name, computed chunk by chunk, kept in a store in which they go on after a
-stop, and handed to any executor. The C++ library's `study` with a model of Python's."""
+"""Studies: ensembles of any size along axes by name, computed chunk by chunk, kept in a store in which they go on after
+a stop, and handed to any executor. The C++ library's `study` with a model of Python's."""
 
 import concurrent.futures
 import hashlib
@@ -165,8 +165,8 @@ class Study:
                 made.set(self._full_name(name), value)
         core = core_of_studies()
         for axis in axes:
-            pairs = [(self._full_name(k), v.core() if isinstance(v, Axis) else core.values(np.asarray(v, float).tolist()))
-                     for k, v in axis]
+            pairs = [(self._full_name(k), v.core() if isinstance(v, Axis) else
+                      core.values(np.asarray(v, float).tolist())) for k, v in axis]
             for name, _ in pairs:
                 if name.startswith("shared"):
                     raise Error(f"'{name.partition('.')[2]}' is shared by all instances and has several values: give "
@@ -269,7 +269,8 @@ class Study:
         try:
             return by.dumps((model, sweep, {**options, "interpreted": self._interpreted}))
         except Exception as error:
-            raise Error(f"the study cannot be sent to the workers of an executor, as it does not pickle: {error}") from None
+            raise Error("the study cannot be sent to the workers of an executor, as it does not pickle: "
+                        f"{error}") from None
 
 
 class _Progress:
@@ -300,7 +301,7 @@ class _Progress:
             self._bar.close()
 
 
-# -- Executors -------------------------------------------------------------------------------------------------------------
+# -- Executors ---------------------------------------------------------------------------------------------------------
 
 _received = threading.local()  # the last study of each thread of a worker
 
@@ -407,8 +408,9 @@ class _ExecutedRun:
         return self._study._result(results, {**facts, "seconds": clock.perf_counter() - self._begin}, self._folder)
 
 
-def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, keep=None, reduce=(), draws=None,
-          seed=0, title="", units=None, notes=None, method=None, control=(), rtol=1e-8, atol=1e-8, step=None,
+def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, keep=None, reduce=(),
+          draws=None, seed=0, title="", units=None, notes=None, method=None, control=(), rtol=1e-8, atol=1e-8,
+          step=None,
           minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1, max_steps=10_000_000, phase_length=0,
           carry_on=False, events=None, sub_samples=1, accumulation_limit=50, schedule="automatic", precision="double",
           interpreted=None):
@@ -421,8 +423,8 @@ def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     start     initial values, as in `solve`
     time      begin and end; None for one that is in the sweep
     keep      components whose last values are kept, `myriad.time` for the time at which the last phase ended; or
-              `dict(end=, records=, samples=, random=, status=, work=)`, of which all but work are True: whether records,
-              samples, random values, statuses, and the numbers of steps are kept. By default all states and accessories
+              `dict(end=, records=, samples=, random=, status=, work=)`, of which all but work are True: whether
+              records, samples, random values, statuses, and the numbers of steps are kept. By default all states and accessories
               if nothing is recorded, sampled or reduced
     reduce    reductions over all instances: `myriad.reduce.mean("x_end")` and others
     draws     instances for each point of the other axes, as for random values
@@ -435,7 +437,8 @@ def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     states "x_begin". Raises `myriad.Error`."""
     return Study(model, sweep, dict(
         start=start, time=time, phases=phases, record=record, samples=samples, keep=keep, reduce=reduce, draws=draws,
-        seed=seed, title=title, units=units, notes=notes, method=method, control=control, rtol=rtol, atol=atol, step=step,
-        minimum_step=minimum_step, maximum_step=maximum_step, growth_limit=growth_limit, shrink_limit=shrink_limit,
+        seed=seed, title=title, units=units, notes=notes, method=method, control=control, rtol=rtol, atol=atol,
+        step=step, minimum_step=minimum_step, maximum_step=maximum_step, growth_limit=growth_limit,
+        shrink_limit=shrink_limit,
         max_steps=max_steps, phase_length=phase_length, carry_on=carry_on, events=events, sub_samples=sub_samples,
         accumulation_limit=accumulation_limit, schedule=schedule, precision=precision, interpreted=interpreted))

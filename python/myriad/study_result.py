@@ -237,8 +237,8 @@ def _netcdf_package():
         from h5netcdf.legacyapi import Dataset
         return Dataset
     except ImportError:
-        raise Error("to_netcdf needs the package netCDF4, or h5netcdf and h5py: `pip install netCDF4`; the wheel is built without "
-                    "the library for netCDF itself") from None
+        raise Error("to_netcdf needs the package netCDF4, or h5netcdf and h5py: `pip install netCDF4`; the "
+                    "wheel is built without the library for netCDF itself") from None
 
 
 def open_study(folder):

@@ -51,9 +51,9 @@ using studies::element;
 /// values of tables.
 struct study_kernel {
     const library& kernel;
-    component_names names;                                 // of all components that the kernel has
-    std::array<int, 3> used;                               // states, parameters, accessories of the model
-    std::vector<std::pair<int, double>> of_tables;         // shared values by number
+    component_names names;                          // of all components that the kernel has
+    std::array<int, 3> used;                        // states, parameters, accessories of the model
+    std::vector<std::pair<int, double>> of_tables;  // shared values by number
 };
 
 template <class R>
@@ -288,28 +288,29 @@ std::shared_ptr<nb::object> shared_function(const nb::object& function) {
 }
 ensemble_reduction sum_by_python(const std::string& name, const std::vector<std::string>& inputs, std::int64_t size,
                                  const nb::object& function) {
-    return sum_of(name, inputs, size,
-                  [name, inputs, call = shared_function(function)](const chunk_columns& chunk, std::span<double> sums) {
-                      const nb::gil_scoped_acquire locked;
-                      nb::dict given;
-                      const auto give = [&](const std::string& input) {
-                          const auto& column = chunk.find(input);
-                          given[input.c_str()] = with_type(column.what->type, [&]<class T>(T) {
-                              const auto values = chunk.values<T>(input);
-                              return array_of(std::vector<T>(values.begin(), values.end()),
-                                              shape_of(*column.what, static_cast<std::size_t>(chunk.size())));
-                          });
-                      };
-                      for (const std::string& input : inputs) give(input);
-                      give("status");
-                      const nb::object made = (*call)(given);
-                      const auto numpy = nb::module_::import_("numpy");
-                      const auto values = nb::cast<std::vector<double>>(
-                          numpy.attr("atleast_1d")(numpy.attr("asarray")(made, "dtype"_a = "float64")).attr("tolist")());
-                      require(values.size() == sums.size(), "the function of the sum ", name, " gives ", values.size(),
-                              " numbers, and ", sums.size(), " are expected: change its size");
-                      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += values[i];
-                  });
+    return sum_of(
+        name, inputs, size,
+        [name, inputs, call = shared_function(function)](const chunk_columns& chunk, std::span<double> sums) {
+            const nb::gil_scoped_acquire locked;
+            nb::dict given;
+            const auto give = [&](const std::string& input) {
+                const auto& column = chunk.find(input);
+                given[input.c_str()] = with_type(column.what->type, [&]<class T>(T) {
+                    const auto values = chunk.values<T>(input);
+                    return array_of(std::vector<T>(values.begin(), values.end()),
+                                    shape_of(*column.what, static_cast<std::size_t>(chunk.size())));
+                });
+            };
+            for (const std::string& input : inputs) give(input);
+            give("status");
+            const nb::object made = (*call)(given);
+            const auto numpy = nb::module_::import_("numpy");
+            const auto values = nb::cast<std::vector<double>>(
+                numpy.attr("atleast_1d")(numpy.attr("asarray")(made, "dtype"_a = "float64")).attr("tolist")());
+            require(values.size() == sums.size(), "the function of the sum ", name, " gives ", values.size(),
+                    " numbers, and ", sums.size(), " are expected: change its size");
+            for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += values[i];
+        });
 }
 
 nb::object or_none(const nb::object& o) { return o.is_valid() ? o : nb::none(); }
@@ -337,8 +338,7 @@ struct python_study {
         for (int s = 0; s < status_count; ++s)
             if (made.count(static_cast<status>(s)) > 0)
                 statuses[std::string(name_of(static_cast<status>(s))).c_str()] = made.count(static_cast<status>(s));
-        const std::shared_ptr<const studies::results> all(std::make_shared<study_result>(made),
-                                                          &made.results());
+        const std::shared_ptr<const studies::results> all(std::make_shared<study_result>(made), &made.results());
         nb::dict facts;
         facts["complete"] = made.complete;
         facts["instances"] = made.instances;
@@ -429,14 +429,12 @@ void bind_study(nb::module_& m) {
         .def("written", [](const opened_results& r, const std::string& name) { return r.all->written(name); })
         .def("read", &opened_results::read)
         .def("coordinate", &opened_results::coordinate)
-        .def("write_csv",
-             [](const opened_results& r, const std::string& path) {
-                 const nb::gil_scoped_release unlocked;
-                 export_csv(*r.all, path);
-             });
-    m.def("open_store", [](const std::string& folder) {
-        return opened_results{std::make_shared<const store>(store::open(folder))};
-    });
+        .def("write_csv", [](const opened_results& r, const std::string& path) {
+            const nb::gil_scoped_release unlocked;
+            export_csv(*r.all, path);
+        });
+    m.def("open_store",
+          [](const std::string& folder) { return opened_results{std::make_shared<const store>(store::open(folder))}; });
     m.def("verify_store", [](const std::string& folder) {
         std::vector<studies::damage> found;
         {
@@ -467,17 +465,18 @@ void bind_study(nb::module_& m) {
                const std::array<int, 3>& used, const std::vector<double>& of_tables, std::string model,
                std::string method) {
                 require(names.size() == 7, "a model has seven kinds of components");
-                study_kernel of{kernel, {names[0], names[1], names[2], names[3], names[4], names[5], names[6]}, used, {}};
+                study_kernel of{
+                    kernel, {names[0], names[1], names[2], names[3], names[4], names[5], names[6]}, used, {}};
                 const auto first = static_cast<int>(names[2].size() - of_tables.size());
                 for (std::size_t i = 0; i < of_tables.size(); ++i)
                     of.of_tables.emplace_back(first + static_cast<int>(i), of_tables[i]);
-                new (self) python_study(
-                    std::make_shared<study_model>(std::move(of), std::move(model), std::move(method)));
+                new (self)
+                    python_study(std::make_shared<study_model>(std::move(of), std::move(model), std::move(method)));
             },
             nb::keep_alive<1, 2>())
         .def("axis", [](python_study& s, const std::string& name, const axis_values& v) { s.study.axis(name, v); })
-        .def("zip", [](python_study& s,
-                       const std::vector<std::pair<std::string, axis_values>>& all) { s.study.zip(all); })
+        .def("zip",
+             [](python_study& s, const std::vector<std::pair<std::string, axis_values>>& all) { s.study.zip(all); })
         .def("repeat",
              [](python_study& s, std::int64_t count, const std::string& name) { s.study.repeat(count, name); })
         .def("set", [](python_study& s, const std::string& name, double value) { s.study.set(name, value); })
@@ -489,11 +488,8 @@ void bind_study(nb::module_& m) {
              [](python_study& s, const std::string& key, const std::string& value) { s.study.note(key, value); })
         .def("reduce", [](python_study& s, const ensemble_reduction& r) { s.study.reduce(r); })
         .def("options", [](python_study& s, const options& o) { s.study.options = o; })
-        .def("keep",
-             [](python_study& s, const std::vector<std::string>& end, bool records, bool samples, bool random,
-                bool status, bool work) {
-                 s.study.keep = {end, records, samples, random, status, work};
-             })
+        .def("keep", [](python_study& s, const std::vector<std::string>& end, bool records, bool samples, bool random,
+                        bool status, bool work) { s.study.keep = {end, records, samples, random, status, work}; })
         .def_prop_ro("size", [](const python_study& s) { return s.study.size(); })
         .def("set_run", &python_study::set_run)
         .def("set_store", &python_study::set_store)

@@ -27,8 +27,8 @@ void handed_out_run::commit(std::int64_t chunk, const computed_chunk& values) {
         columns.push_back({v.name, v.type, bytes});
     }
     const auto of_chunks = [](const variable& v) { return v.extent != along::nothing; };
-    require(std::cmp_equal(columns.size(), std::count_if(l.variables.begin(), l.variables.end(), of_chunks)),
-            "chunk ", chunk, " has values of ", columns.size(), " variables: they are of another study");
+    require(std::cmp_equal(columns.size(), std::count_if(l.variables.begin(), l.variables.end(), of_chunks)), "chunk ",
+            chunk, " has values of ", columns.size(), " variables: they are of another study");
     keeper_->commit(chunk, columns, values.record);
     instances_ += range.count;
     for (const auto& [name, count] : values.record.statuses)

@@ -268,8 +268,8 @@ std::optional<studies::computed_chunk> any_study::compute(std::int64_t number, s
     } once{stopped_};
     studies::run_settings settings{.devices = {}, .progress = progress, .warning = warning};
     studies::study_plan plan = plan_for(settings);
-    require(chunk_size > 0 && chunk_size <= size(), "chunks of ", chunk_size, " instances are asked for, of a study of ",
-            size());
+    require(chunk_size > 0 && chunk_size <= size(), "chunks of ", chunk_size,
+            " instances are asked for, of a study of ", size());
     plan.content.chunk = chunk_size;
     require(number >= 0 && number < plan.content.chunks(), "there is no chunk ", number, " in a study of ",
             plan.content.chunks());
