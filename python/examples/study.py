@@ -15,3 +15,4 @@ result = study.run("duffing_study", chunk=100)  # run again, it goes on; Ctrl-C 
 print(result)
 table = result.to_xarray()  # read from the folder where it is used
 print(table["x_end"].sel(k=0.25, method="nearest").mean("draw").item(), result["x_end_mean"])
+# end of snippet

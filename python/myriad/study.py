@@ -424,7 +424,8 @@ def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     time      begin and end; None for one that is in the sweep
     keep      components whose last values are kept, `myriad.time` for the time at which the last phase ended; or
               `dict(end=, records=, samples=, random=, status=, work=)`, of which all but work are True: whether
-              records, samples, random values, statuses, and the numbers of steps are kept. By default all states and accessories
+              records, samples, random values,
+              statuses, and the numbers of steps are kept. By default all states and accessories
               if nothing is recorded, sampled or reduced
     reduce    reductions over all instances: `myriad.reduce.mean("x_end")` and others
     draws     instances for each point of the other axes, as for random values
