@@ -7,6 +7,7 @@ from .cpp_model import CppModel
 from .errors import Error
 from .expression import *  # noqa: F403
 from .grid import *  # noqa: F403
+from .interpolate import *  # noqa: F403
 from .methods import controls, methods
 from .model import *  # noqa: F403
 from .run import Interrupted, Run, status_names
