@@ -52,6 +52,13 @@ class _Along:
 
     def __array__(self, dtype=None, copy=None):
         return self._sweep.values(self._name).astype(dtype or self.dtype, copy=False)
+def in_python(error, changes=_in_python):
+    """An error of the core in Python's terms."""
+    text = str(error)
+    for said, meant in changes:
+        text = text.replace(said, meant)
+    return Error(re.sub(r"integrate fewer instances at a time, with .* an options::chunk_size of at most (\d+)",
+                        r"integrate the sweep in parts of at most \1 instances", text))
 
 
 def _numbers(value, name):
@@ -93,6 +100,17 @@ def _sweep_values(sweep):
                 "myriad.grid(k=..., B=...)")
 
 
+def refuse_missing(components, given):
+    """Refuses a call that leaves out what every instance needs."""
+    missing = [f"'{n}'" for n in components.states if n not in given]
+    if missing:
+        raise Error(f"the initial value of {', '.join(missing)} is missing: give it in start=")
+    missing = [f"'{n}'" for n in components.parameters + components.shared + components.shared_integers
+               if n not in given]
+    if missing:
+        raise Error(f"the value of {', '.join(missing)} is missing: give it in the sweep")
+
+
 def _gather(components, sweep, start, time, size):
     """All inputs by name, and the number of instances."""
     given = {}
@@ -108,13 +126,7 @@ def _gather(components, sweep, start, time, size):
                 raise Error(f"'{name}' is given in the sweep and in start=: give it once")
             given[name] = _numbers(value, name)
     given = {**{name: np.asarray(value) for name, value in components.defaults.items()}, **given}
-    missing = [f"'{n}'" for n in components.states if n not in given]
-    if missing:
-        raise Error(f"the initial value of {', '.join(missing)} is missing: give it in start=")
-    missing = [f"'{n}'" for n in components.parameters + components.shared + components.shared_integers
-               if n not in given]
-    if missing:
-        raise Error(f"the value of {', '.join(missing)} is missing: give it in the sweep")
+    refuse_missing(components, given)
     try:
         begin, end = time
     except (TypeError, ValueError):
@@ -358,6 +370,41 @@ def _positive_infinity(value):
     return math.inf if value is None else _real(value, "maximum_step")
 
 
+def make_options(components, size, *, phases, record, samples, step, minimum_step, maximum_step, growth_limit,
+                 shrink_limit, max_steps, phase_length, carry_on, sub_samples, accumulation_limit, schedule):
+    """The core's options, but for tolerances and events, and the places of what is recorded and sampled, by name."""
+    options = _core.Options()
+    options.phases = _whole(phases, "phases")
+    options.step = math.nan if step is None else _real(step, "step")
+    options.minimum_step = _real(minimum_step, "minimum_step")
+    options.maximum_step = _positive_infinity(maximum_step)
+    options.growth_limit = _real(growth_limit, "growth_limit")
+    options.shrink_limit = _real(shrink_limit, "shrink_limit")
+    options.max_steps = _whole(max_steps, "max_steps", 1 << 62)
+    options.phase_length = _real(phase_length, "phase_length")
+    options.carry_on(bool(carry_on), False)
+    options.sub_samples = _whole(sub_samples, "sub_samples")
+    options.accumulation_limit = _whole(accumulation_limit, "accumulation_limit")
+    if schedule not in _schedules:
+        raise Error(f"there is no schedule {schedule!r}: choose one of {', '.join(_schedules)}")
+    options.set_schedule(_schedules[schedule])
+    recorded = _set_records(options, record, components)
+    sampled = _set_samples(options, samples, components, options.phases, options.phase_length, size)
+    return options, recorded, sampled
+
+
+def choose_kernel(model, components, method, control, sampled, precision, interpreted):
+    """The kernel for a model and a method, compiled or interpreted, and the names of all components that it has."""
+    written = method_type(method, control, sampled)
+    if interpreted or (interpreted is None and compiler.known_compiler() is None):
+        why = "as asked" if interpreted else "as there is no C++ compiler"
+        if precision != "double" or control:
+            raise Error(f"a model is interpreted, {why}, in double precision and with the usual control alone: leave "
+                        "out precision= and control=, or install a C++ compiler")
+        return tape.kernel(model, components, method, why), tape.padded(components)
+    return compiler.kernel(*model.source(), written, precision), components.names
+
+
 def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, method=None, control=(),
           rtol=1e-8, atol=1e-8, step=None, minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1,
           max_steps=10_000_000, phase_length=0, carry_on=False, events=None, sub_samples=1, accumulation_limit=50,
@@ -412,45 +459,24 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     written = method_type(method, control, samples is not None)
     if method in fixed_step and step is None:
         raise Error(f"{method} takes fixed steps: give step=")
-    options = _core.Options()
-    options.phases = _whole(phases, "phases")
-    options.step = math.nan if step is None else _real(step, "step")
-    options.minimum_step = _real(minimum_step, "minimum_step")
-    options.maximum_step = _positive_infinity(maximum_step)
-    options.growth_limit = _real(growth_limit, "growth_limit")
-    options.shrink_limit = _real(shrink_limit, "shrink_limit")
-    options.max_steps = _whole(max_steps, "max_steps", 1 << 62)
-    options.phase_length = _real(phase_length, "phase_length")
-    options.carry_on(bool(carry_on), False)
-    options.sub_samples = _whole(sub_samples, "sub_samples")
-    options.accumulation_limit = _whole(accumulation_limit, "accumulation_limit")
+    options, recorded, sampled = make_options(
+        components, count, phases=phases, record=record, samples=samples, step=step, minimum_step=minimum_step,
+        maximum_step=maximum_step, growth_limit=growth_limit, shrink_limit=shrink_limit, max_steps=max_steps,
+        phase_length=phase_length, carry_on=carry_on, sub_samples=sub_samples, accumulation_limit=accumulation_limit,
+        schedule=schedule)
     if invalid == "mark":
         options.mark_invalid()
     elif invalid != "refuse":
         raise Error(f"invalid is {invalid!r}: give \"refuse\" or \"mark\"")
-    if schedule not in _schedules:
-        raise Error(f"there is no schedule {schedule!r}: choose one of {', '.join(_schedules)}")
-    options.set_schedule(_schedules[schedule])
-    recorded = _set_records(options, record, components)
-    sampled = _set_samples(options, samples, components, options.phases, options.phase_length, count)
 
-    why = None
     if on_gpu:
         if interpreted:
             raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
         names = components.names
         gpu = int(where.partition(":")[2])
         kernel = nvrtc.kernel(*model.source(), written, precision, (len(names[2]), len(names[3])), gpu)
-    elif interpreted or (interpreted is None and compiler.known_compiler() is None):
-        why = "as asked" if interpreted else "as there is no C++ compiler"
-        if precision != "double" or control:
-            raise Error(f"a model is interpreted, {why}, in double precision and with the usual control alone: leave "
-                        "out precision= and control=, or install a C++ compiler")
-        kernel = tape.kernel(model, components, method, why)
-        names = tape.padded(components)
     else:
-        kernel = compiler.kernel(*model.source(), written, precision)
-        names = components.names
+        kernel, names = choose_kernel(model, components, method, control, samples is not None, precision, interpreted)
     options.set_tolerances(_per_state(rtol, components, "rtol", len(names[0])),
                            _per_state(atol, components, "atol", len(names[0])))
     _set_events(options, events, components, len(names[-1]))
@@ -470,12 +496,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
             ensemble.array("tolerance_scale")[...] = scale
         report, failure = _core.solve(kernel.library, where, ensemble, options, function)
     except Error as error:
-        text = str(error)
-        for said, meant in _in_python:
-            text = text.replace(said, meant)
-        text = re.sub(r"integrate fewer instances at a time, with .* an options::chunk_size of at most (\d+)",
-                      r"integrate the sweep in parts of at most \1 instances", text)
-        raise Error(text) from None
+        raise in_python(error) from None
     finally:
         finish()
     inputs = {name: array for name, array in given.items() if components.place[name][0] in (

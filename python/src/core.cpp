@@ -26,6 +26,9 @@
 #include "myriad/version.hpp"
 #include "resident.hpp"
 #include "run.hpp"
+#if defined(MYRIAD_WITH_STUDY)
+#include "study.hpp"
+#endif
 #include "threads.hpp"
 
 namespace nb = nanobind;
@@ -423,4 +426,7 @@ NB_MODULE(_core, m) {
     bind_options(m);
     bind_precision<double>(m, "Ensemble64", "Report64");
     bind_precision<float>(m, "Ensemble32", "Report32");
+#if defined(MYRIAD_WITH_STUDY)
+    bind_study(m);
+#endif
 }

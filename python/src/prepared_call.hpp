@@ -15,6 +15,24 @@
 
 namespace myriad::python {
 
+inline host::method_traits traits_of(const model_facts& kernel) {
+    return {kernel.embedded_order > 0, kernel.scales_tolerances, kernel.chooses_first_step};
+}
+inline host::step_sizes steps_of(const host::method_traits& method) {
+    return method.adaptive ? host::step_sizes::kept : host::step_sizes::fixed;
+}
+/// What a call takes for `size` instances, besides what they and their samples have already.
+template <class R>
+void add_memory_of_call(host::memory_need& need, const host::model_shape& shape, std::int64_t size,
+                        const host::ensemble_data<R>* there, bool has_samples, const options& o,
+                        const model_facts& kernel) {
+    if (!o.record.empty()) need.add("records", host::record_data<R>::bytes_for(o.record, o.phases, size));
+    if (!o.samples.empty() && !has_samples) need.add("samples", host::sample_data<R>::bytes_for(o.samples, size));
+    need.add("sample times", static_cast<double>(sizeof(R) * o.samples.times_of_instances.size()));
+    const host::method_traits method = traits_of(kernel);
+    host::ensemble_data<R>::add_memory_of_call(need, shape, size, there, o, steps_of(method), method.scales_tolerances);
+}
+
 /// A call's arguments, and the memory they point to besides the ensemble's.
 template <class R>
 class prepared_call {
@@ -55,22 +73,10 @@ public:
     host::record_data<R> records;
 
 private:
-    static host::method_traits traits_of(const model_facts& kernel) {
-        return {kernel.embedded_order > 0, kernel.scales_tolerances, kernel.chooses_first_step};
-    }
-    static host::step_sizes steps_of(const host::method_traits& method) {
-        return method.adaptive ? host::step_sizes::kept : host::step_sizes::fixed;
-    }
     /// The options, if there is enough memory for them; otherwise throws `error`.
     static const options& affordable(const ensemble<R>& e, const options& o, const model_facts& kernel) {
         host::memory_need need;
-        if (!o.record.empty()) need.add("records", host::record_data<R>::bytes_for(o.record, o.phases, e.data.size));
-        if (!o.samples.empty() && e.samples.capacity == 0)
-            need.add("samples", host::sample_data<R>::bytes_for(o.samples, e.data.size));
-        need.add("sample times", static_cast<double>(sizeof(R) * o.samples.times_of_instances.size()));
-        const host::method_traits method = traits_of(kernel);
-        host::ensemble_data<R>::add_memory_of_call(need, *e.shape, e.data.size, &e.data, o, steps_of(method),
-                                                   method.scales_tolerances);
+        add_memory_of_call<R>(need, *e.shape, e.data.size, &e.data, e.samples.capacity > 0, o, kernel);
         need.check(message("this call for ", std::int64_t{e.data.size}, " instances"),
                    "ask for fewer phases, components or samples at a time, or integrate the sweep in smaller parts");
         return o;

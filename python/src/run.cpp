@@ -90,6 +90,8 @@ double rounded(double value) {
     return static_cast<double>(static_cast<R>(value));
 }
 
+}  // namespace
+
 template <class R>
 void check_options(const named_shape& shape, const model_facts& kernel, const options& o) {
     const host::model_components components{{shape.n_state, "state"},
@@ -105,6 +107,19 @@ void check_options(const named_shape& shape, const model_facts& kernel, const op
                                      &rounded<R>};
     limits.check(o);
 }
+template void check_options<double>(const named_shape&, const model_facts&, const options&);
+template void check_options<float>(const named_shape&, const model_facts&, const options&);
+
+template <class R>
+double bytes_per_instance(const named_shape& shape, const model_facts& kernel, const options& o) {
+    host::memory_need need = host::ensemble_data<R>::memory_of(shape, 1);
+    add_memory_of_call<R>(need, shape, 1, nullptr, false, o, kernel);
+    return need.bytes();
+}
+template double bytes_per_instance<double>(const named_shape&, const model_facts&, const options&);
+template double bytes_per_instance<float>(const named_shape&, const model_facts&, const options&);
+
+namespace {
 
 /// The components of a kind that the model has; those that an interpreter has besides are called unused.
 std::size_t used(const std::vector<std::string>& names) {

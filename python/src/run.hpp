@@ -98,6 +98,13 @@ struct report : report_of<R> {
 /// Thrown by a progress function: the call ends with what is done.
 struct interruption {};
 
+/// Throws `error` if an option is invalid.
+template <class R>
+void check_options(const named_shape& shape, const model_facts& kernel, const options& o);
+/// Bytes of memory that an instance and a call for it take.
+template <class R>
+double bytes_per_instance(const named_shape& shape, const model_facts& kernel, const options& o);
+
 /// `solve`. Throws `error`.
 template <class R>
 std::unique_ptr<report<R>> solve(const library& kernel, const device& where, ensemble<R>& instances, const options& o);

@@ -237,6 +237,17 @@ std::unique_ptr<studies::result_keeper> any_study::open_store(const planned_run&
     return keeper;
 }
 
+study_result any_study::result_of(const studies::result_keeper& keeper, studies::run_outcome outcome) {
+    study_result made(keeper.kept());
+    made.complete = outcome.complete;
+    made.instances = outcome.instances;
+    made.seconds = outcome.seconds;
+    made.by_status = outcome.by_status;
+    made.notes = std::move(outcome.notes);
+    made.warnings = std::move(outcome.warnings);
+    return made;
+}
+
 void any_study::check() const {
     const planned_run planned = plan();
     if (!folder_.empty()) open_store(planned);
@@ -253,16 +264,42 @@ study_result any_study::run() {
     std::unique_ptr<studies::stop_signals> signals;
     if (stop_on_signals) signals = std::make_unique<studies::stop_signals>();
     settings.stops = [&] { return stopped_ || (signals != nullptr && signals->came()); };
-    studies::run_outcome outcome = studies::run_study(*model_, planned.plan, *keeper, settings);
+    return result_of(*keeper, studies::run_study(*model_, planned.plan, *keeper, settings));
+}
 
-    study_result made(keeper->kept());
-    made.complete = outcome.complete;
-    made.instances = outcome.instances;
-    made.seconds = outcome.seconds;
-    made.by_status = outcome.by_status;
-    made.notes = std::move(outcome.notes);
-    made.warnings = std::move(outcome.warnings);
-    return made;
+studies::handed_out_run any_study::hand_out() {
+    planned_run planned = plan();
+    auto keeper = folder_.empty() ? studies::keep_in_memory(planned.plan.content) : open_store(planned);
+    return {std::move(planned.plan), std::move(keeper)};
+}
+
+std::optional<studies::computed_chunk> any_study::compute(std::int64_t number, std::int64_t chunk_size) {
+    const struct stop_once {
+        std::atomic<bool>& stopped;
+        ~stop_once() { stopped = false; }
+    } once{stopped_};
+    auto [settings, plan] = this->plan();
+    require(chunk_size > 0 && chunk_size <= size(), "chunks of ", chunk_size,
+            " instances are asked for, of a study of ", size());
+    plan.content.chunk = chunk_size;
+    require(number >= 0 && number < plan.content.chunks(), "there is no chunk ", number, " in a study of ",
+            plan.content.chunks());
+    check_memory(plan, plan.content, settings.devices, "use fewer devices, or make chunk smaller");
+    studies::one_chunk_keeper keeper(plan.content, number);
+    settings.stops = [&] { return stopped_ || keeper.done(); };
+    studies::run_outcome outcome = studies::run_study(*model_, plan, keeper, settings);
+    if (!keeper.done()) return {};
+    keeper.values.notes = std::move(outcome.notes);
+    return std::move(keeper.values);
+}
+
+study_result any_study::finish(studies::handed_out_run& run) {
+    const studies::run_settings settings{.devices = {}, .stops = [] { return true; }};
+    studies::run_outcome outcome = studies::run_study(*model_, run.plan(), run.keeper(), settings);
+    outcome.instances = run.instances();
+    outcome.by_status = run.by_status();
+    outcome.notes = run.notes();
+    return result_of(run.keeper(), std::move(outcome));
 }
 
 }  // namespace myriad
