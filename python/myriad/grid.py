@@ -76,7 +76,7 @@ class Sweep:
         `values[i // repeat % len(values)]`."""
         axis, values = self.coordinates[name]
         place = [a for a, _ in self.axes].index(axis)
-        return values, int(np.prod(self.shape[place + 1:], dtype=np.int64))
+        return np.asarray(values), int(np.prod(self.shape[place + 1:], dtype=np.int64))
 
     def unstack(self, values):
         """An array with a row per instance as one with the axes of the sweep: (size, ...) to shape + (...)."""

@@ -37,6 +37,13 @@ _terms = (
 )
 
 
+def _on_cpu(device):
+    """The name of a CPU as the core knows it: the kernels of studies are compiled for CPUs."""
+    if str(device).startswith("cuda"):
+        raise Error(f"device is {device!r}, but studies run on the CPU alone: give \"cpu\", or use myriad.solve")
+    return _device_name(device, interpreted=True)[0]  # "auto" then looks for no GPU
+
+
 def _in_terms(error):
     return in_python(in_python(error), _terms)
 
@@ -229,7 +236,7 @@ class Study:
         folder = "" if store is None else os.path.abspath(os.fspath(store))
         if device == "auto" and executor is not None:
             device = "cpu:1"
-        devices = [_device_name(d) for d in ([device] if isinstance(device, str) else device)]
+        devices = [_on_cpu(d) for d in ([device] if isinstance(device, str) else device)]
         if not devices:
             raise Error("device= names no device: leave it out, or give \"cpu\"")
         show = _Progress(progress)

@@ -302,3 +302,8 @@ def test_other_threads_run_meanwhile():
     over.set()
     counter.join()
     assert len(turns) > 3
+
+
+def test_a_gpu_is_refused_for_a_study():
+    with pytest.raises(my.Error, match="studies run on the CPU alone"):
+        my.study(duffing(), grid(), keep=[x], **call).run(device="cuda")
