@@ -55,6 +55,22 @@ TEST_CASE("operators work on all masks at once, and on no bits beyond them") {
     CHECK(even.in(true)[2]);
 }
 
+TEST_CASE("negative numbers set their masks alone") {
+    const auto check = []<class R>(R) {
+        mask_set<bool, 70> below;
+        below.clear();
+        for (int j = 0; j < 70; ++j) below.set_negative(j, j % 3 == 0 ? R(-1.5) : R(1.5));
+        for (int j = 0; j < 70; ++j) CHECK(below[j] == (j % 3 == 0));
+        mask_set<myriad::mask_of<myriad::pack<R, 1>>, 2> lanes;
+        lanes.clear();
+        lanes.set_negative(1, myriad::pack<R, 1>(R(-2)));
+        CHECK_FALSE(lanes.get(0, 0));
+        CHECK(lanes.get(1, 0));
+    };
+    check(double{});
+    check(float{});
+}
+
 TEST_CASE("operators work on each lane of a pack by itself") {
     using mask = myriad::mask_of<myriad::pack<double, 1>>;
     const std::uint32_t bits[] = {0b01};

@@ -79,7 +79,7 @@ struct event_locator {
             below.set_negative(j, g1[j]);
             seen.beyond.set(j, abs(g1[j]) > S(args.event[j].tolerance));
         }
-        // On the side where it was, it is either above or below.
+        // A function has crossed if it was above zero and is below, or was below and is above.
         seen.crossed = seen.beyond & ~(e.above ^ below);
         seen.busy =
             e.flags[e.in_question] | (seen.crossed & asked()).any_of() | (sides.s.final_step & !seen.beyond.all_of());
