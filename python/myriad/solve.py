@@ -371,7 +371,8 @@ def _positive_infinity(value):
 
 
 def make_options(components, size, *, phases, record, samples, step, minimum_step, maximum_step, growth_limit,
-                 shrink_limit, max_steps, phase_length, carry_on, sub_samples, accumulation_limit, schedule):
+                 shrink_limit, max_steps, phase_length, carry_on, carry_on_step, sub_samples, accumulation_limit,
+                 schedule):
     """The core's options, but for tolerances and events, and the places of what is recorded and sampled, by name."""
     options = _core.Options()
     options.phases = _whole(phases, "phases")
@@ -382,7 +383,7 @@ def make_options(components, size, *, phases, record, samples, step, minimum_ste
     options.shrink_limit = _real(shrink_limit, "shrink_limit")
     options.max_steps = _whole(max_steps, "max_steps", 1 << 62)
     options.phase_length = _real(phase_length, "phase_length")
-    options.carry_on(bool(carry_on), False)
+    options.carry_on(bool(carry_on), bool(carry_on_step))
     options.sub_samples = _whole(sub_samples, "sub_samples")
     options.accumulation_limit = _whole(accumulation_limit, "accumulation_limit")
     if schedule not in _schedules:
@@ -407,9 +408,9 @@ def choose_kernel(model, components, method, control, sampled, precision, interp
 
 def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, method=None, control=(),
           rtol=1e-8, atol=1e-8, step=None, minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1,
-          max_steps=10_000_000, phase_length=0, carry_on=False, events=None, sub_samples=1, accumulation_limit=50,
-          tolerance_scale=None, invalid="refuse", schedule="automatic", size=None, precision="double", device="auto",
-          interpreted=None, progress=None):
+          max_steps=10_000_000, phase_length=0, carry_on=False, carry_on_step=False, events=None, sub_samples=1,
+          accumulation_limit=50, tolerance_scale=None, invalid="refuse", schedule="automatic", size=None,
+          precision="double", device="auto", interpreted=None, progress=None):
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
     model             from `myriad.model(...)`
@@ -432,6 +433,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     rtol, atol        tolerances of the error per step: numbers, lists in the order of the states, or dicts by state
     step              the fixed step, or the first one of an adaptive method
     carry_on          phases begin where the last one ended, as for phases that events end
+    carry_on_step     phases begin with the step size that the last one would have tried next, and not with `step`:
+                      for many short phases of a smooth motion
     events            changes of `direction`, `tolerance` or `stop_after` of events by name
     invalid           "refuse" inputs that are not finite, or "mark" their instances as invalid_input
     size              number of instances, if no array gives it
@@ -462,8 +465,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     options, recorded, sampled = make_options(
         components, count, phases=phases, record=record, samples=samples, step=step, minimum_step=minimum_step,
         maximum_step=maximum_step, growth_limit=growth_limit, shrink_limit=shrink_limit, max_steps=max_steps,
-        phase_length=phase_length, carry_on=carry_on, sub_samples=sub_samples, accumulation_limit=accumulation_limit,
-        schedule=schedule)
+        phase_length=phase_length, carry_on=carry_on, carry_on_step=carry_on_step, sub_samples=sub_samples,
+        accumulation_limit=accumulation_limit, schedule=schedule)
     if invalid == "mark":
         options.mark_invalid()
     elif invalid != "refuse":

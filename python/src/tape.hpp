@@ -100,7 +100,7 @@ struct tape_function {
 };
 
 /// The most that the interpreter has of each: models with more need a compiler.
-inline constexpr int tape_registers = 128, tape_states = 8, tape_parameters = 12, tape_accessories = 6,
+inline constexpr int tape_registers = 128, tape_states = 8, tape_parameters = 16, tape_accessories = 6,
                      tape_integers = 3, tape_events = 3;
 inline constexpr int tape_batches = 2;  ///< SIMD registers per pack
 

@@ -3,6 +3,7 @@
 // drawn at random. Used by test_cpp.py with a model of the examples and its traced counterpart.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <random>
@@ -49,7 +50,8 @@ bool same(const A& a, const B& b) {
 template <class A, class B>
 constexpr bool same_shape() {
     return detail::n_state<A> == detail::n_state<B> && detail::n_parameter<A> == detail::n_parameter<B> &&
-           detail::n_shared<A> == detail::n_shared<B> && detail::n_accessory<A> == detail::n_accessory<B> &&
+           detail::n_shared<A> == detail::n_shared<B> && detail::n_shared_integer<A> == detail::n_shared_integer<B> &&
+           detail::n_accessory<A> == detail::n_accessory<B> &&
            detail::n_integer_accessory<A> == detail::n_integer_accessory<B> &&
            detail::n_event<A> == detail::n_event<B> && detail::n_observed<A> == detail::n_observed<B>;
 }
@@ -83,13 +85,15 @@ bool same_functions() {
     return equal;
 }
 
+inline constexpr std::int32_t whole_numbers[] = {1, 2, 3};
+
 template <class Model>
 detail::lane_data<Model, double> drawn_lane(const double* shared, int sample) {
     detail::lane_data<Model, double> d;
     std::memset(static_cast<void*>(&d), 0, sizeof d);
     draw(d.t), draw(d.h), draw(d.y), draw(d.parameter), draw(d.accessory);
     draw(d.integer_accessory), draw(d.event_count);
-    d.shared = shared, d.t_end = 3, d.phase = sample % 2, d.h_next = 0.5;
+    d.shared = shared, d.shared_integer = whole_numbers, d.t_end = 3, d.phase = sample % 2, d.h_next = 0.5;
     for (int i = 0; i < detail::n_event<Model>; ++i) d.event_count[i] = sample % 7;
     if constexpr (detail::n_integer_accessory < Model >> 0) d.integer_accessory[0] = sample % 60;
     return d;
