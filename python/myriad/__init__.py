@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Myriad: very large ensembles of small systems of ordinary differential equations, from models written in Python."""
 
-from . import _core, cache, reduce
+from . import _core, cache, plots, reduce
 from .axes import *  # noqa: F403
 from .cpp_model import CppModel
 from .errors import Error

@@ -20,7 +20,7 @@ import example_models
 import myriad as my
 
 root = pathlib.Path(__file__).resolve().parents[2]
-folders = [pathlib.Path(os.environ["MYRIAD_EXAMPLES"])] if "MYRIAD_EXAMPLES" in os.environ else [
+folders = [pathlib.Path(os.environ["MYRIAD_EXAMPLES"]).resolve()] if "MYRIAD_EXAMPLES" in os.environ else [
     root / "build" / preset / "examples" for preset in ("ci", "release", "dev", "nightly")]
 tau = 2 * np.pi
 
