@@ -41,8 +41,11 @@ class WithTangents:
             raise Error(f"the model has a component '{twice}'{at(line)}, which is the name of one that tangents add: "
                         "rename it")
         # The same orthonormal vectors for all instances, columns of a reflection that no symmetry leaves invariant.
-        mirror = 1 + np.modf(0.6180339887498949 * np.arange(1, n + 1))[0]
-        start = np.eye(n) - 2 * np.outer(mirror, mirror) / (mirror @ mirror)
+        # With the rounding of the C++ library's `initial_tangents`.
+        golden = 0.6180339887498949 * np.arange(1, n + 1)
+        mirror = 1 + golden - np.floor(golden)
+        mirror /= np.sqrt(sum(mirror * mirror))
+        start = np.eye(n) - 2 * mirror[:, None] * mirror
         self.shared_values = getattr(model, "shared_values", {})
         self.defaults = {**self.shared_values, "transient_phases": 0,
                          **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}

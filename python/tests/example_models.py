@@ -333,7 +333,8 @@ headers = {
     oscillator: "examples/quickstart/model.hpp", highest_maximum: "examples/program/forced_duffing.hpp",
     van_der_pol: "examples/moving/model.hpp", pendulum: "examples/own_method/models.hpp",
     magnetic_pendulum: "examples/basins/magnetic_pendulum.hpp", response: "examples/resonance/oscillator.hpp",
-    forced_duffing: "examples/lyapunov_map/forced_duffing.hpp", hand_tangent: "examples/lyapunov_map/forced_duffing.hpp",
+    forced_duffing: "examples/lyapunov_map/forced_duffing.hpp",
+    hand_tangent: "examples/lyapunov_map/forced_duffing.hpp",
 }
 #: those whose struct has the name of another model, which are put in a namespace
 renamed = {oscillator: "duffing", highest_maximum: "duffing"}

@@ -2,10 +2,11 @@
 """The sweeps of the C++ examples in Python, with the numbers that the programs write: bit by bit where the inputs are
 in the programs' tables, as both compilers add and multiply without contraction, else as near as rounded inputs allow.
 
-The programs are those of a build of this checkout, or in the folder that MYRIAD_EXAMPLES names; without them these tests
-are skipped. Models with events that the interpreter can run (those without round a little differently there),
-and those that other tests compile, are compared always, the others with --all. What a random number in a hook draws, Python takes from the program's table; the method of examples/own_method is
-a tableau of its user, which Python cannot name, so that its model is compared with another method."""
+The programs are those of a build of this checkout, or in the folder that MYRIAD_EXAMPLES names; without them these
+tests are skipped. Models with events that the interpreter can run (those without round a little differently there), and
+those that other tests compile, are compared always, the others with --all. What a random number in a hook draws, Python
+takes from the program's table. The method of examples/own_method is a tableau of its user, and Python has methods by
+name alone, so that its model is compared with the library's method that the program runs too."""
 
 import csv
 import os
@@ -38,7 +39,7 @@ def run_program(tmp_path):
 
 
 def columns(text):
-    """The columns of a table of comma-separated values by name, numbers where all are; lines of comments are skipped."""
+    """The columns of a table of comma-separated values by name, numbers where all are; comments are skipped."""
     rows = list(csv.reader(line for line in text.splitlines() if line and not line.startswith("#")))
     made = {}
     for name, *values in zip(*rows):
@@ -137,12 +138,12 @@ def test_relief_valve(run_sweep):
 
 @every
 def test_relief_valve_contact(run_sweep):
-    table = run_sweep("relief_valve_contact", instances=97, transient=12, phases=4)
+    table = run_sweep("relief_valve_contact", instances=97, transient=40, phases=4)
     names = ["y_min", "y_max", "u_contact", "time_at_rest"]
     run = my.solve(example_models.relief_valve_contact(),
-                   {"q": first_of(table, "q", 97), **valves, "slowest": 1e-4}, phases=16, atol=[1e-15, 1e-12, 1e-10],
+                   {"q": first_of(table, "q", 97), **valves, "slowest": 1e-4}, phases=44, atol=[1e-15, 1e-12, 1e-10],
                    events={"seat": dict(tolerance=1e-12), "opening": dict(tolerance=1e-12)},
-                   record=dict(from_phase=12, accessories=names), device="cpu", **valve_options)
+                   record=dict(from_phase=40, accessories=names), device="cpu", **valve_options)
     same(table, run, names)
     assert (run["time_at_rest"] > 0).any()
 
@@ -228,16 +229,9 @@ def test_lyapunov(run_sweep):
                    {"rho": table["rho"], "sigma": 10, "beta": 8 / 3, "transient_phases": 20},
                    start={"x": 1, "y": 1, "z": 1}, time=(0, 0.25), phases=60, rtol=1e-8, atol=1e-8, carry_on_step=True,
                    method="tsitouras_5", device="cpu")
-    same({**table, **dict(zip(["growth_1", "growth_2", "growth_3"], (
-        table[f"lambda_{i}"] for i in (1, 2, 3))))}, dict_of(run, my.exponents(run)), ["growth_1", "growth_2", "growth_3"])
-
-
-class dict_of(dict):
-    """Exponents by name, with the statuses of their run."""
-
-    def __init__(self, run, exponents):
-        super().__init__({f"growth_{i + 1}": exponents[:, i] for i in range(exponents.shape[1])})
-        self.status, self.size = run.status, run.size
+    exponents = my.exponents(run)
+    for i in range(3):
+        assert np.array_equal(exponents[:, i], table[f"lambda_{i + 1}"])
 
 
 @every
@@ -347,14 +341,16 @@ def test_heat_conduction(run_sweep):
 def test_own_method(run_program):
     printed = run_program("own_method")
     for tolerance in (1e-4, 1e-6, 1e-8):
-        run = my.solve(example_models.pendulum(), start={"angle": np.linspace(0.1, 2.5, 256), "speed": 0}, time=(0, 100),
-                       rtol=tolerance, atol=tolerance, method="tsitouras_5", device="cpu")
+        run = my.solve(example_models.pendulum(), start={"angle": np.linspace(0.1, 2.5, 256), "speed": 0},
+                       time=(0, 100), rtol=tolerance, atol=tolerance, method="tsitouras_5", device="cpu")
         a, g = 1.0, np.cos((0.1 + 2.4 * np.arange(256) / 255) / 2)
         for _ in range(6):
             a, g = (a + g) / 2, np.sqrt(a * g)
         error = np.abs(run["last_passage"] - 5 * np.pi / 2 / a).max()
-        work = run.report.rhs_evaluations / 256
-        assert f"tsitouras_5          tolerance {tolerance:.0e}: error {error:.1e}, {work:6.1f} eval" in printed
+        said = re.search(f"tsitouras_5 +tolerance {tolerance:.0e}: error (\\S+), +(\\S+) evaluations", printed)
+        assert said[1] == f"{error:.1e}"
+        # fewer: a traced model knows that its equations do not read what the action writes
+        assert 0.9 * float(said[2]) < run.report.rhs_evaluations / 256 < float(said[2])
 
 
 def test_bouncing_ball_of_hooks(run_program):

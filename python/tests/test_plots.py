@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Pictures: what is drawn, by the data of matplotlib's artists."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -9,12 +12,13 @@ from myriad import plots
 
 matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402
 
 
 @pytest.fixture(autouse=True)
 def close_figures():
     yield
-    matplotlib.pyplot.close("all")
+    pyplot.close("all")
 
 
 def test_bifurcation_has_a_point_for_every_instance_and_phase():
@@ -110,3 +114,9 @@ def test_a_map_of_a_run_follows_the_axes_of_its_grid_and_leaves_failures_out():
     run.failed[5] = True
     drawn = plots.Plots(run).map("B", "k", "x").collections[0].get_array()
     assert drawn[0].tolist() == [0, 1, 2] and drawn[1, :2].tolist() == [3, 4] and drawn.mask[1, 2]
+
+
+def test_the_functions_for_arrays_are_there_after_import_myriad():
+    script = "import myriad; print(myriad.plots.bifurcation.__name__)"
+    told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert told.stdout == "bifurcation\n", told.stderr

@@ -57,6 +57,15 @@ def test_records_by_phase(oscillator):
     np.testing.assert_array_equal(run["x"][:, -1], run.states["x"])
 
 
+def test_phases_may_begin_with_the_step_of_the_last_one(oscillator):
+    call = dict(start=start, time=(0, 0.5), phases=40, step=1e-4, rtol=1e-8)
+    each = my.solve(oscillator, {"w": w}, **call)
+    carried = my.solve(oscillator, {"w": w}, carry_on_step=True, **call)
+    assert carried.report.accepted_steps < 0.75 * each.report.accepted_steps  # each begins with step
+    for run in (each, carried):
+        np.testing.assert_allclose(run["x"], np.cos(20 * w), atol=1e-5)
+
+
 def test_samples(oscillator):
     run = my.solve(oscillator, {"w": w}, start=start, time=(0, 4), samples=9, rtol=1e-10)
     assert run["x"].shape == (37, 9)

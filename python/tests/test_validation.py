@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The problems of the C++ validation through Python, compiled and interpreted, on the CPU or on the GPU that
-MYRIAD_TEST_DEVICE=cuda asks for. An error has to stay below the bound of docs/validation.md, which is that of the sum of
-the errors of all steps, each grown as far as the problem makes errors grow.
+MYRIAD_TEST_DEVICE=cuda asks for. An error has to stay below the bound of docs/validation.md, which is that of the sum
+of the errors of all steps, each grown as far as the problem makes errors grow.
 
 One method for each problem is compiled always, all methods with --all."""
 
@@ -77,8 +77,8 @@ def check(name, method, runs):
             ratio = (found / (bound + of_step) / size).max()
             print(f"{name}, {method}, {tolerance:g}, {c}: error {found.max():.2g}, {ratio:.2g} of its bound")
             assert ratio <= 1, (c, tolerance, found.max())
-    # The bounds are wide; that errors fall with the tolerance, if they are not yet those of rounding, is not. Steps that
-    # stability limits are more accurate than asked for.
+    # The bounds are wide. That errors fall with the tolerance is not, where they are not those of rounding, nor steps
+    # limited by stability and thus more accurate than asked for.
     if name.partition(" ")[0] in ("heat", "robertson"):
         return
     for c in errors[0]:

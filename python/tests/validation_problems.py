@@ -148,9 +148,10 @@ def keller_miksis():
     f = np.tile(np.logspace(5, 6, 32), 2)
     one, two = np.repeat([0.8e5, 0.5e5], 32), np.repeat([0, 0.4e5], 32)
     constants = bubble_constants(one, f, two, np.repeat([1e5, 3e5], 32))
-    return Problem(model, constants, dict(y=1, v=0), 1, 50.7, lambda i: bubble([float(c[i]) for c in constants.values()]),
-                   instances=(4, 30, 40, 60), event_tolerance=1e-11, events_per_instance=10, counts=("maxima", "minima"),
-                   reference_error=1e-9, fixed_step=0.0005, method="cash_karp")
+    return Problem(model, constants, dict(y=1, v=0), 1, 50.7,
+                   lambda i: bubble([float(c[i]) for c in constants.values()]), instances=(4, 30, 40, 60),
+                   event_tolerance=1e-11, events_per_instance=10, counts=("maxima", "minima"), reference_error=1e-9,
+                   fixed_step=0.0005, method="cash_karp")
 
 
 def valve(q, kappa, delta, beta, restitution):
@@ -188,9 +189,9 @@ def relief_valve():
                 my.event(y, name="seat", direction="falling", tolerance=1e-11, do={
                     t_impact: my.time, impact_speed: -v, impacts: impacts + 1, y: 0, v: -restitution * v})])
     q_values, others = np.linspace(3, 9, 64), dict(kappa=1.25, delta=10, beta=20, restitution=0.8)
-    return Problem(model, {"q": q_values, **others}, dict(y=1, v=0, u=10), 8, 404, lambda i: valve(q_values[i], **others),
-                   instances=(2, 25, 50), event_tolerance=1e-11, events_per_instance=10, counts=("maxima", "impacts"),
-                   reference_error=1e-8, fixed_step=0.002)
+    return Problem(model, {"q": q_values, **others}, dict(y=1, v=0, u=10), 8, 404,
+                   lambda i: valve(q_values[i], **others), instances=(2, 25, 50), event_tolerance=1e-11,
+                   events_per_instance=10, counts=("maxima", "impacts"), reference_error=1e-8, fixed_step=0.002)
 
 
 def bouncing_ball():

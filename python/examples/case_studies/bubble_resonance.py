@@ -90,8 +90,8 @@ figure.savefig("bubble_resonance.png", dpi=150)
 
 # %% [markdown]
 # At 0.01 bar the bubble is the linear oscillator of the closed form. At higher pressures it is a softening spring: the
-# resonance leans to lower frequencies, and jumps. And the bubble resonates at fractions of its frequency too, and at twice
-# that, where it swings at half the frequency of the sound.
+# resonance leans to lower frequencies, and jumps. And the bubble resonates at fractions of its frequency too, and at
+# twice that, where it swings at half the frequency of the sound.
 
 # %%
 assert run.report.failed == 0
