@@ -22,6 +22,7 @@ Without --tests, --sanitize, --bench, --profile, --methods or --python: the firs
   --python       the Python package: its wheel is built, and its tests for GPUs and a benchmark are run. Needs Python
                  with NumPy, libnvrtc of the CUDA Toolkit, and in DIR/wheels what the wheel is built and tested with:
                  pip download --only-binary :all: --dest DIR/wheels scikit-build-core nanobind pytest
+                 With scipy too, the validation has its references, and errors are compared with other packages'.
                  A wheel of myriad there is taken as it is, which needs neither Python's headers nor CMake.
   --deps DIR     folder with the headers of what is not installed: DIR/xsimd, DIR/CLI (default: .deps, if it is there)
   --output DIR   where logs and CSV files go (default: results/gpu)
@@ -78,9 +79,13 @@ END
     fi
     local status=0
     MYRIAD_TEST_DEVICE=cuda python3 -m pytest -q -p no:cacheprovider --durations=5 \
-        python/tests/test_gpu.py python/tests/test_nvrtc.py 2>&1 | tee "$output/python_tests.log" | tail -40 || status=1
+        python/tests/test_gpu.py python/tests/test_validation.py python/tests/test_nvrtc.py 2>&1 | tee "$output/python_tests.log" | tail -40 || status=1
     python3 benchmarks/python/van_der_pol.py --check --output "$output/python_van_der_pol.csv" 2>&1 |
         tee "$output/python_van_der_pol.log" || status=1
+    if python3 -c 'import scipy' 2>/dev/null; then
+        python3 benchmarks/python/compare.py --side 1024 --programs "myriad gpu" cubie myriad \
+            --output "$output/python_compare.csv" || status=1
+    fi
     return "$status"
 }
 if wants python; then
