@@ -275,11 +275,11 @@ def robertson():
     k1, k2 = my.parameters("k1 k2")
     slow, fast, back = k1 * a, k2 * b * b, 1e4 * b * c
     known = dict(a=0.71582706871940509, b=9.1855347645577639e-6, c=0.28416374574583035)  # quadruple precision
-    rates = np.linspace(0.02, 0.06, 65)
-    rates[32] = 0.04
+    rates = np.linspace(0.02, 0.06, 17)
+    rates[8] = 0.04
     return Problem(my.model({a: back - slow, b: slow - back - fast, c: fast}, name="robertson"),
-                   {"k1": rates, "k2": np.full(65, 3e7)}, dict(a=1, b=0, c=0), 40, 2.63, lambda i: known,
-                   instances=(32,), stiff=True, fixed_step=5e-4, method="rosenbrock_23")
+                   {"k1": rates, "k2": np.full(17, 3e7)}, dict(a=1, b=0, c=0), 40, 2.63, lambda i: known,
+                   instances=(8,), stiff=True, fixed_step=5e-4, method="rosenbrock_23")
 
 
 def oregonator():

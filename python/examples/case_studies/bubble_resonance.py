@@ -45,7 +45,7 @@ bubble = my.model({y: v, v: (at_the_wall + change - (1.5 - 0.5 * M * v) * v * v)
 
 # %%
 pressures = np.array([0.01, 0.2, 0.4, 0.6]) * 1e5
-sweep = my.grid({pressure: pressures, f: np.geomspace(60e3, 800e3, 300)})
+sweep = my.grid({pressure: pressures, f: np.geomspace(60e3, 800e3, 256)})
 run = my.solve(bubble, sweep, start={y: 1, v: 0}, time=(0, 1), phases=144, rtol=1e-8, atol=1e-8, method="tsitouras_5",
                carry_on_step=True, record=dict(from_phase=136, accessories=[y_max, y_min]))
 print(run.report)

@@ -30,9 +30,9 @@ valve = my.model(
             my.event(y, name="seat", direction="falling", tolerance=1e-10, do={
                 v: -restitution * v, impacts: impacts + 1, speed: my.maximum(speed, -v)})])
 
-flows = np.linspace(0.5, 10, 800)
-run = my.solve(valve, {q: flows}, start={y: 0.2, v: 0, u: 0}, time=(0, 1000), phases=160, carry_on=True, rtol=1e-9,
-               atol=1e-9, method="tsitouras_5", record=dict(from_phase=128, accessories=[y_min, y_max, impacts, speed]))
+flows = np.linspace(0.5, 10, 600)
+run = my.solve(valve, {q: flows}, start={y: 0.2, v: 0, u: 0}, time=(0, 1000), phases=128, carry_on=True, rtol=1e-9,
+               atol=1e-9, method="tsitouras_5", record=dict(from_phase=104, accessories=[y_min, y_max, impacts, speed]))
 print(run.report)
 
 # %% [markdown]
