@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The models of the C++ examples, traced: each compiles to what the example's header says."""
 
+import numpy as np
+
 import myriad as my
 
 
@@ -223,6 +225,20 @@ def response():
         after_step={maximum: my.maximum(maximum, x), minimum: my.minimum(minimum, x), x_before: x, v_before: v,
                     integral: integral + (0.5 * h * (x_before * x_before + x * x)
                                           + h * h / 6 * (x_before * v_before - x * v))})
+
+
+def bubble_constants(p_1, f_1, p_2, f_2):
+    """C0 to C12 of examples/keller_miksis/constants.hpp, for arrays; pressures in Pa, frequencies in Hz."""
+    vapour, density, tension, viscosity = 3166.775638952003, 997.0639504998557, 0.071977583160056, 8.902125058209557e-4
+    sound, exponent, ambient, radius = 1497.251785455527, 1.4, 1e5, 10e-6
+    omega_1, omega_2 = 2 * np.pi * f_1, 2 * np.pi * f_2
+    q, excess = 2 * np.pi / (radius * omega_1), ambient - vapour + 2 * tension / radius
+    C = [excess * q * q / density, (1 - 3 * exponent) * excess * q / (density * sound),
+         (ambient - vapour) * q * q / density, 2 * tension * q * q / (density * radius),
+         4 * viscosity / (density * radius * radius) / f_1, p_1 * q * q / density, p_2 * q * q / density,
+         radius * omega_1 * p_1 * q * q / (density * sound), radius * omega_2 * p_2 * q * q / (density * sound),
+         radius * omega_1 / (2 * np.pi * sound), 3 * exponent, omega_2 / omega_1, 0]
+    return {f"C{i}": np.broadcast_to(c, np.shape(f_1)) for i, c in enumerate(C)}
 
 
 def bubble_right_hand_side():

@@ -148,20 +148,6 @@ def test_relief_valve_contact(run_sweep):
     assert (run["time_at_rest"] > 0).any()
 
 
-def bubble_constants(p_1, f_1, p_2, f_2):
-    """C0 to C12 of examples/keller_miksis/constants.hpp, for arrays; pressures in Pa, frequencies in Hz."""
-    vapour, density, tension, viscosity = 3166.775638952003, 997.0639504998557, 0.071977583160056, 8.902125058209557e-4
-    sound, exponent, ambient, radius = 1497.251785455527, 1.4, 1e5, 10e-6
-    omega_1, omega_2 = tau * f_1, tau * f_2
-    q, excess = tau / (radius * omega_1), ambient - vapour + 2 * tension / radius
-    C = [excess * q * q / density, (1 - 3 * exponent) * excess * q / (density * sound),
-         (ambient - vapour) * q * q / density, 2 * tension * q * q / (density * radius),
-         4 * viscosity / (density * radius * radius) * tau / omega_1, p_1 * q * q / density, p_2 * q * q / density,
-         radius * omega_1 * p_1 * q * q / (density * sound), radius * omega_2 * p_2 * q * q / (density * sound),
-         radius * omega_1 / (tau * sound), 3 * exponent, omega_2 / omega_1, 0]
-    return {f"C{i}": np.broadcast_to(c, np.shape(f_1)) for i, c in enumerate(C)}
-
-
 bubble_options = dict(start={"y": 1, "v": 0}, rtol=1e-10, atol=1e-10, step=1e-2, minimum_step=1e-12, carry_on_step=True)
 
 
@@ -169,8 +155,8 @@ def test_bubble_response(run_sweep):
     """At a pressure of 0.5 bar, where no bubble is chaotic; the table has rounded frequencies."""
     table = run_sweep("bubble_response", instances=37, transient=6, phases=3, pressure=0.5)
     f = 1e3 * first_of(table, "f_kHz", 37)
-    run = my.solve(example_models.bubble_response(), bubble_constants(0.5e5, f, 0, f), time=(0, 1), phases=9,
-                   record=dict(from_phase=6, accessories=["y_max", "maxima"]), interpreted=True, **bubble_options)
+    run = my.solve(example_models.bubble_response(), example_models.bubble_constants(0.5e5, f, 0, f), time=(0, 1),
+                   phases=9, record=dict(from_phase=6, accessories=["y_max", "maxima"]), interpreted=True, **bubble_options)
     np.testing.assert_allclose(run["y_max"].ravel(), table["y_max"], rtol=1e-8)
     assert np.array_equal(run["maxima"].ravel(), table["maxima"])
 
@@ -180,8 +166,8 @@ def test_bubble_dual_frequency(run_sweep):
     table = run_sweep("bubble_dual_frequency", instances=6, transient=6, phases=4, pressures_1=0.2, pressures_2=0.3)
     f_1, f_2 = 1e3 * table["f1_kHz"], 1e3 * table["f2_kHz"]
     run = my.solve(example_models.bubble_dual_frequency(),
-                   {**bubble_constants(0.2e5, f_1, 0.3e5, f_2), "transient_phases": 6}, time=(0, np.inf), phases=10,
-                   carry_on=True, events={"minimum": dict(tolerance=1e-3)}, device="cpu", **bubble_options)
+                   {**example_models.bubble_constants(0.2e5, f_1, 0.3e5, f_2), "transient_phases": 6},
+                   time=(0, np.inf), phases=10, carry_on=True, events={"minimum": dict(tolerance=1e-3)}, device="cpu", **bubble_options)
     found = dict(expansion=run["largest"] - 1, compression=run["compression"], winding=run["winding"],
                  collapse_us=run["collapse_time"] / f_1 / 1e-6)
     for name, values in found.items():

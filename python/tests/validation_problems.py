@@ -9,7 +9,6 @@ import numpy as np
 
 import example_models
 import myriad as my
-from test_example_programs import bubble_constants
 
 tau = 2 * np.pi
 
@@ -147,7 +146,7 @@ def keller_miksis():
                     t_minimum: my.time, minimum: y, minima: minima + 1})])
     f = np.tile(np.logspace(5, 6, 32), 2)
     one, two = np.repeat([0.8e5, 0.5e5], 32), np.repeat([0, 0.4e5], 32)
-    constants = bubble_constants(one, f, two, np.repeat([1e5, 3e5], 32))
+    constants = example_models.bubble_constants(one, f, two, np.repeat([1e5, 3e5], 32))
     return Problem(model, constants, dict(y=1, v=0), 1, 50.7,
                    lambda i: bubble([float(c[i]) for c in constants.values()]), instances=(4, 30, 40, 60),
                    event_tolerance=1e-11, events_per_instance=10, counts=("maxima", "minima"), reference_error=1e-9,
