@@ -156,7 +156,8 @@ def test_bubble_response(run_sweep):
     table = run_sweep("bubble_response", instances=37, transient=6, phases=3, pressure=0.5)
     f = 1e3 * first_of(table, "f_kHz", 37)
     run = my.solve(example_models.bubble_response(), example_models.bubble_constants(0.5e5, f, 0, f), time=(0, 1),
-                   phases=9, record=dict(from_phase=6, accessories=["y_max", "maxima"]), interpreted=True, **bubble_options)
+                   phases=9, record=dict(from_phase=6, accessories=["y_max", "maxima"]), interpreted=True,
+                   **bubble_options)
     np.testing.assert_allclose(run["y_max"].ravel(), table["y_max"], rtol=1e-8)
     assert np.array_equal(run["maxima"].ravel(), table["maxima"])
 
@@ -167,7 +168,8 @@ def test_bubble_dual_frequency(run_sweep):
     f_1, f_2 = 1e3 * table["f1_kHz"], 1e3 * table["f2_kHz"]
     run = my.solve(example_models.bubble_dual_frequency(),
                    {**example_models.bubble_constants(0.2e5, f_1, 0.3e5, f_2), "transient_phases": 6},
-                   time=(0, np.inf), phases=10, carry_on=True, events={"minimum": dict(tolerance=1e-3)}, device="cpu", **bubble_options)
+                   time=(0, np.inf), phases=10, carry_on=True, events={"minimum": dict(tolerance=1e-3)}, device="cpu",
+                   **bubble_options)
     found = dict(expansion=run["largest"] - 1, compression=run["compression"], winding=run["winding"],
                  collapse_us=run["collapse_time"] / f_1 / 1e-6)
     for name, values in found.items():
