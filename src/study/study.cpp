@@ -29,6 +29,12 @@ std::int64_t items_of(const studies::layout& content, const studies::variable& v
                                                  : 1;
 }
 
+/// Whether all devices set and reduce instances themselves.
+bool on_devices(const studies::any_model& model, const studies::study_plan& plan, const std::vector<device>& devices) {
+    return std::all_of(devices.begin(), devices.end(),
+                       [&](const device& d) { return model.make_device_solver(plan, d) != nullptr; });
+}
+
 /// Instances of a chunk, and of them those to be integrated at a time, as far as free memory goes.
 struct chunk_sizes {
     std::int64_t chunk, piece;
@@ -37,7 +43,9 @@ chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_p
                          const std::vector<device>& devices) {
     const std::int64_t n = plan.content.instances();
     const double worked_on =
-        model.bytes_per_instance(plan.asked.options) + static_cast<double>(plan.bytes_per_instance());
+        on_devices(model, plan, devices)
+            ? static_cast<double>(std::max(plan.bytes_needed_on_host(), std::int64_t{8}))
+            : model.bytes_per_instance(plan.asked.options) + static_cast<double>(plan.bytes_per_instance());
     // Two threads for each device; half of what the results leave stays free.
     double free = host::available_memory().bytes;
     if (in_memory) free -= static_cast<double>(plan.content.bytes());
@@ -57,10 +65,10 @@ chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_p
 
 /// Refuses chunks whose values alone do not fit: they are in memory as a whole, however few instances are integrated at
 /// a time.
-void check_memory(const studies::study_plan& plan, const studies::layout& content, const std::vector<device>& devices,
+void check_memory(double bytes_per_instance, const studies::layout& content, const std::vector<device>& devices,
                   const char* advice) {
     host::memory_need need;
-    need.add("values", static_cast<double>(plan.bytes_per_instance()) * static_cast<double>(content.chunk));
+    need.add("values", bytes_per_instance * static_cast<double>(content.chunk));
     const std::int64_t at_once = std::min(2 * static_cast<std::int64_t>(devices.size()), content.chunks());
     need.add("values of other chunks at the same time", need.bytes() * static_cast<double>(at_once - 1));
     need.check(message("chunks of ", content.chunk, " instances"), advice);
@@ -209,7 +217,8 @@ studies::study_request any_study::request() const {
             .generator = model_->generator(),
             .notes = notes_,
             .units = units_,
-            .title = title_};
+            .title = title_,
+            .generates_itself = model_->generates_itself()};
 }
 
 study_result any_study::run() {
@@ -224,10 +233,12 @@ study_result any_study::run() {
     const chunk_sizes sizes = choose_sizes(*model_, plan, folder_.empty(), settings.devices);
     plan.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
     settings.piece = sizes.piece;
-    check_memory(plan, plan.content, settings.devices, "make chunk smaller, or keep less");
+    const auto bytes = static_cast<double>(
+        on_devices(*model_, plan, settings.devices) ? plan.bytes_needed_on_host() : plan.bytes_per_instance());
+    check_memory(bytes, plan.content, settings.devices, "make chunk smaller, or keep less");
     const auto keeper = folder_.empty() ? studies::keep_in_memory(plan.content)
                                         : studies::keep_in_store(folder_, plan.content, store_options_);
-    check_memory(plan, keeper->content(), settings.devices,
+    check_memory(bytes, keeper->content(), settings.devices,
                  "use fewer devices, or start the study in a new folder with a smaller chunk");
 
     std::unique_ptr<studies::stop_signals> signals;

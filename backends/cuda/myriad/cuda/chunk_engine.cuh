@@ -9,6 +9,7 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/chunk_layout.cuh"
@@ -16,6 +17,7 @@
 #include "myriad/cuda/resources.cuh"
 #include "myriad/cuda/schedule.cuh"
 #include "myriad/cuda/staging.cuh"
+#include "myriad/cuda/study_work.cuh"
 #include "myriad/cuda/transfers.cuh"
 #include "myriad/host/backend/backend.hpp"
 
@@ -91,17 +93,7 @@ public:
             pooled_staging(device_)->upload(list, stream_.get());
         }
         // After the copies: clearing needs multiprocessors, so that the copies would wait for kernels of other chunks.
-        std::byte *zeros = nullptr, *end_of_zeros = nullptr;
-        walk(from, [&](auto*&, auto* target, std::int64_t components, array_access, array_kind kind) {
-            if (!is_cleared(kind)) return;
-            if (kind == array_kind::samples) return clear(target, components);
-            auto* const begin = reinterpret_cast<std::byte*>(target);
-            if (zeros == nullptr) zeros = begin;
-            end_of_zeros = begin + bytes_of(target, components * count_);
-        });
-        // Bookkeeping arrays are contiguous.
-        if (zeros != nullptr)
-            MYRIAD_CUDA(cudaMemsetAsync(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
+        clear_arrays(from, is_cleared);
         launcher_.set_shared(host.shared);
         if (launcher_.facts().shared_placement != shared_placement::constant_bank) upload_shared(host.shared);
     }
@@ -160,6 +152,61 @@ public:
         }
     }
 
+    void generate(const arguments& host, std::shared_ptr<const generation> how, std::int64_t first,
+                  std::int64_t count) override {
+        const current_device here(device_);
+        finish_download();
+        first_ = first;
+        count_ = count;
+        scheduler_.forget_costs();
+        reserve(host, count);
+        arguments now = host;
+        clear_arrays(now, [](array_kind kind) { return kind == array_kind::bookkeeping || kind == array_kind::samples; });
+        launcher_.set_shared(host.shared);
+        if (how->calls_model || launcher_.facts().shared_placement != shared_placement::constant_bank)
+            upload_shared(host.shared);
+        walk(now, [](auto*& array, auto* on_device, std::int64_t, array_access, array_kind) { array = on_device; });
+        const instance_range range{count, host.first_index + first};
+        const auto find = [&](const void* array) { return place_of(host, array); };
+        study_.fill(how, find, range, now.ended, now.status, stream_.get());
+        if (how->calls_model)
+            study_.template generate<Model, R>(now, range, shared_on_device_, how->seed, stream_.get());
+    }
+    void fetch(const arguments& host, const device_values& what, std::byte* to) override {
+        const current_device here(device_);
+        finish_download();
+        const value_array all = on_device(host, what);
+        auto* const from = static_cast<std::byte*>(const_cast<void*>(study_.gathered(all, stream_.get())));
+        const std::size_t bytes = cuda::bytes_of(what.type) * static_cast<std::size_t>(all.size * all.inner);
+        const row_list list{{to, from, bytes, 1, bytes}};
+        if (little_transfer::takes(list)) {
+            little_.begin_download(list, stream_.get());
+            little_.finish_download();
+        } else {
+            const pooled_staging staged(device_);
+            staged->begin_download(list, stream_.get());
+            staged->finish_download();
+        }
+    }
+    std::vector<std::int64_t> reduce(const arguments& host, const device_values& what,
+                                     const device_reduction& how) override {
+        const current_device here(device_);
+        finish_download();
+        const auto* const statuses = static_cast<const status*>(place_of(host, host.status).values);
+        return study_.reduce(on_device(host, what), statuses, how, stream_.get());
+    }
+    void fetch_first(const arguments& host, std::int64_t count) override {
+        const current_device here(device_);
+        finish_download();
+        arguments to = host;
+        walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access, array_kind) {
+            MYRIAD_CUDA(cudaMemcpy2DAsync(target, bytes_of(target, host.size), source, bytes_of(source, count_),
+                                          bytes_of(source, count), static_cast<std::size_t>(components),
+                                          cudaMemcpyDeviceToHost, stream_.get()));
+        });
+        check(cudaStreamSynchronize(stream_.get()), "the integration on the GPU");
+    }
+
     void wait() override {
         const current_device here(device_);
         finish_download();
@@ -213,7 +260,7 @@ public:
     }
     void rest() override {
         const current_device here(device_);
-        const std::size_t held = memory_.bytes() + records_.bytes() + scheduler_.bytes(),
+        const std::size_t held = memory_.bytes() + records_.bytes() + scheduler_.bytes() + study_.bytes(),
                           always_fine = std::size_t{32} << 20;
         if (held <= always_fine) return;
         std::size_t free = 0, total = 0;
@@ -223,6 +270,7 @@ public:
         memory_.release();
         records_.release();
         scheduler_.release();
+        study_.release();
     }
 
     std::int64_t affordable(std::int64_t bytes) const override {
@@ -263,6 +311,48 @@ private:
     void finish_download() {
         little_.finish_download();
         if (const auto lent = std::move(fetching_)) (*lent)->finish_download();
+    }
+
+    /// Clears the arrays of the kinds for which `is_cleared` holds: bookkeeping to zero.
+    template <class Test>
+    void clear_arrays(arguments& from, Test&& is_cleared) {
+        std::byte *zeros = nullptr, *end_of_zeros = nullptr;
+        walk(from, [&](auto*&, auto* target, std::int64_t components, array_access, array_kind kind) {
+            if (!is_cleared(kind)) return;
+            if (kind == array_kind::samples) return clear(target, components);
+            auto* const begin = reinterpret_cast<std::byte*>(target);
+            if (zeros == nullptr) zeros = begin;
+            end_of_zeros = begin + bytes_of(target, components * count_);
+        });
+        // Bookkeeping arrays are contiguous.
+        if (zeros != nullptr)
+            MYRIAD_CUDA(cudaMemsetAsync(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
+    }
+    /// The array on the device that the host's arguments have at that place.
+    study_work::place place_of(const arguments& host, const void* array) {
+        study_work::place found;
+        const auto look = [&](auto*& there, auto* on_device, std::int64_t, array_access, array_kind) {
+            if (there == array) found = {on_device, value_type_of(on_device)};
+        };
+        arguments copy = host;
+        walk(copy, look);
+        walk_records(copy.record, look);
+        require(found.values != nullptr, "an array of a study is not on the device");
+        return found;
+    }
+    value_array on_device(const arguments& host, const device_values& what) {
+        const instance_range range{count_, host.first_index + first_};
+        if (what.rule != nullptr) return study_.values_of(what, range, stream_.get());
+        value_array all{nullptr, what.type, count_, what.inner};
+        if (what.array == nullptr) return all;
+        const study_work::place there = place_of(host, what.array);
+        all.values = static_cast<const std::byte*>(there.values) +
+                     cuda::bytes_of(there.type) * static_cast<std::size_t>(what.component * count_);
+        if (what.ends_with_phases) {
+            all.phases = static_cast<const std::int32_t*>(place_of(host, host.phase).values);
+            all.from_phase = what.from_phase;
+        }
+        return all;
     }
 
     /// Sets reals to NaN, which means that nothing was written, and integers to 0.
@@ -313,6 +403,7 @@ private:
     kernel_launcher<Model, Method, R> launcher_;
     device_memory memory_, records_, sample_times_, shared_;
     phase_scheduler<Model, Method, R> scheduler_;
+    study_work study_;
     stream stream_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};
     little_transfer little_;
