@@ -20,8 +20,8 @@ Without --tests, --sanitize, --bench, --profile or --methods: the first three, i
   --bench        the benchmarks, as CSV, and a table of registers, stack and spills per kernel
   --profile      what Nsight Compute counts in four kernels of the benchmark; needs ncu
   --methods      the methods beside each other, as CSV; its kernels take minutes to compile
-  --deps DIR     folder with the headers of what is not installed: DIR/xsimd, DIR/CLI, DIR/json (default: .deps, if it is
-                 there)
+  --deps DIR     folder with the headers of what is not installed: DIR/xsimd, DIR/CLI, DIR/json (default: .deps,
+                 if it is there)
   --output DIR   where logs and CSV files go (default: results/gpu)
   --jobs N       processes at a time (default: number of cores)
 END

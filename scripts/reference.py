@@ -43,7 +43,8 @@ PAGES = {
     "tangent": ("Tangents and Lyapunov exponents", "`<myriad/tangent.hpp>`.",
                 ["kernel/model/tangent.hpp", "host/ensemble/exponents.hpp"]),
     "study": ("Studies", "`<myriad/study.hpp>`, target `myriad::study`. Axes, what is kept, the run, results on disk.",
-              ["study/study.hpp", "study/model_study.hpp", "study/axes.hpp", "study/reduction.hpp", "study/"]),
+              ["study/study.hpp", "study/model_study.hpp", "study/axes.hpp", "study/reduction.hpp", "study/",
+               "kernel/study/"]),
     "methods": ("Methods", "`<myriad/methods.hpp>`, and `<myriad/tableau.hpp>` for a method of your own.",
                 ["kernel/methods/"]),
 }

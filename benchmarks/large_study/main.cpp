@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Lorenz' equations from a billion random starts, ten steps of Runge-Kutta 4 each: set on the device, reduced there to a
-// histogram and a mean, and, on request, with one component kept in a folder. Says what an instance takes beside a study
-// of fewer instances, how much memory of the host it takes, and, of what is kept, whether the disk or the computation is
-// the limit. Exit status 1 if results do not agree.
+// Lorenz' equations from a billion random starts, ten steps of Runge-Kutta 4 each: set on the device, reduced there to
+// a histogram and a mean, and, on request, with one component kept in a folder. Says what an instance takes beside a
+// study of fewer instances, how much memory of the host it takes, and, of what is kept, whether the disk or the
+// computation is the limit. Exit status 1 if results do not agree.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -14,13 +14,12 @@
 #include <string>
 #include <vector>
 
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <myriad/myriad.hpp>
 #include <myriad/study.hpp>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "benchmarks/large_study/model.hpp"
 #include "examples/common/exit_status.hpp"

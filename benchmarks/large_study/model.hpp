@@ -8,6 +8,7 @@
 
 namespace large_study {
 
+// snippet: generate
 struct lorenz : problems::fused_lorenz {
     MYRIAD_FUNCTION static void generate(auto& instance) {
         instance.y[x] = instance.random.uniform(-10, 10);
@@ -15,5 +16,6 @@ struct lorenz : problems::fused_lorenz {
         instance.y[z] = instance.random.uniform(15, 35);
     }
 };
+// end of snippet
 
 }  // namespace large_study

@@ -289,9 +289,15 @@ ensemble_reduction histogram_of(std::string_view of, const axis_values& edges) {
     };
     return ensemble_reduction(std::move(made));
 }
-ensemble_reduction minimum_of(std::string_view of) { return one_value<extremum_state>(of, "minimum", 1, detail::reduction_kind::minimum, -1.0); }
-ensemble_reduction maximum_of(std::string_view of) { return one_value<extremum_state>(of, "maximum", 1, detail::reduction_kind::maximum, 1.0); }
-ensemble_reduction mean_of(std::string_view of) { return one_value<mean_state>(of, "mean", exact_sum::digits + 1, detail::reduction_kind::sum); }
+ensemble_reduction minimum_of(std::string_view of) {
+    return one_value<extremum_state>(of, "minimum", 1, detail::reduction_kind::minimum, -1.0);
+}
+ensemble_reduction maximum_of(std::string_view of) {
+    return one_value<extremum_state>(of, "maximum", 1, detail::reduction_kind::maximum, 1.0);
+}
+ensemble_reduction mean_of(std::string_view of) {
+    return one_value<mean_state>(of, "mean", exact_sum::digits + 1, detail::reduction_kind::sum);
+}
 
 ensemble_reduction sum_of(std::string name, std::vector<std::string> of, std::int64_t size, user_function function) {
     require(!name.empty(), "a reduction needs a name");

@@ -296,9 +296,8 @@ private:
         if (d.failed) throw device_lost();
         const auto begin = clock::now();
         // A GPU is lost with a driver's error. On the CPU, it is the model or the study that is wrong.
-        solved how = losing(d, d.where.which() != device::kind::cpu, [&] {
-            return solver.integrate(d.where, progress);
-        });
+        solved how =
+            losing(d, d.where.which() != device::kind::cpu, [&] { return solver.integrate(d.where, progress); });
         seconds += seconds_since(begin);
         return how;
     }

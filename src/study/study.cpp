@@ -233,8 +233,8 @@ study_result any_study::run() {
     const chunk_sizes sizes = choose_sizes(*model_, plan, folder_.empty(), settings.devices);
     plan.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
     settings.piece = sizes.piece;
-    const auto bytes = static_cast<double>(
-        on_devices(*model_, plan, settings.devices) ? plan.bytes_needed_on_host() : plan.bytes_per_instance());
+    const auto bytes = static_cast<double>(on_devices(*model_, plan, settings.devices) ? plan.bytes_needed_on_host()
+                                                                                       : plan.bytes_per_instance());
     check_memory(bytes, plan.content, settings.devices, "make chunk smaller, or keep less");
     const auto keeper = folder_.empty() ? studies::keep_in_memory(plan.content)
                                         : studies::keep_in_store(folder_, plan.content, store_options_);

@@ -96,7 +96,8 @@ TEST_CASE("Axes of every kind give the same instances and results on the device 
         s.options.samples = {.states = {studied::duffing::v}, .capacity = 6, .evenly = 2};
         s.keep.end = {"x", "v", "k", "my_number", "highest", "phases", "t"};
         s.keep.work = true;
-        for (const char* name : {"x", "phases", "v_sample", "t_last", "x_begin", "v_begin", "status", "rhs_evaluations"})
+        for (const char* name :
+             {"x", "phases", "v_sample", "t_last", "x_begin", "v_begin", "status", "rhs_evaluations"})
             reduce_all(s, name, linspace(-1, 2, 20));
     });
 }
@@ -165,9 +166,9 @@ TEST_CASE("A model sets instances by its own function, the same on every device"
     };
     const content on_device = run([](wave_study& s) { s.generate("by itself"); });
     check_equal(on_device, run([](wave_study& s) {
-        s.generate("by itself");
-        s.chunk = 17;
-    }));
+                    s.generate("by itself");
+                    s.chunk = 17;
+                }));
     const content by_host = run([](wave_study& s) {
         s.generate("by the host", [](std::int64_t first, ensemble<studied::wave>& all) {
             for (std::int64_t i = 0; i < all.size(); ++i) {

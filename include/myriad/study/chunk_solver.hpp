@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Computes a chunk of a study's instances: sets them as the axes say, integrates them, and copies what is kept. Either in
-// an ensemble on the host, or, where all can be done there, on a GPU, which is told nothing of single instances. Only the
-// few functions of `model_instances` and `device_instances` depend on the model. Host code only.
+// Computes a chunk of a study's instances: sets them as the axes say, integrates them, and copies what is kept. Either
+// in an ensemble on the host, or, where all can be done there, on a GPU, which is told nothing of single instances.
+// Only the few functions of `model_instances` and `device_instances` depend on the model. Host code only.
 #pragma once
 
 #include <array>
@@ -185,7 +185,8 @@ public:
     virtual double bytes_per_instance(const options& o) const = 0;
     virtual std::unique_ptr<chunk_solver> make_solver(const study_plan& plan) const = 0;
     /// One that sets and reduces instances on the GPU; null if that cannot be.
-    virtual std::unique_ptr<chunk_solver> make_device_solver(const study_plan& /*plan*/, const device& /*where*/) const {
+    virtual std::unique_ptr<chunk_solver> make_device_solver(const study_plan& /*plan*/,
+                                                             const device& /*where*/) const {
         return nullptr;
     }
     /// What stands for the generator of instances; empty if there is none.

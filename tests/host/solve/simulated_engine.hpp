@@ -151,8 +151,9 @@ public:
                 const bool there = all.phases == nullptr || j < all.phases[i] - all.from_phase;
                 const auto at = static_cast<std::size_t>(j * all.size + i);
                 constexpr std::int32_t missing = std::numeric_limits<std::int32_t>::min() + 1;
-                std::memcpy(to, there ? static_cast<const std::byte*>(all.values) + at * bytes
-                                      : reinterpret_cast<const std::byte*>(&missing),
+                std::memcpy(to,
+                            there ? static_cast<const std::byte*>(all.values) + at * bytes
+                                  : reinterpret_cast<const std::byte*>(&missing),
                             bytes);
             }
         }
@@ -172,7 +173,8 @@ public:
             for (std::int64_t j = 0; j < all.inner; ++j) {
                 const double value = value_at(all, i, j);
                 if (how.kind == reduction_kind::histogram)
-                    ++word(place_in_histogram(value, how.edges.data(), static_cast<std::int64_t>(how.edges.size()) - 1));
+                    ++word(
+                        place_in_histogram(value, how.edges.data(), static_cast<std::int64_t>(how.edges.size()) - 1));
                 if (how.kind == reduction_kind::histogram || !is_finite_number(value)) continue;
                 if (how.kind == reduction_kind::sum) {
                     const digits_of_number d = digits_of(value);
@@ -247,7 +249,8 @@ private:
         arguments now = host;
         walk(now, count, [&](auto*& array, std::size_t at, std::int64_t components, access, kind what) {
             std::memset(&memory_[at], 0x5a, bytes_of(array, components * count));  // what was there before
-            if (what == kind::bookkeeping || what == kind::samples) clear(array, &memory_[at], components * count, what);
+            if (what == kind::bookkeeping || what == kind::samples)
+                clear(array, &memory_[at], components * count, what);
             array = reinterpret_cast<std::remove_reference_t<decltype(array)>>(&memory_[at]);
         });
         now.size = count;
@@ -302,7 +305,8 @@ private:
             }
             all.values = drawn.data();
         } else if (what.array != nullptr) {
-            all.values = &memory_[place_of(host, what.array) + bytes * static_cast<std::size_t>(what.component * count_)];
+            all.values =
+                &memory_[place_of(host, what.array) + bytes * static_cast<std::size_t>(what.component * count_)];
         }
         if (what.ends_with_phases) {
             all.phases = reinterpret_cast<const std::int32_t*>(&memory_[place_of(host, host.phase)]);

@@ -161,7 +161,8 @@ public:
         scheduler_.forget_costs();
         reserve(host, count);
         arguments now = host;
-        clear_arrays(now, [](array_kind kind) { return kind == array_kind::bookkeeping || kind == array_kind::samples; });
+        clear_arrays(now,
+                     [](array_kind kind) { return kind == array_kind::bookkeeping || kind == array_kind::samples; });
         launcher_.set_shared(host.shared);
         if (how->calls_model || launcher_.facts().shared_placement != shared_placement::constant_bank)
             upload_shared(host.shared);

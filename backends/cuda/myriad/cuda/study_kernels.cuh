@@ -137,8 +137,7 @@ __global__ void reduce_values(const __grid_constant__ reduce_arguments a) {
         for (std::int64_t i = thread_number(); i < a.all.size; i += all_threads()) {
             if (skipped(i)) continue;
             for (std::int64_t j = 0; j < a.all.inner; ++j) {
-                const std::int64_t place =
-                    detail::place_in_histogram(detail::value_at(a.all, i, j), a.edges, a.bins);
+                const std::int64_t place = detail::place_in_histogram(detail::value_at(a.all, i, j), a.edges, a.bins);
                 if (a.in_shared_memory) {
                     atomicAdd(counts + place, 1u);
                 } else {

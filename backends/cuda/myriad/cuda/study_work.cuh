@@ -157,9 +157,9 @@ private:
         std::apply(
             [&](auto&... value) {
                 void* all[] = {&value...};
-                check(cudaLaunchKernel(reinterpret_cast<const void*>(kernel), blocks, dim3(threads), all, shared,
-                                       stream),
-                      "the launch of a kernel for a study");
+                check(
+                    cudaLaunchKernel(reinterpret_cast<const void*>(kernel), blocks, dim3(threads), all, shared, stream),
+                    "the launch of a kernel for a study");
             },
             values);
     }

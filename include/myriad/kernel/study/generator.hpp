@@ -24,13 +24,13 @@ template <class Model, class R>
 struct generated_instance {
     using real = R;  ///< double or float
 
-    std::int64_t index;                                                         ///< its number in the study
-    vec<R, detail::n_state<Model>>& y;                                          ///< the initial state
-    vec<R, detail::n_parameter<Model>>& parameter;                              ///< the parameters
-    vec<R, detail::n_accessory<Model>>& accessory;                              ///< the model's own storage
+    std::int64_t index;                                                        ///< its number in the study
+    vec<R, detail::n_state<Model>>& y;                                         ///< the initial state
+    vec<R, detail::n_parameter<Model>>& parameter;                             ///< the parameters
+    vec<R, detail::n_accessory<Model>>& accessory;                             ///< the model's own storage
     vec<std::int32_t, detail::n_integer_accessory<Model>>& integer_accessory;  ///< its integers
-    shared_values<Model, R> shared;                                             ///< values that all instances share
-    shared_values<Model, std::int32_t> shared_integer;                          ///< integers that all share
+    shared_values<Model, R> shared;                                            ///< values that all instances share
+    shared_values<Model, std::int32_t> shared_integer;                         ///< integers that all share
     /// Random numbers of this instance by the study's seed, which neither axes nor hooks draw.
     random_numbers<R> random;
 };
@@ -64,7 +64,8 @@ MYRIAD_FUNCTION bool generate_instance(const instance_arrays<array_pointer, R>& 
     };
     each([](auto& value, auto& stored) MYRIAD_LAMBDA { value = stored; });
     const std::int64_t index = range.first_index + i;
-    generated_instance<Model, R> instance{index,  y,
+    generated_instance<Model, R> instance{index,
+                                          y,
                                           parameter,
                                           accessory,
                                           integer_accessory,
@@ -74,7 +75,7 @@ MYRIAD_FUNCTION bool generate_instance(const instance_arrays<array_pointer, R>& 
     Model::generate(instance);
     each([](auto& value, auto& stored) MYRIAD_LAMBDA { stored = value; });
     bool finite = all_finite(y);
-    if constexpr (n_parameter<Model> > 0) finite = finite && all_finite(parameter);
+    if constexpr (n_parameter < Model >> 0) finite = finite && all_finite(parameter);
     return finite;
 }
 

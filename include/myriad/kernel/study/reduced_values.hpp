@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/core/status.hpp"
@@ -51,8 +50,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// Value j of instance i, NaN if it was not computed: the values that stand for that are the fill values of results.
 MYRIAD_FUNCTION double value_at(const value_array& all, std::int64_t i, std::int64_t j) {
     constexpr double none = nan_of<double>;
-    constexpr std::int64_t none_64 = std::numeric_limits<std::int64_t>::min() + 2;
-    constexpr std::int32_t none_32 = std::numeric_limits<std::int32_t>::min() + 1;
+    constexpr std::int64_t none_64 = -std::int64_t{0x7fffffffffffffff} + 1;
+    constexpr std::int32_t none_32 = -0x7fffffff;
     if (all.values == nullptr) return 0;
     if (all.phases != nullptr && j >= all.phases[i] - all.from_phase) return none;
     const std::int64_t at = j * all.size + i;
