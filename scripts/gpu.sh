@@ -8,18 +8,22 @@ source scripts/lib.sh
 
 usage() {
     cat <<'END'
-Usage: scripts/gpu.sh [--tests] [--sanitize] [--bench] [--profile] [--methods] [--deps DIR] [--output DIR] [--jobs N]
-                      [--help]
+Usage: scripts/gpu.sh [--tests] [--sanitize] [--bench] [--profile] [--methods] [--python] [--deps DIR] [--output DIR]
+                      [--jobs N] [--help]
 
 Needs nvcc, cmake, ninja, g++, Eigen, Catch2, Boost and a GPU, and for studies nlohmann's JSON. Nothing is installed and
 nothing fetched.
-Without --tests, --sanitize, --bench, --profile or --methods: the first three, in this order.
+Without --tests, --sanitize, --bench, --profile, --methods or --python: the first three, in this order.
 
   --tests        the test programs on the GPU, then those of the solver on the CPU too
   --sanitize     compute-sanitizer memcheck and racecheck on small cases
   --bench        the benchmarks, as CSV, and a table of registers, stack and spills per kernel
   --profile      what Nsight Compute counts in four kernels of the benchmark; needs ncu
   --methods      the methods beside each other, as CSV; its kernels take minutes to compile
+  --python       the Python package: its wheel is built, and its tests for GPUs and a benchmark are run. Needs Python
+                 with NumPy, libnvrtc of the CUDA Toolkit, and in DIR/wheels what the wheel is built and tested with:
+                 pip download --only-binary :all: --dest DIR/wheels scikit-build-core nanobind pytest
+                 A wheel of myriad there is taken as it is, which needs neither Python's headers nor CMake.
   --deps DIR     folder with the headers of what is not installed: DIR/xsimd, DIR/CLI, DIR/json (default: .deps,
                  if it is there)
   --output DIR   where logs and CSV files go (default: results/gpu)
@@ -34,7 +38,7 @@ parts=()
 while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
-        --tests | --sanitize | --bench | --profile | --methods) parts+=("${1#--}") ;;
+        --tests | --sanitize | --bench | --profile | --methods | --python) parts+=("${1#--}") ;;
         --deps | --output | --jobs)
             (($# > 1)) || usage_error "$1 needs a value"
             case $1 in --deps) deps=$2 ;; --output) output=$2 ;; --jobs) jobs=$2 ;; esac
@@ -53,6 +57,45 @@ nvidia-smi --query-gpu=name,driver_version --format=csv,noheader || {
 }
 mkdir -p "$output"
 failed=()
+
+# The Python package, unpacked into a folder rather than installed, as nothing may be.
+test_python() {
+    local packages=$PWD/build/python-gpu wheel
+    rm -rf "$packages" build/python-gpu-wheel
+    mkdir -p "$packages" build/python-gpu-wheel
+    for wheel in "$deps"/wheels/*.whl; do
+        [[ -e $wheel && $(basename "$wheel") != numpy-* ]] && python3 -m zipfile -e "$wheel" "$packages"
+    done
+    export PYTHONPATH=$packages
+    if [[ ! -e $packages/myriad ]]; then
+        say "Building the wheel"
+        python3 - "$PWD/$deps" >"$output/python_build.log" 2>&1 <<'END' ||
+import os, sys
+from scikit_build_core.build import build_wheel
+xsimd = {"cmake.define.MYRIAD_XSIMD_INCLUDE_DIR": sys.argv[1]} if os.path.isdir(sys.argv[1] + "/xsimd") else {}
+print(build_wheel("build/python-gpu-wheel", xsimd))
+END
+            { tail -20 "$output/python_build.log"; return 1; }
+        python3 -m zipfile -e build/python-gpu-wheel/*.whl "$packages"
+    fi
+    local status=0
+    MYRIAD_TEST_DEVICE=cuda python3 -m pytest -q -p no:cacheprovider --durations=5 \
+        python/tests/test_gpu.py python/tests/test_nvrtc.py 2>&1 | tee "$output/python_tests.log" | tail -40 || status=1
+    python3 benchmarks/python/van_der_pol.py --check --output "$output/python_van_der_pol.csv" 2>&1 |
+        tee "$output/python_van_der_pol.log" || status=1
+    return "$status"
+}
+if wants python; then
+    test_python || failed+=(python)
+    if [[ ${parts[*]} == python ]]; then
+        if ((${#failed[@]})); then
+            say "Failed: ${failed[*]}"
+            exit 1
+        fi
+        say "All well"
+        exit
+    fi
+fi
 
 mapfile -t options < <(dependency_options "$deps")
 options+=(-DMYRIAD_BUILD_VALIDATION=OFF -DMYRIAD_CUDA_COMPILE_CHECK=OFF)

@@ -19,6 +19,7 @@ nanobind and the tests' packages come from PyPI. Exit status 77 if they cannot b
 
 Options:
   --required  exit status 1 instead of 77
+  --all       an argument of pytest: all models for all GPUs by NVRTC, which takes minutes
   --help      this text
 END
 }
@@ -33,12 +34,13 @@ while (($#)); do
     shift
 done
 
-require_packages g++ cmake ninja-build python3 python3-dev python3-venv libxsimd-dev
+require_packages g++ cmake ninja-build python3 python3-dev python3-venv libxsimd-dev nlohmann-json3-dev
 rm -rf "$wheels" "$environment"
 mkdir -p "$wheels"
 pip=("$environment/bin/python" -m pip --quiet --disable-pip-version-check --retries 1 --timeout 20)
 if ! { python3 -m venv "$environment" &&
-    "${pip[@]}" install scikit-build-core nanobind matplotlib numpy pandas pytest scipy sympy xarray; } \
+    "${pip[@]}" install scikit-build-core nanobind matplotlib numpy nvidia-cuda-nvrtc pandas pytest scipy sympy \
+        xarray distributed loky netCDF4 zarr; } \
     >"$environment.log" 2>&1; then
     tail -n 5 "$environment.log" >&2 || true
     say "The Python package was NOT tested: what it is built and tested with could not be installed ($environment.log)."

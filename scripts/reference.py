@@ -38,13 +38,15 @@ PAGES = {
                ["host/report/", "kernel/core/status.hpp", "host/backend/facts.hpp"]),
     "model": ("In a model", "`<myriad/model.hpp>`: what the functions of a model are called with, and what they use.",
               ["host/model/", "kernel/core/", "kernel/model/lane.hpp", "kernel/model/reductions.hpp",
-               "kernel/scalar/"]),
+               "kernel/model/tables.hpp", "kernel/scalar/"]),
     "random": ("Random numbers", "`<myriad/random.hpp>`.", ["kernel/model/random.hpp"]),
     "tangent": ("Tangents and Lyapunov exponents", "`<myriad/tangent.hpp>`.",
                 ["kernel/model/tangent.hpp", "host/ensemble/exponents.hpp"]),
     "study": ("Studies", "`<myriad/study.hpp>`, target `myriad::study`. Axes, what is kept, the run, results on disk.",
               ["study/study.hpp", "study/model_study.hpp", "study/axes.hpp", "study/reduction.hpp", "study/",
                "kernel/study/"]),
+    "program": ("The command-line program", "`<myriad/program.hpp>`, target `myriad::program`: models for it.",
+                ["program.hpp"]),
     "methods": ("Methods", "`<myriad/methods.hpp>`, and `<myriad/tableau.hpp>` for a method of your own.",
                 ["kernel/methods/"]),
 }
@@ -53,6 +55,7 @@ PAGES = {
 OPAQUE = ("pack", "pack_mask", "dual", "vec_values", "shared_values", "component_map::list")
 PUBLIC_IN_BACKENDS = ("myriad::cuda::kernel_facts",)  # report::kernel
 MACROS = ("MYRIAD_FUNCTION", "MYRIAD_LAMBDA", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT", "MYRIAD_VERSION",
+          "MYRIAD_REGISTER_MODEL", "MYRIAD_REGISTER_MODEL_FLOAT",
           "MYRIAD_VERSION_MAJOR", "MYRIAD_VERSION_MINOR", "MYRIAD_VERSION_PATCH")
 CMAKE_FUNCTIONS = ("myriad_add_models",)
 # A user's project gets the defaults of the modules, before those of the library's own build.

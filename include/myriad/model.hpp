@@ -7,6 +7,7 @@
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/model/reductions.hpp"
+#include "myriad/kernel/model/tables.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/matrix_loop.hpp"
 #include "myriad/kernel/scalar/select.hpp"

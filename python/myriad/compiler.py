@@ -99,7 +99,7 @@ def compiler():
     return found
 
 
-def _first_message(output):
+def first_message(output):
     """The first error of a compiler's output, without the path of the file it compiled."""
     for line in output.splitlines():
         if "error:" in line:
@@ -125,7 +125,7 @@ def _compile(by, flags, source, workplace):
         raise Error(f"the compiler {by.command[0]} cannot be run: {why.strerror}") from None
     if done.returncode != 0 or not made.exists():
         raise Error(f"the model does not compile ({os.path.basename(by.command[0])}): "
-                    f"{_first_message(done.stderr + done.stdout)}")
+                    f"{first_message(done.stderr + done.stdout)}")
     return made
 
 

@@ -192,6 +192,10 @@ class Body:
 
     def _call(self, node, arguments):
         function = node.op
+        if function in ("lookup", "find_interval"):
+            table, first, *numbers = node.value
+            return f"myriad::{function}(&{self.shared}[{table.name} + {first}], {', '.join(map(str, numbers))}, " \
+                   f"{arguments[0]})"
         values = list(arguments)
         numbers = node.args[1:] if function == "select" else node.args
         first = len(node.args) - len(numbers)
@@ -297,7 +301,7 @@ class Writer:
         for root in roots:
             value = body.text(root)
             values.append(value if _depends_on_instance(root) or value.startswith(n.R + "(") else f"{n.R}({value})")
-        used = [node for node in walk(roots) if node.op in ("symbol", "element", "dot")]
+        used = [node for node in walk(roots) if node.op in ("symbol", "element", "dot", "lookup", "find_interval")]
         kinds = {node.value[0] if node.op == "symbol" else "shared" for node in used}
         arguments = [f"auto {n.t}" if "built-in" in kinds else "auto",
                      f"const myriad::vec<{n.R}, n_state>&" + (f" {n.y}" if "state" in kinds else ""),

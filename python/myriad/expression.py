@@ -715,6 +715,14 @@ def evaluate(roots, values):
             elif node.op == "dot":
                 table, start = node.value
                 known[id(node)] = sum(table.values.flat[start + j] * known[id(a)] for j, a in enumerate(node.args))
+            elif node.op == "lookup":
+                table, first, stride, rows = node.value
+                row = np.clip(np.nan_to_num(known[id(node.args[0])]), 0, rows - 1).astype(int)
+                known[id(node)] = table.values[first + stride * row]
+            elif node.op == "find_interval":
+                table, first, knots = node.value
+                place = np.searchsorted(table.values[first:first + knots], known[id(node.args[0])], side="right")
+                known[id(node)] = np.clip(place - 1, 0, knots - 2)
             else:
                 known[id(node)] = _operations[node.op](*(known[id(a)] for a in node.args))
     return [known[id(root)] for root in roots]

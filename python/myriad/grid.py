@@ -5,6 +5,7 @@ axes, the last one varying fastest; a zip takes the values of equally long array
 
 import numpy as np
 
+from .axes import Axis
 from .errors import Error, at, refuse_masked, users_line
 from .expression import Node, is_sympy
 from .parse import sympy_name
@@ -23,7 +24,9 @@ def _name(key, line):
 
 
 def _numbers(name, values, line):
-    """Values as an array of whole numbers or of double precision, without NaN."""
+    """Values as an array of whole numbers or of double precision, without NaN; axes of studies as they are."""
+    if isinstance(values, Axis):
+        return values
     refuse_masked(values, name)
     try:
         array = np.asarray(values)
@@ -58,7 +61,7 @@ class Sweep:
     def values(self, name):
         """One value per instance, as an array of length `size`."""
         if name in self.constants:
-            return np.full(self.size, self.constants[name])
+            return np.full(self.size, np.asarray(self.constants[name]))
         if name not in self.coordinates:
             raise Error(f"the sweep has no values of '{name}'{at(users_line())}: it has "
                         f"{', '.join(self.names) or 'none'}")
@@ -66,7 +69,14 @@ class Sweep:
         place = [a for a, _ in self.axes].index(axis)
         shape = [1] * len(self.axes)
         shape[place] = len(values)
-        return np.ascontiguousarray(np.broadcast_to(values.reshape(shape), self.shape)).reshape(self.size)
+        return np.ascontiguousarray(np.broadcast_to(np.asarray(values).reshape(shape), self.shape)).reshape(self.size)
+
+    def along(self, name):
+        """The values of a name along its axis, and how many instances in a row have each: instance i has
+        `values[i // repeat % len(values)]`."""
+        axis, values = self.coordinates[name]
+        place = [a for a, _ in self.axes].index(axis)
+        return np.asarray(values), int(np.prod(self.shape[place + 1:], dtype=np.int64))
 
     def unstack(self, values):
         """An array with a row per instance as one with the axes of the sweep: (size, ...) to shape + (...)."""
@@ -88,7 +98,7 @@ class Sweep:
 
     def __repr__(self):
         along = " x ".join(f"{name} ({len(values)})" for name, values in self.axes)
-        fixed = ", ".join(f"{n} = {v:g}" for n, v in self.constants.items())
+        fixed = ", ".join(f"{n} = {v}" for n, v in self.constants.items())
         return f"<sweep of {self.size} instances: {along or 'one'}{', ' + fixed if fixed else ''}>"
 
 

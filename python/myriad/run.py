@@ -5,6 +5,7 @@ import numpy as np
 
 from . import _core
 from .components import name_of
+from .device import DeviceInput, DeviceResults
 from .errors import Error
 from .grid import Sweep
 from .symbols import time
@@ -26,8 +27,9 @@ class Interrupted(KeyboardInterrupt):
 class Report:
     """How the instances ended, the work, where it was done, and where the kernel came from."""
 
-    def __init__(self, report, kernel, seconds):
+    def __init__(self, report, kernel, seconds, notes=()):
         self._report = report
+        self.notes = [*report.notes, *notes]  #: what else to know
         #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
         #: with a note if the cache cannot be used
         self.kernel = kernel.origin
@@ -43,7 +45,8 @@ class Report:
         return {name: count for name, count in zip(status_names, self._report.by_status) if count}
 
     def __str__(self):
-        text = str(self._report).rstrip("\n")
+        text = "\n".join([str(self._report).rstrip("\n"),
+                          *(f"note: {note}" for note in self.notes[len(self._report.notes):])])
         origin = f"from {self.kernel}" if self.kernel in ("cache", "memory") else self.kernel
         if not self.kernel.startswith("interpreted"):
             origin += f" in {self.kernel_seconds:.3g} s"
@@ -55,13 +58,15 @@ class Report:
 class Run:
     """The results of one call of `solve`. `run["x"]` is an array by name: of a sampled state one row per instance and
     one column per sample, of a recorded component one column per phase, of others the value at the end, or that of an
-    input. Arrays are views of the core's memory, not copies."""
+    input. Arrays are views of the core's memory, not copies. Results of a
+    GPU are copied to the host when they are first asked for."""
 
-    def __init__(self, components, ensemble, report, kernel, sweep, inputs, recorded, sampled, seconds, from_phase):
+    def __init__(self, components, ensemble, report, kernel, sweep, inputs, recorded, sampled, seconds, from_phase,
+                 notes=()):
         self._components, self._ensemble, self._records = components, ensemble, report
         self._recorded, self._sampled, self._inputs = recorded, sampled, inputs
         self.sweep = sweep if isinstance(sweep, Sweep) else None
-        self.report = Report(report, kernel, seconds)
+        self.report = Report(report, kernel, seconds, notes)
         self.from_phase = from_phase  #: number of the first recorded phase
 
     @property
@@ -152,8 +157,9 @@ class Run:
 
     @property
     def start(self):
-        """The initial states by name, as they were given."""
-        return {name: self._inputs[name] for name in self._components.states}
+        """The initial states by name, as they were given; arrays on a GPU as objects that are there."""
+        return {name: self._inputs[name] if isinstance(self._inputs[name], DeviceInput) else
+                np.asarray(self._inputs[name]) for name in self._components.states}
 
     @property
     def records(self):
@@ -166,6 +172,12 @@ class Run:
         """The sampled states by name: one row per instance, one column per sample."""
         return {name: self._ensemble.samples(c) for name, c in self._sampled.items()}
 
+    @property
+    def device(self):
+        """Results where a GPU has them, by name: `run.device["x"]` is an array as `run["x"]`, that torch, CuPy and JAX
+        take without a copy."""
+        return DeviceResults(self)
+
     def __getitem__(self, name):
         if name is time:
             return self._times()
@@ -174,9 +186,11 @@ class Run:
             return self._ensemble.samples(self._sampled[name])
         if name in self._recorded:
             return self._records.records(*self._recorded[name])
-        for found in (self.states, self.accessories, self.parameters, self.shared):
-            if name in found:
-                return found[name]
+        place = self._components.place.get(name, (None,))
+        if place[0] in ("state", "accessory", "integer_accessory", "parameter"):  # and of a GPU's results no others
+            return self._ensemble.array(*place)
+        if name in self.shared:
+            return self.shared[name]
         raise KeyError(f"there is no {name!r}: the model has {', '.join(self._components.place)}")
 
     def _times(self):
@@ -254,7 +268,7 @@ class Run:
                 coordinates[self._column(name)] = unstacked(array)
         coordinates.update((self._column(name), value) for name, value in self.shared.items())
         for name, value in self.start.items():
-            if name not in along and np.ndim(value) == 1:
+            if name not in along and not isinstance(value, DeviceInput) and np.ndim(value) == 1:
                 coordinates[self._in_dataset(name)] = unstacked(value)
         return xarray.Dataset(variables, coordinates, {"myriad_version": _core.version})
 

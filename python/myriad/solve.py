@@ -3,12 +3,14 @@
 
 import itertools
 import math
+import re
 import time as clock
 
 import numpy as np
 
-from . import _core, compiler, tape
+from . import _core, compiler, nvrtc, tape
 from .components import Components, name_of, unknown
+from .device import DeviceInput, is_on_gpu
 from .errors import Error, refuse_masked
 from .grid import Sweep
 from .methods import fixed_step, method_type
@@ -26,6 +28,8 @@ _in_python = (
     ("set it with ensemble.t_begin() = ... before solving", "give it in time="),
     ("set it with ensemble.t_end() = ... before solving", "give it in time="),
     ("samples.", "samples "),
+    ("integrate fewer instances at a time: a smaller options::chunk_size or solver capacity",
+     "integrate the sweep in smaller parts"),
     ("use an ensemble of doubles", "give precision=\"double\""),
     ("relative_tolerance", "rtol"),
     ("absolute_tolerance", "atol"),
@@ -33,8 +37,36 @@ _in_python = (
 )
 
 
+class _Along:
+    """Values of a grid along one of its axes, as an array of one value per instance that is not made until needed."""
+
+    ndim = 1
+
+    def __init__(self, sweep, name):
+        self._sweep, self._name = sweep, name
+        self.values, self.repeat = sweep.along(name)
+        self.dtype = self.values.dtype
+
+    def __len__(self):
+        return self._sweep.size
+
+    def __array__(self, dtype=None, copy=None):
+        return self._sweep.values(self._name).astype(dtype or self.dtype, copy=False)
+def in_python(error, changes=_in_python):
+    """An error of the core in Python's terms."""
+    text = str(error)
+    for said, meant in changes:
+        text = text.replace(said, meant)
+    return Error(re.sub(r"integrate fewer instances at a time, with .* an options::chunk_size of at most (\d+)",
+                        r"integrate the sweep in parts of at most \1 instances", text))
+
+
 def _numbers(value, name):
-    """A number, or an array of one dimension, of real numbers."""
+    """A number, or an array of one dimension, of real numbers; arrays on a GPU stay there."""
+    if isinstance(value, _Along):
+        return value
+    if is_on_gpu(value):
+        return DeviceInput(value, name)
     refuse_masked(value, f"'{name}'")
     array = np.asarray(value)
     if array.dtype.kind == "c":
@@ -61,11 +93,22 @@ def _sweep_values(sweep):
     if sweep is None:
         return {}
     if isinstance(sweep, Sweep):
-        return {**{name: sweep.values(name) for name in sweep.coordinates}, **sweep.constants}
+        return {**{name: _Along(sweep, name) for name in sweep.coordinates}, **sweep.constants}
     if hasattr(sweep, "items"):
         return {name_of(key): value for key, value in sweep.items()}
     raise Error(f"the sweep is a {type(sweep).__name__}: give a dict, as in {{k: np.linspace(0, 1, 100)}}, or "
                 "myriad.grid(k=..., B=...)")
+
+
+def refuse_missing(components, given):
+    """Refuses a call that leaves out what every instance needs."""
+    missing = [f"'{n}'" for n in components.states if n not in given]
+    if missing:
+        raise Error(f"the initial value of {', '.join(missing)} is missing: give it in start=")
+    missing = [f"'{n}'" for n in components.parameters + components.shared + components.shared_integers
+               if n not in given]
+    if missing:
+        raise Error(f"the value of {', '.join(missing)} is missing: give it in the sweep")
 
 
 def _gather(components, sweep, start, time, size):
@@ -83,13 +126,7 @@ def _gather(components, sweep, start, time, size):
                 raise Error(f"'{name}' is given in the sweep and in start=: give it once")
             given[name] = _numbers(value, name)
     given = {**{name: np.asarray(value) for name, value in components.defaults.items()}, **given}
-    missing = [f"'{n}'" for n in components.states if n not in given]
-    if missing:
-        raise Error(f"the initial value of {', '.join(missing)} is missing: give it in start=")
-    missing = [f"'{n}'" for n in components.parameters + components.shared + components.shared_integers
-               if n not in given]
-    if missing:
-        raise Error(f"the value of {', '.join(missing)} is missing: give it in the sweep")
+    refuse_missing(components, given)
     try:
         begin, end = time
     except (TypeError, ValueError):
@@ -108,7 +145,7 @@ def _gather(components, sweep, start, time, size):
     return given, domain, next(iter(lengths.values()), 1)
 
 
-def _fill(ensemble, components, given, domain, names):
+def _fill(ensemble, components, given, domain, names, real):
     for kind, known, all_names in (("state", components.states, names[0]),
                                    ("parameter", components.parameters, names[1]),
                                    ("accessory", components.accessories, names[4])):
@@ -116,15 +153,26 @@ def _fill(ensemble, components, given, domain, names):
             ensemble.array(kind, number)[...] = 0
     for name, array in given.items():
         kind, number = components.place[name]
-        if kind in ("shared", "shared_integer"):
+        if isinstance(array, DeviceInput):
+            if kind not in ("state", "parameter"):
+                raise Error(f"'{name}' is on a GPU, which only states and parameters can be: copy it to the host")
+            if array.dtype != real:
+                raise Error(f"'{name}' on the GPU has type {array.dtype}, and the run is in {real}: convert it there, "
+                            "or give precision=")
+            ensemble.set_on_device(kind, number, array.address)
+        elif kind in ("state", "parameter"):
+            values, repeat = (array.values, array.repeat) if isinstance(array, _Along) else (array, 1)
+            ensemble.spread(kind, number, np.ascontiguousarray(np.atleast_1d(values), dtype=real), repeat)
+        elif kind in ("shared", "shared_integer"):
             if array.ndim == 1:
                 raise Error(f"'{name}' is shared by all instances and has {len(array)} values: give one number, or "
                             "make it a parameter")
             ensemble.array(kind)[number] = _whole_numbers(array, name) if kind == "shared_integer" else array
-            continue
-        if kind == "integer_accessory":
-            array = _whole_numbers(array, name)
-        ensemble.array(kind, number)[...] = array
+        else:
+            array = np.asarray(array)
+            ensemble.array(kind, number)[...] = _whole_numbers(array, name) if kind == "integer_accessory" else array
+    if any(isinstance(array, DeviceInput) for array in domain):
+        raise Error("the times are on a GPU: copy them to the host")
     if domain[0].ndim == 0 and domain[1].ndim == 0:
         ensemble.set_domain(float(domain[0]), float(domain[1]))
     else:
@@ -291,22 +339,70 @@ def _progress_function(progress):
     return show, bar.close
 
 
-def _device_name(device):
+def _device_name(device, interpreted):
+    """The name of a device as the core knows it, and why "auto" takes no GPU where there is one."""
+    device = str(device)
+    # first, as the driver finds no GPU in a fork
+    forked = ((device == "auto" or device.startswith("cuda")) and _core.driver_version() > 0
+              and not _core.may_use_gpus())
     if device == "auto":
-        return "cpu"
-    if str(device).startswith("cuda"):
-        raise Error(f"device {device!r} is not available: this version of the Python package has no kernels for GPUs "
-                    "yet; use \"cpu\" or \"auto\"")
+        if forked:
+            return "cpu", "a GPU was not looked for, as this process was forked from one that has done so"
+        if interpreted or _core.no_gpu():
+            return "cpu", None
+        if nvrtc.find() is None:
+            return "cpu", "the GPU was not used, as there is no NVRTC: `pip install 'myriad[cuda]'`"
+        return "cuda:0", None
+    if forked:
+        raise Error(f"device {device!r} is not available, as this process was forked from one that has looked for "
+                    "GPUs: fork before that, start processes by \"spawn\", or use \"cpu\"")
     try:
-        return _core.check_device(str(device))
+        return _core.check_device(device), None
     except Error as error:
-        if "unknown" not in str(error):  # but has a number of threads that cannot be
-            raise Error(str(error).replace("the device", f"device {device!r}")) from None
-        raise Error(f"device {device!r} is unknown: use \"auto\", \"cpu\", or \"cpu:4\" for four threads") from None
+        text = str(error)
+        if "is unknown" in text:
+            raise Error(f"device {device!r} is unknown: use \"auto\", \"cpu\", \"cpu:4\" for four threads, \"cuda\", "
+                        "or \"cuda:1\" for the second GPU") from None
+        raise Error(text.replace("the device has", f"device {device!r} has")) from None
 
 
 def _positive_infinity(value):
     return math.inf if value is None else _real(value, "maximum_step")
+
+
+def make_options(components, size, *, phases, record, samples, step, minimum_step, maximum_step, growth_limit,
+                 shrink_limit, max_steps, phase_length, carry_on, sub_samples, accumulation_limit, schedule):
+    """The core's options, but for tolerances and events, and the places of what is recorded and sampled, by name."""
+    options = _core.Options()
+    options.phases = _whole(phases, "phases")
+    options.step = math.nan if step is None else _real(step, "step")
+    options.minimum_step = _real(minimum_step, "minimum_step")
+    options.maximum_step = _positive_infinity(maximum_step)
+    options.growth_limit = _real(growth_limit, "growth_limit")
+    options.shrink_limit = _real(shrink_limit, "shrink_limit")
+    options.max_steps = _whole(max_steps, "max_steps", 1 << 62)
+    options.phase_length = _real(phase_length, "phase_length")
+    options.carry_on(bool(carry_on), False)
+    options.sub_samples = _whole(sub_samples, "sub_samples")
+    options.accumulation_limit = _whole(accumulation_limit, "accumulation_limit")
+    if schedule not in _schedules:
+        raise Error(f"there is no schedule {schedule!r}: choose one of {', '.join(_schedules)}")
+    options.set_schedule(_schedules[schedule])
+    recorded = _set_records(options, record, components)
+    sampled = _set_samples(options, samples, components, options.phases, options.phase_length, size)
+    return options, recorded, sampled
+
+
+def choose_kernel(model, components, method, control, sampled, precision, interpreted):
+    """The kernel for a model and a method, compiled or interpreted, and the names of all components that it has."""
+    written = method_type(method, control, sampled)
+    if interpreted or (interpreted is None and compiler.known_compiler() is None):
+        why = "as asked" if interpreted else "as there is no C++ compiler"
+        if precision != "double" or control:
+            raise Error(f"a model is interpreted, {why}, in double precision and with the usual control alone: leave "
+                        "out precision= and control=, or install a C++ compiler")
+        return tape.kernel(model, components, method, why), tape.padded(components)
+    return compiler.kernel(*model.source(), written, precision), components.names
 
 
 def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, method=None, control=(),
@@ -340,7 +436,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     invalid           "refuse" inputs that are not finite, or "mark" their instances as invalid_input
     size              number of instances, if no array gives it
     precision         "double" or "float"
-    device            "auto", "cpu", "cpu:4" (threads)
+    device            "cpu", "cpu:4" (threads), "cuda", "cuda:1" (the second GPU), or "auto", the first GPU if there is
+                      one, and NVRTC to compile for it, and the CPU otherwise
     interpreted       True runs the model without compiling it, several times slower; None does so only where there
                       is no compiler, which the report tells
     progress          True for a bar, or a function of the numbers of instances done and of all
@@ -350,7 +447,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     begin = clock.perf_counter()
     if precision not in ("double", "float"):
         raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
-    where = _device_name(device)
+    where, no_gpu = _device_name(device, interpreted)
+    on_gpu = where.startswith("cuda")
     if not hasattr(model, "source"):
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
@@ -361,39 +459,24 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     written = method_type(method, control, samples is not None)
     if method in fixed_step and step is None:
         raise Error(f"{method} takes fixed steps: give step=")
-    options = _core.Options()
-    options.phases = _whole(phases, "phases")
-    options.step = math.nan if step is None else _real(step, "step")
-    options.minimum_step = _real(minimum_step, "minimum_step")
-    options.maximum_step = _positive_infinity(maximum_step)
-    options.growth_limit = _real(growth_limit, "growth_limit")
-    options.shrink_limit = _real(shrink_limit, "shrink_limit")
-    options.max_steps = _whole(max_steps, "max_steps", 1 << 62)
-    options.phase_length = _real(phase_length, "phase_length")
-    options.carry_on(bool(carry_on), False)
-    options.sub_samples = _whole(sub_samples, "sub_samples")
-    options.accumulation_limit = _whole(accumulation_limit, "accumulation_limit")
+    options, recorded, sampled = make_options(
+        components, count, phases=phases, record=record, samples=samples, step=step, minimum_step=minimum_step,
+        maximum_step=maximum_step, growth_limit=growth_limit, shrink_limit=shrink_limit, max_steps=max_steps,
+        phase_length=phase_length, carry_on=carry_on, sub_samples=sub_samples, accumulation_limit=accumulation_limit,
+        schedule=schedule)
     if invalid == "mark":
         options.mark_invalid()
     elif invalid != "refuse":
         raise Error(f"invalid is {invalid!r}: give \"refuse\" or \"mark\"")
-    if schedule not in _schedules:
-        raise Error(f"there is no schedule {schedule!r}: choose one of {', '.join(_schedules)}")
-    options.set_schedule(_schedules[schedule])
-    recorded = _set_records(options, record, components)
-    sampled = _set_samples(options, samples, components, options.phases, options.phase_length, count)
 
-    why = None
-    if interpreted or (interpreted is None and compiler.known_compiler() is None):
-        why = "as asked" if interpreted else "as there is no C++ compiler"
-        if precision != "double" or control:
-            raise Error(f"a model is interpreted, {why}, in double precision and with the usual control alone: leave "
-                        "out precision= and control=, or install a C++ compiler")
-        kernel = tape.kernel(model, components, method, why)
-        names = tape.padded(components)
-    else:
-        kernel = compiler.kernel(*model.source(), written, precision)
+    if on_gpu:
+        if interpreted:
+            raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
         names = components.names
+        gpu = int(where.partition(":")[2])
+        kernel = nvrtc.kernel(*model.source(), written, precision, (len(names[2]), len(names[3])), gpu)
+    else:
+        kernel, names = choose_kernel(model, components, method, control, samples is not None, precision, interpreted)
     options.set_tolerances(_per_state(rtol, components, "rtol", len(names[0])),
                            _per_state(atol, components, "atol", len(names[0])))
     _set_events(options, events, components, len(names[-1]))
@@ -401,24 +484,25 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     function, finish = _progress_function(progress)
     try:
         ensemble = kind(kernel.library, *names, count)
-        _fill(ensemble, components, given, domain, names)
+        _fill(ensemble, components, given, domain, names, np.dtype("f8" if precision == "double" else "f4"))
+        if on_gpu and any(isinstance(array, DeviceInput) for array in given.values()):
+            _core.wait_for_gpu(gpu)  # for what other libraries do there
         if tolerance_scale is not None:
             scale = _numbers(tolerance_scale, "tolerance_scale")
+            if isinstance(scale, DeviceInput):
+                raise Error("'tolerance_scale' is on a GPU: copy it to the host")
             if scale.ndim and len(scale) != count:
                 raise Error(f"'tolerance_scale' has {len(scale)} values for {count} instances: give one for each")
             ensemble.array("tolerance_scale")[...] = scale
         report, failure = _core.solve(kernel.library, where, ensemble, options, function)
     except Error as error:
-        text = str(error)
-        for said, meant in _in_python:
-            text = text.replace(said, meant)
-        raise Error(text) from None
+        raise in_python(error) from None
     finally:
         finish()
     inputs = {name: array for name, array in given.items() if components.place[name][0] in (
         "parameter", "shared", "shared_integer", "state")}
     run = Run(components, ensemble, report, kernel, sweep, inputs, recorded, sampled, clock.perf_counter() - begin,
-              int(dict(record).get("from_phase", 0)) if hasattr(record, "items") else 0)
+              int(dict(record).get("from_phase", 0)) if hasattr(record, "items") else 0, [no_gpu] if no_gpu else [])
     if failure is not None:
         if isinstance(failure, KeyboardInterrupt):
             raise Interrupted(run) from None

@@ -96,7 +96,7 @@ class Table:
 
 def tables_of(nodes):
     """The tables that these nodes refer to, each once."""
-    return list(dict.fromkeys(n.value[0] for n in nodes if n.op in ("element", "dot")))
+    return list(dict.fromkeys(n.value[0] for n in nodes if n.op in ("element", "dot", "lookup", "find_interval")))
 
 
 def element_name(table, number):

@@ -81,6 +81,11 @@ class Writer:
                     self._emit("multiply", term, term, argument)
                     if j:
                         self._emit("add", to, to, term)
+            elif node.op in ("lookup", "find_interval"):
+                table, first, *numbers = node.value
+                stride, rows = numbers if len(numbers) == 2 else (1, *numbers)
+                place = self.place[element_name(table, first)][1]
+                self._emit(node.op, to, rows, arguments[0], stride, float(place))
             elif node.op in ("constant", "truth"):
                 self._emit("constant", to, value=float(node.value))
             else:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The extension module myriad._core: what the Python side of the package calls. Private; the package checks names and
 // shapes before it calls.
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -19,9 +20,15 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/core/instruction_set.hpp"
+#include "myriad/host/threads/parallel.hpp"
 #include "myriad/version.hpp"
+#include "resident.hpp"
 #include "run.hpp"
+#if defined(MYRIAD_WITH_STUDY)
+#include "study.hpp"
+#endif
 #include "threads.hpp"
 
 namespace nb = nanobind;
@@ -52,30 +59,129 @@ T& checked(T& array, int component) {
     return array;
 }
 
-/// One component of one kind of an ensemble's data.
-template <class R>
-nb::object component(nb::handle self, const std::string& kind, int c) {
-    auto& e = nb::cast<ensemble<R>&>(self);
+/// Calls `use(first value)` for one component of one kind of an ensemble's data.
+template <class R, class Use>
+auto with_component(ensemble<R>& e, const std::string& kind, int c, Use&& use) {
     auto& d = e.data;
-    const std::int64_t n = d.size;
-    const auto of = [&](auto& array) { return view(checked(array, c).component(c), n, self); };
+    const auto of = [&](auto& array) { return use(checked(array, c).component(c)); };
+    const auto counter = [&](auto which) { return use(const_cast<std::int64_t*>(d.counter(which).data())); };
+    using arrays = typename host::ensemble_data<R>::arrays;
     if (kind == "state") return of(d.state);
     if (kind == "parameter") return of(d.parameter);
     if (kind == "accessory") return of(d.accessory);
     if (kind == "integer_accessory") return of(d.integer_accessory);
-    if (kind == "shared") return view(d.shared.data(), e.shape->n_shared, self);
-    if (kind == "shared_integer") return view(d.shared_integer.data(), e.shape->n_shared_integer, self);
     if (kind == "t_begin") return of(d.own_domains().t_begin);
     if (kind == "t_end") return of(d.own_domains().t_end);
     if (kind == "tolerance_scale") return of(d.tolerance_scales());
     if (kind == "t") return of(d.t);
     if (kind == "phases_done") return of(d.phase);
-    if (kind == "status") return view(reinterpret_cast<std::uint8_t*>(d.status.data()), n, self);
-    if (kind == "accepted_steps") return view(d.counter(&host::ensemble_data<R>::arrays::accepted).data(), n, self);
-    if (kind == "rejected_steps") return view(d.counter(&host::ensemble_data<R>::arrays::rejected).data(), n, self);
-    if (kind == "located_steps") return view(d.counter(&host::ensemble_data<R>::arrays::located).data(), n, self);
-    if (kind == "rhs_evaluations") return view(d.counter(&host::ensemble_data<R>::arrays::evaluations).data(), n, self);
+    if (kind == "status") return use(reinterpret_cast<std::uint8_t*>(d.status.data()));
+    if (kind == "accepted_steps") return counter(&arrays::accepted);
+    if (kind == "rejected_steps") return counter(&arrays::rejected);
+    if (kind == "located_steps") return counter(&arrays::located);
+    if (kind == "rhs_evaluations") return counter(&arrays::evaluations);
     throw error(message("there is no array ", kind));
+}
+
+/// One component of one kind of an ensemble's data as an array on the host.
+template <class R>
+nb::object component(nb::handle self, const std::string& kind, int c) {
+    auto& e = nb::cast<ensemble<R>&>(self);
+    if (kind == "shared") return view(e.data.shared.data(), e.shape->n_shared, self);
+    if (kind == "shared_integer") return view(e.data.shared_integer.data(), e.shape->n_shared_integer, self);
+    return with_component(e, kind, c, [&](auto* values) {
+        const std::int64_t n = e.data.size;
+        if (e.gpu) e.gpu->bring(values, static_cast<std::size_t>(n) * sizeof *values);
+        return view(values, n, self);
+    });
+}
+
+/// An array on a GPU, column after column in memory, which keeps its owner alive; None where it is not there.
+template <class R, class T>
+nb::object device_table(resident<R>* gpu, const T* values, std::int64_t rows, std::int64_t columns, nb::handle owner) {
+    void* const there = gpu != nullptr ? gpu->on_device(values) : nullptr;
+    if (there == nullptr) return nb::none();
+    const auto n = static_cast<std::size_t>(rows);
+    if (columns < 0)
+        return nb::cast(nb::ndarray<T, nb::ndim<1>, nb::device::cuda>(there, {n}, owner, {1}, nb::dtype<T>(),
+                                                                      nb::device::cuda::value, gpu->number()),
+                        nb::rv_policy::reference);
+    return nb::cast(
+        nb::ndarray<T, nb::ndim<2>, nb::device::cuda>(there, {n, static_cast<std::size_t>(columns)}, owner, {1, rows},
+                                                      nb::dtype<T>(), nb::device::cuda::value, gpu->number()),
+        nb::rv_policy::reference);
+}
+
+/// The same for one component, where a GPU has it.
+template <class R>
+nb::object device_component(nb::handle self, const std::string& kind, int c) {
+    auto& e = nb::cast<ensemble<R>&>(self);
+    return with_component(e, kind, c,
+                          [&](auto* values) { return device_table(e.gpu.get(), values, e.data.size, -1, self); });
+}
+
+template <class R>
+R* settable(ensemble<R>& e, const std::string& kind, int c) {
+    require(kind == "state" || kind == "parameter", "only states and parameters are set in this way");
+    return kind == "state" ? checked(e.data.state, c).component(c) : checked(e.data.parameter, c).component(c);
+}
+/// Sets instance i of a state or parameter to `values[i / repeat % values.size()]`.
+template <class R>
+void spread(ensemble<R>& e, const std::string& kind, int c,
+            const nb::ndarray<const R, nb::ndim<1>, nb::c_contig, nb::device::cpu>& values, std::int64_t repeat) {
+    const auto n = static_cast<std::int64_t>(values.size());
+    require(n > 0 && repeat > 0, "there are no values");
+    if (n == 1) repeat = e.data.size;
+    R* const to = settable(e, kind, c);
+    const R* const from = values.data();
+    host::in_parallel(e.data.size, 32'768, [=](std::int64_t first, std::int64_t last) {
+        for (std::int64_t i = first; i < last;) {
+            const std::int64_t k = i / repeat % n;
+            if (repeat > 1) {
+                const std::int64_t end = std::min(last, (i / repeat + 1) * repeat);
+                std::fill(to + i, to + end, from[k]);
+                i = end;
+            } else {
+                const std::int64_t count = std::min(last - i, n - k);
+                std::copy_n(from + k, count, to + i);
+                i += count;
+            }
+        }
+    });
+}
+/// Has the call take a state or parameter from a GPU's memory.
+template <class R>
+void set_on_device(ensemble<R>& e, const std::string& kind, int c, std::uintptr_t values) {
+    R* const here = settable(e, kind, c);
+    (kind == "state" ? e.data.state : e.data.parameter).fill_component(c, 0);  // so that it passes the checks
+    e.on_device.push_back({here, reinterpret_cast<const R*>(values)});
+}
+
+/// The same of an array of `device_table`: (address, shape, name of its type, device, distances of values).
+nb::tuple facts_of_own_array(const nb::ndarray<nb::ro>& array) {
+    nb::list shape, strides;
+    for (std::size_t d = 0; d < array.ndim(); ++d) {
+        shape.append(array.shape(d));
+        strides.append(array.stride(d));
+    }
+    const auto type = array.dtype();
+    const char* const kind = type.code == static_cast<std::uint8_t>(nb::dlpack::dtype_code::Float) ? "float"
+                             : type.code == static_cast<std::uint8_t>(nb::dlpack::dtype_code::Int) ? "int"
+                                                                                                   : "uint";
+    return nb::make_tuple(reinterpret_cast<std::uintptr_t>(array.data()), nb::tuple(shape),
+                          message(kind, int{type.bits}), array.device_id(), nb::tuple(strides));
+}
+
+/// Where an array is that another library has on a GPU, as (address, length, bytes between values, kind and bits of
+/// its type, device).
+nb::tuple facts_of_device_array(const nb::ndarray<nb::ro>& array) {
+    require(array.device_type() == nb::device::cuda::value, "the array is not on an NVIDIA GPU");
+    require(array.ndim() == 1, "the array has ", array.ndim(), " dimensions");
+    const auto type = array.dtype();
+    return nb::make_tuple(reinterpret_cast<std::uintptr_t>(array.data()), array.shape(0),
+                          array.stride(0) * type.bits / 8,
+                          type.code == static_cast<std::uint8_t>(nb::dlpack::dtype_code::Float) ? 'f' : '?',
+                          int{type.bits}, array.device_id());
 }
 
 /// Calls Python's progress function, and looks for signals, a few times a second.
@@ -120,19 +226,26 @@ nb::tuple solve_from_python(const library& kernel, const std::string& where, ens
     return nb::make_tuple(nb::cast(std::move(made)), failure);
 }
 
-/// The samples of a state, or their times for -1.
+/// The samples of a state, or their times for -1, or those on the GPU.
 template <class R>
-nb::object sampled(nb::handle self, int state) {
-    auto& s = nb::cast<ensemble<R>&>(self).samples;
+nb::object sampled(nb::handle self, int state, bool on_device) {
+    auto& e = nb::cast<ensemble<R>&>(self);
+    auto& s = e.samples;
     const R* const values = state < 0 ? s.time.data() : s.component(state);
+    if (on_device) return device_table(e.gpu.get(), values, s.size, s.capacity, self);
+    if (e.gpu) e.gpu->bring(values, static_cast<std::size_t>(s.size * s.capacity) * sizeof(R));
     return table(values, s.size, s.capacity, self);
 }
 
 template <class R>
-nb::object recorded(nb::handle self, const std::string& kind, int c) {
-    auto& r = nb::cast<report<R>&>(self).records;
+nb::object recorded(nb::handle self, const std::string& kind, int c, bool on_device) {
+    auto& all = nb::cast<report<R>&>(self);
+    auto& r = all.records;
     const auto of = [&](const auto& array, const std::vector<std::int16_t>& columns) {
-        return table(array.component(r.find(columns, c, kind.c_str())), r.size, r.phases, self);
+        const auto* const values = array.component(r.find(columns, c, kind.c_str()));
+        if (on_device) return device_table(all.gpu.get(), values, r.size, r.phases, self);
+        if (all.gpu) all.gpu->bring(values, static_cast<std::size_t>(r.size * r.phases) * sizeof *values);
+        return table(values, r.size, r.phases, self);
     };
     if (kind == "state") return of(r.values, r.state);
     if (kind == "accessory") return of(r.values, r.accessory);
@@ -156,17 +269,18 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
                      size);
              })
         .def("array", &component<R>, "kind"_a, "component"_a = 0)
+        .def("device_array", &device_component<R>, "kind"_a, "component"_a = 0)
+        .def("spread", &spread<R>, "kind"_a, "component"_a, "values"_a, "repeat"_a = 1)
+        .def("set_on_device", &set_on_device<R>, "kind"_a, "component"_a, "address"_a)
         .def("set_domain", [](ensemble<R>& e, R begin, R end) { e.data.set_domain(begin, end); })
         .def("stored_samples",
              [](nb::handle self) {
-                 auto& s = nb::cast<ensemble<R>&>(self).samples;
+                 auto& e = nb::cast<ensemble<R>&>(self);
+                 auto& s = e.samples;
+                 if (e.gpu) e.gpu->bring(s.stored.data(), static_cast<std::size_t>(s.size) * sizeof(std::int32_t));
                  return view(s.stored.data(), s.size, self);
              })
-        .def("samples", &sampled<R>)
-        .def("restart", [](ensemble<R>& e) {
-            e.samples.clear();
-            e.data.restart();
-        });
+        .def("samples", &sampled<R>, "state"_a, "on_device"_a = false);
     using all = report<R>;
     nb::class_<all>(m, report_name)
         .def_ro("instances", &all::instances)
@@ -181,11 +295,14 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
         .def_ro("seconds", &all::seconds)
         .def_ro("device", &all::device)
         .def_ro("instruction_set", &all::instruction_set)
+        .def_ro("kernel_seconds", &all::kernel_seconds)
+        .def_prop_ro("registers", [](const all& r) { return r.kernel.registers; })
+        .def_prop_ro("block_size", [](const all& r) { return r.kernel.block_size; })
         .def_ro("notes", &all::notes)
         .def_ro("interrupted", &all::interrupted)
         .def_prop_ro("failed", [](const all& r) { return r.failed(); })
         .def_prop_ro("idle_share", [](const all& r) { return r.idle_share(); })
-        .def("records", &recorded<R>, "kind"_a, "component"_a = 0)
+        .def("records", &recorded<R>, "kind"_a, "component"_a = 0, "on_device"_a = false)
         .def("__str__", [](const all& r) {
             std::ostringstream text;
             text << static_cast<const report_of<R>&>(r);
@@ -266,6 +383,16 @@ NB_MODULE(_core, m) {
         return names;
     });
     m.def("check_device", [](const std::string& name) { return device::parse(name).name(); });
+    m.def("gpu", [](int device) {
+        const gpu_facts facts = facts_of_gpu(device);
+        return nb::make_tuple(facts.name, facts.capability, facts.shared_bytes);
+    });
+    m.def("no_gpu", &device::no_gpu);
+    m.def("wait_for_gpu", &wait_for_gpu, nb::call_guard<nb::gil_scoped_release>());
+    m.def("facts_of_device_array", &facts_of_device_array);
+    m.def("facts_of_own_array", &facts_of_own_array);
+    m.def("may_use_gpus", &host::may_use_gpus);
+    m.def("driver_version", &driver_version);
     m.def("interpreted_methods", &interpreted_methods);
     m.def("tape_operations", &tape_operations);
     m.attr("tape_limits") =
@@ -289,12 +416,17 @@ NB_MODULE(_core, m) {
     nb::class_<library>(m, "Library")
         .def(nb::init<const std::string&>())
         .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
+        .def("__init__", [](library* self, const nb::bytes& image,
+                            int device) { new (self) library(std::string(image.c_str(), image.size()), device); })
         .def_prop_ro("samples_trajectory", [](const library& l) { return l.facts().samples_trajectory; })
         .def_prop_ro("adaptive", [](const library& l) { return l.facts().embedded_order > 0; })
         .def_prop_ro("instruction_set", [](const library& l) {
-            return std::string(host::name_of(static_cast<openmp::instruction_set>(l.facts().instruction_set)));
+            return std::string(host::name_of(static_cast<openmp::instruction_set>(l.cpu().instruction_set)));
         });
     bind_options(m);
     bind_precision<double>(m, "Ensemble64", "Report64");
     bind_precision<float>(m, "Ensemble32", "Report32");
+#if defined(MYRIAD_WITH_STUDY)
+    bind_study(m);
+#endif
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "device_library.hpp"
 #include "interpreted.hpp"
 #include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"
@@ -21,7 +22,8 @@
 
 namespace myriad::python {
 
-/// A shared object with a kernel, loaded for the life of the process: its code may be running.
+/// A kernel of a model, loaded for the life of the process, as its code may be running: a shared object, the
+/// interpreter, or a program for GPUs.
 class library {
 public:
     /// Throws `error` if the file is no kernel library of this version, or not for this CPU.
@@ -29,13 +31,21 @@ public:
     /// The interpreter with a model of that many shared values; `may_stop`: its hooks may end phases.
     library(const std::string& method, int shared, int shared_integers, bool may_stop,
             std::shared_ptr<const interpreted> model);
-    const kernel_library& facts() const { return facts_; }
+    /// A program that NVRTC made, loaded on a GPU. Throws `error` if its driver refuses it.
+    library(std::string image, int device);
+
+    const model_facts& facts() const { return cpu_.model; }
+    /// The kernel of a shared object or the interpreter.
+    const kernel_library& cpu() const { return cpu_; }
     /// What an interpreter runs; null for compiled kernels.
     const tape* model() const { return model_ ? &model_->get() : nullptr; }
+    /// The program for GPUs; null for the CPU's kernels.
+    device_program* gpu() const { return gpu_; }
 
 private:
-    kernel_library facts_;
+    kernel_library cpu_{};
     std::shared_ptr<const interpreted> model_;
+    device_program* gpu_ = nullptr;  // never destroyed
 };
 
 /// The names of a model's components, in their order.
@@ -45,30 +55,55 @@ struct component_names {
 
 /// The shape of a model with names of its own.
 struct named_shape : host::model_shape {
-    named_shape(const kernel_library& of, component_names its_names);
+    named_shape(const model_facts& of, component_names its_names);
     component_names names;
 };
 
-/// An ensemble of a model that is known by its shape.
+/// An array of a component's values, one per instance, in the memory of a GPU.
+template <class R>
+struct device_input {
+    R* component;     ///< the component in the ensemble's own memory
+    const R* values;  ///< on the device; there until the call ends
+};
+
+/// The part of a call whose results stay on a GPU until they are asked for (resident.hpp).
+template <class R>
+class resident;
+
+/// An ensemble of a model that is known by its shape. Its memory is kept for the next one of its kind.
 template <class R>
 struct ensemble {
-    ensemble(const kernel_library& of, component_names names, std::int64_t size)
-        : shape(std::make_unique<named_shape>(of, std::move(names))), data(*shape, size) {}
+    ensemble(const model_facts& of, component_names names, std::int64_t size);
+    ensemble(const ensemble&) = delete;
+    ensemble& operator=(const ensemble&) = delete;
+    ~ensemble();
 
-    std::unique_ptr<named_shape> shape;
+    std::shared_ptr<named_shape> shape;
     host::ensemble_data<R> data;
     host::sample_data<R> samples;
+    std::vector<device_input<R>> on_device;
+    std::shared_ptr<resident<R>> gpu;  ///< null if all results are in the memory above
 };
+extern template struct ensemble<double>;
+extern template struct ensemble<float>;
 
 /// A report with its records.
 template <class R>
 struct report : report_of<R> {
     host::record_data<R> records;
-    bool interrupted = false;  ///< by the progress function
+    bool interrupted = false;          ///< by the progress function
+    std::shared_ptr<resident<R>> gpu;  ///< has the records; null if they are in the memory above
 };
 
 /// Thrown by a progress function: the call ends with what is done.
 struct interruption {};
+
+/// Throws `error` if an option is invalid.
+template <class R>
+void check_options(const named_shape& shape, const model_facts& kernel, const options& o);
+/// Bytes of memory that an instance and a call for it take.
+template <class R>
+double bytes_per_instance(const named_shape& shape, const model_facts& kernel, const options& o);
 
 /// `solve`. Throws `error`.
 template <class R>

@@ -45,6 +45,8 @@ enum class tape_code : std::uint8_t {
     either,
     opposite,
     is_finite,
+    lookup,
+    find_interval,
     powr,
 #define MYRIAD_TAPE_NAME(name, ...) name,
     MYRIAD_TAPE_UNARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_BINARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_INFIX(MYRIAD_TAPE_NAME)
@@ -68,6 +70,8 @@ inline constexpr const char* tape_names[] = {
     "or",
     "not",
     "is_finite",
+    "lookup",
+    "find_interval",
     "powr",
 #define MYRIAD_TAPE_NAME(name, ...) #name,
     MYRIAD_TAPE_UNARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_BINARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_INFIX(MYRIAD_TAPE_NAME)

@@ -88,6 +88,14 @@ template <class R, class Source>
             case tape_code::is_finite:
                 r[to] = truth(myriad::is_finite(r[a]));
                 break;
+            case tape_code::lookup:
+                r[to] = myriad::lookup(static_cast<const real_of<R>*>(s.p.shared) + static_cast<std::int64_t>(value), c,
+                                       a, r[b]);
+                break;
+            case tape_code::find_interval:
+                r[to] = myriad::find_interval(
+                    static_cast<const real_of<R>*>(s.p.shared) + static_cast<std::int64_t>(value), a, r[b]);
+                break;
 #define MYRIAD_TAPE_CASE(name, op) \
     case tape_code::name:          \
         r[to] = r[a] op r[b];      \

@@ -8,6 +8,8 @@ import pytest
 
 _cache = tempfile.TemporaryDirectory(prefix="myriad-tests-")
 os.environ["MYRIAD_CACHE_DIR"] = _cache.name  # before the package is imported, and for the processes that tests start
+if os.environ.get("MYRIAD_TEST_DEVICE") != "cuda":  # as in the tests of the C++ library
+    os.environ["CUDA_VISIBLE_DEVICES"] = "-1"
 
 import myriad as my  # noqa: E402
 
@@ -66,3 +68,7 @@ def ball():
     """A ball that bounces."""
     return my.CppModel(BALL, "ball", "height speed", "loss", "g", accessories="top", integer_accessories="bounces",
                        events={"impact": dict(direction="falling", tolerance=1e-10)})
+
+
+def pytest_addoption(parser):
+    parser.addoption("--all", action="store_true", help="also what takes minutes: all models and GPUs")

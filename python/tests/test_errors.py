@@ -40,7 +40,7 @@ CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
     (dict(events={"hit": {}}), "'hit' is no event of the model: there is none"),
     (dict(samples=dict(every=2)), "need capacity="),
     (dict(samples=[0.5, 2.0]), "sample"),
-    (dict(device="cuda"), "no kernels for GPUs yet"),
+    (dict(device="cuda:999"), "is not available: .*use .cpu.|does not exist"),
     (dict(device="tpu"), "device 'tpu' is unknown"),
     (dict(invalid="ignore"), "give \"refuse\" or \"mark\""),
     (dict(precision="half"), "give \"double\" or \"float\""),

@@ -57,10 +57,12 @@ stop_signals::~stop_signals() {
     for (const watched_signal& w : watched) sigaction(w.number, &w.before, nullptr);
 }
 
-bool stop_signals::came() const {
+bool stop_signals::came() const { return last() != 0; }
+
+int stop_signals::last() {
     for (const watched_signal& w : watched)
-        if (w.since >= 0) return true;
-    return false;
+        if (w.since >= 0) return w.number;
+    return 0;
 }
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

@@ -221,32 +221,36 @@ studies::study_request any_study::request() const {
             .generates_itself = model_->generates_itself()};
 }
 
-study_result any_study::run() {
-    const struct stop_once {  // also if it is asked for before the run
-        std::atomic<bool>& stopped;
-        ~stop_once() { stopped = false; }
-    } once{stopped_};
+/// What a run begins with.
+struct any_study::planned_run {
+    studies::run_settings settings;
+    studies::study_plan plan;
+    double host_bytes;  // of the values of an instance
+};
+
+any_study::planned_run any_study::plan() const {
     studies::run_settings settings{.devices = devices, .progress = progress, .warning = warning};
     if (settings.devices.empty()) settings.devices.push_back(device::best());
     for (const device& d : settings.devices) model_->check(d, options);
-    studies::study_plan plan = studies::plan_study(request());
-    const chunk_sizes sizes = choose_sizes(*model_, plan, folder_.empty(), settings.devices);
-    plan.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
+    studies::study_plan made = studies::plan_study(request());
+    const chunk_sizes sizes = choose_sizes(*model_, made, folder_.empty(), settings.devices);
+    made.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
     settings.piece = sizes.piece;
-    const auto bytes = static_cast<double>(on_devices(*model_, plan, settings.devices) ? plan.bytes_needed_on_host()
-                                                                                       : plan.bytes_per_instance());
-    check_memory(bytes, plan.content, settings.devices, "make chunk smaller, or keep less");
-    const auto keeper = folder_.empty() ? studies::keep_in_memory(plan.content)
-                                        : studies::keep_in_store(folder_, plan.content, store_options_);
-    check_memory(bytes, keeper->content(), settings.devices,
+    const auto bytes = static_cast<double>(on_devices(*model_, made, settings.devices) ? made.bytes_needed_on_host()
+                                                                                       : made.bytes_per_instance());
+    check_memory(bytes, made.content, settings.devices, "make chunk smaller, or keep less");
+    return {std::move(settings), std::move(made), bytes};
+}
+
+std::unique_ptr<studies::result_keeper> any_study::open_store(const planned_run& planned) const {
+    auto keeper = studies::keep_in_store(folder_, planned.plan.content, store_options_);
+    check_memory(planned.host_bytes, keeper->content(), planned.settings.devices,
                  "use fewer devices, or start the study in a new folder with a smaller chunk");
+    return keeper;
+}
 
-    std::unique_ptr<studies::stop_signals> signals;
-    if (stop_on_signals) signals = std::make_unique<studies::stop_signals>();
-    settings.stops = [&] { return stopped_ || (signals != nullptr && signals->came()); };
-    studies::run_outcome outcome = studies::run_study(*model_, plan, *keeper, settings);
-
-    study_result made(keeper->kept());
+study_result any_study::result_of(const studies::result_keeper& keeper, studies::run_outcome outcome) {
+    study_result made(keeper.kept());
     made.complete = outcome.complete;
     made.instances = outcome.instances;
     made.seconds = outcome.seconds;
@@ -254,6 +258,60 @@ study_result any_study::run() {
     made.notes = std::move(outcome.notes);
     made.warnings = std::move(outcome.warnings);
     return made;
+}
+
+void any_study::check() const {
+    const planned_run planned = plan();
+    if (!folder_.empty()) open_store(planned);
+}
+
+study_result any_study::run() {
+    const struct stop_once {  // also if it is asked for before the run
+        std::atomic<bool>& stopped;
+        ~stop_once() { stopped = false; }
+    } once{stopped_};
+    planned_run planned = plan();
+    auto& settings = planned.settings;
+    const auto keeper = folder_.empty() ? studies::keep_in_memory(planned.plan.content) : open_store(planned);
+    std::unique_ptr<studies::stop_signals> signals;
+    if (stop_on_signals) signals = std::make_unique<studies::stop_signals>();
+    settings.stops = [&] { return stopped_ || (signals != nullptr && signals->came()); };
+    return result_of(*keeper, studies::run_study(*model_, planned.plan, *keeper, settings));
+}
+
+studies::handed_out_run any_study::hand_out() {
+    planned_run planned = plan();
+    auto keeper = folder_.empty() ? studies::keep_in_memory(planned.plan.content) : open_store(planned);
+    return {std::move(planned.plan), std::move(keeper)};
+}
+
+std::optional<studies::computed_chunk> any_study::compute(std::int64_t number, std::int64_t chunk_size) {
+    const struct stop_once {
+        std::atomic<bool>& stopped;
+        ~stop_once() { stopped = false; }
+    } once{stopped_};
+    auto [settings, plan, host_bytes] = this->plan();
+    require(chunk_size > 0 && chunk_size <= size(), "chunks of ", chunk_size,
+            " instances are asked for, of a study of ", size());
+    plan.content.chunk = chunk_size;
+    require(number >= 0 && number < plan.content.chunks(), "there is no chunk ", number, " in a study of ",
+            plan.content.chunks());
+    check_memory(host_bytes, plan.content, settings.devices, "use fewer devices, or make chunk smaller");
+    studies::one_chunk_keeper keeper(plan.content, number);
+    settings.stops = [&] { return stopped_ || keeper.done(); };
+    studies::run_outcome outcome = studies::run_study(*model_, plan, keeper, settings);
+    if (!keeper.done()) return {};
+    keeper.values.notes = std::move(outcome.notes);
+    return std::move(keeper.values);
+}
+
+study_result any_study::finish(studies::handed_out_run& run) {
+    const studies::run_settings settings{.devices = {}, .stops = [] { return true; }};
+    studies::run_outcome outcome = studies::run_study(*model_, run.plan(), run.keeper(), settings);
+    outcome.instances = run.instances();
+    outcome.by_status = run.by_status();
+    outcome.notes = run.notes();
+    return result_of(run.keeper(), std::move(outcome));
 }
 
 }  // namespace myriad

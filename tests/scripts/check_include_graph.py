@@ -42,7 +42,7 @@ BELOW = {
     "study": {"study", "public", "host", "kernel"},
     "openmp": {"openmp", "host", "kernel"},
     "cuda": {"cuda", "host", "kernel"},
-    "python": {"python", "openmp", "host", "kernel", "public"},
+    "python": {"python", "openmp", "cuda", "host", "kernel", "public"},
     "public": {"public", "study", "host", "kernel"},
 }
 

@@ -184,7 +184,7 @@ public:
         };
         auto arguments = arguments_;  // a copy
         detail::for_each_array(arguments, add);
-        detail::for_each_record(arguments.record, add);
+        detail::for_each_record(arguments, add);
         return engine_->affordable(2 * bytes);
     }
     void generate(const std::shared_ptr<const cuda::generation>& how, std::int64_t first, std::int64_t count) override {

@@ -18,6 +18,8 @@ public:
 
     /// Whether one came.
     bool came() const;
+    /// The number of a signal that came during the lifetime of the last object, which may be over; 0 if none did.
+    static int last();
 };
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

@@ -11,6 +11,7 @@
 #include <iosfwd>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,6 +23,7 @@
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/study/axes.hpp"
+#include "myriad/study/handed_out_run.hpp"
 #include "myriad/study/layout.hpp"
 #include "myriad/study/reduction.hpp"
 #include "myriad/study/store.hpp"
@@ -31,6 +33,9 @@ namespace myriad {
 
 namespace studies::inline MYRIAD_ABI {
 class any_model;
+class result_keeper;
+struct run_outcome;
+struct run_settings;
 }  // namespace studies::inline MYRIAD_ABI
 
 /// The results of a study, in memory or in its store.
@@ -140,15 +145,34 @@ public:
     /// error.
     std::function<void(const std::string&)> warning;
 
+    /// What `run` does first. Throws `error` if something is wrong with the study. With a folder, makes it or looks at
+    /// the one that is there: throws `error` if it holds another study or something else, and if the disk has too
+    /// little free space.
+    void check() const;
     /// Computes what is not there yet. Throws `error` if something is wrong with the study, if the store is of another
     /// one or fails, or if all devices fail; what is in the store stays there.
     study_result run();
+    /// Begins a run whose chunks others compute: objects of the same study by `compute`, as in other processes. Uses
+    /// `devices` for the size of chunks alone. Throws `error` as `run`.
+    studies::handed_out_run hand_out();
+    /// Computes one chunk of `chunk_size` instances, the last one possibly fewer, for the process that handed it out;
+    /// what is handed back may be sent there as bytes. `progress` is called with the instances of the chunk that are
+    /// done alone. Nothing if the run was stopped. Throws `error` as `run`.
+    std::optional<studies::computed_chunk> compute(std::int64_t chunk, std::int64_t chunk_size);
+    /// The results of a run that was handed out, when all chunks that were claimed are committed or released: with the
+    /// reductions, if all are done. Throws `error` if the store fails.
+    study_result finish(studies::handed_out_run& run);
     /// Ends the run when the chunks under way are done, for other threads and for callbacks: this one, or if there is
     /// none the next. A chunk that takes more than ten seconds longer is given up.
     void stop() { stopped_ = true; }
 
 private:
+    struct planned_run;
+
     studies::study_request request() const;
+    planned_run plan() const;
+    std::unique_ptr<studies::result_keeper> open_store(const planned_run& planned) const;
+    static study_result result_of(const studies::result_keeper& kept, studies::run_outcome outcome);
 
     std::shared_ptr<const studies::any_model> model_;
     axes axes_;

@@ -325,7 +325,7 @@ private:
             at += (bytes + 63) / 64 * 64;
         };
         for_each_array(host, place);
-        for_each_record(host.record, place);
+        for_each_record(host, place);
         return at;
     }
     template <class Visit>

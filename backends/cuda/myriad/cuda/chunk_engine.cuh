@@ -9,7 +9,6 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/chunk_layout.cuh"
@@ -17,35 +16,38 @@
 #include "myriad/cuda/resources.cuh"
 #include "myriad/cuda/schedule.cuh"
 #include "myriad/cuda/staging.cuh"
-#include "myriad/cuda/study_work.cuh"
 #include "myriad/cuda/transfers.cuh"
 #include "myriad/host/backend/backend.hpp"
 
 namespace myriad::cuda {
 
-template <class Model, class Method, class R>
-class chunk_engine final : public engine<Model, R> {
-    using arguments = kernel_arguments<Model, R>;
+/// The kernels are those of a class like `compiled_kernel`. `Interface` is what a derived class implements the rest of.
+template <class Kernel, class Interface = engine_for<typename Kernel::arguments>>
+class chunk_engine : public Interface {
+protected:
+    using arguments = typename Kernel::arguments;
+    using R = typename Kernel::real;
 
 public:
-    explicit chunk_engine(const engine_options& options)
-        : device_(options.device), while_starting_(std::in_place, options.device), launcher_(options.device, options),
-          scheduler_(options.schedule) {
-        while_starting_.reset();
+    explicit chunk_engine(const engine_options& options, Kernel kernel = {})
+        : device_(options.device), now_current_(std::in_place, options.device),
+          launcher_(options.device, options, std::move(kernel)),
+          scheduler_(options.schedule, launcher_.traits().costs_differ) {
+        now_current_.reset();
     }
     ~chunk_engine() override {
-        int before = device_;
-        cudaGetDevice(&before);
-        cudaSetDevice(device_);
+        try {
+            now_current_.emplace(device_);  // until the other members are destroyed
+        } catch (const error&) {            // CUDA may be gone at exit
+        }
         cudaStreamSynchronize(stream_.get());
-        cudaSetDevice(before);
     }
 
     void reserve(const arguments& host, std::int64_t count) override {
         const current_device here(device_);
         arguments all = host;
         const auto arrays = [&](auto&& add) { for_each_array(all, add); };
-        const auto records = [&](auto&& add) { for_each_record(all.record, add); };
+        const auto records = [&](auto&& add) { for_each_record(all, add); };
         std::size_t per_instance = scheduler_.bytes_per_instance();
         const auto add = [&](auto* array, std::int64_t components, array_access, array_kind) {
             per_instance += bytes_of(array, components);
@@ -70,12 +72,14 @@ public:
     }
 
     void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances) override {
+        upload(host, first, count, of_instances, [](const void*) { return false; });
+    }
+    /// The same without the components, by the address of their first value, that are `elsewhere`.
+    template <class Elsewhere>
+    void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances,
+                Elsewhere&& elsewhere) {
         const current_device here(device_);
-        finish_download();
-        first_ = first;
-        count_ = count;
-        scheduler_.forget_costs();
-        reserve(host, count);
+        begin_chunk(host, first, count);
         arguments from = host;
         const bool fresh_samples = of_instances == past::none || !has_samples(host);
         const auto is_cleared = [&](array_kind kind) {
@@ -84,7 +88,16 @@ public:
         };
         row_list list;
         walk(from, [&](auto*& source, auto* target, std::int64_t components, array_access, array_kind kind) {
-            if (!is_cleared(kind)) list.push_back(rows_of(source, host.size, target, components));
+            if (is_cleared(kind)) return;
+            std::int64_t done = 0;  // components
+            const auto add_until = [&](std::int64_t end) {
+                if (end > done)
+                    list.push_back(rows_of(source + done * host.size, host.size, target + done * count_, end - done));
+                done = end + 1;
+            };
+            for (std::int64_t c = 0; c < components; ++c)
+                if (elsewhere(source + c * host.size)) add_until(c);
+            add_until(components);
         });
         copy_directly(take_pinned(list), cudaMemcpyHostToDevice, stream_.get());
         if (little_transfer::takes(list)) {
@@ -94,8 +107,7 @@ public:
         }
         // After the copies: clearing needs multiprocessors, so that the copies would wait for kernels of other chunks.
         clear_arrays(from, is_cleared);
-        launcher_.set_shared(host.shared);
-        if (launcher_.facts().shared_placement != shared_placement::constant_bank) upload_shared(host.shared);
+        set_shared(host.shared);
     }
 
     void integrate(const arguments& host) override {
@@ -107,7 +119,7 @@ public:
         now.size = count_;
         now.first_index = host.first_index + first_;
         now.shared = shared_on_device_;
-        walk_records(now.record, [&](auto*& array, auto* on_device, std::int64_t components, array_access, array_kind) {
+        walk_records(now, [&](auto*& array, auto* on_device, std::int64_t components, array_access, array_kind) {
             clear(on_device, components);
             array = on_device;
         });
@@ -136,8 +148,9 @@ public:
             if (access != array_access::read) add(target, source, components, kind);
         });
         row_list of_arrays = std::exchange(list, {});
-        walk_records(to.record, [&](auto*& target, auto* source, std::int64_t components, array_access,
-                                    array_kind kind) { add(target, source, components, kind); });
+        walk_records(to, [&](auto*& target, auto* source, std::int64_t components, array_access, array_kind kind) {
+            add(target, source, components, kind);
+        });
         // Records have memory of their own, which may precede that of the arrays.
         const bool after = records_.data() > memory_.data();
         row_list& lower = after ? of_arrays : list;
@@ -152,61 +165,41 @@ public:
         }
     }
 
-    void generate(const arguments& host, std::shared_ptr<const generation> how, std::int64_t first,
-                  std::int64_t count) override {
-        const current_device here(device_);
-        finish_download();
-        first_ = first;
-        count_ = count;
-        scheduler_.forget_costs();
-        reserve(host, count);
-        arguments now = host;
-        clear_arrays(now,
-                     [](array_kind kind) { return kind == array_kind::bookkeeping || kind == array_kind::samples; });
-        launcher_.set_shared(host.shared);
-        if (how->calls_model || launcher_.facts().shared_placement != shared_placement::constant_bank)
-            upload_shared(host.shared);
-        walk(now, [](auto*& array, auto* on_device, std::int64_t, array_access, array_kind) { array = on_device; });
-        const instance_range range{count, host.first_index + first};
-        const auto find = [&](const void* array) { return place_of(host, array); };
-        study_.fill(how, find, range, now.ended, now.status, stream_.get());
-        if (how->calls_model)
-            study_.template generate<Model, R>(now, range, shared_on_device_, how->seed, stream_.get());
+    /// The device's address of a value in one of the arrays of the arguments, of which all instances were uploaded
+    /// last, and how kernels use the array; null if it is in none of them.
+    struct place_on_device {
+        std::byte* address = nullptr;
+        array_access access = array_access::read;
+    };
+    place_on_device find(const arguments& host, const void* value) {
+        place_on_device found;
+        const auto look = [&](auto*& array, auto* on_device, std::int64_t components, array_access access, array_kind) {
+            const auto offset = static_cast<const std::byte*>(value) - reinterpret_cast<const std::byte*>(array);
+            if (offset >= 0 && offset < static_cast<std::ptrdiff_t>(bytes_of(array, components * count_)))
+                found = {reinterpret_cast<std::byte*>(on_device) + offset, access};
+        };
+        arguments all = host;
+        walk(all, look);
+        walk_records(all, look);
+        return found;
     }
-    void fetch(const arguments& host, const device_values& what, std::byte* to) override {
+    /// Copies from this device's memory to the host's, and waits.
+    void copy_to_host(void* to, const std::byte* from, std::size_t bytes) {
         const current_device here(device_);
         finish_download();
-        const value_array all = on_device(host, what);
-        auto* const from = static_cast<std::byte*>(const_cast<void*>(study_.gathered(all, stream_.get())));
-        const std::size_t bytes = cuda::bytes_of(what.type) * static_cast<std::size_t>(all.size * all.inner);
-        const row_list list{{to, from, bytes, 1, bytes}};
-        if (little_transfer::takes(list)) {
+        const row_list list{{static_cast<std::byte*>(to), const_cast<std::byte*>(from), bytes, 1, bytes}};
+        if (is_pinned(to)) {
+            copy_directly(list, cudaMemcpyDeviceToHost, stream_.get());
+        } else if (little_transfer::takes(list)) {
             little_.begin_download(list, stream_.get());
-            little_.finish_download();
         } else {
-            const pooled_staging staged(device_);
-            staged->begin_download(list, stream_.get());
-            staged->finish_download();
+            fetching_ = std::make_unique<pooled_staging>(device_);
+            (*fetching_)->begin_download(list, stream_.get());
         }
+        wait();
     }
-    std::vector<std::int64_t> reduce(const arguments& host, const device_values& what,
-                                     const device_reduction& how) override {
-        const current_device here(device_);
-        finish_download();
-        const auto* const statuses = static_cast<const status*>(place_of(host, host.status).values);
-        return study_.reduce(on_device(host, what), statuses, how, stream_.get());
-    }
-    void fetch_first(const arguments& host, std::int64_t count) override {
-        const current_device here(device_);
-        finish_download();
-        arguments to = host;
-        walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access, array_kind) {
-            MYRIAD_CUDA(cudaMemcpy2DAsync(target, bytes_of(target, host.size), source, bytes_of(source, count_),
-                                          bytes_of(source, count), static_cast<std::size_t>(components),
-                                          cudaMemcpyDeviceToHost, stream_.get()));
-        });
-        check(cudaStreamSynchronize(stream_.get()), "the integration on the GPU");
-    }
+    /// For further work on the device.
+    cudaStream_t in_stream() const { return stream_.get(); }
 
     void wait() override {
         const current_device here(device_);
@@ -237,7 +230,7 @@ public:
         MYRIAD_CUDA(cudaEventElapsedTime(&milliseconds, begun_.get(), done_.get()));
         return 1e-3 * static_cast<double>(milliseconds);
     }
-    typename engine<Model, R>::interval kernel_interval(void* clock) override {
+    any_engine::interval kernel_interval(void* clock) override {
         const current_device here(device_);
         check(cudaEventSynchronize(done_.get()), "the integration on the GPU");
         const auto seconds = [&](const event& e) {
@@ -261,7 +254,7 @@ public:
     }
     void rest() override {
         const current_device here(device_);
-        const std::size_t held = memory_.bytes() + records_.bytes() + scheduler_.bytes() + study_.bytes(),
+        const std::size_t held = memory_.bytes() + records_.bytes() + scheduler_.bytes(),
                           always_fine = std::size_t{32} << 20;
         if (held <= always_fine) return;
         std::size_t free = 0, total = 0;
@@ -271,7 +264,6 @@ public:
         memory_.release();
         records_.release();
         scheduler_.release();
-        study_.release();
     }
 
     std::int64_t affordable(std::int64_t bytes) const override {
@@ -282,7 +274,21 @@ public:
         return static_cast<std::int64_t>(0.9 * static_cast<double>(free) / taken);
     }
 
-private:
+protected:
+    /// Before the instances of another chunk are put on the device: makes room for them.
+    void begin_chunk(const arguments& host, std::int64_t first, std::int64_t count) {
+        finish_download();
+        first_ = first;
+        count_ = count;
+        scheduler_.forget_costs();
+        reserve(host, count);
+    }
+    /// Stores the shared parameters where the kernel reads them, and in device memory too if they are `in_memory`.
+    void set_shared(const shared_parameters<R>& shared, bool in_memory = false) {
+        launcher_.set_shared(shared);
+        if (in_memory || launcher_.facts().shared_placement != shared_placement::constant_bank) upload_shared(shared);
+    }
+
     /// Calls `visit(host pointer, device pointer, components, access, kind)` for every array.
     template <class Visit>
     void walk(arguments& host, Visit&& visit) {
@@ -290,7 +296,7 @@ private:
         for_each_array(host, placing(next, count_, visit));
     }
     template <class Visit>
-    void walk_records(record_arguments<Model, R>& host, Visit&& visit) {
+    void walk_records(arguments& host, Visit&& visit) {
         auto* next = static_cast<std::byte*>(records_.data());
         for_each_record(host, placing(next, count_, visit));
     }
@@ -329,33 +335,6 @@ private:
         if (zeros != nullptr)
             MYRIAD_CUDA(cudaMemsetAsync(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
     }
-    /// The array on the device that the host's arguments have at that place.
-    study_work::place place_of(const arguments& host, const void* array) {
-        study_work::place found;
-        const auto look = [&](auto*& there, auto* on_device, std::int64_t, array_access, array_kind) {
-            if (there == array) found = {on_device, value_type_of(on_device)};
-        };
-        arguments copy = host;
-        walk(copy, look);
-        walk_records(copy.record, look);
-        require(found.values != nullptr, "an array of a study is not on the device");
-        return found;
-    }
-    value_array on_device(const arguments& host, const device_values& what) {
-        const instance_range range{count_, host.first_index + first_};
-        if (what.rule != nullptr) return study_.values_of(what, range, stream_.get());
-        value_array all{nullptr, what.type, count_, what.inner};
-        if (what.array == nullptr) return all;
-        const study_work::place there = place_of(host, what.array);
-        all.values = static_cast<const std::byte*>(there.values) +
-                     cuda::bytes_of(there.type) * static_cast<std::size_t>(what.component * count_);
-        if (what.ends_with_phases) {
-            all.phases = static_cast<const std::int32_t*>(place_of(host, host.phase).values);
-            all.from_phase = what.from_phase;
-        }
-        return all;
-    }
-
     /// Sets reals to NaN, which means that nothing was written, and integers to 0.
     template <class T>
     void clear(T* device, std::int64_t components) {
@@ -377,7 +356,8 @@ private:
         memory.reserve(bytes, per_instance, memory_.bytes() + records_.bytes());
     }
 
-    void prepare_sample_times(sample_arguments<Model, R>& sample) {
+    template <class Sample>
+    void prepare_sample_times(Sample& sample) {
         if (sample.times == nullptr) return;
         const std::size_t bytes = static_cast<std::size_t>(sample.count) * sizeof(R);
         if (bytes > sample_times_.bytes()) wait();
@@ -387,8 +367,9 @@ private:
     }
 
     void upload_shared(const shared_parameters<R>& shared) {
-        constexpr std::size_t real = static_cast<std::size_t>(n_shared<Model>) * sizeof(R),
-                              integer = static_cast<std::size_t>(n_shared_integer<Model>) * sizeof(std::int32_t);
+        const kernel_traits& of = launcher_.traits();
+        const std::size_t real = static_cast<std::size_t>(of.n_shared) * sizeof(R),
+                          integer = static_cast<std::size_t>(of.n_shared_integer) * sizeof(std::int32_t);
         shared_.reserve(padded(real + 256 + integer, 1));
         auto* const reals = static_cast<R*>(shared_.data());
         auto* const integers =
@@ -400,11 +381,10 @@ private:
     }
 
     int device_;
-    std::optional<current_device> while_starting_;  // the members below are created on this device
-    kernel_launcher<Model, Method, R> launcher_;
+    std::optional<current_device> now_current_;  // while the members below are created and destroyed
+    kernel_launcher<Kernel> launcher_;
     device_memory memory_, records_, sample_times_, shared_;
-    phase_scheduler<Model, Method, R> scheduler_;
-    study_work study_;
+    phase_scheduler<Kernel> scheduler_;
     stream stream_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};
     little_transfer little_;

@@ -108,16 +108,21 @@ __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parame
     return {real, integer};
 }
 
-/// Integrates the instances from its threads' sources.
+/// The kernel's body: integrates the instances from this thread's source.
 template <class Model, class Method, class R, shared_placement placement>
-__global__ void __launch_bounds__(max_block_size<Model>())
-    integrate_ensemble(const __grid_constant__ launch_arguments<Model, R, placement> arguments) {
+__device__ __forceinline__ void integrate_thread(const launch_arguments<Model, R, placement>& arguments) {
     shared_parameters<R> shared = arguments.ensemble.shared;
     if constexpr (placement == shared_placement::constant_bank) shared = {arguments.shared, arguments.shared_integer};
     if constexpr (placement == shared_placement::shared_memory) shared = detail::stage_shared<Model, R>(shared);
     using supply = std::conditional_t<costs_differ<Model, Method>, queued_instances, own_instance>;
     supply instances(arguments.ensemble.size, arguments.ensemble.order, arguments.queue);
     detail::integrate<Model, Method, R>(arguments.ensemble, shared, instances);
+}
+
+template <class Model, class Method, class R, shared_placement placement>
+__global__ void __launch_bounds__(max_block_size<Model>())
+    integrate_ensemble(const __grid_constant__ launch_arguments<Model, R, placement> arguments) {
+    detail::integrate_thread<Model, Method, R, placement>(arguments);
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -3,123 +3,89 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
-#include <string>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
 
 #include "myriad/cuda/check.cuh"
-#include "myriad/cuda/kernel.cuh"
+#include "myriad/cuda/cost_order.cuh"
+#include "myriad/cuda/launch_traits.hpp"
 #include "myriad/host/backend/backend.hpp"
 
 namespace myriad::cuda {
 
-/// The places for which a model's kernel is compiled: the constant bank for few shared parameters, the others for many.
-template <class Model, class R>
-constexpr bool is_compiled(shared_placement placement) {
-    constexpr bool few = shared_parameter_bytes<Model, R> <= 1024;
-    return few == (placement == shared_placement::constant_bank);
-}
+/// The grid of a launch, and where it goes.
+struct launch_shape {
+    unsigned blocks, threads;
+    std::size_t shared_bytes;
+    cudaStream_t stream;
+};
 
-/// Kernels of one model, method and real type on the current device.
-template <class Model, class Method, class R>
+/// Launches the kernels of one model, method and real type on the current device. A `Kernel` is `compiled_kernel`, or
+/// another class with the same members.
+template <class Kernel>
 class kernel_launcher {
     using place = shared_placement;
-    template <place p>
-    static constexpr auto* kernel = &integrate_ensemble<Model, Method, R, p>;
+    using R = typename Kernel::real;
 
 public:
-    kernel_launcher(int device, const engine_options& wanted) {
+    kernel_launcher(int device, const engine_options& wanted, Kernel kernel = {})
+        : kernel_(std::move(kernel)), traits_(kernel_.traits()) {
         int limit = 0;
         MYRIAD_CUDA(cudaDeviceGetAttribute(&limit, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
-        constexpr int bytes = shared_parameter_bytes<Model, R>;
+        const int bytes = traits_.shared_bytes;
         const bool fits = bytes <= limit;
         facts_.shared_placement = wanted.shared_placement;
         if (wanted.shared_placement == place::automatic)
-            facts_.shared_placement = is_compiled<Model, R>(place::constant_bank) ? place::constant_bank
-                                      : fits                                      ? place::shared_memory
-                                                                                  : place::cache;
+            facts_.shared_placement = is_compiled(place::constant_bank, bytes) ? place::constant_bank
+                                      : fits                                   ? place::shared_memory
+                                                                               : place::cache;
         require(facts_.shared_placement != place::shared_memory || fits, "the model's shared parameters take ", bytes,
                 " bytes, but a block of this GPU has at most ", limit,
                 " of shared memory: set shared_placement to automatic or cache");
-        require(is_compiled<Model, R>(facts_.shared_placement), "shared_placement is ",
-                name_of(facts_.shared_placement), ", but the model's shared parameters take ", bytes,
+        require(is_compiled(facts_.shared_placement, bytes), "shared_placement is ", name_of(facts_.shared_placement),
+                ", but the model's shared parameters take ", bytes,
                 " bytes: up to 1024 they are kept in the constant bank, more in "
                 "shared memory or the cache; set it to automatic");
-        with_kernel([&](auto* function) { choose_block(function, static_cast<int>(wanted.block_size)); });
+        choose_block(device, static_cast<int>(wanted.block_size));
     }
 
     const kernel_facts& facts() const { return facts_; }
+    const kernel_traits& traits() const { return traits_; }
+    cost_kernels sort() const { return kernel_.sort(); }
     /// Number of threads that gives every warp scheduler of the GPU one warp.
     std::int64_t least_threads() const { return std::int64_t{128} * multiprocessors_; }
     void note(schedule how) { facts_.schedule = how; }
 
     /// Stores the shared parameters for launches from the constant bank; `shared` is on the host.
-    void set_shared(const shared_parameters<R>& shared) {
-        if constexpr (is_compiled<Model, R>(place::constant_bank)) {
-            std::copy_n(shared.real, n_shared<Model>, constants_.shared);
-            std::copy_n(shared.integer, n_shared_integer<Model>, constants_.shared_integer);
-        }
-    }
+    void set_shared(const shared_parameters<R>& shared) { kernel_.set_shared(shared); }
 
     /// Launches the kernel on device pointers. With a queue, which must be zero, launches no more threads than run at
     /// once.
-    void launch(const kernel_arguments<Model, R>& arguments, unsigned long long* queue, cudaStream_t where) {
+    void launch(const typename Kernel::arguments& arguments, unsigned long long* queue, cudaStream_t where) {
         const int block = facts_.block_size = block_for(arguments.size);
         auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
         if (queue != nullptr) blocks = std::min(blocks, blocks_at_once(block));
-        if (facts_.shared_placement == place::constant_bank) {
-            if constexpr (is_compiled<Model, R>(place::constant_bank)) {
-                constants_.ensemble = arguments;
-                constants_.queue = queue;
-                run<place::constant_bank>(constants_, blocks, block, where);
-            }
-        } else if constexpr (!is_compiled<Model, R>(place::constant_bank)) {
-            if (facts_.shared_placement == place::shared_memory) {
-                run<place::shared_memory>({arguments, queue}, blocks, block, where);
-            } else {
-                run<place::cache>({arguments, queue}, blocks, block, where);
-            }
-        }
+        kernel_.launch(facts_.shared_placement, arguments, queue,
+                       {blocks, static_cast<unsigned>(block), static_cast<std::size_t>(facts_.shared_bytes), where});
     }
 
 private:
-    template <place p>
-    void run(const launch_arguments<Model, R, p>& all, unsigned blocks, int block, cudaStream_t where) const {
-        // Not <<<>>>, which returns the status of the thread's last failure, whatever its cause.
-        void* arguments[] = {const_cast<launch_arguments<Model, R, p>*>(&all)};
-        check(
-            cudaLaunchKernel(reinterpret_cast<const void*>(kernel<p>), dim3(blocks), dim3(static_cast<unsigned>(block)),
-                             arguments, static_cast<std::size_t>(facts_.shared_bytes), where),
-            "the launch of the integration kernel");
-    }
-
-    /// Calls `use` with the chosen kernel.
-    template <class Use>
-    void with_kernel(Use&& use) {
-        if constexpr (is_compiled<Model, R>(place::constant_bank)) {
-            use(kernel<place::constant_bank>);
-        } else if (facts_.shared_placement == place::shared_memory) {
-            use(kernel<place::shared_memory>);
-        } else {
-            use(kernel<place::cache>);
-        }
-    }
-
-    template <class Kernel>
-    void choose_block(Kernel* function, int wanted) {
-        const auto* const address = reinterpret_cast<const void*>(function);
+    void choose_block(int device, int wanted) {
+        const void* const function = kernel_.function(facts_.shared_placement);
         cudaFuncAttributes attributes{};
-        MYRIAD_CUDA(cudaFuncGetAttributes(&attributes, address));
+        MYRIAD_CUDA(cudaFuncGetAttributes(&attributes, function));
         facts_.registers = attributes.numRegs;
         facts_.local_bytes = static_cast<std::int64_t>(attributes.localSizeBytes);
         if (facts_.shared_placement == place::shared_memory) {
-            constexpr int bytes = shared_parameter_bytes<Model, R>;
-            MYRIAD_CUDA(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes));
+            const int bytes = traits_.shared_bytes;
+            MYRIAD_CUDA(cudaFuncSetAttribute(function, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes));
             facts_.shared_bytes = bytes;
         }
         const int most = attributes.maxThreadsPerBlock;
         require(wanted <= most, "block_size is ", wanted, ", but a block of this kernel has at most ", most,
                 " threads (", attributes.numRegs, " registers each): give a smaller block_size",
-                wanted <= 1024 && max_block_size<Model>() < wanted
+                wanted <= 1024 && traits_.max_block_size < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");
         // The smallest block size among those that keep most threads resident.
@@ -136,8 +102,6 @@ private:
         }
         require(facts_.block_size > 0, "not one block of this kernel fits into a multiprocessor: ", attributes.numRegs,
                 " registers per thread and ", facts_.shared_bytes, " bytes of shared memory per block");
-        int device = 0;
-        MYRIAD_CUDA(cudaGetDevice(&device));
         MYRIAD_CUDA(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, device));
         chosen_by_user_ = wanted > 0;
     }
@@ -154,16 +118,16 @@ private:
         int block = chosen_block_;
         if (chosen_by_user_) return block;
         while (block > 32 && size <= static_cast<std::int64_t>(multiprocessors_) * block / 2) block /= 2;
-        if constexpr (costs_differ<Model, Method>) {
+        if (traits_.costs_differ) {
             const std::int64_t schedulers = least_threads() / 32;
             while (block > 1 && block <= 32 && size <= schedulers * (block / 2)) block /= 2;
         }
         return block;
     }
 
+    Kernel kernel_;
+    kernel_traits traits_;
     kernel_facts facts_;
-    launch_arguments<Model, R, is_compiled<Model, R>(place::constant_bank) ? place::constant_bank : place::cache>
-        constants_{};
     int multiprocessors_ = 1, chosen_block_ = 0;
     bool chosen_by_user_ = false;
 };

@@ -4,63 +4,17 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <vector>
 
-#include "myriad/cuda/chunk_engine.cuh"
+#include "myriad/cuda/devices.cuh"
+#include "myriad/cuda/study_engine.cuh"
 #include "myriad/host/backend/backend.hpp"
-#include "myriad/host/memory/pinned.hpp"
 
 namespace myriad::cuda {
 
-/// Number of GPUs; if there are none, `why_none` gives the reason.
-inline int count_devices(std::string& why_none) {
-    int count = 0;
-    const cudaError_t status = cudaGetDeviceCount(&count);
-    if (status != cudaSuccess) {
-        cudaGetLastError();
-        why_none = message(cudaGetErrorString(status), " (", cudaGetErrorName(status), ")");
-        return 0;
-    }
-    if (count == 0) why_none = "the driver finds no GPU";
-    return count;
-}
-
-// Weak, as it is in every model's object file: the linker keeps one.
-__attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_none) {
-    const int count = count_devices(why_none);
-    std::vector<device_facts> found;
-    for (int i = 0; i < count; ++i) {
-        cudaDeviceProp properties{};
-        MYRIAD_CUDA(cudaGetDeviceProperties(&properties, i));
-        found.push_back({properties.name, static_cast<std::int64_t>(properties.totalGlobalMem),
-                         properties.multiProcessorCount, 10 * properties.major + properties.minor});
-    }
-    return found;
-}
-
-__attribute__((weak)) void pin_memory(int device, void* memory, std::size_t bytes) {
-    const current_device here(device);
-    const cudaError_t status = cudaHostRegister(memory, bytes, cudaHostRegisterPortable);
-    if (status != cudaSuccess) cudaGetLastError();
-    require(status == cudaSuccess, static_cast<double>(bytes) / 1e9,
-            " GB of host memory cannot be pinned: ", cudaGetErrorString(status), " (", cudaGetErrorName(status),
-            "); there may be too little of it, or someone else has pinned it: go on without pinning");
-}
-__attribute__((weak)) void unpin_memory(void* memory) {
-    cudaHostUnregister(memory);
-    cudaGetLastError();  // CUDA may be gone at exit
-}
-
 template <class Model, class Method, class R, class Counts>
 std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options) {
-    std::string why_none;
-    const int count = count_devices(why_none);
-    require(count > 0, "device \"cuda:", options.device, "\" is not available: ", why_none,
-            "; use \"cpu\" or \"auto\"");
-    require(options.device >= 0 && options.device < count, "device \"cuda:", options.device,
-            "\" does not exist: this machine has ", count, " (numbered from 0)");
-    return std::make_unique<chunk_engine<Model, Method, R>>(options);
+    require_device(options);
+    return std::make_unique<study_engine<Model, Method, R>>(options);
 }
 
 }  // namespace myriad::cuda

@@ -12,12 +12,12 @@
 
 namespace myriad::cuda {
 
-template <class Model, class Method, class R>
+template <class Kernel>
 class phase_scheduler {
-    using arguments = kernel_arguments<Model, R>;
+    using arguments = typename Kernel::arguments;
 
 public:
-    explicit phase_scheduler(schedule wanted) : wanted_(costs_differ<Model, Method> ? wanted : schedule::in_order) {}
+    phase_scheduler(schedule wanted, bool costs_differ) : wanted_(costs_differ ? wanted : schedule::in_order) {}
 
     /// Device memory per instance besides its own data: a cost and a place in the order.
     std::size_t bytes_per_instance() const {
@@ -34,7 +34,7 @@ public:
     /// To be called after other instances have been uploaded.
     void forget_costs() { costs_known_ = false; }
 
-    void launch(kernel_launcher<Model, Method, R>& kernel, arguments now, cudaStream_t where) {
+    void launch(kernel_launcher<Kernel>& kernel, arguments now, cudaStream_t where) {
         const schedule how = chosen(now.size, now.phases, kernel.least_threads());
         kernel.note(how);
         if (how == schedule::in_order) return kernel.launch(now, nullptr, where);
@@ -51,7 +51,7 @@ public:
             costs_known_ = true;
         }
         if (now.first_phase == now.phases) return;
-        by_cost_.sort(now.size, where);
+        by_cost_.sort(kernel.sort(), now.size, where);
         now.order = by_cost_.order();
         kernel.launch(now, nullptr, where);
     }
@@ -65,7 +65,7 @@ private:
             return sortable && phases >= 4 && count > worthwhile ? schedule::by_cost : schedule::in_order;
         return wanted_ == schedule::by_cost && !sortable ? schedule::dynamic : wanted_;
     }
-    void launch_with_queue(kernel_launcher<Model, Method, R>& kernel, const arguments& now, cudaStream_t where) {
+    void launch_with_queue(kernel_launcher<Kernel>& kernel, const arguments& now, cudaStream_t where) {
         auto* const queue = static_cast<unsigned long long*>(queue_.data());
         MYRIAD_CUDA(cudaMemsetAsync(queue, 0, sizeof *queue, where));
         kernel.launch(now, queue, where);

@@ -121,25 +121,28 @@ struct device_reduction {
 /// Downloaded data are on the host after the next `wait`, not before. Only one thread at a time may use an engine, but
 /// another may call `idle` and `affordable` meanwhile. Arguments are the host's, for the whole ensemble; `first` and
 /// `count` select the instances. Errors of the device, including those of earlier work, are thrown as `error`.
-template <class Model, class R>
-class engine : public any_engine {
+template <class Arguments>
+class engine_for : public any_engine {
 public:
     /// Allocates memory for chunks of `count` instances; larger chunks allocate more when they are uploaded.
-    virtual void reserve(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
+    virtual void reserve(const Arguments& host, std::int64_t count) = 0;
     /// Copies the chunk to the device.
-    virtual void upload(const kernel_arguments<Model, R>& host, std::int64_t first, std::int64_t count,
+    virtual void upload(const Arguments& host, std::int64_t first, std::int64_t count,
                         past of_instances = past::kept) = 0;
     /// Integrates the chunk that was uploaded last, with the options of `host`, which must have the same arrays.
-    virtual void integrate(const kernel_arguments<Model, R>& host) = 0;
+    virtual void integrate(const Arguments& host) = 0;
     /// Copies what kernels write back to where it was uploaded from, and the records of the last call into
     /// `host.record`. Components for which `wanted(kind, component)` is false are left out.
-    virtual void download(const kernel_arguments<Model, R>& host,
-                          bool (*wanted)(void*, array_kind, std::int64_t) = nullptr, void* context = nullptr) = 0;
+    virtual void download(const Arguments& host, bool (*wanted)(void*, array_kind, std::int64_t) = nullptr,
+                          void* context = nullptr) = 0;
+};
 
-    // Instead of an upload and a download, for instances that are set and reduced on the device. The host's arguments
-    // then have arrays of fewer instances, which only say which arrays there are; `first` is the number of the first
-    // instance from that of the arguments on. All but `generate` wait for the work before.
-
+/// An engine for a compiled model. It can also set and reduce instances on the device, instead of an upload and a
+/// download: the host's arguments then have arrays of fewer instances, which only say which arrays there are; `first`
+/// is the number of the first instance from that of the arguments on. All but `generate` wait for the work before.
+template <class Model, class R>
+class engine : public engine_for<kernel_arguments<Model, R>> {
+public:
     /// Sets a chunk of instances without a past.
     virtual void generate(const kernel_arguments<Model, R>& host, std::shared_ptr<const generation> how,
                           std::int64_t first, std::int64_t count) = 0;

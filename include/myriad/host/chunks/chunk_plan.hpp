@@ -25,9 +25,8 @@ public:
     explicit chunk_plan(std::int64_t size) : size_(size), largest_(size), smallest_(size) {}
     /// As the options say, or enough chunks to overlap most of the transfers, each large enough to keep the GPU and the
     /// bus busy.
-    template <class Model, class R>
-    chunk_plan(const options& o, kernel_arguments<Model, R>& arguments, const cuda::any_engine& worker)
-        : chunk_plan(arguments.size) {
+    template <class Arguments>
+    chunk_plan(const options& o, Arguments& arguments, const cuda::any_engine& worker) : chunk_plan(arguments.size) {
         std::int64_t copied = 0;
         const auto add = [&](auto* array, std::int64_t components, array_access access, array_kind) {
             const auto all = components * static_cast<std::int64_t>(sizeof(*array));
@@ -35,7 +34,7 @@ public:
             copied += access == array_access::update ? 2 * all : all;
         };
         for_each_array(arguments, add);
-        for_each_record(arguments.record, add);
+        for_each_record(arguments, add);
         cut(o, worker, copied);
     }
 

@@ -34,18 +34,18 @@ protected:
     ~chunk_source() = default;
 };
 
-/// The engines for a model.
-template <class Model, class R>
+/// The engines that `make(options)` creates for a model's kernels; `kind` tells them from those for others.
+template <class Arguments, class Make>
 class chunks_of final : public chunk_source {
 public:
-    chunks_of(engine_maker<Model, R> make, const cuda::engine_options& how, kernel_arguments<Model, R>& arguments)
-        : make_(make), how_(how), arguments_(arguments) {}
+    chunks_of(engine_key kind, Make make, const cuda::engine_options& how, Arguments& arguments)
+        : kind_(kind), make_(std::move(make)), how_(how), arguments_(arguments) {}
 
     std::unique_ptr<cuda::any_engine> take() override {
-        auto idle = take_idle_engine(kind(), how_);
+        auto idle = take_idle_engine(kind_, how_);
         return idle != nullptr ? std::move(idle) : make_(how_);
     }
-    void give(std::unique_ptr<cuda::any_engine> e) override { give_idle_engine(kind(), how_, std::move(e)); }
+    void give(std::unique_ptr<cuda::any_engine> e) override { give_idle_engine(kind_, how_, std::move(e)); }
     chunk_plan plan(const options& o, const cuda::any_engine& worker) override { return {o, arguments_, worker}; }
     void reserve(cuda::any_engine& e, std::int64_t count) override { typed(e).reserve(arguments_, count); }
     void begin(cuda::any_engine& e, std::int64_t first, std::int64_t count, cuda::past of_instances) override {
@@ -56,12 +56,14 @@ public:
 
 private:
     /// All engines of this object are its maker's.
-    static cuda::engine<Model, R>& typed(cuda::any_engine& e) { return static_cast<cuda::engine<Model, R>&>(e); }
-    engine_key kind() const { return reinterpret_cast<engine_key>(make_); }
+    static cuda::engine_for<Arguments>& typed(cuda::any_engine& e) {
+        return static_cast<cuda::engine_for<Arguments>&>(e);
+    }
 
-    engine_maker<Model, R> make_;
+    engine_key kind_;
+    Make make_;
     cuda::engine_options how_;
-    kernel_arguments<Model, R>& arguments_;
+    Arguments& arguments_;
 };
 
 /// One call of `solve` on a GPU.

@@ -18,8 +18,8 @@ bool may_use_gpus();
 template <class Model, class R>
 using engine_maker = std::unique_ptr<cuda::engine<Model, R>> (*)(const cuda::engine_options&);
 
-/// What tells engines for different models, methods and real types apart: their maker.
-using engine_key = void (*)();
+/// What tells engines for different models, methods and real types apart: the address of their maker.
+using engine_key = const void*;
 
 /// An idle engine of that kind, or null.
 std::unique_ptr<cuda::any_engine> take_idle_engine(engine_key kind, const cuda::engine_options& how);

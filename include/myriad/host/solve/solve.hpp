@@ -53,8 +53,8 @@ void integrate_all(const device& where, const options& o, const device_kernel<Mo
                    ensemble<Model, R>& instances, detail::kernel_arguments<Model, R>& arguments,
                    input_check<Model, R>& check, report<Model, R>& result) {
     const any_run on_cpu = forget_model(kernel.cpu, arguments);
-    chunks_of<Model, R> on_gpu(kernel.make_engine, {where.number(), o.block_size, o.shared_placement, o.schedule},
-                               arguments);
+    const cuda::engine_options how{where.number(), o.block_size, o.shared_placement, o.schedule};
+    chunks_of on_gpu(reinterpret_cast<engine_key>(kernel.make_engine), kernel.make_engine, how, arguments);
     integrate_all<R>(where, o, &on_cpu, &on_gpu, ensemble_access::data(instances), check, result);
 }
 

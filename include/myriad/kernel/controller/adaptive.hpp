@@ -76,9 +76,10 @@ struct adaptive_stepping {
     /// ratio of error to tolerance and p the order of the error estimate, within the options' limits (Hairer, Norsett,
     /// Wanner, Solving ODE I, II.4, eq. (4.13)); or by the controller chosen with `controlled`. Lanes whose trial is
     /// not finite (or not `valid`, or singular) are rejected with the smallest factor. Lanes rejected at the minimum
-    /// step end; so do those in `may_stick` whose step does not advance t (it ends, at `t1`, where it began). Returns
-    /// the accepted lanes.
-    MYRIAD_FUNCTION mask judge(const trial_step<Method, S, n>& trial, const S& t1, mask valid, const mask& may_stick) {
+    /// step end; so do those whose step does not advance t (it ends, at `t1`, where it began), as far as `may_stick`
+    /// lets them. Returns the accepted lanes.
+    template <class MayStick>
+    MYRIAD_FUNCTION mask judge(const trial_step<Method, S, n>& trial, const S& t1, mask valid, MayStick&& may_stick) {
         if constexpr (solves_linear_systems<Method>) valid = valid & !trial.singular;
         error_norm<S> error = detail::scaled_error<Model, Method>(args, s.data.y, s.h, trial);
         if constexpr (scales_tolerances<Method>)
@@ -109,12 +110,14 @@ struct adaptive_stepping {
         }
         S next = s.h * S(factor);
         const S minimum = S(args.minimum_step), maximum = S(args.maximum_step);
-        const mask ends = accepted & (t1 == s.data.t_end), stuck = may_stick & (t1 == s.data.t);
+        const mask ends = accepted & (t1 == s.data.t_end);
+        mask stuck = s.running() & (t1 == s.data.t);
         if (MYRIAD_UNLIKELY(any(ends | stuck | (s.running() & !clearly_between(minimum, next, maximum))))) {
             S size = limited(abs(next), minimum, maximum);
             // A step cut short by the end of the domain says little about the step size to continue with.
             size = select(ends, larger(size, abs(s.data.h_next)), size);
             next = copysign(size, s.h);
+            stuck = may_stick(stuck);
             s.rejected = count_where(stuck & accepted, s.rejected);
             accepted = accepted & !stuck;
             end_stuck_lanes(stuck);

@@ -81,7 +81,8 @@ struct fixed_stepping {
         return select(s.final_step, s.data.t_end, t1);
     }
 
-    MYRIAD_FUNCTION mask judge(const trial_step<Method, S, n>& trial, const S&, const mask& valid, const mask&) {
+    template <class MayStick>
+    MYRIAD_FUNCTION mask judge(const trial_step<Method, S, n>& trial, const S&, const mask& valid, MayStick&&) {
         const mask finite = valid & all_finite(trial.y);
         const mask failed = s.running() & !finite;
         if (MYRIAD_UNLIKELY(any(failed))) {

@@ -16,8 +16,7 @@ MYRIAD_FUNCTION void choose_first_step(const kernel_arguments<Model, real_of<S>>
                                        integration_state<Model, Method, S>& s, const mask_of<S>& open) {
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
-    s.slopes.renew(open, s.now(), s.data, s.extra_evaluations);
-    const vec<S, n> slope0 = s.slopes.start();
+    const vec<S, n> slope0 = s.slopes.start(open, s.now(), s.data, s.extra_evaluations);
     const S direction = copysign(S(R(1)), s.data.t_end - s.data.t);
     S scale[n], d0 = S(R(0)), d1 = S(R(0)), d2 = S(R(0));
     MYRIAD_UNROLL

@@ -11,7 +11,11 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 template <class Model, class R>
 struct event_memory {
+    using flags = mask_set<bool, n_event<Model>>;
     redone_step<R, n_event<Model>> redo;
+    bool locating;  // the next trial is redone, to end at an event
+    flags open;     // on the surface, side not yet known
+    flags on_jump;  // the event fired right before a jump that no step has passed yet; the side is the one beyond it
     std::int32_t waited;                         // turns that it has waited for other threads' events
     vec<std::int32_t, n_event<Model>> lingered;  // how often in a row the event has fired without its function leaving
 };

@@ -18,24 +18,24 @@ enum class kept_side : std::int8_t {
     on_jump = 3,  // it fired right before a jump: the next phase must find out on which side it begins
 };
 
-/// The sides of a pack's event functions. Empty for a model without events.
+/// What every step of a pack compares its event functions with. What few steps need is in event_memory.
 template <class Model, class S>
 struct event_sides {
     using mask = mask_of<S>;
     using masks = mask_set<mask, n_event<Model>>;
-    masks above;     // last seen beyond the tolerance on the positive side
-    masks open;      // on the surface, side not yet known
-    masks left;      // the function has been beyond its tolerance since the event last fired
-    masks on_jump;   // the event fired right before a jump that no step has passed yet; the side is the one beyond it
-    mask undefined;  // a function is NaN at the committed state
-    mask locating;   // the next trial is redone, to end at an event
+    enum lane_flag {
+        in_question,  // every trial has to be looked at closely: event_memory says why
+        undefined,    // a function is NaN at the committed state
+        lane_flags
+    };
+    masks above;  // last seen beyond the tolerance on the positive side
+    masks left;   // the function has been beyond its tolerance since the event last fired
+    mask_set<mask, lane_flags> flags;
 
     MYRIAD_FUNCTION void clear() {
         above.clear();
-        open.clear();
         left.clear();
-        on_jump.clear();
-        undefined = locating = mask(false);
+        flags.clear();
     }
 };
 

@@ -20,8 +20,9 @@ enum class trial_outcome { is_redone, stands, stands_before_sides };
 template <class S, int events>
 struct event_sight {
     vec<S, events> g1;
-    mask_set<mask_of<S>, events> crossed, beyond;  // its tolerance, on the other side and on the one it was on
-    mask_of<S> busy;                               // an accepted trial has to be looked at more closely
+    mask_set<mask_of<S>, events> beyond;   // its tolerance, on either side
+    mask_set<mask_of<S>, events> crossed;  // and on the other side than it was
+    mask_of<S> busy;                       // an accepted trial has to be looked at more closely
 };
 template <class S>
 struct event_sight<S, 0> {};
@@ -47,10 +48,22 @@ struct event_locator {
     /// Sets the length of the next trial in lanes that redo their step.
     MYRIAD_FUNCTION void propose_step() {
         auto& s = sides.s;
-        const mask locating = sides.e.locating;
-        if (!any(locating)) return;
-        for_each_lane(locating, [&](int i) MYRIAD_LAMBDA { set_lane(s.h, i, sides.memory_of(i).redo.length); });
-        s.final_step = s.final_step & !locating;
+        const mask in_question = sides.e.flags[sides.e.in_question];
+        if (!MYRIAD_UNLIKELY(any(in_question))) return;
+        for_each_lane(in_question, [&](int i) MYRIAD_LAMBDA {
+            const auto& own = sides.memory_of(i);
+            if (!own.locating) return;
+            set_lane(s.h, i, own.redo.length);
+            set_lane(s.final_step, i, false);
+        });
+    }
+    /// Those of the lanes that may be ended if their step does not advance t: a flight between events may be shorter
+    /// than the resolution of t.
+    MYRIAD_FUNCTION mask may_stick(mask lanes) const {
+        for_each_lane(lanes & sides.e.flags[sides.e.in_question], [&](int i) MYRIAD_LAMBDA {
+            if (sides.memory_of(i).locating) set_lane(lanes, i, false);
+        });
+        return lanes;
     }
 
     /// What the event functions g1 at the end of a trial show of it, whether it will be accepted or not.
@@ -58,16 +71,18 @@ struct event_locator {
         const auto& args = sides.args;
         const auto& e = sides.e;
         sight seen{g1, {}, {}, mask(false)};
-        seen.crossed.clear();
+        masks below;
+        below.clear();
         seen.beyond.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const S g = e.above.signed_by(j, g1[j]), tolerance = S(args.event[j].tolerance);
-            seen.crossed.set(j, g < -tolerance);
-            seen.beyond.set(j, g > tolerance);
+            below.set_negative(j, g1[j]);
+            seen.beyond.set(j, abs(g1[j]) > S(args.event[j].tolerance));
         }
-        seen.busy = e.locating | (e.open | e.on_jump | (seen.crossed & asked())).any_of() | mask(args.sub_samples > 1) |
-                    (sides.s.final_step & !(seen.crossed | seen.beyond).all_of());
+        // A function has crossed if it was above zero and is below, or was below and is above.
+        seen.crossed = seen.beyond & ~(e.above ^ below);
+        seen.busy =
+            e.flags[e.in_question] | (seen.crossed & asked()).any_of() | (sides.s.final_step & !seen.beyond.all_of());
         return seen;
     }
 
@@ -76,14 +91,13 @@ struct event_locator {
     /// lanes removed from `accepted`, at its start.
     MYRIAD_FUNCTION void look(const trial_type& trial, const S& t1, const sight& seen, mask& accepted, fired& events) {
         auto& e = sides.e;
-        e.locating = e.locating & accepted;  // a trial that failed its error test gets its length from the controller
         if constexpr (is_pack<S>) {
             events.which.clear();  // a pack's values lie in memory
             events.changed = mask(false);
         } else {
             events.clear();
         }
-        const mask busy = accepted & seen.busy;
+        const mask busy = sides.s.running() & seen.busy;
         mask follow = accepted & !busy;
         if (MYRIAD_UNLIKELY(any(busy))) {
             const trial_ends ends = ends_of(trial, t1, seen.g1);
@@ -93,13 +107,17 @@ struct event_locator {
                 look_out_of_line(busy, ends, seen, still_accepted, events);
                 accepted = still_accepted;
             } else {
-                const trial_outcome outcome = look_closer(0, ends, seen, events);
-                accepted = outcome != trial_outcome::is_redone;
-                follow = outcome == trial_outcome::stands_before_sides;
+                if (accepted) {
+                    const trial_outcome outcome = look_closer(0, ends, seen, events);
+                    accepted = outcome != trial_outcome::is_redone;
+                    follow = outcome == trial_outcome::stands_before_sides;
+                } else {
+                    give_up(0);
+                }
             }
         }
         e.above = e.above ^ seen.crossed.in(follow);
-        e.left = e.left | (seen.crossed | seen.beyond).in(follow);
+        e.left = e.left | seen.beyond.in(follow);
     }
 
 private:
@@ -114,11 +132,17 @@ private:
         if constexpr (Method::first_same_as_last) ends.slope_end = trial.slope_end();
         return ends;
     }
-    [[gnu::noinline]] void look_out_of_line(const mask& busy, const trial_ends& ends, const sight& seen, mask& accepted,
-                                            fired& events) {
+    __attribute__((noinline)) void look_out_of_line(const mask& busy, const trial_ends& ends, const sight& seen,
+                                                    mask& accepted, fired& events) {
         for_each_lane(busy, [&](int i) MYRIAD_LAMBDA {
+            if (!get_lane(accepted, i)) return give_up(i);
             if (look_closer(i, ends, seen, events) == trial_outcome::is_redone) set_lane(accepted, i, false);
         });
+    }
+    /// A redone step that failed its error test is not redone: the controller sets the length of the next.
+    MYRIAD_FUNCTION void give_up(int i) {
+        sides.memory_of(i).locating = false;
+        sides.note(i);
     }
 
     /// Checks the trial of one lane in which an event may have fired.
@@ -136,7 +160,10 @@ private:
         step.slope = get_lanes<R>(ends.slope_start, i);
         const bool scans = args.sub_samples > 1;
         bool sides_are_known = false;
-        if constexpr (!is_pack<S>) sides_are_known = !scans && !(e.open | e.on_jump).any_of();
+        if constexpr (!is_pack<S>) {
+            const auto& own = sides.memory_of(i);
+            sides_are_known = !scans && !(own.open | own.on_jump).any_of();
+        }
         reals side;
         flags crossed;
         bool within = false;
@@ -144,7 +171,7 @@ private:
             if constexpr (!is_pack<S>) {
                 step.g1 = ends.g;
                 crossed = seen.crossed & asked();
-                within = !(seen.crossed | seen.beyond).all_of();
+                within = !seen.beyond.all_of();
             }
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) side[j] = e.above.get(j, i) ? R(1) : R(-1);
@@ -160,7 +187,7 @@ private:
                 crossed.set(j, sides.crosses(j, side[j], step.g1[j]) && !sides.is_at_jump(j, i, step.h));
             }
         }
-        const bool locating = get_lane(e.locating, i), is_last = get_lane(s.final_step, i) && within;
+        const bool locating = sides.memory_of(i).locating, is_last = get_lane(s.final_step, i) && within;
         arrival reached{};
         if (locating) reached = arrival_of(i, step, side);
         if (scans || crossed.any_of() || (locating ? !reached.is_plain() : is_last)) {
@@ -195,6 +222,7 @@ private:
             end_on_root(i, step, side, events);
         }
         sides.follow(i, step, side);
+        sides.note(i);
         return trial_outcome::stands;
     }
 
@@ -205,7 +233,8 @@ private:
     }
     /// The event to which the step was redone is reached.
     MYRIAD_FUNCTION void end_location(int i) {
-        set_lane(sides.e.locating, i, false);
+        sides.memory_of(i).locating = false;
+        sides.note(i);
         stepping<Model, Method, S>{sides.args, sides.s}.resume(i, sides.memory_of(i).redo.resume);
     }
 
@@ -215,7 +244,7 @@ private:
         step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j)
-            if (sides.e.on_jump.get(j, i)) step.g[j] = copysign(R(infinity_of<R>), side[j]);
+            if (sides.memory_of(i).on_jump[j]) step.g[j] = copysign(R(infinity_of<R>), side[j]);
     }
     /// Checks `sub_samples` points of the step for the first crossing, updates the sides up to it, and sets [low, high]
     /// to the part of the step that contains it.
@@ -241,7 +270,7 @@ private:
             for (int j = 0; j < m; ++j) {
                 if (!(abs(g[j]) > args.event[j].tolerance) || sides.is_at_jump(j, i, length)) continue;
                 side[j] = sign_of(g[j]);
-                if (!sides.is_timeless(i, length) && !e.on_jump.get(j, i)) e.left.set(j, i, true);
+                if (!sides.is_timeless(i, length) && !sides.memory_of(i).on_jump[j]) e.left.set(j, i, true);
             }
         }
         return crossed;
@@ -252,8 +281,9 @@ private:
                                           R low, R high, fired& events) {
         const auto& args = sides.args;
         auto& s = sides.s;
-        auto& redo = sides.memory_of(i).redo;
-        const bool again = get_lane(sides.e.locating, i);
+        auto& own = sides.memory_of(i);
+        auto& redo = own.redo;
+        const bool again = own.locating;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= args.event[j].tolerance;
@@ -274,7 +304,8 @@ private:
         }
         add_to_count(s.located, i);
         const bool here = redo.length == R(0);
-        set_lane(sides.e.locating, i, !here);
+        own.locating = !here;
+        sides.note(i);
         if (!here) return;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
@@ -351,7 +382,8 @@ private:
             const bool jumps = narrow && side[j] * step.g1[j] > near;
             const bool happens = redo.target == j || (redo.crossed[j] && (heads || jumps));
             events.put(j, i, happens, step.g1[j]);
-            if (!reached.all_left && !timeless && !e.on_jump.get(j, i) && abs(middle[j]) > near) e.left.set(j, i, true);
+            const bool at_jump = sides.memory_of(i).on_jump[j];
+            if (!reached.all_left && !timeless && !at_jump && abs(middle[j]) > near) e.left.set(j, i, true);
         }
         end_location(i);
         return trial_outcome::stands;

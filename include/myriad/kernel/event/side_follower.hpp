@@ -55,14 +55,15 @@ struct side_follower {
     MYRIAD_FUNCTION void keep(int i) const {
         if (s.iterations_of(args, i) == 0) return;
         const auto& p = inputs_of(i);
+        const auto& own = memory_of(i);
         const reals g = detail::evaluate_events<Model>(get_lane(s.data.t, i), get_lanes<R>(s.data.y, i), p);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool left = e.left.get(j, i);
             kept_side kept = left ? kept_side::within : kept_side::unknown;
-            if (abs(g[j]) > args.event[j].tolerance || (e.on_jump.get(j, i) && !left))
+            if (abs(g[j]) > args.event[j].tolerance || (own.on_jump[j] && !left))
                 kept = left ? kept_side::beyond : kept_side::on_jump;
-            const int sign = e.open.get(j, i) ? 0 : e.above.get(j, i) ? 1 : -1;
+            const int sign = own.open[j] ? 0 : e.above.get(j, i) ? 1 : -1;
             kept_at(j, i) = static_cast<std::int8_t>(sign * static_cast<int>(kept));
         }
     }
@@ -77,16 +78,23 @@ struct side_follower {
     /// jump keeps the side beyond it, which its value here does not show, until `settle` looks again.
     MYRIAD_FUNCTION void restart(const mask& lanes, const values& before, const fired& events) {
         const values g = detail::evaluate_events<Model>(s.now(), s.data.y, s.data);
-        e.undefined = e.undefined & !lanes;
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            const S tolerance = S(args.event[j].tolerance);
-            const mask adopted = lanes & !events.which[j] & !e.on_jump[j];
-            const mask beyond = abs(g[j]) > tolerance;
-            e.undefined = e.undefined | (lanes & (g[j] != g[j]));
-            e.open.set(j, (e.open[j] & !(adopted & beyond)) | (adopted & !beyond & (abs(before[j]) > tolerance)));
-            e.above.set(j, (e.above[j] & !(adopted & beyond)) | (adopted & beyond & (g[j] > S(R(0)))));
-        }
+        for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA {
+            auto& own = memory_of(i);
+            bool undefined = false;
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) {
+                const R now = get_lane(g[j], i), tolerance = args.event[j].tolerance;
+                undefined = undefined || now != now;
+                if (events.which.get(j, i) || own.on_jump[j]) continue;
+                if (abs(now) > tolerance) {
+                    put_side(j, i, sign_of(now));
+                } else if (abs(get_lane(before[j], i)) > tolerance) {
+                    put_side(j, i, R(0));
+                }
+            }
+            e.flags.set(e.undefined, i, undefined);
+            note(i);
+        });
     }
 
     /// Determines the sides after the actions of events; `before` is the data before them. A function that fired is on
@@ -96,12 +104,10 @@ struct side_follower {
     /// right before the jump: a look ahead tells whether it is about to pass it. The same holds for one that fired at a
     /// jump earlier, as this action may have moved the state.
     MYRIAD_FUNCTION void settle(int i, const fired& events, const lane_data<Model, S>& before) {
-        bool passes = !get_lane(events.changed, i);
+        bool passes = !get_lane(events.changed, i) && !e.flags.get(e.in_question, i);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            const bool settled = e.left.get(j, i) && !e.open.get(j, i) && !fires_at_jump(j, i, events);
-            passes = passes && !e.on_jump.get(j, i) && (!events.which.get(j, i) || settled);
-        }
+        for (int j = 0; j < m; ++j)
+            passes = passes && (!events.which.get(j, i) || (e.left.get(j, i) && !fires_at_jump(j, i, events)));
         if (!passes) return settle_with_care(i, events, before);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
@@ -121,10 +127,17 @@ struct side_follower {
         }
     }
     /// +1, -1, or 0 if the side is not yet known.
-    MYRIAD_FUNCTION R side_of(int j, int i) const { return e.open.get(j, i) ? R(0) : e.above.get(j, i) ? R(1) : R(-1); }
+    MYRIAD_FUNCTION R side_of(int j, int i) const {
+        return memory_of(i).open[j] ? R(0) : e.above.get(j, i) ? R(1) : R(-1);
+    }
     MYRIAD_FUNCTION void put_side(int j, int i, R side) {
-        e.open.set(j, i, side == R(0));
+        memory_of(i).open.set(j, side == R(0));
         e.above.set(j, i, side > R(0));
+    }
+    /// Notes whether the next trial of lane i has to be looked at closely. To be called after what decides it changed.
+    MYRIAD_FUNCTION void note(int i) {
+        const auto& own = memory_of(i);
+        e.flags.set(e.in_question, i, own.locating || (own.open | own.on_jump).any_of() || args.sub_samples > 1);
     }
     /// Whether event j fires when its function crosses from the given side.
     MYRIAD_FUNCTION bool is_asked(int j, R side) const {
@@ -138,22 +151,20 @@ struct side_follower {
 
     /// Sets open sides to where the functions are heading.
     MYRIAD_FUNCTION void settle_open_sides(int i, const step_ends<Model, R>& step) {
-        bool open = false;
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) open = open || e.open.get(j, i);
-        if (!open) return;
+        const flags open = memory_of(i).open;
+        if (!open.any_of()) return;
         const reals slope = step.slopes();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j)
-            if (e.open.get(j, i)) put_side(j, i, sign_of(slope[j]) * sign_of(step.h));
+            if (open[j]) put_side(j, i, sign_of(slope[j]) * sign_of(step.h));
     }
 
     /// Whether event j fired at a jump that a state within `length` of it may not have passed: if another event is
     /// located right after that one, rounding may leave the state before the jump.
     MYRIAD_FUNCTION bool is_at_jump(int j, int i, R length) const {
-        if (!e.on_jump.get(j, i)) return false;
-        return abs(length) <=
-               past_jump(i, get_lane(e.locating, i) ? memory_of(i).redo.resume : get_lane(s.data.h_next, i));
+        const auto& own = memory_of(i);
+        if (!own.on_jump[j]) return false;
+        return abs(length) <= past_jump(i, own.locating ? own.redo.resume : get_lane(s.data.h_next, i));
     }
     /// Whether `length` is within the rounding of t: values that near do not show that a function has left the place
     /// where it fired.
@@ -168,7 +179,7 @@ struct side_follower {
         for (int j = 0; j < m; ++j) {
             if (is_at_jump(j, i, step.h)) continue;  // after the trial it is still at the jump where it fired
             const bool beyond = abs(step.g1[j]) > args.event[j].tolerance;
-            e.on_jump.set(j, i, false);
+            memory_of(i).on_jump.set(j, false);
             put_side(j, i, beyond ? sign_of(step.g1[j]) : side[j]);
             e.left.set(j, i, e.left.get(j, i) || (beyond && !timeless));
         }
@@ -205,11 +216,12 @@ private:
     /// jump or had not left its surface before.
     MYRIAD_FUNCTION void settle_with_care(int i, const fired& events, const lane_data<Model, S>& found) {
         const R sense = sign_of(get_lane(s.h, i));
+        auto& on_jump = memory_of(i).on_jump;
         const reals before = headings(i, found, events);
         reals g = get_lanes<R>(events.value, i), slope = before;
         bool known = !get_lane(events.changed, i);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) known = known && !e.on_jump.get(j, i) && !fires_at_jump(j, i, events);
+        for (int j = 0; j < m; ++j) known = known && !on_jump[j] && !fires_at_jump(j, i, events);
         state along;  // the slope of the state, where it is needed
         if (!known) {
             along = s.slope_of(i);
@@ -223,12 +235,12 @@ private:
         at_jump.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool fires = events.which.get(j, i), waits = !fires && e.on_jump.get(j, i);
+            const bool fires = events.which.get(j, i), waits = !fires && on_jump[j];
             const bool beyond = abs(g[j]) > args.event[j].tolerance;
-            if (g[j] != g[j]) set_lane(e.undefined, i, true);
+            if (g[j] != g[j]) e.flags.set(e.undefined, i, true);
             if (waits) {
                 at_jump.set(j, beyond);
-                e.on_jump.set(j, i, false);
+                on_jump.set(j, false);
                 put_side(j, i, beyond ? sign_of(g[j]) : R(0));
             } else if (fires) {
                 const R from = side_of(j, i), ahead = sign_of(slope[j]) * sense;
@@ -240,7 +252,7 @@ private:
                 R side = ahead;
                 if (unresolved || ahead == R(0)) side = acted || rests ? from : -from;
                 if (moved && beyond) side = sign_of(g[j]);
-                e.on_jump.set(j, i, false);
+                on_jump.set(j, false);
                 e.left.set(j, i, moved && beyond);
                 put_side(j, i, side);
             } else if (beyond) {
@@ -248,10 +260,12 @@ private:
             }
         }
         if (MYRIAD_UNLIKELY(!known && at_jump.any_of())) look_beyond(i, at_jump, g, along);
+        note(i);
     }
 
     MYRIAD_FUNCTION void begin_lane(int i) {
         const auto& p = inputs_of(i);
+        auto& own = memory_of(i);
         const reals g = detail::evaluate_events<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), p);
         flags at_jump;
         at_jump.clear();
@@ -263,16 +277,17 @@ private:
             const bool beyond = abs(g[j]) > args.event[j].tolerance;
             undefined = undefined || g[j] != g[j];
             at_jump.set(j, beyond && kind == kept_side::on_jump);
-            e.on_jump.set(j, i, false);
+            own.on_jump.set(j, false);
             e.left.set(j, i, true);
             put_side(j, i, beyond ? sign_of(g[j]) : kind == kept_side::within ? R(kept) : R(0));
-            memory_of(i).lingered[j] = 0;
+            own.lingered[j] = 0;
         }
-        set_lane(e.undefined, i, undefined);
-        set_lane(e.locating, i, false);
+        e.flags.set(e.undefined, i, undefined);
+        own.locating = false;
         if (MYRIAD_UNLIKELY(at_jump.any_of())) {
             look_beyond(i, at_jump, g, s.slope_of(i));
         }
+        note(i);
     }
 
     /// A time that is sure to pass a jump to which a step was located: longer than the rounding of t and of the state.
@@ -298,7 +313,7 @@ private:
             put_side(j, i, sign_of(there[j]));
             if (g[j] * there[j] < R(0)) {
                 e.left.set(j, i, false);
-                e.on_jump.set(j, i, true);
+                memory_of(i).on_jump.set(j, true);
             }
         }
     }

@@ -11,7 +11,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Threads that want rare work go on together once this part of the warp's running threads want to, or one of them has
 /// waited for so many turns of the loop.
-inline constexpr int company_share = 8, longest_wait = 16;
+inline constexpr int company_share = 4, longest_wait = 16;
 
 /// Whether a thread that wants to do rare work in this turn of the loop waits for company instead. It then changes
 /// nothing but `waited`, the number of its turns, so that its results do not depend on the other threads. To be called

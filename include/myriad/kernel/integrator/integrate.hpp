@@ -60,11 +60,15 @@ struct integrator {
                 seen = locator.watch(detail::evaluate_events<Model>(end_time(), trial.y, s.data));
                 if (waits(seen)) continue;
             }
+            ++s.iteration;
             mask accepted = judge(trial, seen, locator, events);
             if constexpr (samples) sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted);
             mask reduced;
             if constexpr (has_reductions<Model>)
                 reduced = reducer<Model, Method, S>{s}.reduce(trial, end_time(), accepted);
+            if constexpr (!is_pack<S>) {
+                if (!accepted && !fires(events)) continue;
+            }
             commit(trial, accepted, events);
             hook_driver<Model, Method, S> hooks{args, s, locator.sides, events};
             if constexpr (sees_reductions<Model>) hooks.follow_reductions(reduced);
@@ -120,7 +124,6 @@ struct integrator {
     }
 
     MYRIAD_FUNCTION void take_step(trial_type& trial) {
-        ++s.iteration;
         trial.k[0] = s.slopes.first_stage(s.now(), s.data);
         detail::take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
     }
@@ -132,10 +135,9 @@ struct integrator {
         } else {
             constexpr auto interval = stepping_type::look_interval;
             // The watch over long phases must not see an iteration twice.
-            const bool watched = interval > 0 && s.iteration % (interval > 0 ? interval : 1) == 1;
-            const bool waits = detail::waits_for_company(seen.busy && !e.locating, watched, memory->waited);
-            if (waits) --s.iteration;
-            return waits;
+            const bool watched = interval > 0 && s.iteration % (interval > 0 ? interval : 1) == 0;
+            const bool begins = seen.busy && !e.flags[e.in_question];
+            return detail::waits_for_company(begins, watched, memory->waited);
         }
     }
 
@@ -146,20 +148,31 @@ struct integrator {
         s.slopes.forget_end();
         stepping_type steps{args, s};
         if constexpr (!has_events<Model>) {
-            return steps.judge(trial, t1, mask(true), s.running());
+            return steps.judge(trial, t1, mask(true), [](const mask& lanes) MYRIAD_LAMBDA { return lanes; });
         } else {
-            mask defined = !e.undefined;
+            mask defined = !e.flags[e.undefined];
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) defined = defined & (seen.g1[j] == seen.g1[j]);
-            const mask may_stick = s.running() & !e.locating;  // a flight may be shorter than the resolution of t
-            mask accepted = steps.judge(trial, t1, defined, may_stick);
+            mask accepted = steps.judge(trial, t1, defined,
+                                        [&](const mask& lanes) MYRIAD_LAMBDA { return locator.may_stick(lanes); });
             locator.look(trial, t1, seen, accepted, events);
             return accepted;
         }
     }
 
+    static MYRIAD_FUNCTION bool fires(const fired_events<Model, S>& events) {
+        if constexpr (has_events<Model>) {
+            return events.which.any_of();
+        } else {
+            return false;
+        }
+    }
+
     /// Commits the new state of the accepted lanes.
     MYRIAD_FUNCTION void commit(const trial_type& trial, const mask& accepted, const fired_events<Model, S>& events) {
+        if constexpr (!is_pack<S>) {
+            if (!accepted) return;
+        }
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]);
         if constexpr (shows_step) s.data.h = select(accepted, s.h, s.data.h);

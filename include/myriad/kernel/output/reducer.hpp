@@ -184,8 +184,8 @@ private:
     }
 
     /// Out of line; otherwise its operands would stay live throughout the loop.
-    [[gnu::noinline]] void search_out_of_line(step_type& step, const slopes& first, const slopes& last,
-                                              const mask& search) {
+    __attribute__((noinline)) void search_out_of_line(step_type& step, const slopes& first, const slopes& last,
+                                                      const mask& search) {
         search_inside(step, first, last, search);
     }
 
@@ -213,7 +213,7 @@ private:
             return observe_at(step, dual<S>(theta, S(R(1))))[q];
         }
     }
-    [[gnu::noinline]] slopes look_out_of_line(const step_type& step, const S& theta) const {
+    __attribute__((noinline)) slopes look_out_of_line(const step_type& step, const S& theta) const {
         return observe_at(step, dual<S>(theta, S(R(1))));
     }
 

@@ -27,6 +27,11 @@ public:
     }
     MYRIAD_FUNCTION const M& operator[](int j) const { return masks_[j]; }
     MYRIAD_FUNCTION void set(int j, const M& value) { masks_[j] = value; }
+    /// Sets mask j, which must not be set yet, where x, which is not zero, is negative.
+    template <class S>
+    MYRIAD_FUNCTION void set_negative(int j, const S& x) {
+        masks_[j] = x < S(0);
+    }
     MYRIAD_FUNCTION void clear() {
         MYRIAD_UNROLL
         for (int j = 0; j < size; ++j) masks_[j] = M(false);
@@ -56,11 +61,6 @@ public:
     friend MYRIAD_FUNCTION mask_set operator^(const mask_set& a, const mask_set& b) {
         return combined(a, b, [](const M& x, const M& y) MYRIAD_LAMBDA { return (x & (!y)) | ((!x) & y); });
     }
-    /// x where mask j holds, -x elsewhere.
-    template <class S>
-    MYRIAD_FUNCTION S signed_by(int j, const S& x) const {
-        return select(masks_[j], x, -x);
-    }
     MYRIAD_FUNCTION bool get(int j, int lane) const { return get_lane(masks_[j], lane); }
     MYRIAD_FUNCTION void set(int j, int lane, bool value) { set_lane(masks_[j], lane, value); }
 
@@ -88,6 +88,12 @@ public:
     MYRIAD_FUNCTION void set(int j, bool value) {
         const std::uint32_t bit = std::uint32_t(1) << (j % 32);
         words_[j / 32] = value ? words_[j / 32] | bit : words_[j / 32] & ~bit;
+    }
+    template <class R>
+    MYRIAD_FUNCTION void set_negative(int j, R x) {
+        using word = std::conditional_t<sizeof(R) == sizeof(std::uint64_t), std::uint64_t, std::uint32_t>;
+        const auto high = static_cast<std::uint32_t>(__builtin_bit_cast(word, x) >> (8 * sizeof(R) - 32));
+        words_[j / 32] |= (high >> (31 - j % 32)) & (std::uint32_t(1) << (j % 32));
     }
     MYRIAD_FUNCTION void clear() {
         MYRIAD_UNROLL
@@ -126,12 +132,6 @@ public:
         MYRIAD_UNROLL
         for (int k = 0; k < count; ++k) a.words_[k] ^= b.words_[k];
         return a;
-    }
-    template <class R>
-    MYRIAD_FUNCTION R signed_by(int j, R x) const {
-        using word = std::conditional_t<sizeof(R) == sizeof(std::uint64_t), std::uint64_t, std::uint32_t>;
-        const std::uint32_t sign = (~words_[j / 32] << (31 - j % 32)) & 0x80000000u;
-        return __builtin_bit_cast(R, __builtin_bit_cast(word, x) ^ (static_cast<word>(sign) << (8 * sizeof(R) - 32)));
     }
     MYRIAD_FUNCTION bool get(int j, int) const { return (*this)[j]; }
     MYRIAD_FUNCTION void set(int j, int, bool value) { set(j, value); }

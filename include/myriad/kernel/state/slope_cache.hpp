@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Known values of the slope f(t, y) at the ends of a step, so that each is evaluated once: at the start for a repeated
-// step, at the end for the next step.
+// Known values of the slope f(t, y) at the ends of a step: at the start where it is the last of the step before, at the
+// end where samples or reductions need it, for the next step.
 #pragma once
 
 #include "myriad/kernel/methods/dense.hpp"
@@ -27,9 +27,11 @@ public:
     using state = vec<S, n>;
     using data = lane_data<Model, S>;
 
-    /// Slopes are kept if a step may be repeated or its last slope is the first of the next.
-    static constexpr bool keeps_start = is_adaptive<Method> || has_events<Model> || samples_trajectory<Method> ||
-                                        has_reductions<Model> || Method::first_same_as_last;
+    /// Samples and reductions may need the slope at the end of a step, which is then the first of the next.
+    static constexpr bool knows_end = samples_trajectory<Method> || has_reductions<Model>;
+    /// Slopes are kept if the last of a step is the first of the next. Else every trial evaluates its own, a repeated
+    /// one too: in a pack or a warp another lane needs it anyway.
+    static constexpr bool keeps_start = Method::first_same_as_last || knows_end;
     /// Evaluations of the right-hand side per trial step.
     static constexpr int evaluations_per_trial = keeps_start ? Method::stages - 1 : Method::stages;
 
@@ -45,7 +47,7 @@ public:
     /// Before a trial step.
     MYRIAD_FUNCTION void prepare(const S& t, const data& at, count& evaluations) {
         if constexpr (!keeps_start || !loses_start) return;
-        if constexpr (is_adaptive<Method> && !Method::first_same_as_last) {
+        if constexpr (!Method::first_same_as_last) {
             // In every lane, as the slope is the trial's first stage: where it was known, the result has the same bits.
             const mask needed = !start_known_;
             if (!any(needed)) return;
@@ -56,18 +58,16 @@ public:
             renew(mask(true), t, at, evaluations);
         }
     }
-    /// Evaluates the slope at the committed state, in the lanes where it is not known.
-    MYRIAD_FUNCTION void renew(const mask& lanes, const S& t, const data& at, count& evaluations) {
-        const mask needed = lanes & !start_known_;
-        if (!any(needed)) return;
-        const state fresh = detail::evaluate_rhs<Model>(t, at.y, at);
-        MYRIAD_UNROLL
-        for (int c = 0; c < n; ++c) start_[c] = select(needed, fresh[c], start_[c]);
-        evaluations = count_where(needed, evaluations);
-        start_known_ = start_known_ | needed;
+    /// The slope at the committed state, needed in these lanes before the first trial.
+    MYRIAD_FUNCTION state start(const mask& lanes, const S& t, const data& at, count& evaluations) {
+        if constexpr (keeps_start) {
+            renew(lanes, t, at, evaluations);
+            return start_;
+        } else {
+            evaluations = count_where(lanes, evaluations);
+            return detail::evaluate_rhs<Model>(t, at.y, at);
+        }
     }
-    /// The slope at the committed state, where it is known.
-    MYRIAD_FUNCTION const state& start() const { return start_; }
     /// The first stage of a trial step.
     MYRIAD_FUNCTION state first_stage(const S& t, const data& at) const {
         if constexpr (keeps_start) {
@@ -79,7 +79,9 @@ public:
     /// The slope at the committed state of lane i, for inspection. It is not stored: a pack's functions may round
     /// differently from those of one lane.
     MYRIAD_FUNCTION vec<R, n> of_lane(int i, const S& t, const data& at, count& evaluations) const {
-        if (get_lane(start_known_, i)) return get_lanes<R>(start_, i);
+        if constexpr (keeps_start) {
+            if (get_lane(start_known_, i)) return get_lanes<R>(start_, i);
+        }
         add_to_count(evaluations, i);
         if constexpr (is_pack<S>) {
             const lane_data<Model, R> p = detail::extract_lane(at, i);
@@ -126,11 +128,20 @@ public:
     }
 
 private:
+    /// Evaluates the slope at the committed state, in the lanes where it is not known.
+    MYRIAD_FUNCTION void renew(const mask& lanes, const S& t, const data& at, count& evaluations) {
+        const mask needed = lanes & !start_known_;
+        if (!any(needed)) return;
+        const state fresh = detail::evaluate_rhs<Model>(t, at.y, at);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) start_[c] = select(needed, fresh[c], start_[c]);
+        evaluations = count_where(needed, evaluations);
+        start_known_ = start_known_ | needed;
+    }
+
     /// Within a phase too, the slope at the start may have to be evaluated again.
     static constexpr bool loses_start =
         !Method::first_same_as_last || has_after_step<Model> || has_events<Model> || sees_reductions<Model>;
-    /// Samples and reductions may need the slope at the end of a step, which is then the first of the next.
-    static constexpr bool knows_end = samples_trajectory<Method> || has_reductions<Model>;
 
     state start_, end_;
     mask start_known_, end_known_;

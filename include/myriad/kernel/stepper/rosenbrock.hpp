@@ -27,7 +27,8 @@ requires rosenbrock_method<Method>
 struct trial_step<Method, S, n> {
     static_assert(Method::embedded_order > 0, "a lane with a singular matrix needs a method that can shorten its step");
     static constexpr bool estimates_error = [] {
-        for (const double w : Method::tableau().e)
+        const auto weights = Method::tableau().e;  // a temporary of the loop's would be no constant to NVRTC
+        for (const double w : weights)
             if (w != 0) return true;
         return false;
     }();

@@ -7,13 +7,13 @@
 
 #include "myriad/python/kernel_interface.hpp"
 // after the interface, which needs no packs
-#include "myriad/kernel/model/hooks.hpp"
 #include "myriad/kernel/stepper/method_check.hpp"
 #include "myriad/methods.hpp"
 #include "myriad/model.hpp"
 #include "myriad/model/random.hpp"
 #include "myriad/model/tangent.hpp"
 #include "myriad/openmp/packs.hpp"
+#include "myriad/python/facts_of.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -67,23 +67,8 @@ void run_library(const void* arguments, const run_options* options, int most_thr
 
 template <class Model, class Method, class R>
 inline constexpr python::kernel_library library_of{
-    .interface_version = python::interface_version,
-    .real_bytes = sizeof(R),
-    .n_state = n_state<Model>,
-    .n_parameter = n_parameter<Model>,
-    .n_shared = n_shared<Model>,
-    .n_shared_integer = n_shared_integer<Model>,
-    .n_accessory = n_accessory<Model>,
-    .n_integer_accessory = n_integer_accessory<Model>,
-    .n_event = n_event<Model>,
-    .embedded_order = Method::embedded_order,
+    .model = facts_of<Model, Method, R>,
     .instruction_set = static_cast<std::int32_t>(openmp::instruction_set::MYRIAD_INSTRUCTION_SET),
-    .writes_parameters = writes_parameters<Model>,
-    .writes_time_domain = writes_time_domain<Model>,
-    .hooks_may_stop = hooks_may_stop<Model, R>(),
-    .scales_tolerances = scales_tolerances<Method>,
-    .chooses_first_step = chooses_first_step<Method>,
-    .samples_trajectory = samples_trajectory<Method>,
     .run = &run_library<Model, Method, R>,
 };
 

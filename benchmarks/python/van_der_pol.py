@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Times a grid of 1 048 576 van der Pol oscillators on a GPU, from NumPy arrays to NumPy arrays, by Myriad's Python
+package and, where it is installed, by CuBIE: x0 from 1 to 2 by mu from 1 to 3, 1024 values of each, until t = 20, by
+Dormand and Prince's method of order five, relative tolerance 1e-3, absolute tolerance 1e-6.
+
+Writes rows "program,precision,what,milliseconds": the first call with an empty cache ("cold"), and medians of later
+calls: "call" until the report, "call and results" until both states are NumPy arrays, "kernel" the GPU's own clock."""
+
+import argparse
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+SIDE = 1024
+LIMITS = {("double", "call and results"): 12, ("float", "call and results"): 9}  # milliseconds on an H200
+
+
+def rows(program, precision, cold, calls):
+    """The rows of one program: seconds of its first call, and of others by name."""
+    yield program, precision, "cold", 1e3 * cold
+    for what in calls[0]:
+        yield program, precision, what, 1e3 * statistics.median(call[what] for call in calls)
+
+
+def by_myriad(precision, device, side, calls):
+    import myriad as my
+
+    x, v, mu = *my.states("x v"), my.parameter("mu")
+    model = my.model({x: v, v: mu * (1 - x * x) * v - x})
+    x_values, mu_values = np.linspace(1, 2, side), np.linspace(1, 3, side)
+    last = None
+
+    def call():
+        nonlocal last
+        begin = time.perf_counter()
+        last = my.solve(model, my.grid({x: x_values, mu: mu_values}), start={v: 0}, time=(0, 20),
+                        method="dormand_prince_5", rtol=1e-3, atol=1e-6, precision=precision, device=device)
+        done = time.perf_counter()
+        results = last["x"], last["v"]
+        there = time.perf_counter()
+        assert np.isfinite(results).all() and last.report.failed == 0
+        return {"call": done - begin, "call and results": there - begin, "kernel": last.report.kernel_seconds}
+
+    begin = time.perf_counter()
+    call()
+    cold = time.perf_counter() - begin
+    kernel = last.report.kernel
+    measured = [call() for _ in range(calls)]
+    yield from rows("Myriad", precision, cold, measured)
+    print(f"{precision}: first kernel {kernel}; {last.report}", file=sys.stderr)
+
+
+def by_cubie(precision, side, calls):
+    import cubie as qb
+
+    def van_der_pol(t, y, p):
+        return [y.v, p.mu * (1 - y.x ** 2) * y.v - y.x]
+
+    system = qb.create_ODE_system(van_der_pol, states={"x": 1.0, "v": 0.0}, parameters={"mu": 1.0},
+                                  precision=np.float64 if precision == "double" else np.float32,
+                                  name=f"VanDerPol_{precision}")
+    solver = qb.Solver(system, algorithm="ode45", rtol=1e-3, atol=1e-6, save_every=20.0)
+    values = dict(y0={"x": np.linspace(1, 2, side), "v": [0.0]}, parameters={"mu": np.linspace(1, 3, side)})
+
+    def call():
+        begin = time.perf_counter()
+        result = solver.solve(values["y0"], values["parameters"], duration=20.0, grid_type="combinatorial")
+        assert np.isfinite(result.time_domain_array[-1]).all()
+        return {"call and results": time.perf_counter() - begin}
+
+    begin = time.perf_counter()
+    call()
+    cold = time.perf_counter() - begin
+    yield from rows("CuBIE", precision, cold, [call() for _ in range(calls)])
+
+
+def in_a_process(program, precision, options):
+    """The rows of one program in a process of its own, with an empty cache."""
+    with tempfile.TemporaryDirectory() as cache:
+        command = [sys.executable, __file__, "--only", program, precision, "--side", str(options.side), "--calls",
+                   str(options.calls), "--device", options.device]
+        done = subprocess.run(command, env={**os.environ, "MYRIAD_CACHE_DIR": cache}, stdout=subprocess.PIPE, text=True)
+        return done.returncode, done.stdout.splitlines()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--side", type=int, default=SIDE, help="values of x0 and of mu (default: 1024)")
+    parser.add_argument("--calls", type=int, default=20, help="calls that are timed (default: 20)")
+    parser.add_argument("--device", default="cuda", help="Myriad's device (default: cuda)")
+    parser.add_argument("--output", help="file for the rows (default: standard output alone)")
+    parser.add_argument("--check", action="store_true",
+                        help="exit status 1 if Myriad takes longer than it should on an H200")
+    parser.add_argument("--only", nargs=2, metavar=("PROGRAM", "PRECISION"),
+                        help="one of the measurements, in this process")
+    options = parser.parse_args()
+    if options.only:
+        program, precision = options.only
+        made = by_cubie(precision, options.side, options.calls) if program == "cubie" else by_myriad(
+            precision, options.device, options.side, options.calls)
+        for name, real, what, milliseconds in made:
+            print(f"{name},{real},{what},{milliseconds:.3f}")
+        return 0
+    lines, failed = ["program,precision,what,milliseconds"], 0
+    import importlib.util
+    programs = ["myriad"] + (["cubie"] if importlib.util.find_spec("cubie") else [])
+    for program in programs:
+        for precision in ("double", "float"):
+            status, told = in_a_process(program, precision, options)
+            failed |= status != 0 and program == "myriad"
+            lines += told
+    print("\n".join(lines))
+    if options.output:
+        with open(options.output, "w", encoding="utf-8") as file:
+            file.write("\n".join(lines) + "\n")
+    for (precision, what), limit in LIMITS.items() if options.check else ():
+        taken = [float(line.rpartition(",")[2]) for line in lines if line.startswith(f"Myriad,{precision},{what},")]
+        if not taken or taken[0] > limit:
+            print(f"{precision}: {what} took {taken or 'nothing'} ms, and may take {limit}", file=sys.stderr)
+            failed = True
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Checks that a study which is killed or stopped goes on to the same results. Usage: check_run.sh DUFFING_STUDIES
+# shellcheck source=examples/common/check.sh
+source "$(dirname "$(realpath "$0")")/../common/check.sh"
+sed -e 's/0\.3, 64/0.3, 512/' -e 's/phases = 8/phases = 400/' -e '2i chunk = 16' "$here/small.toml" >study.toml
+"$program" list >models
+grep -q '^  states: *x, v$' models || fail 'the model is not listed'
+expect 0 '' "$program" run study.toml --store whole --quiet
+"$program" export whole whole.csv
+
+# wait_for COUNT FOLDER: until so many chunks are done.
+wait_for() {
+    local i
+    for ((i = 0; i < 3000; i++)); do
+        (($(find "$2/myriad/chunks" -name '*.json' 2>/dev/null | wc -l) >= $1)) && return
+        sleep 0.01
+    done
+    fail "there are no $1 chunks in $2"
+}
+"$program" run study.toml --store killed --quiet >/dev/null 2>&1 &
+wait_for 5 killed
+kill -9 $!
+wait $! 2>/dev/null || true
+"$program" info killed >facts
+grep -q '^done: .* of 96 chunks' facts || fail 'info says nothing of chunks'
+"$program" resume killed --quiet >/dev/null 2>&1 &
+wait_for 12 killed
+kill -TERM $!
+status=0
+wait $! || status=$?
+[[ $status == 143 ]] || fail "a study that SIGTERM stopped ends with $status"
+rm study.toml # the folder alone suffices
+expect 0 '' "$program" resume killed --quiet
+"$program" export killed killed.csv
+cmp whole.csv killed.csv || fail 'the results differ'
+expect 0 '' "$program" info killed --verify
+echo 'All checks passed.'

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""Variables of results that are read when they are used, for xarray: grids whose instances are in one row in the
+store."""
+
+import numpy as np
+from xarray.backends import BackendArray
+from xarray.core import indexing
+
+from . import _core
+from .parts import read_part
+
+
+class StoredVariable(BackendArray):
+    """A variable of a store. Pickled, it is the folder's name."""
+
+    def __init__(self, folder, results, name, dtype, lengths, inner):
+        self.folder, self.name, self.lengths = folder, name, tuple(lengths)
+        self.dtype, self.shape = np.dtype(dtype), (*lengths, *inner)
+        self._results = results
+
+    def __getstate__(self):
+        return {**self.__dict__, "_results": None}
+
+    def __getitem__(self, key):
+        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.BASIC, self._read)
+
+    def _read(self, key):
+        if self._results is None:
+            self._results = _core.open_store(self.folder)
+        return read_part(self._results, self.name, self.lengths, key)
+
+
+def lazy(folder, results, name, dtype, lengths, inner):
+    """The data of an `xarray.Variable` that is read when it is used."""
+    return indexing.LazilyIndexedArray(StoredVariable(folder, results, name, dtype, lengths, inner))

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: MIT
+"""Compiles models to kernels for GPUs by NVRTC, of a wheel or of the system's CUDA, and keeps them in the cache."""
+
+import ctypes
+import functools
+import importlib.util
+import os
+import pathlib
+import re
+import sys
+import time
+
+from . import _core, cache
+from .compiler import Kernel, first_message
+from .errors import Error
+
+_oldest = 12, 6  # older ones crash
+_include = pathlib.Path(__file__).parent / "include"
+_options = ["-std=c++20", "-default-device", f"-I{_include}"]
+# NVRTC has no standard library: the part that kernels use is one header.
+_standard = {name: "#include <myriad/python/standard_library.hpp>\n" for name in (
+    "algorithm", "array", "bit", "cmath", "concepts", "cstddef", "cstdint", "cstring", "iterator", "limits", "numbers",
+    "string_view", "type_traits", "utility")}
+
+
+def _candidates():
+    """Where NVRTC may be: $MYRIAD_NVRTC, the wheels nvidia-cuda-nvrtc (-cu12), Conda's, Debian's and CUDA's own
+    folders."""
+    if chosen := os.environ.get("MYRIAD_NVRTC"):
+        return [pathlib.Path(chosen)]
+    found = []
+    spec = importlib.util.find_spec("nvidia")
+    for folder in (spec.submodule_search_locations or ()) if spec else ():
+        found += pathlib.Path(folder).glob("*/lib/libnvrtc.so.[0-9]*")
+    for home in (os.environ.get("CUDA_HOME"), os.environ.get("CUDA_PATH"), "/usr/local/cuda"):
+        if home:
+            found += pathlib.Path(home).glob("lib64/libnvrtc.so.[0-9][0-9]")
+    found += pathlib.Path(sys.prefix).glob("lib/libnvrtc.so.[0-9][0-9]")
+    found += pathlib.Path("/usr/lib").glob("*-linux-gnu/libnvrtc.so.[0-9][0-9]")
+    return found
+
+
+def _major(path):
+    number = re.search(r"\.so\.(\d+)", path.name)
+    return int(number.group(1)) if number else 0
+
+
+@functools.lru_cache(maxsize=4)
+def _find(chosen, driver):
+    """The newest NVRTC that the driver can load kernels of; where there is none such, the oldest."""
+    found = sorted((p for p in _candidates() if p.is_file()), key=_major)  # of equals, that of a wheel comes first
+    fitting = [p for p in found if _major(p) <= driver]
+    if fitting:
+        newest = _major(fitting[-1])
+        return next(p for p in fitting if _major(p) == newest)
+    return found[0] if found else None
+
+
+def find():
+    """The path of NVRTC's library, or None if there is none."""
+    return _find(os.environ.get("MYRIAD_NVRTC"), _core.driver_version() // 1000 or 1 << 30)
+
+
+def library():
+    """NVRTC's library. Raises `Error` if there is none."""
+    path = find()
+    if path is None:
+        if chosen := os.environ.get("MYRIAD_NVRTC"):
+            raise Error(f"MYRIAD_NVRTC is {chosen!r}, and there is no such file: give the path of libnvrtc.so, or "
+                        "unset the variable")
+        raise Error("there is no NVRTC to compile the model for the GPU with: `pip install 'myriad[cuda]'`, or "
+                    "`pip install nvidia-cuda-nvrtc`, or name its library in the environment variable MYRIAD_NVRTC")
+    return _load(path)
+
+
+@functools.lru_cache(maxsize=4)
+def _load(path):
+    try:
+        return _Nvrtc(ctypes.CDLL(str(path)))
+    except (OSError, AttributeError) as why:
+        raise Error(f"NVRTC cannot be loaded from {path} ({why}): `pip install nvidia-cuda-nvrtc`, or name its library "
+                    "in the environment variable MYRIAD_NVRTC") from None
+
+
+class _Nvrtc:
+    """The functions of NVRTC that compile a program."""
+
+    def __init__(self, functions):
+        self._functions = functions
+        count = ctypes.c_int()
+        self._call("nvrtcGetNumSupportedArchs", ctypes.byref(count))
+        architectures = (ctypes.c_int * count.value)()
+        self._call("nvrtcGetSupportedArchs", architectures)
+        self.architectures = sorted(architectures)  #: 75 for compute capability 7.5, and so on
+        major, minor = ctypes.c_int(), ctypes.c_int()
+        self._call("nvrtcVersion", ctypes.byref(major), ctypes.byref(minor))
+        self.version = f"{major.value}.{minor.value}"
+        if (major.value, minor.value) < _oldest:
+            raise Error(f"NVRTC {self.version} is too old: install {_oldest[0]}.{_oldest[1]} or newer, by `pip install "
+                        "nvidia-cuda-nvrtc`, or `nvidia-cuda-nvrtc-cu12` for a driver of CUDA 12")
+
+    def _call(self, name, *arguments):
+        status = getattr(self._functions, name)(*arguments)
+        if status != 0:
+            self._functions.nvrtcGetErrorString.restype = ctypes.c_char_p
+            raise Error(f"NVRTC failed ({name}: {self._functions.nvrtcGetErrorString(status).decode()})")
+
+    def _text(self, program, what):
+        """A result of a program by the name of its functions, as bytes."""
+        size = ctypes.c_size_t()
+        self._call(f"nvrtcGet{what}Size", program, ctypes.byref(size))
+        text = ctypes.create_string_buffer(max(size.value, 1))
+        self._call(f"nvrtcGet{what}", program, text)
+        return text.raw
+
+    def target(self, capability):
+        """What to compile for a GPU: an option, and whether the result is machine code or PTX, which the driver of a
+        GPU that is newer than NVRTC compiles."""
+        same = [a for a in self.architectures if a <= capability and a // 10 == capability // 10]
+        if same:  # machine code is for all later GPUs of its generation
+            return f"-arch=sm_{same[-1]}", "CUBIN"
+        older = [a for a in self.architectures if a < capability]
+        if not older:
+            raise Error(f"NVRTC {self.version} compiles for GPUs of compute capability "
+                        f"{_dotted(self.architectures[0])} and newer, and this one has {_dotted(capability)}: install "
+                        "an older one, such as `pip install nvidia-cuda-nvrtc-cu12`")
+        return f"-arch=compute_{older[-1]}", "PTX"
+
+    def compile(self, source, capability, options=()):
+        """A program for GPUs of that compute capability, and what NVRTC says. Raises `Error` with its first message
+        if it refuses the source."""
+        architecture, kind = self.target(capability)
+        program = ctypes.c_void_p()
+        texts = (ctypes.c_char_p * len(_standard))(*(text.encode() for text in _standard.values()))
+        names = (ctypes.c_char_p * len(_standard))(*(name.encode() for name in _standard))
+        self._call("nvrtcCreateProgram", ctypes.byref(program), source.encode(), b"model.cu", len(_standard), texts,
+                   names)
+        try:
+            chosen = [option.encode() for option in [*_options, architecture, *options]]
+            done = self._functions.nvrtcCompileProgram(program, len(chosen), (ctypes.c_char_p * len(chosen))(*chosen))
+            said = self._text(program, "ProgramLog").rstrip(b"\0").decode(errors="replace")
+            if done != 0:
+                raise Error(f"the model does not compile (NVRTC {self.version}): {first_message(said)}")
+            return self._text(program, kind), said
+        finally:
+            self._call("nvrtcDestroyProgram", ctypes.byref(program))
+
+
+def _dotted(capability):
+    return f"{capability // 10}.{capability % 10}"
+
+
+def placement(model_shared_bytes, limit):
+    """The place of so many bytes of shared parameters on a GPU whose blocks have up to `limit` of shared memory."""
+    if model_shared_bytes <= 1024:
+        return "constant_bank"
+    return "shared_memory" if model_shared_bytes <= limit else "cache"
+
+
+def source_of(header, struct, method, real, place):
+    """The file that is compiled: the model's header and the request for its kernel."""
+    return (f"#include <myriad/python/device_program.cuh>\n\n{header}\n"
+            f"using myriad_method = {method};\nMYRIAD_DEVICE_PROGRAM({struct}, myriad_method, {real}, {place})\n")
+
+
+_loaded = {}
+
+
+def kernel(header, struct, method, real, shared, device):
+    """The kernel of a model, which is C++ source with a struct of that name, for a method and a real type, both as C++
+    types, and a GPU by its number; `shared`: the numbers of real and integer shared parameters. Raises `Error` if
+    there is no NVRTC, or with its first message if it refuses the model."""
+    begin = time.perf_counter()
+    _, capability, shared_bytes = _core.gpu(device)
+    place = placement(shared[0] * (8 if real == "double" else 4) + shared[1] * 4, shared_bytes)
+    asked = (header, struct, method, real, place, capability, os.environ.get("MYRIAD_NVRTC"))
+    if asked in _loaded:
+        return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
+    path = find()
+    if path is None:
+        library()  # says so
+    driver = _core.driver_version() // 1000
+    if _major(path) > driver:
+        raise Error(f"NVRTC of CUDA {_major(path)} compiles for newer drivers than this one, of CUDA {driver}: update "
+                    f"the driver, or `pip install nvidia-cuda-nvrtc-cu{driver}`")
+    source = source_of(header, struct, method, real, place)
+    key = cache.key_of({"source": source, "version": _core.version, "headers": _core.headers, "options": _options[:-1],
+                        "capability": capability,
+                        "nvrtc": f"{path.name} {path.stat().st_size}"})  # its version, without loading it
+
+    def make(workplace):
+        made = workplace / "model.so"
+        made.write_bytes(library().compile(source, capability)[0])
+        return made
+
+    obtained = cache.obtain(key, make, lambda made: _core.Library(made.read_bytes(), device))
+    _loaded[asked] = obtained.loaded
+    origin = "cache" if obtained.hit else f"compiled by NVRTC {library().version}"
+    if obtained.unusable is not None:
+        origin += f" (the cache {obtained.unusable} cannot be used: MYRIAD_CACHE_DIR names another folder)"
+    return Kernel(_loaded[asked], origin, time.perf_counter() - begin)

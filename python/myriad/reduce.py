@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: MIT
+"""Reductions over all instances of a study, which need not keep what they reduce: `reduce=` of `myriad.study`.
+
+Variables are named as in results: "x" at recorded phases, "x_end" at the end, "x_sample". Instances that failed are
+left out, but by `total`. Results do not depend on how the instances are divided into chunks, bit for bit."""
+
+import numpy as np
+
+from .axes import Axis, core_of_studies
+from .errors import Error
+
+__all__ = ["histogram", "minimum", "maximum", "mean", "total"]
+
+
+class Reduction:
+    """A reduction, made by the functions of this module."""
+
+    def __init__(self, kind, *arguments):
+        self.kind, self.arguments = kind, arguments
+
+    def core(self):
+        """The reduction for the core."""
+        arguments = [a.core() if isinstance(a, Axis) else a for a in self.arguments]
+        return getattr(core_of_studies(), self.kind)(*arguments)
+
+    def __repr__(self):
+        return f"{self.kind}({', '.join(map(repr, self.arguments))})"
+
+
+def _variable(name):
+    if not isinstance(name, str):
+        raise Error(f"a reduction is asked for of {name!r}: give the name of a variable of the results, as \"x_end\"")
+    return name
+
+
+class _Values(Axis):
+    """Values as they are given."""
+
+    def core(self):
+        return core_of_studies().values(list(self.arguments))
+
+
+def histogram(variable, edges):
+    """How many values lie between neighbouring edges, as numpy.histogram: "x_end_histogram" along "x_end_bin"; and
+    "x_end_outside", how many lie below, above, and are not finite."""
+    if not isinstance(edges, Axis):
+        edges = _Values("values", *np.asarray(edges, dtype=float).tolist())
+    return Reduction("histogram_of", _variable(variable), edges)
+
+
+def minimum(variable):
+    """The smallest value, for each phase or sample: "x_end_minimum"."""
+    return Reduction("minimum_of", _variable(variable))
+
+
+def maximum(variable):
+    """The largest value, for each phase or sample: "x_end_maximum"."""
+    return Reduction("maximum_of", _variable(variable))
+
+
+def mean(variable):
+    """The mean, for each phase or sample: "x_end_mean". The sum is exact and rounded once."""
+    return Reduction("mean_of", _variable(variable))
+
+
+def total(name, inputs, size, function):
+    """The sum over chunks of `size` numbers that a function computes of each chunk: variable `name`. The function gets
+    a dict of arrays, the inputs by name and "status", with a row for each instance of the chunk, failed ones too, and
+    returns the numbers. `name` stands for it in the study's description: give another one when it changes. Threads take
+    turns in calling it; for executors it must pickle."""
+    inputs = [inputs] if isinstance(inputs, str) else list(inputs)
+    return Reduction("sum_of", _variable(name), [_variable(i) for i in inputs], int(size), function)

@@ -1,0 +1,452 @@
+# SPDX-License-Identifier: MIT
+"""Studies: ensembles of any size along axes by name, computed chunk by chunk, kept in a store in which they go on after
+a stop, and handed to any executor. The C++ library's `study` with a model of Python's."""
+
+import concurrent.futures
+import hashlib
+import os
+import pickle
+import queue
+import threading
+import time as clock
+
+import numpy as np
+
+from .axes import Axis, Random, core_of_studies
+from .components import Components, name_of, unknown
+from .errors import Error
+from .expression import Node
+from .grid import Sweep
+from .methods import fixed_step, method_type
+from .reduce import Reduction
+from .run import Interrupted
+from .solve import (_by_name, _device_name, _numbers, _only, _per_state, _set_events, _whole, choose_kernel, in_python,
+                    make_options, refuse_missing)
+from .study_result import StudyResult
+from .symbols import t_begin, t_end, time as time_symbol
+
+__all__ = ["Study", "study"]
+
+_keep_choices = ("end", "records", "samples", "random", "status", "work")
+_terms = (
+    ("options.record", "record="),
+    ("options.samples", "samples="),
+    ("start the study in a new folder with a smaller chunk", "give another store= and a smaller chunk="),
+    ("make chunk smaller", "make chunk= smaller"),
+    ("repeat is given", "draws= is given"),
+)
+
+
+def _on_cpu(device):
+    """The name of a CPU as the core knows it: the kernels of studies are compiled for CPUs."""
+    if str(device).startswith("cuda"):
+        raise Error(f"device is {device!r}, but studies run on the CPU alone: give \"cpu\", or use myriad.solve")
+    return _device_name(device, interpreted=True)[0]  # "auto" then looks for no GPU
+
+
+def _in_terms(error):
+    return in_python(in_python(error), _terms)
+
+
+def _time_name(key):
+    """The names of the ends of the time domain, or None."""
+    return {t_begin: "t_begin", t_end: "t_end"}.get(key) if isinstance(key, Node) else None
+
+
+class Study:
+    """A parameter study, made by `study`. `run` computes it."""
+
+    def __init__(self, model, sweep, options):
+        self._given, self._has_store = (model, sweep, options), False
+        self._build(model, sweep, **options)
+
+    def __reduce__(self):
+        return Study, self._given
+
+    # -- What the study is --------------------------------------------------------------------------------------------
+
+    def _build(self, model, sweep, *, start, time, keep, reduce, draws, seed, title, units, notes, method, control,
+               rtol, atol, events, samples, record, precision, interpreted, **others):
+        core = core_of_studies()
+        if not hasattr(model, "source"):
+            raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...)")
+        if precision not in ("double", "float"):
+            raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
+        if method is None:
+            method = "cash_karp" if samples is None else "dormand_prince_5"
+        if method in fixed_step and others["step"] is None:
+            raise Error(f"{method} takes fixed steps: give step=")
+        components = self._components = Components(model)
+        if np.ndim(samples if not hasattr(samples, "items") else samples.get("times", ())) > 1:
+            raise Error("a study has no sample times for each instance: give the same times for all, or a number of "
+                        "evenly spaced ones")
+        options, recorded, sampled = make_options(components, 0, record=record, samples=samples, **others)
+        self._kernel, names = choose_kernel(model, components, method, control, samples is not None, precision,
+                                            interpreted)
+        self._interpreted = self._kernel.origin.startswith("interpreted")
+        options.set_tolerances(_per_state(rtol, components, "rtol", len(names[0])),
+                               _per_state(atol, components, "atol", len(names[0])))
+        _set_events(options, events, components, len(names[-1]))
+        options.mark_invalid()
+        used = [len(components.states), len(components.parameters), len(components.accessories)]
+        try:
+            made = self._core = core.Study(
+                self._kernel.library, [list(n) for n in names], used, list(components.tables.values()),
+                getattr(model, "name", None) or "model",
+                method_type(method, control, samples is not None).replace("myriad::", ""))
+            made.options(options)
+            self._set_instances(made, components, sweep, start, time)
+            if draws is not None:
+                made.repeat(_whole(draws, "draws", 1 << 62), "draw")
+            made.seed(_whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
+            self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
+            for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
+                if not isinstance(reduction, Reduction):
+                    raise Error(f"reduce= has {reduction!r}: give reductions, as in "
+                                "[myriad.reduce.mean(\"x_end\")]")
+                made.reduce(reduction.core())
+            for key, unit in _by_name(units, "units", "units={x: \"m\"}").items():
+                made.unit("t" if key is time_symbol else self._full_name(key), unit)
+            if title:
+                made.title(title)
+            values = np.array(list(components.tables.values()), float)
+            made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
+            made.note("kernel", "interpreted" if self._interpreted else "compiled")
+            for key, text in _by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
+                made.note(f"user.{key}", str(text))
+        except Error as error:
+            raise _in_terms(error) from None
+
+    def _full_name(self, key):
+        """The core's name of a component."""
+        if (of_time := _time_name(key)) is not None:
+            return of_time
+        name = name_of(key)
+        if name in self._components.place:
+            return f"{self._components.place[name][0]}.{name}"
+        if name in ("t_begin", "t_end"):
+            return name
+        raise unknown(name, list(self._components.place), "component of the model")
+
+    def _set_instances(self, made, components, sweep, start, time):
+        """Axes, random values and values for all instances."""
+        try:
+            begin, end = time
+        except (TypeError, ValueError):
+            raise Error(f"time is {time!r}: give begin and end, as in time=(0, 10)") from None
+        given = dict(_by_name(start, "start", "start={x: 1, v: 0}"))
+        for name, value in (("t_begin", begin), ("t_end", end)):
+            if value is not None:
+                given[t_begin if name == "t_begin" else t_end] = value
+        on_grid = []
+        constants = {}
+        if isinstance(sweep, Sweep):
+            for axis, _ in sweep.axes:
+                on_grid.append([(n, v) for n, (a, v) in sweep.coordinates.items() if a == axis])
+            constants.update(sweep.constants)
+        else:
+            given = {**_by_name(sweep, "the sweep", "{k: myriad.linspace(0, 1, 100)}"), **given}
+        together = []
+        for key, value in given.items():
+            name = _time_name(key) or name_of(key)
+            if name in constants or name in [n for axis in on_grid for n, _ in axis]:
+                if name in ("t_begin", "t_end") and name not in components.place:
+                    raise Error(f"'{name}' is given in the sweep and in time=: give None there")
+                raise Error(f"'{name}' is given in the sweep and in start=: give it once")
+            if not isinstance(value, Axis):
+                value = _numbers(value, name)
+            (constants.__setitem__(key, value) if value.ndim == 0 else together.append((key, value)))
+        if together and isinstance(sweep, Sweep):
+            raise Error(f"'{self._full_name(together[0][0])}' has {len(together[0][1])} values beside a grid: make it "
+                        "an axis of the grid, as in myriad.grid({x: ...})")
+        if len({len(v) for _, v in together}) > 1:
+            (first, a), (other, b) = next((p, q) for p in together for q in together if len(p[1]) != len(q[1]))
+            raise Error(f"'{self._full_name(first)}' has {len(a)} values and '{self._full_name(other)}' has {len(b)}: "
+                        "give equally many, or combine all with all by myriad.grid(...)")
+        axes = [*on_grid, *([together] if together else [])]
+        all_names = {name_of(k) for axis in axes for k, _ in axis if _time_name(k) is None}
+        all_names |= {name_of(k) for k in constants if _time_name(k) is None}
+        refuse_missing(components, {**dict.fromkeys(components.defaults), **dict.fromkeys(all_names)})
+        for name, value in components.defaults.items():
+            if name not in components.tables and name not in all_names:
+                made.set(self._full_name(name), value)
+        core = core_of_studies()
+        for axis in axes:
+            pairs = [(self._full_name(k), v.core() if isinstance(v, Axis) else
+                      core.values(np.asarray(v, float).tolist())) for k, v in axis]
+            for name, _ in pairs:
+                if name.startswith("shared"):
+                    raise Error(f"'{name.partition('.')[2]}' is shared by all instances and has several values: give "
+                                "one number, or make it a parameter")
+            if len(pairs) == 1:
+                made.axis(*pairs[0])
+            else:
+                made.zip(pairs)
+        for key, value in constants.items():
+            if isinstance(value, Random):
+                made.axis(self._full_name(key), value.core())
+            else:
+                made.set(self._full_name(key), float(value))
+
+    def _set_kept(self, made, components, keep, anything_else):
+        if keep is None:
+            keep = {} if anything_else else {
+                "end": [*components.states, *components.accessories, *components.integer_accessories]}
+        elif not hasattr(keep, "items"):
+            keep = {"end": keep}
+        _only(keep, _keep_choices, "keep=")
+        end = keep.get("end", ())
+        end = [end] if isinstance(end, (str, Node)) else list(end)
+        names = ["t" if key is time_symbol else self._full_name(key) for key in end]
+        made.keep(names, *(bool(keep.get(choice, choice != "work")) for choice in _keep_choices[1:]))
+
+    @property
+    def size(self):
+        """The number of instances."""
+        return self._core.size
+
+    def __len__(self):
+        return self.size
+
+    def __repr__(self):
+        return f"<myriad study of {self.size} instances>"
+
+    # -- The run ------------------------------------------------------------------------------------------------------
+
+    def run(self, store=None, *, device="auto", chunk=None, executor=None, check="sizes", expiry=60, progress=None):
+        """Computes what is not there yet, and returns a `StudyResult`.
+
+        store      a folder, in which the study goes on if it is run again, also by several processes at a time, each
+                   with this call; it is a Zarr group (version 3). None: results are in memory
+        device     a device or a list of devices, which are used at the same time: "auto", "cpu", "cpu:4"; with an
+                   executor that of each worker, by default "cpu:1"
+        chunk      instances that are computed and stored together; None: by memory and number. A store keeps its own
+        executor   any executor of `concurrent.futures`, as ProcessPoolExecutor or those of Dask, loky, mpi4py and
+                   Parsl: its workers compute chunks, and send their values here, where they are kept
+        check      what is looked at of a store that exists: "sizes" of files, or "checksums", for which all is read
+        expiry     seconds after which chunks of a process on another machine that gives no sign of life are taken over
+        progress   True for a bar, or a function of the numbers of instances done and of all
+
+        Ctrl-C ends a run when the chunks under way are done, or after ten seconds, and raises `myriad.Interrupted`,
+        whose `run` has what is done; so does the store, in which the next run goes on. Raises `myriad.Error` if the
+        store is of another study, with what differs, if a disk is full, and if a worker of an executor dies; what was
+        done stays in the store, and `error.result` has it."""
+        if check not in ("sizes", "checksums"):
+            raise Error(f"check is {check!r}: give \"sizes\" or \"checksums\"")
+        folder = "" if store is None else os.path.abspath(os.fspath(store))
+        if device == "auto" and executor is not None:
+            device = "cpu:1"
+        devices = [_on_cpu(d) for d in ([device] if isinstance(device, str) else device)]
+        if not devices:
+            raise Error("device= names no device: leave it out, or give \"cpu\"")
+        show = _Progress(progress)
+        try:
+            if not folder and self._has_store:  # from an earlier run
+                self._build(*self._given[:2], **self._given[2])
+            self._core.set_store(folder, float(expiry), check == "checksums")
+            self._has_store = bool(folder)
+            if executor is not None:
+                return _ExecutedRun(self, executor, devices, chunk, folder or None, show).run()
+            self._core.set_run(devices, _whole(chunk or 0, "chunk", 1 << 62))
+            (results, facts), failure = self._core.run(show)
+            result = self._result(results, facts, folder or None)
+            if failure is not None:
+                if isinstance(failure, KeyboardInterrupt):
+                    raise Interrupted(result) from None
+                raise failure
+            return result
+        except Error as error:
+            changed = _in_terms(error)
+            changed.result = getattr(error, "result", None)
+            raise changed from error.__cause__
+        finally:
+            show.close()
+
+    def _result(self, results, facts, folder):
+        return StudyResult(results, folder, {**facts, "kernel": self._kernel.origin})
+
+    def _payload(self):
+        """This study as bytes, for other processes, which are to run the same kernel. By cloudpickle if it is there,
+        which takes functions of scripts along."""
+        try:
+            import cloudpickle as by
+        except ImportError:
+            by = pickle
+        model, sweep, options = self._given
+        try:
+            return by.dumps((model, sweep, {**options, "interpreted": self._interpreted}))
+        except Exception as error:
+            raise Error("the study cannot be sent to the workers of an executor, as it does not pickle: "
+                        f"{error}") from None
+
+
+class _Progress:
+    """A function of the numbers of instances done and of all, or a bar."""
+
+    def __init__(self, wanted):
+        self._function, self._bar = wanted if callable(wanted) else None, None
+        if wanted and not callable(wanted):
+            try:
+                from tqdm.auto import tqdm
+            except ImportError:
+                raise Error("progress=True shows a bar of the package tqdm, which is missing: `pip install tqdm`, or "
+                            "give a function of two numbers, instances done and all") from None
+            self._bar = tqdm(unit="instance", unit_scale=True)
+
+    def __call__(self, done, total, earlier=0, seconds=0.0, by_status=None):
+        if self._function is not None:
+            self._function(done, total)
+        if self._bar is not None:
+            self._bar.total, self._bar.n, self._bar.initial = total, done, earlier
+            failed = {n: c for n, c in (by_status or {}).items() if not n.startswith(("success", "stopped"))}
+            self._bar.set_postfix(failed, refresh=False)
+            self._bar.refresh()
+
+    def close(self):
+        """Ends the bar."""
+        if self._bar is not None:
+            self._bar.close()
+
+
+# -- Executors ---------------------------------------------------------------------------------------------------------
+
+_received = threading.local()  # the last study of each thread of a worker
+
+
+def _compute(payload, chunk, chunk_size, devices):
+    """A chunk of a study, in a worker."""
+    if getattr(_received, "payload", None) != payload:
+        _received.study, _received.payload = Study(*pickle.loads(payload)), payload
+        _received.study._core.set_run(devices, chunk_size)
+    return _received.study._core.compute(chunk, chunk_size)
+
+
+_lost = (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError, OSError)
+
+
+class _ExecutedRun:
+    """A run whose chunks the workers of an executor compute."""
+
+    _patience = 10.0  # seconds, with chunks under way when the run ends early
+
+    def __init__(self, study, executor, devices, chunk, folder, show):
+        self._study, self._executor, self._devices, self._folder, self._show = study, executor, devices, folder, show
+        workers = getattr(executor, "_max_workers", None)
+        workers = workers if isinstance(workers, int) and workers > 0 else 16
+        self._most = 2 * workers + 2  # chunks under way
+        if not chunk:  # several for each worker, and not too large to send
+            chunk = min(max(1, -(-study.size // (8 * workers))), 1 << 16)
+        study._core.set_run(devices, _whole(chunk, "chunk", 1 << 62))
+        self._payload = study._payload()
+        self._handed = study._core.hand_out()
+        self._earlier, self._begin = self._handed.instances_done(), clock.perf_counter()
+        self._under_way, self._ended = {}, queue.SimpleQueue()
+
+    def run(self):
+        try:
+            self._work()
+        except KeyboardInterrupt:
+            self._end()
+            raise Interrupted(self._result()) from None
+        except BaseException as error:
+            self._end()
+            error.result = self._result()
+            raise
+        return self._result()
+
+    def _work(self):
+        handed = self._handed
+        while True:
+            while len(self._under_way) < self._most and (chunk := handed.claim_next()) is not None:
+                self._submit(chunk)
+            if not self._under_way:
+                if handed.complete():
+                    break
+                threading.Event().wait(0.5)  # other processes are at work on the rest, and may die
+                continue
+            try:
+                future = self._ended.get(timeout=0.2)
+            except queue.Empty:
+                continue
+            self._take(future)
+            self._show(self._earlier + handed.committed, handed.instances)
+
+    def _submit(self, chunk):
+        try:
+            future = self._executor.submit(_compute, self._payload, chunk, self._handed.chunk, self._devices)
+        except BaseException as error:
+            self._handed.release(chunk)
+            if isinstance(error, concurrent.futures.BrokenExecutor):
+                raise self._died(error) from error
+            raise
+        self._under_way[future] = chunk
+        future.add_done_callback(self._ended.put)
+
+    def _take(self, future):
+        chunk = self._under_way.pop(future)
+        try:
+            values = future.result()
+        except BaseException as error:
+            self._handed.release(chunk)
+            if isinstance(error, _lost) or type(error).__name__ == "KilledWorker":  # Dask's
+                raise self._died(error) from error
+            raise
+        self._handed.commit(chunk, values)
+
+    def _died(self, error):
+        kept = "what was done is kept: run the study again with the same store" if self._folder else \
+            "give the study a store, in which it goes on when it is run again"
+        return Error(f"a chunk was lost with its worker ({type(error).__name__}: {error}); {kept}")
+
+    def _end(self):
+        """Takes what is done, and gives the rest back."""
+        for future in list(self._under_way):
+            future.cancel()
+        concurrent.futures.wait([f for f in self._under_way if not f.cancelled()], timeout=self._patience)
+        for future, chunk in list(self._under_way.items()):
+            try:
+                self._handed.commit(chunk, future.result(timeout=0))
+            except BaseException:  # the reason why the run ends is what matters
+                self._handed.release(chunk)
+        self._under_way.clear()
+
+    def _result(self):
+        results, facts = self._study._core.finish(self._handed)
+        return self._study._result(results, {**facts, "seconds": clock.perf_counter() - self._begin}, self._folder)
+
+
+def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, keep=None, reduce=(),
+          draws=None, seed=0, title="", units=None, notes=None, method=None, control=(), rtol=1e-8, atol=1e-8,
+          step=None,
+          minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1, max_steps=10_000_000, phase_length=0,
+          carry_on=False, events=None, sub_samples=1, accumulation_limit=50, schedule="automatic", precision="double",
+          interpreted=None):
+    """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
+
+    sweep     as in `solve`: `myriad.grid(...)` for all combinations of its axes, or a dict whose arrays go together.
+              Besides arrays and numbers, values are `myriad.linspace(a, b, n)`, `myriad.logspace(a, b, n)`, of which
+              none is stored, and `myriad.random_uniform(a, b)`, `myriad.random_normal(mean, deviation)`, which draw a
+              value for each instance. States and `myriad.t_begin`, `myriad.t_end` may have axes too
+    start     initial values, as in `solve`
+    time      begin and end; None for one that is in the sweep
+    keep      components whose last values are kept, `myriad.time` for the time at which the last phase ended; or
+              `dict(end=, records=, samples=, random=, status=, work=)`, of which all but work are True: whether
+              records, samples, random values,
+              statuses, and the numbers of steps are kept. By default all states and accessories
+              if nothing is recorded, sampled or reduced
+    reduce    reductions over all instances: `myriad.reduce.mean("x_end")` and others
+    draws     instances for each point of the other axes, as for random values
+    seed      of random values, which depend on it, the component and the instance's number alone
+    units     {component: unit} for results; notes: {key: text}, anything that tells this study from others, such as the
+              version of data: a store that was made with other notes is refused
+
+    All others are those of `solve`. Inputs that are not finite mark their instances as invalid_input. Names of results
+    are those of the C++ library: "x" at recorded phases, "x_sample", "x_end", "t_last", "status"; of initial values of
+    states "x_begin". Raises `myriad.Error`."""
+    return Study(model, sweep, dict(
+        start=start, time=time, phases=phases, record=record, samples=samples, keep=keep, reduce=reduce, draws=draws,
+        seed=seed, title=title, units=units, notes=notes, method=method, control=control, rtol=rtol, atol=atol,
+        step=step, minimum_step=minimum_step, maximum_step=maximum_step, growth_limit=growth_limit,
+        shrink_limit=shrink_limit,
+        max_steps=max_steps, phase_length=phase_length, carry_on=carry_on, events=events, sub_samples=sub_samples,
+        accumulation_limit=accumulation_limit, schedule=schedule, precision=precision, interpreted=interpreted))

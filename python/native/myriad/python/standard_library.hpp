@@ -1,0 +1,531 @@
+// SPDX-License-Identifier: MIT
+// The part of the C++ standard library that kernels and models use, for NVRTC, which has none: it includes this file
+// for each of the library's headers (myriad/nvrtc.py).
+#pragma once
+
+using int8_t = signed char;
+using int16_t = short;
+using int32_t = int;
+using int64_t = long;
+using uint8_t = unsigned char;
+using uint16_t = unsigned short;
+using uint32_t = unsigned int;
+using uint64_t = unsigned long;
+using intptr_t = long;
+using uintptr_t = unsigned long;
+
+#define M_PI 3.14159265358979323846
+#define M_PI_2 1.57079632679489661923
+#define M_E 2.7182818284590452354
+
+/// A function of other compilers, of which the library takes the number of a mask's lowest bit.
+inline int __builtin_ctzll(unsigned long long x) { return __clzll(static_cast<long long>(__brevll(x))); }
+
+namespace std {
+
+using ::int8_t, ::int16_t, ::int32_t, ::int64_t, ::uint8_t, ::uint16_t, ::uint32_t, ::uint64_t;
+using ::intptr_t, ::uintptr_t;
+using size_t = decltype(sizeof(0));
+using ptrdiff_t = long;
+using nullptr_t = decltype(nullptr);
+enum class byte : unsigned char {};
+
+// <type_traits>
+
+template <class T, T v>
+struct integral_constant {
+    static constexpr T value = v;
+    using value_type = T;
+    using type = integral_constant;
+    constexpr operator T() const { return v; }
+    constexpr T operator()() const { return v; }
+};
+template <bool b>
+using bool_constant = integral_constant<bool, b>;
+using true_type = bool_constant<true>;
+using false_type = bool_constant<false>;
+
+template <class T>
+struct type_identity {
+    using type = T;
+};
+template <class T>
+using type_identity_t = typename type_identity<T>::type;
+template <class...>
+using void_t = void;
+
+template <class T>
+struct remove_reference : type_identity<T> {};
+template <class T>
+struct remove_reference<T&> : type_identity<T> {};
+template <class T>
+struct remove_reference<T&&> : type_identity<T> {};
+template <class T>
+struct remove_const : type_identity<T> {};
+template <class T>
+struct remove_const<const T> : type_identity<T> {};
+template <class T>
+struct remove_volatile : type_identity<T> {};
+template <class T>
+struct remove_volatile<volatile T> : type_identity<T> {};
+template <class T>
+using remove_reference_t = typename remove_reference<T>::type;
+template <class T>
+using remove_const_t = typename remove_const<T>::type;
+template <class T>
+using remove_cv_t = typename remove_volatile<remove_const_t<T>>::type;
+template <class T>
+using remove_cvref_t = remove_cv_t<remove_reference_t<T>>;
+template <class T>
+struct remove_cv : type_identity<remove_cv_t<T>> {};
+template <class T>
+struct remove_cvref : type_identity<remove_cvref_t<T>> {};
+template <class T>
+struct remove_extent : type_identity<T> {};
+template <class T, size_t n>
+struct remove_extent<T[n]> : type_identity<T> {};
+template <class T>
+using remove_extent_t = typename remove_extent<T>::type;
+
+template <class, class>
+inline constexpr bool is_same_v = false;
+template <class T>
+inline constexpr bool is_same_v<T, T> = true;
+template <class A, class B>
+struct is_same : bool_constant<is_same_v<A, B>> {};
+
+template <bool, class T = void>
+struct enable_if {};
+template <class T>
+struct enable_if<true, T> : type_identity<T> {};
+template <bool b, class T = void>
+using enable_if_t = typename enable_if<b, T>::type;
+template <bool, class A, class>
+struct conditional : type_identity<A> {};
+template <class A, class B>
+struct conditional<false, A, B> : type_identity<B> {};
+template <bool b, class A, class B>
+using conditional_t = typename conditional<b, A, B>::type;
+
+template <class T, class... Several>
+inline constexpr bool myriad_is_any_of = (is_same_v<remove_cv_t<T>, Several> || ...);
+template <class T>
+inline constexpr bool is_void_v = is_same_v<remove_cv_t<T>, void>;
+template <class T>
+inline constexpr bool is_integral_v =
+    myriad_is_any_of<T, bool, char, wchar_t, char8_t, char16_t, char32_t, signed char, unsigned char, short,
+                     unsigned short, int, unsigned, long, unsigned long, long long, unsigned long long>;
+template <class T>
+inline constexpr bool is_floating_point_v = myriad_is_any_of<T, float, double, long double>;
+template <class T>
+inline constexpr bool is_arithmetic_v = is_integral_v<T> || is_floating_point_v<T>;
+template <class T>
+inline constexpr bool is_signed_v = [] {
+    if constexpr (is_arithmetic_v<T>) {
+        return T(-1) < T(0);
+    } else {
+        return false;
+    }
+}();
+template <class T>
+inline constexpr bool is_unsigned_v = is_integral_v<T> && !is_signed_v<T>;
+template <class T>
+inline constexpr bool is_const_v = false;
+template <class T>
+inline constexpr bool is_const_v<const T> = true;
+template <class T>
+inline constexpr bool is_pointer_v = false;
+template <class T>
+inline constexpr bool is_pointer_v<T*> = true;
+template <class T>
+inline constexpr bool is_reference_v = false;
+template <class T>
+inline constexpr bool is_reference_v<T&> = true;
+template <class T>
+inline constexpr bool is_reference_v<T&&> = true;
+template <class T>
+inline constexpr bool is_array_v = false;
+template <class T, size_t n>
+inline constexpr bool is_array_v<T[n]> = true;
+template <class T>
+inline constexpr bool is_enum_v = __is_enum(T);
+template <class T>
+inline constexpr bool is_class_v = __is_class(T);
+template <class T>
+inline constexpr bool is_empty_v = __is_empty(T);
+template <class T>
+inline constexpr bool is_final_v = __is_final(T);
+template <class T>
+inline constexpr bool is_trivially_copyable_v = __is_trivially_copyable(T);
+template <class Base, class Derived>
+inline constexpr bool is_base_of_v = __is_base_of(Base, Derived);
+template <class From, class To>
+inline constexpr bool is_convertible_v = __is_convertible_to(From, To);
+
+#define MYRIAD_AS_TYPE(name) \
+    template <class T>       \
+    struct name : bool_constant<name##_v<T>> {};
+MYRIAD_AS_TYPE(is_void)
+MYRIAD_AS_TYPE(is_integral)
+MYRIAD_AS_TYPE(is_floating_point)
+MYRIAD_AS_TYPE(is_arithmetic)
+MYRIAD_AS_TYPE(is_signed)
+MYRIAD_AS_TYPE(is_unsigned)
+MYRIAD_AS_TYPE(is_const)
+MYRIAD_AS_TYPE(is_pointer)
+MYRIAD_AS_TYPE(is_reference)
+MYRIAD_AS_TYPE(is_enum)
+MYRIAD_AS_TYPE(is_class)
+#undef MYRIAD_AS_TYPE
+
+template <class T>
+T&& declval() noexcept;
+constexpr bool is_constant_evaluated() noexcept { return __builtin_is_constant_evaluated(); }
+
+template <class T>
+struct underlying_type : type_identity<__underlying_type(T)> {};
+template <class T>
+using underlying_type_t = typename underlying_type<T>::type;
+template <class T>
+struct decay {
+    using bare = remove_reference_t<T>;
+    using type = conditional_t<is_array_v<bare>, remove_extent_t<bare>*, remove_cv_t<bare>>;
+};
+template <class T>
+using decay_t = typename decay<T>::type;
+template <class A, class B>
+using myriad_common = decay_t<decltype(false ? declval<decay_t<A>>() : declval<decay_t<B>>())>;
+template <class...>
+struct common_type {};
+template <class T>
+struct common_type<T> : type_identity<decay_t<T>> {};
+template <class A, class B>
+requires requires { typename type_identity<myriad_common<A, B>>; }
+struct common_type<A, B> : type_identity<myriad_common<A, B>> {};
+template <class A, class B, class... More>
+requires(sizeof...(More) > 0) && requires { typename common_type<A, B>::type; }
+struct common_type<A, B, More...> : common_type<typename common_type<A, B>::type, More...> {};
+template <class... T>
+using common_type_t = typename common_type<T...>::type;
+
+// <concepts>
+
+template <class A, class B>
+concept same_as = is_same_v<A, B> && is_same_v<B, A>;
+template <class From, class To>
+concept convertible_to = is_convertible_v<From, To> && requires {
+    static_cast<To>(declval<From>());
+};
+template <class Derived, class Base>
+concept derived_from = is_base_of_v<Base, Derived>;
+template <class T>
+concept integral = is_integral_v<T>;
+template <class T>
+concept signed_integral = integral<T> && is_signed_v<T>;
+template <class T>
+concept unsigned_integral = integral<T> && !signed_integral<T>;
+template <class T>
+concept floating_point = is_floating_point_v<T>;
+template <class F, class... Arguments>
+concept invocable = requires(F&& f, Arguments&&... a) {
+    static_cast<F&&>(f)(static_cast<Arguments&&>(a)...);
+};
+
+// <utility>
+
+template <class T>
+constexpr T&& forward(remove_reference_t<T>& t) noexcept {
+    return static_cast<T&&>(t);
+}
+template <class T>
+constexpr T&& forward(remove_reference_t<T>&& t) noexcept {
+    return static_cast<T&&>(t);
+}
+template <class T>
+constexpr remove_reference_t<T>&& move(T&& t) noexcept {
+    return static_cast<remove_reference_t<T>&&>(t);
+}
+template <class T>
+constexpr void swap(T& a, T& b) {
+    T kept = std::move(a);
+    a = std::move(b);
+    b = std::move(kept);
+}
+template <class T, class U = T>
+constexpr T exchange(T& object, U&& value) {
+    T kept = std::move(object);
+    object = std::forward<U>(value);
+    return kept;
+}
+template <class T, T... numbers>
+struct integer_sequence {
+    using value_type = T;
+    static constexpr size_t size() noexcept { return sizeof...(numbers); }
+};
+template <class, class>
+struct myriad_joined;
+template <class T, T... a, T... b>
+struct myriad_joined<integer_sequence<T, a...>, integer_sequence<T, b...>>
+    : type_identity<integer_sequence<T, a..., (static_cast<T>(sizeof...(a)) + b)...>> {};
+template <class T, size_t n>
+struct myriad_below : myriad_joined<typename myriad_below<T, n / 2>::type, typename myriad_below<T, n - n / 2>::type> {
+};
+template <class T>
+struct myriad_below<T, 0> : type_identity<integer_sequence<T>> {};
+template <class T>
+struct myriad_below<T, 1> : type_identity<integer_sequence<T, T(0)>> {};
+template <class T, T n>
+using make_integer_sequence = typename myriad_below<T, static_cast<size_t>(n)>::type;
+template <size_t... numbers>
+using index_sequence = integer_sequence<size_t, numbers...>;
+template <size_t n>
+using make_index_sequence = make_integer_sequence<size_t, n>;
+template <class... T>
+using index_sequence_for = make_index_sequence<sizeof...(T)>;
+template <class First, class Second>
+struct pair {
+    First first;
+    Second second;
+};
+
+// <array>, <iterator>
+
+template <class T, size_t n>
+struct array {
+    using value_type = T;
+    constexpr T& operator[](size_t i) { return values[i]; }
+    constexpr const T& operator[](size_t i) const { return values[i]; }
+    static constexpr size_t size() { return n; }
+    constexpr T& back() { return values[n - 1]; }
+    constexpr const T& back() const { return values[n - 1]; }
+    constexpr T* begin() { return values; }
+    constexpr const T* begin() const { return values; }
+    constexpr T* end() { return values + n; }
+    constexpr const T* end() const { return values + n; }
+    constexpr T* data() { return values; }
+    constexpr const T* data() const { return values; }
+    constexpr void fill(const T& value) {
+        for (size_t i = 0; i < n; ++i) values[i] = value;
+    }
+    constexpr bool operator==(const array&) const = default;
+
+    T values[n > 0 ? n : 1];
+};
+template <class T, class... More>
+array(T, More...) -> array<T, 1 + sizeof...(More)>;
+
+template <class T, size_t n>
+constexpr size_t size(const T (&)[n]) {
+    return n;
+}
+template <class Container>
+constexpr auto size(const Container& c) -> decltype(c.size()) {
+    return c.size();
+}
+template <class T, size_t n>
+constexpr T* begin(T (&values)[n]) {
+    return values;
+}
+template <class T, size_t n>
+constexpr T* end(T (&values)[n]) {
+    return values + n;
+}
+template <class Container>
+constexpr auto begin(Container& c) -> decltype(c.begin()) {
+    return c.begin();
+}
+template <class Container>
+constexpr auto end(Container& c) -> decltype(c.end()) {
+    return c.end();
+}
+
+// <algorithm>
+
+template <class T>
+constexpr const T& min(const T& a, const T& b) {
+    return b < a ? b : a;
+}
+template <class T>
+constexpr const T& max(const T& a, const T& b) {
+    return a < b ? b : a;
+}
+template <class T>
+constexpr const T& clamp(const T& value, const T& least, const T& most) {
+    return value < least ? least : most < value ? most : value;
+}
+template <class In, class Out>
+constexpr Out copy(In first, In last, Out to) {
+    for (; first != last; ++first, ++to) *to = *first;
+    return to;
+}
+template <class In, class Out>
+constexpr Out copy_n(In from, size_t count, Out to) {
+    for (size_t i = 0; i < count; ++i, ++from, ++to) *to = *from;
+    return to;
+}
+template <class In, class T>
+constexpr void fill(In first, In last, const T& value) {
+    for (; first != last; ++first) *first = value;
+}
+
+// <limits>
+
+template <class T>
+struct numeric_limits {
+    static constexpr bool is_specialized = is_integral_v<T>, is_integer = is_specialized, is_signed = is_signed_v<T>;
+    static constexpr int digits = 8 * static_cast<int>(sizeof(T)) - (is_signed ? 1 : 0);
+    static constexpr T max() noexcept { return static_cast<T>(~0ull >> (64 - digits)); }
+    static constexpr T min() noexcept { return is_signed ? static_cast<T>(-max() - 1) : T(0); }
+    static constexpr T lowest() noexcept { return min(); }
+};
+template <>
+struct numeric_limits<double> {
+    static constexpr bool is_specialized = true, is_integer = false, is_signed = true, has_infinity = true,
+                          has_quiet_NaN = true, is_iec559 = true;
+    static constexpr int digits = 53, digits10 = 15, max_digits10 = 17, radix = 2, max_exponent = 1024,
+                         min_exponent = -1021;
+    static constexpr double max() noexcept { return 0x1.fffffffffffffp1023; }
+    static constexpr double min() noexcept { return 0x1p-1022; }
+    static constexpr double lowest() noexcept { return -max(); }
+    static constexpr double epsilon() noexcept { return 0x1p-52; }
+    static constexpr double denorm_min() noexcept { return 0x1p-1074; }
+    static constexpr double infinity() noexcept { return __builtin_bit_cast(double, 0x7ff0000000000000ul); }
+    static constexpr double quiet_NaN() noexcept { return __builtin_bit_cast(double, 0x7ff8000000000000ul); }
+};
+template <>
+struct numeric_limits<float> {
+    static constexpr bool is_specialized = true, is_integer = false, is_signed = true, has_infinity = true,
+                          has_quiet_NaN = true, is_iec559 = true;
+    static constexpr int digits = 24, digits10 = 6, max_digits10 = 9, radix = 2, max_exponent = 128,
+                         min_exponent = -125;
+    static constexpr float max() noexcept { return 0x1.fffffep127f; }
+    static constexpr float min() noexcept { return 0x1p-126f; }
+    static constexpr float lowest() noexcept { return -max(); }
+    static constexpr float epsilon() noexcept { return 0x1p-23f; }
+    static constexpr float denorm_min() noexcept { return 0x1p-149f; }
+    static constexpr float infinity() noexcept { return __builtin_bit_cast(float, 0x7f800000u); }
+    static constexpr float quiet_NaN() noexcept { return __builtin_bit_cast(float, 0x7fc00000u); }
+};
+
+// <string_view>, of which the kernels take the names of their types apart
+
+class string_view {
+public:
+    static constexpr size_t npos = ~size_t(0);
+    constexpr string_view(const char* text) : text_(text) {
+        while (text[size_] != 0) ++size_;
+    }
+    constexpr string_view(const char* text, size_t size) : text_(text), size_(size) {}
+    constexpr size_t size() const { return size_; }
+    constexpr const char* data() const { return text_; }
+    constexpr char operator[](size_t i) const { return text_[i]; }
+    constexpr size_t find(string_view what, size_t from = 0) const {
+        for (size_t i = from; i + what.size_ <= size_; ++i) {
+            size_t same = 0;
+            while (same < what.size_ && text_[i + same] == what.text_[same]) ++same;
+            if (same == what.size_) return i;
+        }
+        return npos;
+    }
+
+private:
+    const char* text_;
+    size_t size_ = 0;
+};
+
+// <bit>
+
+template <class To, class From>
+constexpr To bit_cast(const From& from) noexcept {
+    return __builtin_bit_cast(To, from);
+}
+
+// <cmath>, whose functions NVRTC has at global scope
+
+#define MYRIAD_FUNCTION_OF_ONE(name)                    \
+    inline double name(double x) { return ::name(x); }  \
+    inline float name(float x) { return ::name##f(x); } \
+    template <class T>                                  \
+    requires is_integral_v<T>                           \
+    inline double name(T x) { return ::name(static_cast<double>(x)); }
+#define MYRIAD_FUNCTION_OF_TWO(name)                                \
+    inline double name(double x, double y) { return ::name(x, y); } \
+    inline float name(float x, float y) { return ::name##f(x, y); } \
+    template <class A, class B>                                     \
+    requires is_arithmetic_v<A> && is_arithmetic_v<B>               \
+    inline double name(A x, B y) { return ::name(static_cast<double>(x), static_cast<double>(y)); }
+MYRIAD_FUNCTION_OF_ONE(acos)
+MYRIAD_FUNCTION_OF_ONE(acosh)
+MYRIAD_FUNCTION_OF_ONE(asin)
+MYRIAD_FUNCTION_OF_ONE(asinh)
+MYRIAD_FUNCTION_OF_ONE(atan)
+MYRIAD_FUNCTION_OF_ONE(atanh)
+MYRIAD_FUNCTION_OF_ONE(cbrt)
+MYRIAD_FUNCTION_OF_ONE(ceil)
+MYRIAD_FUNCTION_OF_ONE(cos)
+MYRIAD_FUNCTION_OF_ONE(cosh)
+MYRIAD_FUNCTION_OF_ONE(erf)
+MYRIAD_FUNCTION_OF_ONE(erfc)
+MYRIAD_FUNCTION_OF_ONE(exp)
+MYRIAD_FUNCTION_OF_ONE(exp2)
+MYRIAD_FUNCTION_OF_ONE(expm1)
+MYRIAD_FUNCTION_OF_ONE(fabs)
+MYRIAD_FUNCTION_OF_ONE(floor)
+MYRIAD_FUNCTION_OF_ONE(lgamma)
+MYRIAD_FUNCTION_OF_ONE(log)
+MYRIAD_FUNCTION_OF_ONE(log10)
+MYRIAD_FUNCTION_OF_ONE(log1p)
+MYRIAD_FUNCTION_OF_ONE(log2)
+MYRIAD_FUNCTION_OF_ONE(rint)
+MYRIAD_FUNCTION_OF_ONE(round)
+MYRIAD_FUNCTION_OF_ONE(sin)
+MYRIAD_FUNCTION_OF_ONE(sinh)
+MYRIAD_FUNCTION_OF_ONE(sqrt)
+MYRIAD_FUNCTION_OF_ONE(tan)
+MYRIAD_FUNCTION_OF_ONE(tanh)
+MYRIAD_FUNCTION_OF_ONE(tgamma)
+MYRIAD_FUNCTION_OF_ONE(trunc)
+MYRIAD_FUNCTION_OF_TWO(atan2)
+MYRIAD_FUNCTION_OF_TWO(copysign)
+MYRIAD_FUNCTION_OF_TWO(fdim)
+MYRIAD_FUNCTION_OF_TWO(fmax)
+MYRIAD_FUNCTION_OF_TWO(fmin)
+MYRIAD_FUNCTION_OF_TWO(fmod)
+MYRIAD_FUNCTION_OF_TWO(hypot)
+MYRIAD_FUNCTION_OF_TWO(pow)
+#undef MYRIAD_FUNCTION_OF_ONE
+#undef MYRIAD_FUNCTION_OF_TWO
+inline double abs(double x) { return ::fabs(x); }
+inline float abs(float x) { return ::fabsf(x); }
+inline int abs(int x) { return x < 0 ? -x : x; }
+inline long abs(long x) { return x < 0 ? -x : x; }
+inline double fma(double a, double b, double c) { return ::fma(a, b, c); }
+inline float fma(float a, float b, float c) { return ::fmaf(a, b, c); }
+inline double frexp(double x, int* exponent) { return ::frexp(x, exponent); }
+inline float frexp(float x, int* exponent) { return ::frexpf(x, exponent); }
+inline double ldexp(double x, int exponent) { return ::ldexp(x, exponent); }
+inline float ldexp(float x, int exponent) { return ::ldexpf(x, exponent); }
+inline bool isnan(double x) { return x != x; }
+inline bool isnan(float x) { return x != x; }
+inline bool isfinite(double x) { return ::fabs(x) <= numeric_limits<double>::max(); }
+inline bool isfinite(float x) { return ::fabsf(x) <= numeric_limits<float>::max(); }
+inline bool isinf(double x) { return ::fabs(x) == numeric_limits<double>::infinity(); }
+inline bool isinf(float x) { return ::fabsf(x) == numeric_limits<float>::infinity(); }
+inline bool signbit(double x) { return __double2hiint(x) < 0; }
+inline bool signbit(float x) { return __float_as_int(x) < 0; }
+
+// <numbers>
+
+namespace numbers {
+template <class T>
+inline constexpr T pi_v = T(3.141592653589793238462643383279502884L);
+template <class T>
+inline constexpr T e_v = T(2.718281828459045235360287471352662498L);
+template <class T>
+inline constexpr T sqrt2_v = T(1.414213562373095048801688724209698079L);
+template <class T>
+inline constexpr T ln2_v = T(0.693147180559945309417232121458176568L);
+inline constexpr double pi = pi_v<double>, e = e_v<double>, sqrt2 = sqrt2_v<double>, ln2 = ln2_v<double>;
+}  // namespace numbers
+
+}  // namespace std

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// A call on a GPU whose results stay there: they are copied to the host when they are asked for, or used where they
+// are.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <set>
+
+#include "device_library.hpp"
+#include "myriad/host/backend/device.hpp"
+#include "myriad/host/checks/data_check.hpp"
+#include "myriad/host/chunks/idle_engines.hpp"
+#include "myriad/host/options/options.hpp"
+#include "myriad/host/report/report_of.hpp"
+#include "prepared_call.hpp"
+#include "run.hpp"
+
+namespace myriad::python {
+
+/// One call, in one chunk. Its engine, with the memory on the device, is its own for as long as it lives.
+template <class R>
+class resident {
+    using engine = cuda::engine_for<shaped_arguments<R>>;
+
+public:
+    /// The memory of the arguments is the ensemble's, which lives longer, and the call's.
+    resident(const library& kernel, const device& where, const options& o, std::shared_ptr<prepared_call<R>> call);
+    resident(const resident&) = delete;
+    resident& operator=(const resident&) = delete;
+    ~resident();
+
+    /// Whether the device has room for all instances many times over, so that results may stay there, or inputs are
+    /// there already and it has room for them once.
+    bool fits(const ensemble<R>& instances);
+    /// Integrates, and reports; the results are on the device. Throws `error` if inputs are invalid.
+    void integrate(ensemble<R>& instances, const options& o, host::data_check<R>& check, report_of<R>& result);
+
+    /// Copies to the host, unless that is done, what belongs into the ensemble's memory there, such as a component.
+    void bring(const void* values, std::size_t bytes);
+    /// Whether nothing of what is kept between calls was brought besides the statuses.
+    bool left_bookkeeping(const host::ensemble_data<R>& data) const;
+    /// Where the device has that; null if it has not.
+    void* on_device(const void* values) { return engine_ ? engine_->find(call_->arguments, values).address : nullptr; }
+    int number() const { return how_.device; }
+
+    /// For a call in chunks, in the place of this.
+    host::engine_key key() const { return &program_; }
+    std::function<std::unique_ptr<engine>(const cuda::engine_options&)> maker() const;
+    const cuda::engine_options& engine_options() const { return how_; }
+
+private:
+    void take_engine();
+    std::size_t bytes_per_instance() const;
+    void take_inputs(const ensemble<R>& instances, bool mark_invalid);
+    void wait(const options& o, std::int64_t size);
+    host::work_count work();
+
+    device_program& program_;
+    cuda::engine_options how_;
+    std::shared_ptr<prepared_call<R>> call_;
+    std::unique_ptr<device_engine<R>> engine_;
+    std::set<const void*> given_there_, brought_;
+    cuda::device_memory scratch_;
+};
+extern template class resident<double>;
+extern template class resident<float>;
+
+}  // namespace myriad::python

@@ -1,0 +1,513 @@
+// SPDX-License-Identifier: MIT
+// The library's studies, of models that are known only at run time: a model out of a shared object or a tape behind the
+// interface that studies have for models, and the classes that the Python side calls.
+#include "study.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include "myriad/host/backend/device.hpp"
+#include "myriad/host/options/options.hpp"
+#include "myriad/study/axes.hpp"
+#include "myriad/study/chunk_solver.hpp"
+#include "myriad/study/export.hpp"
+#include "myriad/study/reduction.hpp"
+#include "myriad/study/store.hpp"
+#include "myriad/study/study.hpp"
+#include "run.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace myriad::python {
+namespace {
+
+using studies::component_kind;
+using studies::element;
+
+/// A model out of a library, and what the study does not set: the components that an interpreter has besides, and the
+/// values of tables.
+struct study_kernel {
+    const library& kernel;
+    component_names names;                          // of all components that the kernel has
+    std::array<int, 3> used;                        // states, parameters, accessories of the model
+    std::vector<std::pair<int, double>> of_tables;  // shared values by number
+};
+
+template <class R>
+class study_instances final : public studies::model_instances<R> {
+public:
+    study_instances(const study_kernel& of, std::int64_t size)
+        : of_(of), instances_(of.kernel.facts(), of.names, size) {}
+
+    host::ensemble_data<R>& data() override { return instances_.data; }
+    void restart() override {
+        instances_.samples.clear();
+        instances_.data.restart();
+    }
+    void generate(std::int64_t, std::uint64_t) override {
+        auto& d = instances_.data;
+        const auto clear = [](auto& array, int from) {
+            for (int c = from; c < array.components(); ++c) array.fill_component(c, R(0));
+        };
+        clear(d.state, of_.used[0]);
+        clear(d.parameter, of_.used[1]);
+        clear(d.accessory, of_.used[2]);
+        for (const auto& [number, value] : of_.of_tables) d.shared.data()[number] = static_cast<R>(value);
+    }
+    report_of<R> solve(const device& where, const options& o) override {
+        made_ = python::solve<R>(of_.kernel, where, instances_, o);
+        return *made_;
+    }
+    const R* recorded(component_kind kind, int number) const override {
+        const auto& r = made_->records;
+        return r.values.component(kind == component_kind::state ? r.find(r.state, number, "state")
+                                                                : r.find(r.accessory, number, "accessory"));
+    }
+    const std::int32_t* recorded_integers(int number) const override {
+        const auto& r = made_->records;
+        return r.integers.component(r.find(r.integer_accessory, number, "integer accessory"));
+    }
+    const R* record_times() const override { return made_->records.values.component(made_->records.time); }
+    const R* sampled(int number) const override { return instances_.samples.component(number); }
+    const R* sample_times() const override { return instances_.samples.time.data(); }
+    const std::int32_t* samples_stored() const override { return instances_.samples.stored.data(); }
+
+private:
+    const study_kernel& of_;
+    ensemble<R> instances_;
+    std::unique_ptr<report<R>> made_;
+};
+
+/// Those that a study sets and keeps: tables have values already.
+std::vector<studies::component> components_of(const study_kernel& of) {
+    std::vector<studies::component> all;
+    const auto add = [&](component_kind kind, const std::vector<std::string>& names, std::size_t count) {
+        for (std::size_t c = 0; c < count; ++c) all.push_back({kind, static_cast<int>(c), names[c]});
+    };
+    const component_names& n = of.names;
+    add(component_kind::state, n.states, static_cast<std::size_t>(of.used[0]));
+    add(component_kind::parameter, n.parameters, static_cast<std::size_t>(of.used[1]));
+    add(component_kind::accessory, n.accessories, static_cast<std::size_t>(of.used[2]));
+    const auto is_used = [](const std::string& name) { return name.compare(0, 7, "unused ") != 0; };
+    add(component_kind::integer_accessory, n.integer_accessories,
+        static_cast<std::size_t>(std::count_if(n.integer_accessories.begin(), n.integer_accessories.end(), is_used)));
+    add(component_kind::shared, n.shared, n.shared.size() - of.of_tables.size());
+    add(component_kind::shared_integer, n.shared_integers, n.shared_integers.size());
+    return all;
+}
+
+class study_model final : public studies::any_model {
+public:
+    study_model(study_kernel of, std::string name, std::string method)
+        : of_(std::move(of)), shape_(of_.kernel.facts(), of_.names), names_(std::move(name), components_of(of_)),
+          method_(std::move(method)) {}
+
+    const studies::component_names& names() const override { return names_; }
+    std::string method() const override { return method_; }
+    element real() const override { return is_double() ? element::f64 : element::f32; }
+    void check(const device&, const options& o) const override {
+        is_double() ? check_options<double>(shape_, facts(), o) : check_options<float>(shape_, facts(), o);
+    }
+    double bytes_per_instance(const options& o) const override {
+        return is_double() ? python::bytes_per_instance<double>(shape_, facts(), o)
+                           : python::bytes_per_instance<float>(shape_, facts(), o);
+    }
+    std::unique_ptr<studies::chunk_solver> make_solver(const studies::study_plan& plan) const override {
+        if (is_double()) return solver_of<double>(plan);
+        return solver_of<float>(plan);
+    }
+    std::string generator() const override { return {}; }
+
+private:
+    const model_facts& facts() const { return of_.kernel.facts(); }
+    bool is_double() const { return facts().real_bytes == sizeof(double); }
+    template <class R>
+    std::unique_ptr<studies::chunk_solver> solver_of(const studies::study_plan& plan) const {
+        return std::make_unique<studies::chunk_solver_of<R>>(
+            plan, [this](std::int64_t size) { return std::make_unique<study_instances<R>>(of_, size); });
+    }
+
+    study_kernel of_;
+    named_shape shape_;
+    studies::component_names names_;
+    std::string method_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Values for Python
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// Memory as a NumPy array that owns it.
+template <class T>
+nb::object array_of(std::vector<T> values, std::vector<std::size_t> shape) {
+    auto* const kept = new std::vector<T>(std::move(values));
+    const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+    return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), shape.size(), shape.data(), owner),
+                    nb::rv_policy::reference);
+}
+/// Calls a function with a value of the C++ type of an element.
+template <class Function>
+auto with_type(element type, Function&& function) {
+    switch (type) {
+        case element::f64:
+            return function(double{});
+        case element::f32:
+            return function(float{});
+        case element::i64:
+            return function(std::int64_t{});
+        case element::i32:
+            return function(std::int32_t{});
+        default:
+            return function(std::uint8_t{});
+    }
+}
+std::vector<std::size_t> shape_of(const studies::variable& v, std::size_t items) {
+    std::vector<std::size_t> shape{items};
+    for (const studies::dimension& d : v.inner) shape.push_back(static_cast<std::size_t>(d.length));
+    return shape;
+}
+nb::dict attributes_of(const std::vector<studies::attribute>& all) {
+    nb::dict made;
+    for (const studies::attribute& a : all)
+        made[a.name.c_str()] = std::visit([](const auto& value) { return nb::cast(value); }, a.value);
+    return made;
+}
+nb::list dimensions_of(const std::vector<studies::dimension>& all) {
+    nb::list made;
+    for (const studies::dimension& d : all) made.append(nb::make_tuple(d.name, d.length));
+    return made;
+}
+
+/// What a run left, or a store that was opened for reading.
+struct opened_results {
+    std::shared_ptr<const studies::results> all;
+
+    const studies::layout& content() const { return all->content(); }
+    nb::object read(const std::string& name, std::int64_t first, std::int64_t count) const {
+        const studies::variable& v = content().variables[content().find(name)];
+        return with_type(v.type, [&]<class T>(T) {
+            std::vector<T> values;
+            {
+                const nb::gil_scoped_release unlocked;
+                values = study_result(all).values_of<T>(name, first, count);
+            }
+            return array_of(std::move(values), shape_of(v, static_cast<std::size_t>(count)));
+        });
+    }
+    nb::object coordinate(const std::string& name, std::int64_t length) const {
+        for (const studies::coordinate& c : content().coordinates) {
+            if (c.name != name) continue;
+            std::vector<double> values(static_cast<std::size_t>(length));
+            c.values(0, values);
+            return array_of(std::move(values), {static_cast<std::size_t>(length)});
+        }
+        throw error(message("there is no coordinate ", name));
+    }
+    nb::list variables() const {
+        nb::list made;
+        for (const studies::variable& v : content().variables) {
+            if (v.extent == studies::along::chunks) continue;
+            made.append(nb::make_tuple(v.name, std::string(studies::name_of(v.type)), dimensions_of(v.inner),
+                                       attributes_of(v.attributes), v.extent == studies::along::instances,
+                                       v.role == studies::role::coordinate));
+        }
+        return made;
+    }
+    nb::list coordinates() const {
+        nb::list made;
+        for (const studies::coordinate& c : content().coordinates)
+            made.append(nb::make_tuple(c.name, c.dimension, attributes_of(c.attributes)));
+        return made;
+    }
+    std::int64_t instances_done() const {
+        std::int64_t done = 0;
+        for (std::int64_t c = 0; c < content().chunks(); ++c)
+            if (all->done(c)) done += studies::range_of(content(), c).count;
+        return done;
+    }
+};
+
+/// Calls Python's progress function and looks for signals; an exception ends the run and is kept.
+class study_watcher {
+public:
+    study_watcher(any_study& study, nb::handle function) : study_(study), function_(function) {}
+
+    void operator()(const work_progress& now) {
+        const nb::gil_scoped_acquire locked;
+        try {
+            if (PyErr_CheckSignals() != 0) throw nb::python_error();
+            if (function_.is_none() || failure) return;
+            nb::dict statuses;
+            for (int s = 0; s < status_count; ++s)
+                if (const std::int64_t count = now.by_status[static_cast<std::size_t>(s)]; count > 0)
+                    statuses[studies_name(s).c_str()] = count;
+            function_(now.done, now.total, now.earlier, now.seconds, statuses);
+        } catch (nb::python_error& raised) {
+            if (!failure) failure = nb::borrow(raised.value());
+            study_.stop();
+        }
+    }
+
+    nb::object failure;
+
+private:
+    static std::string studies_name(int s) { return std::string(name_of(static_cast<status>(s))); }
+    any_study& study_;
+    nb::handle function_;
+};
+
+/// A function of Python that C++ may copy and destroy in any thread.
+std::shared_ptr<nb::object> shared_function(const nb::object& function) {
+    return {new nb::object(function), [](nb::object* p) {
+                const nb::gil_scoped_acquire locked;
+                delete p;
+            }};
+}
+ensemble_reduction sum_by_python(const std::string& name, const std::vector<std::string>& inputs, std::int64_t size,
+                                 const nb::object& function) {
+    return sum_of(
+        name, inputs, size,
+        [name, inputs, call = shared_function(function)](const chunk_columns& chunk, std::span<double> sums) {
+            const nb::gil_scoped_acquire locked;
+            nb::dict given;
+            const auto give = [&](const std::string& input) {
+                const auto& column = chunk.find(input);
+                given[input.c_str()] = with_type(column.what->type, [&]<class T>(T) {
+                    const auto values = chunk.values<T>(input);
+                    return array_of(std::vector<T>(values.begin(), values.end()),
+                                    shape_of(*column.what, static_cast<std::size_t>(chunk.size())));
+                });
+            };
+            for (const std::string& input : inputs) give(input);
+            give("status");
+            const nb::object made = (*call)(given);
+            const auto numpy = nb::module_::import_("numpy");
+            const auto values = nb::cast<std::vector<double>>(
+                numpy.attr("atleast_1d")(numpy.attr("asarray")(made, "dtype"_a = "float64")).attr("tolist")());
+            require(values.size() == sums.size(), "the function of the sum ", name, " gives ", values.size(),
+                    " numbers, and ", sums.size(), " are expected: change its size");
+            for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += values[i];
+        });
+}
+
+nb::object or_none(const nb::object& o) { return o.is_valid() ? o : nb::none(); }
+
+/// A study from Python.
+struct python_study {
+    explicit python_study(const std::shared_ptr<study_model>& model) : study(model) {}
+    any_study study;
+
+    void set_run(const std::vector<std::string>& devices, std::int64_t chunk) {
+        study.devices.clear();
+        for (const std::string& name : devices) study.devices.push_back(device::parse(name));
+        study.chunk = chunk;
+        study.warning = [](const std::string&) {};  // the result has them
+    }
+    void set_store(const std::string& folder, double expiry, bool checksums) {
+        if (folder.empty()) return;
+        studies::store_options how;
+        how.expiry = std::chrono::milliseconds(std::llround(expiry * 1000));
+        how.check = checksums ? studies::resume_check::checksums : studies::resume_check::sizes;
+        study.store(folder, how);
+    }
+    static nb::object result_of(study_result made) {
+        nb::dict statuses;
+        for (int s = 0; s < status_count; ++s)
+            if (made.count(static_cast<status>(s)) > 0)
+                statuses[std::string(name_of(static_cast<status>(s))).c_str()] = made.count(static_cast<status>(s));
+        const std::shared_ptr<const studies::results> all(std::make_shared<study_result>(made), &made.results());
+        nb::dict facts;
+        facts["complete"] = made.complete;
+        facts["instances"] = made.instances;
+        facts["seconds"] = made.seconds;
+        facts["by_status"] = statuses;
+        facts["notes"] = made.notes;
+        facts["warnings"] = made.warnings;
+        return nb::make_tuple(opened_results{all}, facts);
+    }
+    nb::object run(nb::handle progress) {
+        study_watcher watch(study, progress);
+        study.progress = [&watch](const work_progress& now) { watch(now); };
+        std::optional<study_result> made;
+        {
+            const nb::gil_scoped_release unlocked;
+            made = study.run();
+        }
+        return nb::make_tuple(result_of(std::move(*made)), or_none(watch.failure));
+    }
+    nb::object compute(std::int64_t chunk, std::int64_t chunk_size) {
+        study_watcher watch(study, nb::none());
+        study.progress = [&watch](const work_progress& now) { watch(now); };
+        std::optional<studies::computed_chunk> made;
+        {
+            const nb::gil_scoped_release unlocked;
+            made = study.compute(chunk, chunk_size);
+        }
+        if (watch.failure) {
+            PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(watch.failure.ptr())), watch.failure.ptr());
+            throw nb::python_error();
+        }
+        require(made.has_value(), "chunk ", chunk, " was stopped");
+        nb::list columns;
+        for (const auto& [name, bytes] : made->columns)
+            columns.append(nb::make_tuple(name, nb::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size())));
+        return nb::make_tuple(columns, made->record.device, made->record.seconds, made->record.statuses, made->notes);
+    }
+};
+
+using sent_chunk = std::tuple<std::vector<std::pair<std::string, nb::bytes>>, std::string, double,
+                              std::vector<std::pair<std::string, std::int64_t>>, std::vector<std::string>>;
+
+void commit(studies::handed_out_run& run, std::int64_t chunk, const sent_chunk& sent) {
+    studies::computed_chunk values;
+    for (const auto& [name, bytes] : std::get<0>(sent)) {
+        const auto* const begin = reinterpret_cast<const std::byte*>(bytes.c_str());
+        values.columns.emplace_back(name, std::vector<std::byte>(begin, begin + bytes.size()));
+    }
+    values.record = {std::get<1>(sent), std::get<2>(sent), std::get<3>(sent)};
+    values.notes = std::get<4>(sent);
+    const nb::gil_scoped_release unlocked;
+    run.commit(chunk, values);
+}
+
+}  // namespace
+
+void bind_study(nb::module_& m) {
+    nb::class_<axis_values>(m, "AxisValues")
+        .def("__len__", [](const axis_values& v) { return v.size(); })
+        .def_prop_ro("random", &axis_values::random)
+        .def("array", [](const axis_values& v) {
+            std::vector<double> all(static_cast<std::size_t>(v.size()));
+            for (std::size_t i = 0; i < all.size(); ++i) all[i] = v[static_cast<std::int64_t>(i)];
+            const std::size_t size = all.size();
+            return array_of(std::move(all), {size});
+        });
+    m.def("linspace", &linspace);
+    m.def("logspace", &logspace);
+    m.def("values", [](std::vector<double> list) { return values(std::move(list)); });
+    m.def("random_uniform", &random_uniform);
+    m.def("random_normal", &random_normal);
+    nb::class_<ensemble_reduction>(m, "Reduction");
+    m.def("histogram_of", &histogram_of);
+    m.def("minimum_of", [](const std::string& v) { return minimum_of(v); });
+    m.def("maximum_of", [](const std::string& v) { return maximum_of(v); });
+    m.def("mean_of", [](const std::string& v) { return mean_of(v); });
+    m.def("sum_of", &sum_by_python);
+
+    nb::class_<opened_results>(m, "Results")
+        .def_prop_ro("axes", [](const opened_results& r) { return dimensions_of(r.content().axes); })
+        .def_prop_ro("instances", [](const opened_results& r) { return r.content().instances(); })
+        .def_prop_ro("chunk", [](const opened_results& r) { return r.content().chunk; })
+        .def_prop_ro("variables", &opened_results::variables)
+        .def_prop_ro("coordinates", &opened_results::coordinates)
+        .def_prop_ro("description", [](const opened_results& r) { return r.content().description; })
+        .def_prop_ro("devices", [](const opened_results& r) { return r.all->devices(); })
+        .def_prop_ro("instances_done", &opened_results::instances_done)
+        .def("written", [](const opened_results& r, const std::string& name) { return r.all->written(name); })
+        .def("read", &opened_results::read)
+        .def("coordinate", &opened_results::coordinate)
+        .def("write_csv", [](const opened_results& r, const std::string& path) {
+            const nb::gil_scoped_release unlocked;
+            export_csv(*r.all, path);
+        });
+    m.def("open_store",
+          [](const std::string& folder) { return opened_results{std::make_shared<const store>(store::open(folder))}; });
+    m.def("verify_store", [](const std::string& folder) {
+        std::vector<studies::damage> found;
+        {
+            const nb::gil_scoped_release unlocked;
+            found = store::open(folder).verify();
+        }
+        nb::list made;
+        for (const studies::damage& d : found) made.append(nb::make_tuple(d.chunk, d.variable, d.reason));
+        return made;
+    });
+
+    using run = studies::handed_out_run;
+    nb::class_<run>(m, "HandedOut")
+        .def_prop_ro("chunk", [](const run& r) { return r.content().chunk; })
+        .def_prop_ro("chunks", [](const run& r) { return r.content().chunks(); })
+        .def_prop_ro("instances", [](const run& r) { return r.content().instances(); })
+        .def_prop_ro("committed", &run::instances)
+        .def("claim_next", &run::claim_next, nb::call_guard<nb::gil_scoped_release>())
+        .def("commit", &commit)
+        .def("release", &run::release)
+        .def("complete", &run::complete, nb::call_guard<nb::gil_scoped_release>())
+        .def("instances_done", &run::instances_done, nb::call_guard<nb::gil_scoped_release>());
+
+    nb::class_<python_study>(m, "Study")
+        .def(
+            "__init__",
+            [](python_study* self, const library& kernel, const std::vector<std::vector<std::string>>& names,
+               const std::array<int, 3>& used, const std::vector<double>& of_tables, std::string model,
+               std::string method) {
+                require(names.size() == 7, "a model has seven kinds of components");
+                study_kernel of{
+                    kernel, {names[0], names[1], names[2], names[3], names[4], names[5], names[6]}, used, {}};
+                const auto first = static_cast<int>(names[2].size() - of_tables.size());
+                for (std::size_t i = 0; i < of_tables.size(); ++i)
+                    of.of_tables.emplace_back(first + static_cast<int>(i), of_tables[i]);
+                new (self)
+                    python_study(std::make_shared<study_model>(std::move(of), std::move(model), std::move(method)));
+            },
+            nb::keep_alive<1, 2>())
+        .def("axis", [](python_study& s, const std::string& name, const axis_values& v) { s.study.axis(name, v); })
+        .def("zip",
+             [](python_study& s, const std::vector<std::pair<std::string, axis_values>>& all) { s.study.zip(all); })
+        .def("repeat",
+             [](python_study& s, std::int64_t count, const std::string& name) { s.study.repeat(count, name); })
+        .def("set", [](python_study& s, const std::string& name, double value) { s.study.set(name, value); })
+        .def("seed", [](python_study& s, std::uint64_t seed) { s.study.seed(seed); })
+        .def("unit",
+             [](python_study& s, const std::string& name, const std::string& unit) { s.study.unit(name, unit); })
+        .def("title", [](python_study& s, const std::string& text) { s.study.title(text); })
+        .def("note",
+             [](python_study& s, const std::string& key, const std::string& value) { s.study.note(key, value); })
+        .def("reduce", [](python_study& s, const ensemble_reduction& r) { s.study.reduce(r); })
+        .def("options", [](python_study& s, const options& o) { s.study.options = o; })
+        .def("keep", [](python_study& s, const std::vector<std::string>& end, bool records, bool samples, bool random,
+                        bool status, bool work) { s.study.keep = {end, records, samples, random, status, work}; })
+        .def_prop_ro("size", [](const python_study& s) { return s.study.size(); })
+        .def("set_run", &python_study::set_run)
+        .def("set_store", &python_study::set_store)
+        .def("run", &python_study::run, "progress"_a.none())
+        .def("compute", &python_study::compute)
+        .def("hand_out",
+             [](python_study& s) {
+                 const nb::gil_scoped_release unlocked;
+                 return s.study.hand_out();
+             })
+        .def("finish", [](python_study& s, run& r) {
+            std::optional<study_result> made;
+            {
+                const nb::gil_scoped_release unlocked;
+                made = s.study.finish(r);
+            }
+            return python_study::result_of(std::move(*made));
+        });
+}
+
+}  // namespace myriad::python

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""Runs the package on simulated GPUs: everything is as on real ones, but for the driver, which computes on the CPU, and
+NVRTC, in whose place g++ compiles the same source for it."""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+_here = pathlib.Path(__file__).parent
+
+
+def build_driver(folder):
+    """Makes the driver in a folder."""
+    subprocess.run(["g++", "-std=c++20", "-O1", "-shared", "-fPIC", "-Wl,-soname,libcuda.so.1", "-o",
+                    str(folder / "libcuda.so.1"), str(_here / "driver.cpp"), "-ldl"], check=True)
+
+
+class Compiler:
+    """In the place of `myriad.nvrtc.library()`."""
+
+    version = "simulated"
+
+    def compile(self, source, capability, options=()):
+        """A program of the simulated driver, and what the compiler says."""
+        from myriad import cache, nvrtc
+        source = f'#include "{_here}/device.hpp"\n{source}\nSIMULATED_PROGRAM\n'
+        made = cache.directory() / f"simulated-{os.getpid()}.so"
+        made.parent.mkdir(parents=True, exist_ok=True)
+        done = subprocess.run(["g++", "-std=c++20", "-O1", "-shared", "-fPIC", "-ffp-contract=off", "-w",
+                               f"-I{nvrtc._include}", "-x", "c++", "-", "-o", str(made)], input=source, text=True,
+                              capture_output=True)
+        if done.returncode != 0:
+            raise RuntimeError(done.stderr)
+        return made.read_bytes(), done.stderr
+
+
+def run(folder, script, **variables):
+    """The output of a script in a process that has the driver of that folder."""
+    text = f"import sys; sys.path.insert(0, {str(_here.parent)!r})\nimport simulated_gpu\nsimulated_gpu.install()\n"
+    environment = {**os.environ, "LD_LIBRARY_PATH": str(folder), **{k: str(v) for k, v in variables.items()}}
+    done = subprocess.run([sys.executable, "-c", text + script], capture_output=True, text=True, env=environment)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def install():
+    """Has the package take the simulated compiler."""
+    from myriad import nvrtc
+    nvrtc.library = Compiler
+    nvrtc.find = lambda: pathlib.Path(__file__)
+
+

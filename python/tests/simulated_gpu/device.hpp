@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Compiles a program for GPUs as code for this CPU, for tests of everything around it: what test_simulated_gpu.py puts
+// before and after the source that NVRTC would get.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+
+#define __CUDACC_RTC__ 1
+#define __global__
+#define __device__
+#define __forceinline__ inline __attribute__((always_inline))
+#define __launch_bounds__(threads)
+#define __grid_constant__
+
+namespace simulated {
+
+struct index {
+    unsigned x;
+};
+/// What the driver sets for each thread, and its turn to another thread of the block.
+struct place {
+    index block, thread, blocks, threads;
+    void (*yield)();
+    unsigned long long* exchanged;  // one value per thread
+};
+inline place now;
+
+inline void wait_for_block() { now.yield(); }
+
+template <class T>
+T add(T* to, T value) {
+    const T before = *to;
+    *to += value;
+    return before;
+}
+
+template <class... A, std::size_t... i>
+void call_with(void (*kernel)(A...), void** arguments, std::index_sequence<i...>) {
+    kernel(*static_cast<std::remove_cv_t<A>*>(arguments[i])...);
+}
+template <class... A>
+void call(void (*kernel)(A...), void** arguments) {
+    simulated::call_with(kernel, arguments, std::index_sequence_for<A...>());
+}
+
+}  // namespace simulated
+
+#define blockIdx (simulated::now.block)
+#define threadIdx (simulated::now.thread)
+#define gridDim (simulated::now.blocks)
+#define blockDim (simulated::now.threads)
+inline void __syncthreads() { simulated::wait_for_block(); }
+inline unsigned atomicAdd(unsigned* to, unsigned value) { return simulated::add(to, value); }
+inline unsigned long long atomicAdd(unsigned long long* to, unsigned long long value) {
+    return simulated::add(to, value);
+}
+inline unsigned long long atomicMin(unsigned long long* to, unsigned long long value) {
+    return std::exchange(*to, value < *to ? value : *to);
+}
+inline unsigned long long __shfl_down_sync(unsigned, unsigned long long value, int distance) {
+    const unsigned me = simulated::now.thread.x, other = me + static_cast<unsigned>(distance);
+    simulated::now.exchanged[me] = value;
+    simulated::wait_for_block();
+    const auto result = other / 32 == me / 32 ? simulated::now.exchanged[other] : value;
+    simulated::wait_for_block();
+    return result;
+}
+
+// One copy of what a block shares, as blocks run one after the other.
+#define __shared__ static
+#include "myriad/cuda/cost_order_kernels.cuh"
+#undef __shared__
+#define __shared__
+namespace myriad::detail::inline MYRIAD_TARGET {
+double staged[32'768];
+}
+
+#define SIMULATED_KERNEL(name) \
+    extern "C" void run_##name(void** arguments) { simulated::call(&name, arguments); }
+#define SIMULATED_PROGRAM                                                                 \
+    using namespace myriad::detail;                                                       \
+    extern "C" void set_place(const simulated::place* where) { simulated::now = *where; } \
+    SIMULATED_KERNEL(myriad_integrate)                                                    \
+    SIMULATED_KERNEL(myriad_tell_facts)                                                   \
+    SIMULATED_KERNEL(myriad_sum)                                                          \
+    SIMULATED_KERNEL(myriad_find_not_finite)                                              \
+    SIMULATED_KERNEL(count_all_costs)                                                     \
+    SIMULATED_KERNEL(sum_costs)                                                           \
+    SIMULATED_KERNEL(place_by_cost)

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: MIT
+// A driver of GPUs, libcuda.so.1, that computes on this CPU: device memory is the host's, streams do their work at
+// once, and programs are shared objects of device.hpp, whose threads are run one block at a time, each with a stack of
+// its own. MYRIAD_SIMULATED_GPUS says how many devices there are, MYRIAD_SIMULATED_CAPABILITY which, and
+// MYRIAD_SIMULATED_MEGABYTES what memory each has.
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <dlfcn.h>
+#include <elf.h>
+#include <sys/mman.h>
+#include <ucontext.h>
+#include <unistd.h>
+
+namespace {
+
+constexpr int success = 0, invalid_value = 1, out_of_memory = 2, no_device = 100, invalid_context = 201,
+              no_kernel_image = 209, not_found = 500;
+int number_from(const char* variable, int otherwise) {
+    const char* const text = std::getenv(variable);
+    return text != nullptr ? std::atoi(text) : otherwise;
+}
+const std::size_t memory_per_device = static_cast<std::size_t>(number_from("MYRIAD_SIMULATED_MEGABYTES", 1024)) << 20;
+int devices() { return number_from("MYRIAD_SIMULATED_GPUS", 1); }
+
+thread_local int current = -1;  // device; contexts are its number plus one
+std::mutex mutex;
+std::set<void*> on_device, pinned;
+
+struct place {
+    unsigned block, thread, blocks, threads;
+    void (*yield)();
+    unsigned long long* exchanged;
+};
+struct kernel {
+    void (*run)(void**);
+    void (*set_place)(const place*);
+};
+
+/// The threads of a block, each of which runs until it waits for the others.
+class block_of_threads {
+public:
+    static void run(const kernel& code, unsigned block, unsigned blocks, unsigned threads, void** arguments) {
+        block_of_threads all(code, block, blocks, threads, arguments);
+        one = &all;
+        for (unsigned t = 0; t < threads; ++t) all.start(t);
+        for (bool left = true; left;) {
+            left = false;
+            for (unsigned t = 0; t < threads; ++t) {
+                if (all.ended_[t]) continue;
+                all.go_on(t);
+                left = left || !all.ended_[t];
+            }
+        }
+    }
+
+private:
+    static constexpr std::size_t stack_bytes = std::size_t{256} << 10;
+
+    block_of_threads(const kernel& code, unsigned block, unsigned blocks, unsigned threads, void** arguments)
+        : code_(code), arguments_(arguments), contexts_(threads), ended_(threads), exchanged_(threads + 32),
+          stacks_(static_cast<std::byte*>(
+              mmap(nullptr, threads * stack_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0))),
+          place_{block, 0, blocks, threads, &yield, exchanged_.data()} {}
+    ~block_of_threads() { munmap(stacks_, contexts_.size() * stack_bytes); }
+
+    static void yield() { swapcontext(&one->contexts_[one->place_.thread], &one->main_); }
+    static void begin() {
+        one->code_.run(one->arguments_);
+        one->ended_[one->place_.thread] = true;
+    }
+    void start(unsigned thread) {
+        ucontext_t& c = contexts_[thread];
+        getcontext(&c);
+        c.uc_stack.ss_sp = stacks_ + thread * stack_bytes;
+        c.uc_stack.ss_size = stack_bytes;
+        c.uc_link = &main_;
+        makecontext(&c, &begin, 0);
+    }
+    void go_on(unsigned thread) {
+        place_.thread = thread;
+        code_.set_place(&place_);
+        swapcontext(&main_, &contexts_[thread]);
+    }
+
+    static inline block_of_threads* one = nullptr;
+
+    kernel code_;
+    void** arguments_;
+    ucontext_t main_{};
+    std::vector<ucontext_t> contexts_;
+    std::vector<bool> ended_;
+    std::vector<unsigned long long> exchanged_;
+    std::byte* stacks_;
+    place place_;
+};
+
+}  // namespace
+
+#define DRIVER extern "C" __attribute__((visibility("default"))) int
+#define NEEDS_CONTEXT \
+    if (current < 0) return invalid_context
+
+DRIVER cuInit(unsigned) { return devices() > 0 ? success : no_device; }
+DRIVER cuDriverGetVersion(int* version) {
+    *version = 13000;
+    return success;
+}
+DRIVER cuGetErrorString(int status, const char** text) {
+    *text = status == no_device ? "no CUDA-capable device is detected" : "simulated error";
+    return success;
+}
+DRIVER cuGetErrorName(int, const char** text) {
+    *text = "CUDA_ERROR_SIMULATED";
+    return success;
+}
+DRIVER cuDeviceGetCount(int* count) {
+    *count = devices();
+    return success;
+}
+DRIVER cuDeviceGet(int* device, int number) {
+    *device = number;
+    return number < devices() ? success : invalid_value;
+}
+DRIVER cuDeviceGetName(char* name, int size, int device) {
+    std::snprintf(name, static_cast<std::size_t>(size), "simulated GPU %d", device);
+    return success;
+}
+DRIVER cuDeviceTotalMem_v2(std::size_t* bytes, int) {
+    *bytes = memory_per_device;
+    return success;
+}
+DRIVER cuDeviceGetAttribute(int* value, int attribute, int) {
+    const int capability = number_from("MYRIAD_SIMULATED_CAPABILITY", 90);
+    switch (attribute) {
+        case 16:  // multiprocessors
+            *value = 4;
+            return success;
+        case 75:
+            *value = capability / 10;
+            return success;
+        case 76:
+            *value = capability % 10;
+            return success;
+        case 97:  // shared memory per block
+            *value = 232'448;
+            return success;
+        default:
+            return invalid_value;
+    }
+}
+DRIVER cuDevicePrimaryCtxRetain(void** context, int device) {
+    *context = reinterpret_cast<void*>(static_cast<std::uintptr_t>(device + 1));
+    return success;
+}
+DRIVER cuCtxSetCurrent(void* context) {
+    current = static_cast<int>(reinterpret_cast<std::uintptr_t>(context)) - 1;
+    return success;
+}
+DRIVER cuCtxGetCurrent(void** context) {
+    *context = reinterpret_cast<void*>(static_cast<std::uintptr_t>(current + 1));
+    return success;
+}
+DRIVER cuCtxGetDevice(int* device) {
+    *device = current;
+    return current >= 0 ? success : invalid_context;
+}
+DRIVER cuCtxSynchronize() { return current >= 0 ? success : invalid_context; }
+DRIVER cuMemAlloc_v2(std::uintptr_t* memory, std::size_t bytes) {
+    NEEDS_CONTEXT;
+    if (bytes > memory_per_device) return out_of_memory;
+    void* const p = std::aligned_alloc(512, (bytes + 511) / 512 * 512);
+    std::memset(p, 0xa5, bytes);
+    const std::lock_guard lock(mutex);
+    on_device.insert(p);
+    *memory = reinterpret_cast<std::uintptr_t>(p);
+    return success;
+}
+DRIVER cuMemFree_v2(std::uintptr_t memory) {
+    NEEDS_CONTEXT;
+    void* const p = reinterpret_cast<void*>(memory);
+    const std::lock_guard lock(mutex);
+    if (on_device.erase(p) == 0) return invalid_value;
+    std::free(p);
+    return success;
+}
+DRIVER cuMemGetInfo_v2(std::size_t* free, std::size_t* total) {
+    NEEDS_CONTEXT;
+    *free = *total = memory_per_device;
+    return success;
+}
+DRIVER cuMemHostAlloc(void** memory, std::size_t bytes, unsigned) {
+    NEEDS_CONTEXT;
+    *memory = std::malloc(bytes);
+    const std::lock_guard lock(mutex);
+    pinned.insert(*memory);
+    return success;
+}
+DRIVER cuMemFreeHost(void* memory) {
+    NEEDS_CONTEXT;
+    const std::lock_guard lock(mutex);
+    if (pinned.erase(memory) == 0) return invalid_value;
+    std::free(memory);
+    return success;
+}
+DRIVER cuMemHostRegister_v2(void*, std::size_t, unsigned) { return success; }
+DRIVER cuMemHostUnregister(void*) { return success; }
+DRIVER cuPointerGetAttribute(void*, int, std::uintptr_t) { return invalid_value; }  // pageable memory
+DRIVER cuMemcpyAsync(std::uintptr_t to, std::uintptr_t from, std::size_t bytes, void*) {
+    NEEDS_CONTEXT;
+    std::memcpy(reinterpret_cast<void*>(to), reinterpret_cast<const void*>(from), bytes);
+    return success;
+}
+DRIVER cuMemcpy2DAsync_v2(const void*, void*) { return invalid_value; }  // for pinned memory alone
+DRIVER cuMemsetD8Async(std::uintptr_t memory, unsigned char value, std::size_t bytes, void*) {
+    NEEDS_CONTEXT;
+    std::memset(reinterpret_cast<void*>(memory), value, bytes);
+    return success;
+}
+DRIVER cuStreamCreate(void** stream, unsigned) {
+    NEEDS_CONTEXT;
+    *stream = new char;
+    return success;
+}
+DRIVER cuStreamDestroy_v2(void* stream) {
+    NEEDS_CONTEXT;
+    delete static_cast<char*>(stream);
+    return success;
+}
+DRIVER cuStreamSynchronize(void*) { return current >= 0 ? success : invalid_context; }
+DRIVER cuStreamQuery(void*) { return current >= 0 ? success : invalid_context; }
+DRIVER cuStreamWaitEvent(void*, void*, unsigned) { return current >= 0 ? success : invalid_context; }
+DRIVER cuEventCreate(void** event, unsigned) { return cuStreamCreate(event, 0); }
+DRIVER cuEventDestroy_v2(void* event) { return cuStreamDestroy_v2(event); }
+DRIVER cuEventSynchronize(void*) { return success; }
+DRIVER cuEventRecord(void*, void*) { return current >= 0 ? success : invalid_context; }
+DRIVER cuEventElapsedTime(float* milliseconds, void*, void*) {
+    *milliseconds = 1;
+    return success;
+}
+DRIVER cuFuncGetAttribute(int* value, int attribute, const void*) {
+    *value = attribute == 0 ? 128 : attribute == 4 ? 99 : 0;  // threads per block, registers
+    return success;
+}
+DRIVER cuFuncSetAttribute(const void*, int, int) { return success; }
+DRIVER cuOccupancyMaxActiveBlocksPerMultiprocessor(int* blocks, const void*, int threads, std::size_t) {
+    *blocks = 256 / threads;
+    return success;
+}
+DRIVER cuLaunchKernel(const void* function, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned, unsigned,
+                      unsigned, void*, void** arguments, void**) {
+    NEEDS_CONTEXT;
+    static std::mutex one_at_a_time;
+    const std::lock_guard lock(one_at_a_time);
+    for (unsigned b = 0; b < blocks; ++b)
+        block_of_threads::run(*static_cast<const kernel*>(function), b, blocks, threads, arguments);
+    return success;
+}
+DRIVER cuModuleLoadData(void** module, const void* image) {
+    NEEDS_CONTEXT;
+    if (std::memcmp(image, ELFMAG, SELFMAG) != 0) return no_kernel_image;
+    const auto& head = *static_cast<const Elf64_Ehdr*>(image);
+    const int file = memfd_create("program", 0);
+    const std::size_t bytes = head.e_shoff + std::size_t{head.e_shnum} * head.e_shentsize;
+    if (write(file, image, bytes) != static_cast<ssize_t>(bytes)) return invalid_value;
+    *module = dlopen(("/proc/self/fd/" + std::to_string(file)).c_str(), RTLD_NOW | RTLD_LOCAL);
+    return *module != nullptr ? success : no_kernel_image;
+}
+DRIVER cuModuleGetFunction(const void** function, void* module, const char* name) {
+    void* const run = dlsym(module, (std::string("run_") + name).c_str());
+    void* const set_place = dlsym(module, "set_place");
+    if (run == nullptr || set_place == nullptr) return not_found;
+    *function =
+        new kernel{reinterpret_cast<void (*)(void**)>(run), reinterpret_cast<void (*)(const place*)>(set_place)};
+    return success;
+}

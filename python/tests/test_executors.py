@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT
+"""Chunks of studies handed to executors: the same bits, and nothing done is lost with a worker."""
+
+import concurrent.futures
+import multiprocessing
+import os
+import pathlib
+import signal
+import threading
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+pytestmark = pytest.mark.skipif(not hasattr(my._core, "Study"), reason="built without studies")
+
+x, v = my.states("x v")
+k = my.parameter("k")
+deaths = pathlib.Path(os.environ.get("MYRIAD_CACHE_DIR", "."))
+
+
+def oscillator(**more):
+    return my.study(my.model({x: v, v: -k * x}), my.grid({k: my.linspace(1, 2, 60), x: [1.0, 2.0]}), start={v: 0},
+                    time=(0, 20), keep=[x], **more)
+
+
+def energy(chunk):
+    """A function that pickles."""
+    return [(chunk["x_end"]**2).sum()]
+
+
+def spawned(workers=2):
+    return concurrent.futures.ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
+
+
+def loky():
+    return pytest.importorskip("loky").ProcessPoolExecutor(2)
+
+
+def dask():
+    distributed = pytest.importorskip("distributed")
+    client = distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True)
+    executor = client.get_executor()
+    executor.client_of_test = client
+    return executor
+
+
+def mpi():
+    return pytest.importorskip("mpi4py.futures").MPIPoolExecutor(2)
+
+
+@pytest.mark.parametrize("make", [lambda: concurrent.futures.ThreadPoolExecutor(3), spawned, loky, dask, mpi],
+                         ids=["threads", "processes", "loky", "dask", "mpi4py"])
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_executors_give_the_bits_of_a_run(tmp_path, make, interpreted):
+    if interpreted and make is not spawned:
+        return  # once is enough
+    study = oscillator(interpreted=interpreted,
+                       reduce=[my.reduce.mean("x_end"), my.reduce.total("energy", "x_end", 1, energy)])
+    expected = study.run()
+    executor, told = make(), []
+    try:
+        for store in (None, tmp_path / "store"):
+            result = study.run(store, executor=executor, chunk=9, progress=lambda *now: told.append(now))
+            assert result.complete and result.by_status == {"success": 120} and result.instances == 120
+            np.testing.assert_array_equal(result["x_end"], expected["x_end"])
+            assert result["x_end_mean"] == expected["x_end_mean"]
+            np.testing.assert_allclose(result["energy"], expected["energy"], rtol=1e-14)
+        assert told[-1] == (120, 120)
+    finally:
+        executor.shutdown()
+        if hasattr(executor, "client_of_test"):
+            executor.client_of_test.close()
+
+
+def die_once(chunk):
+    """Kills the worker at the third chunk, the first time."""
+    done = deaths / "chunks"
+    with open(done, "a", encoding="ascii") as file:
+        file.write("+")
+    if done.stat().st_size == 5 and not (deaths / "died").exists():
+        (deaths / "died").touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return [len(chunk["status"])]
+
+
+def test_a_worker_that_dies_loses_no_chunk_that_is_done(tmp_path):
+    for name in ("chunks", "died"):
+        (deaths / name).unlink(missing_ok=True)
+    study = oscillator(reduce=my.reduce.total("count", [], 1, die_once))
+    with spawned(1) as executor, pytest.raises(my.Error, match="lost with its worker.*run the study again") as raised:
+        study.run(tmp_path / "store", executor=executor, chunk=10)
+    kept = raised.value.result
+    assert kept.done == my.open_study(tmp_path / "store").done == 40 and not kept.complete
+    with spawned(1) as executor:
+        result = study.run(tmp_path / "store", executor=executor)
+    assert result.complete and result.instances == 80 and result["count"] == 120
+    np.testing.assert_array_equal(result["x_end"], oscillator().run()["x_end"])
+
+
+def test_what_a_worker_raises_arrives():
+    for inputs, expected, message in ((["x_end"], my.Error, "gives 1 numbers, and 3 are"), ([], KeyError, "x_end")):
+        study = oscillator(reduce=my.reduce.total("wrong", inputs, 3, energy))
+        with concurrent.futures.ThreadPoolExecutor(2) as executor, pytest.raises(expected, match=message) as raised:
+            study.run(executor=executor)
+        assert raised.value.result.done == 0
+
+
+def test_a_study_that_does_not_pickle_is_refused():
+    study = oscillator(reduce=my.reduce.total("wrong", [], 1, lambda chunk, lock=threading.Lock(): [1]))
+    with spawned(1) as executor, pytest.raises(my.Error, match="does not pickle"):
+        study.run(executor=executor)

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: MIT
+"""Models compile by NVRTC, for GPUs that this machine need not have, and to no more registers than by nvcc."""
+
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+import pytest
+
+import example_models
+import myriad as my
+import test_cpp
+from myriad import _core, nvrtc
+from myriad.methods import method_type, methods
+
+pytestmark = pytest.mark.skipif(nvrtc.find() is None, reason="there is no NVRTC")
+nvcc = shutil.which("nvcc")
+include = pathlib.Path(my.__file__).parent / "include"
+
+
+def lyapunov():
+    """Tangents, derived from the model's own right-hand side."""
+    return my.with_tangents(example_models.duffing(), 2)
+
+
+def epidemic():
+    """A model in C++ that draws random numbers."""
+    text = (test_cpp.root / "examples/monte_carlo/epidemic.hpp").read_text()
+    return my.CppModel(text, "epidemic", "s i", "R0 duration", "R0_mean R0_deviation duration_least duration_most",
+                       "seed", "peak day", events="turning_point")
+
+
+# What is compiled for each method: models with every kind of hook and event, outputs along the solution, tables.
+cases = [
+    (example_models.duffing, "cash_karp", (), False, "double"),
+    (example_models.relief_valve, "dormand_prince_5", ("pi_control",), False, "double"),
+    (example_models.damped, "tsitouras_5", (), True, "double"),
+    (example_models.stick_slip, "verner_7", ("rms_norm", "automatic_first_step"), False, "double"),
+    (example_models.bouncing_ball, "dormand_prince_8", ("tolerance_per_instance",), False, "float"),
+    (example_models.settling, "runge_kutta_4", (), True, "float"),
+    (example_models.oregonator, "rosenbrock_23", (), False, "double"),
+    (lyapunov, "tsitouras_5", (), False, "double"),
+    (epidemic, "cash_karp", (), False, "float"),
+    (example_models.continuation, "rodas_5p", ("pid_control", "mixed_scale"), True, "double"),
+]
+models = (*example_models.headers, test_cpp.every_operation, epidemic)
+every_model = [(model, "cash_karp", (), False, real) for model in models for real in ("double", "float")]
+every_method = [(model, method, (), True, "double") for model in models for method in methods]
+architectures = (75, 80, 90, 100, 103)
+
+
+def source_of(case, edit=lambda header: header):
+    model, method, control, dense, real = case
+    made = model()
+    header, struct = made.source()
+    shared = len(made.shared) * (8 if real == "double" else 4) + 4 * len(made.shared_integers)
+    return nvrtc.source_of(edit(header), struct, method_type(method, control, dense), real,
+                           nvrtc.placement(shared, 232_448))
+
+
+def resources(log):
+    """(registers, bytes of stack) of the kernel in what ptxas says."""
+    match = re.search(r"entry function 'myriad_integrate'.*?(\d+) bytes stack frame.*?Used (\d+) registers", log, re.S)
+    return int(match.group(2)), int(match.group(1))
+
+
+def by_nvrtc(case, architecture=90):
+    image, said = nvrtc.library().compile(source_of(case), architecture, ["--ptxas-options=-v"])
+    assert image[:4] == b"\x7fELF" and "warning" not in said, said
+    return resources(said)
+
+
+def by_nvcc(case, folder):
+    name = f"{case[0].__name__}_{case[1]}_{case[3]}_{case[4]}"
+    file = folder / f"{name}.cu"
+    file.write_text(source_of(case, lambda header: header.replace("#pragma once", "")))
+    done = subprocess.run([nvcc, "-std=c++20", "-arch=sm_90", "-cubin", "-Xptxas=-v", "-diag-suppress=1427",
+                           f"-I{include}", str(file), "-o", str(folder / f"{name}.cubin")], capture_output=True,
+                          text=True)
+    assert done.returncode == 0, done.stderr
+    return resources(done.stderr)
+
+
+def all_of(function, arguments):
+    """The results for several arguments, at the same time."""
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(lambda a: function(*a), arguments))
+
+
+@pytest.mark.skipif(nvcc is None, reason="there is no nvcc")
+def test_kernels_have_the_registers_that_nvcc_gives_them(tmp_path, request):
+    chosen = [*cases, *every_model] if request.config.getoption("--all") else [cases[0], cases[4]]
+    pairs = all_of(lambda case: (by_nvrtc(case), by_nvcc(case, tmp_path)), [(case,) for case in chosen])
+    wrong = [(case[0].__name__, *case[1:], ours, theirs) for case, (ours, theirs) in zip(chosen, pairs)
+             if ours[0] > 1.1 * theirs[0] + 4 or ours[1] > theirs[1] + 64]  # of another version of the compiler
+    assert not wrong, wrong
+
+
+def test_all_methods_hooks_and_events_compile(request):
+    of_all = request.config.getoption("--all")
+    wanted = [(case, a) for case in cases for a in (architectures if of_all else (90,))]
+    found = all_of(by_nvrtc, [*wanted, *((case, 90) for case in every_method if of_all)])
+    assert all(0 < registers < 256 for registers, _ in found)
+
+
+def test_tables_and_many_shared_parameters_are_read_from_shared_memory():
+    x, y = my.states("x y")
+    table = my.table("W", [[0.1 * i * j for i in range(40)] for j in range(8)])
+    model = my.model({x: sum(table[i, 3] * y for i in range(8)), y: -x})
+    header, struct = model.source()
+    source = nvrtc.source_of(header, struct, "myriad::cash_karp", "double", nvrtc.placement(8 * 320, 232_448))
+    assert "shared_memory" in source
+    assert nvrtc.library().compile(source, 90)[0][:4] == b"\x7fELF"
+
+
+def test_a_gpu_newer_than_nvrtc_gets_ptx_and_an_older_one_a_message():
+    library = nvrtc.library()
+    newest = library.architectures[-1]
+    assert library.target(newest + 100) == (f"-arch=compute_{newest}", "PTX")
+    image, _ = library.compile(source_of(cases[0]), newest + 100)
+    assert f".target sm_{newest}".encode() in image and image.endswith(b"\0")
+    assert library.target(90) == ("-arch=sm_90", "CUBIN")
+    with pytest.raises(my.Error, match="this one has 3.5: install an older one"):
+        library.target(35)
+
+
+def test_an_nvrtc_that_is_too_old_is_refused(monkeypatch):
+    monkeypatch.setattr(nvrtc, "_oldest", (1000, 0))
+    with pytest.raises(my.Error, match="NVRTC .* is too old: install 1000.0 or newer"):
+        nvrtc._Nvrtc(nvrtc.library()._functions)
+
+
+def test_the_first_message_of_nvrtc_is_told():
+    with pytest.raises(my.Error, match="the model does not compile .NVRTC .*: identifier \"nothing\" is undefined$"):
+        nvrtc.library().compile("double a = nothing; double b = nothing_either;", 90)
+
+
+def test_without_nvrtc_the_message_says_what_to_install(monkeypatch):
+    monkeypatch.setattr(nvrtc, "find", lambda: None)
+    monkeypatch.delenv("MYRIAD_NVRTC", raising=False)
+    with pytest.raises(my.Error, match="pip install 'myriad.cuda.'"):
+        nvrtc.library()
+    monkeypatch.setenv("MYRIAD_NVRTC", "/nowhere/libnvrtc.so")
+    with pytest.raises(my.Error, match="MYRIAD_NVRTC is '/nowhere/libnvrtc.so', and there is no such file"):
+        nvrtc.library()
+
+
+def test_the_newest_nvrtc_that_the_driver_can_take_is_chosen(monkeypatch, tmp_path):
+    paths = [tmp_path / f"libnvrtc.so.{major}" for major in (13, 12, 99)]
+    for path in paths:
+        path.touch()
+    monkeypatch.setattr(nvrtc, "_candidates", lambda: paths)
+    choose = nvrtc._find.__wrapped__
+    assert [choose(None, driver).name[-2:] for driver in (12, 13, 98, 99)] == ["12", "13", "13", "99"]
+    assert choose(None, 11).name[-2:] == "12"
+
+
+def test_without_a_driver_the_message_says_so():
+    if not _core.no_gpu():
+        pytest.skip("there is a GPU")
+    x = my.state("x")
+    with pytest.raises(my.Error, match="device \"cuda\" is not available: .*; use \"cpu\" or \"auto\""):
+        my.solve(my.model({x: -x}), start={x: 1}, time=(0, 1), device="cuda")
+    assert my.solve(my.model({x: -x}), start={x: 1}, time=(0, 1), device="auto").report.device == "cpu"

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: MIT
+"""What is around a kernel on a GPU: arguments, schedules, chunks, memory, arrays on devices and messages, on simulated
+GPUs. What a GPU computes is in test_gpu.py."""
+
+import shutil
+
+import pytest
+
+import simulated_gpu
+
+pytestmark = pytest.mark.skipif(shutil.which("g++") is None, reason="there is no g++")
+
+MODEL = """
+import concurrent.futures, ctypes, os, pathlib
+import numpy as np, myriad as my
+from myriad import _core
+x, v, k, B, t = *my.states("x v"), my.parameter("k"), my.shared("B"), my.time
+peak, n = my.accessory("peak"), my.integer_accessory("n")
+model = my.model({x: v, v: x - x**3 - k * v + B * my.cos(t)}, accessories={peak: x, n: 0},
+                 events=[my.event(v, direction="falling", do={peak: my.maximum(peak, x), n: n + 1})])
+
+def sweep(size):
+    return {k: np.linspace(0.2, 0.3, size), B: 0.3}
+
+def solve(device, size, **more):
+    usual = dict(start={x: -0.5, v: -0.1}, time=(0, 6), rtol=1e-9, device=device)
+    return my.solve(model, sweep(size), **{**usual, **more})
+
+def on_host(array):  # as the simulated GPU's memory is
+    facts = array.__cuda_array_interface__
+    flat = np.ctypeslib.as_array((ctypes.c_uint8 * (array.dtype.itemsize * int(np.prod(facts["shape"])))).from_address(
+        facts["data"][0])).view(array.dtype)
+    return flat.reshape(facts["shape"][::-1]).T
+
+class OnGpu:  # an array of another library
+    def __init__(self, values, strides=None):
+        self.values = np.ascontiguousarray(values)
+        self.__cuda_array_interface__ = dict(shape=self.values.shape, typestr=self.values.dtype.str, version=3,
+                                             data=(self.values.ctypes.data, False), strides=strides)
+
+def message(call, kind=my.Error):
+    try:
+        call()
+    except kind as error:
+        return str(error)
+    raise AssertionError("no error")
+"""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("driver")
+    simulated_gpu.build_driver(folder)
+    return lambda script, **variables: simulated_gpu.run(folder, MODEL + script, **variables)
+
+
+def test_results_are_the_cpus_in_every_schedule_and_place(run):
+    run("""
+for size, more in ((3, {}), (100, dict(schedule="dynamic")), (1000, dict(phases=6)),
+                   (1000, dict(phases=5, carry_on=False, samples=4, precision="float", rtol=1e-5))):
+    more = {"record": dict(states=[x], accessories=[peak, n], time=True), **more}
+    cpu = solve("cpu", size, **more)
+    for _ in range(2):  # the second time in the memory of the first
+        gpu = solve("cuda", size, **more)
+        assert gpu.report.device == "cuda:0" and gpu.report.registers == 99
+        close = 0.1 if "precision" in more else 1e-6
+        for name in ("x", "v", "peak", "k", "t"):
+            assert np.allclose(cpu[name], gpu[name], atol=close), (name, size)
+            if name != "t" or "samples" not in more:
+                on_device = gpu.device[name]
+                assert np.array_equal(on_host(on_device), gpu[name]), (name, size)
+                assert _core.facts_of_own_array(on_device.__dlpack__())[1] == gpu[name].shape
+        assert np.array_equal(gpu.status, cpu.status) and ("precision" in more or np.array_equal(gpu["n"], cpu["n"]))
+        assert gpu.report.accepted_steps == gpu.steps().sum()
+        assert gpu.report.rhs_evaluations == gpu.steps("evaluations").sum()
+        del gpu
+""")
+
+
+def test_chunks_have_the_bits_of_a_whole(run):
+    script = """
+gpu = my.solve(model, sweep(270_000), start={x: 1, v: 0.1}, time=(0, 0.1), device="cuda")
+print(hash(gpu["x"].tobytes()), hash(gpu.steps().tobytes()), gpu.report.accepted_steps)
+"""
+    whole = run(script + "assert gpu.device['x'].shape == (270_000,)", PYTHONHASHSEED=0)
+    chunks = run(script + """
+assert "is not on a GPU: the run was on the CPU, or in parts" in message(lambda: gpu.device["x"])
+assert "whose memory does not suffice" in message(lambda: my.solve(
+    model, {k: OnGpu(np.full(2_000_000, 0.2)), B: 0.3}, start={x: 1, v: 0}, time=(0, 1), device="cuda"))
+""", PYTHONHASHSEED=0, MYRIAD_SIMULATED_MEGABYTES=200)
+    assert chunks == whole
+
+
+def test_inputs_may_be_on_the_gpu(run):
+    run("""
+values, begin = np.linspace(0.2, 0.3, 500), np.linspace(-1, 1, 500)
+given = lambda k_values, x_values, **more: my.solve(
+    model, {k: k_values, B: 0.3}, start={x: x_values, v: 0}, time=(0, 3), **{"device": "cuda", **more})
+here, there = given(values, begin), given(OnGpu(values), OnGpu(begin))
+for name in ("x", "v", "k"):
+    assert np.array_equal(here[name], there[name]), name
+values[17] = np.inf
+assert "parameter 0 (k) is inf in instance 17, and must be finite" in message(lambda: given(OnGpu(values), 0))
+assert "state 0 (x) is inf in instance 17" in message(lambda: given(0.2, OnGpu(values)))
+assert "in 1 of 500 instances" in message(lambda: given(values, OnGpu(begin)))
+assert "'k' on the GPU has type float32, and the run is in float64" in message(
+    lambda: given(OnGpu(values.astype("f4")), 0))
+assert "16 bytes apart" in message(lambda: given(OnGpu(values, (16,)), 0))
+assert "'k' has 2 dimensions on the GPU" in message(lambda: given(OnGpu(values.reshape(5, 100)), 0))
+assert "no array of float64" in message(lambda: given(OnGpu(np.arange(500)), 0))
+assert "give device=\\"cuda\\"" in message(lambda: given(OnGpu(values), 0, device="cpu"))
+assert "'B' is on a GPU" in message(lambda: my.solve(
+    model, {k: values, B: OnGpu(begin)}, start={x: 0, v: 0}, time=(0, 1), device="cuda"))
+""")
+
+
+def test_failures_are_reported_with_their_instance(run):
+    run("""
+values = np.linspace(0.2, 0.3, 100)
+values[60] = np.nan
+marked = my.solve(model, {k: values, B: 0.3}, start={x: 0, v: 0}, time=(0, 1), device="cuda", invalid="mark")
+assert marked.report.first_failed == 60 and marked.report.by_status == {"success": 99, "invalid_input": 1}
+few = solve("cuda", 50, max_steps=3)
+assert few.report.by_status == {"max_steps": 50} and "instance 0 ended as max_steps at t = 0" in str(few.report)
+assert "is not finite in 1 of 100 instances" in message(lambda: my.solve(
+    model, {k: values, B: 0.3}, start={x: 0, v: 0}, time=(0, 1), device="cuda"))
+""")
+
+
+def test_an_interrupted_run_has_its_results(run):
+    run("""
+def stop(done, total):
+    raise KeyboardInterrupt
+try:
+    solve("cuda", 50, record=[x], progress=stop)
+except my.Interrupted as interrupted:
+    whole = solve("cuda", 50, record=[x])
+    assert np.array_equal(interrupted.run["x"], whole["x"]) and np.array_equal(interrupted.run["v"], whole["v"])
+    assert interrupted.run.done == 50 and interrupted.run.device["x"].shape == (50, 1)
+else:
+    raise AssertionError("was not interrupted")
+""")
+
+
+def test_devices_are_chosen_by_name_and_by_what_is_there(run):
+    run("""
+assert solve("auto", 5).report.device == "cuda:0"
+second = solve("cuda:1", 5)
+assert second.report.device == "cuda:1" and second.report.kernel == "memory"
+assert second.device["x"].__dlpack_device__() == (2, 1)
+assert "this machine has 2 GPUs" in message(lambda: solve("cuda:2", 5))
+assert "there is no 'B' on the GPU" in message(lambda: second.device["B"], KeyError)
+with concurrent.futures.ThreadPoolExecutor(4) as pool:
+    several = list(pool.map(lambda i: solve(f"cuda:{i % 2}", 100 + i), range(8)))
+assert [r.report.device for r in several] == ["cuda:0", "cuda:1"] * 4
+assert all(np.array_equal(r["x"], solve("cuda", 100 + i)["x"]) for i, r in enumerate(several))
+assert solve("auto", 5, interpreted=True).report.device == "cpu"
+from myriad import nvrtc
+nvrtc.find = lambda: pathlib.Path("libnvrtc.so.14")
+assert "NVRTC of CUDA 14 compiles for newer drivers than this one, of CUDA 13" in message(
+    lambda: solve("cuda", 5, precision="float"))
+nvrtc.find = lambda: None
+without = solve("auto", 5)
+assert without.report.device == "cpu" and "no NVRTC" in str(without.report)
+child = os.fork()
+if child == 0:
+    forked = solve("auto", 5)
+    ok = forked.report.device == "cpu" and "forked" in str(forked.report) + message(lambda: solve("cuda", 5))
+    os._exit(0 if ok else 1)
+assert os.waitpid(child, 0)[1] == 0
+""", MYRIAD_SIMULATED_GPUS=2)
+    run("assert solve(\"auto\", 5).report.device == \"cpu\"\n"
+        "assert \"no CUDA-capable device\" in message(lambda: solve(\"cuda\", 5))", MYRIAD_SIMULATED_GPUS=0)

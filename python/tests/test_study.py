@@ -1,0 +1,309 @@
+# SPDX-License-Identifier: MIT
+"""Studies against `solve`, in memory, in stores and after a stop."""
+
+import json
+import os
+import pathlib
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+pytestmark = pytest.mark.skipif(not hasattr(my._core, "Study"), reason="built without studies")
+
+x, v = my.states("x v")
+k, B = my.parameter("k"), my.shared("B")
+
+
+def duffing():
+    return my.model({x: v, v: x - x**3 - k * v + B * my.cos(my.time)})
+
+
+def grid(n=25):
+    return my.grid({k: my.linspace(0.2, 0.3, n), x: [-0.5, 0.1, 0.2]}, {B: 0.3})
+
+
+call = dict(start={v: -0.1}, time=(0, 2 * np.pi), phases=3, record=dict(from_phase=1, states=[x], time=True), rtol=1e-9)
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_a_study_has_the_bits_of_solve(tmp_path, interpreted):
+    expected = my.solve(duffing(), grid(), interpreted=interpreted, **call)
+    study = my.study(duffing(), grid(), interpreted=interpreted, keep=[x, v, my.time], **call)
+    assert study.size == 75
+    for store in (None, tmp_path / "store"):
+        result = study.run(store, chunk=16)
+        assert result.complete and result.instances == result.done == 75 and result.by_status == {"success": 75}
+        assert result.axes == {"k": 25, "x_begin": 3} and result.shape == (25, 3)
+        np.testing.assert_array_equal(result["x"], expected["x"].reshape(25, 3, 2))
+        np.testing.assert_array_equal(result["t"], expected[my.time].reshape(25, 3, 2))
+        np.testing.assert_array_equal(result["v_end"], expected["v"].reshape(25, 3))
+        np.testing.assert_array_equal(result["t_last"], expected.t.reshape(25, 3))
+        np.testing.assert_array_equal(result["k"], np.linspace(0.2, 0.3, 25))
+        assert result["B"] == 0.3
+        assert result.kernel.startswith("interpreted") == interpreted
+    assert result.description["notes"]["kernel"] == ("interpreted" if interpreted else "compiled")
+
+
+def test_results_open_in_xarray_lazily(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    study = my.study(duffing(), grid(), keep=[x], reduce=[my.reduce.mean("x_end")], units={x: "m"}, **call)
+    here = study.run().to_xarray()
+    stored = study.run(tmp_path / "store", chunk=7)
+    there = stored.to_xarray()
+    assert not there["x"].variable._in_memory  # until it is used
+    part = there["x"].isel(k=slice(20, 3, -3), x_begin=1)
+    np.testing.assert_array_equal(part.values, here["x"].values[20:3:-3, 1])
+    np.testing.assert_array_equal(there["x"][4].values, here["x"].values[4])
+    np.testing.assert_array_equal(there["x_end"].sel(x_begin=0.2, k=0.3).values, here["x_end"].values[-1, -1])
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(there))["x"].values, here["x"].values)
+    xarray.testing.assert_identical(there.load(), here)
+    assert there["x"].dims == ("k", "x_begin", "phase") and there["x"].attrs["units"] == "m"
+    np.testing.assert_array_equal(there["phase"], [1, 2])
+    assert there["status"].attrs["flag_meanings"].split() == list(my.status_names)
+    assert json.loads(there.attrs["myriad_study"])["options"]["phases"] == 3
+
+
+def test_a_store_is_a_zarr_group(tmp_path):
+    zarr = pytest.importorskip("zarr", minversion="3")
+    result = my.study(duffing(), grid(), keep=[x], **call).run(tmp_path / "store", chunk=7)
+    group = zarr.open_group(tmp_path / "store", mode="r")
+    np.testing.assert_array_equal(group["x_end"][:], result["x_end"].ravel())
+
+
+@pytest.mark.parametrize("package", ["netCDF4", "h5netcdf.legacyapi"])
+def test_netcdf_is_written_part_by_part(tmp_path, package, monkeypatch):
+    xarray = pytest.importorskip("xarray")
+    module = pytest.importorskip(package)
+    if package != "netCDF4":
+        pytest.importorskip("h5py")
+    monkeypatch.setattr("myriad.study_result._netcdf_package", lambda: module.Dataset)
+    monkeypatch.setattr("myriad.study_result.blocks", lambda lengths, most: my.parts.blocks(lengths, 8))
+    result = my.study(duffing(), grid(), keep=[x], reduce=my.reduce.minimum("x"), **call).run(tmp_path / "store")
+    result.to_netcdf(tmp_path / "study.nc")
+    assert sorted(os.listdir(tmp_path)) == ["store", "study.nc"]
+    with xarray.open_dataset(tmp_path / "study.nc", engine=package.partition(".")[0].lower()) as read:
+        expected = result.to_xarray()
+        assert set(read.variables) == set(expected.variables) and set(read.coords) == set(expected.coords)
+        for name in expected.variables:
+            np.testing.assert_array_equal(read[name].values, expected[name].values)
+            assert read[name].dims == expected[name].dims
+
+
+def test_blocks_cover_a_grid():
+    for lengths in ((), (7,), (3, 5), (2, 3, 4), (1, 1)):
+        for most in (1, 4, 100):
+            seen = np.zeros(lengths, int)
+            for key in my.parts.blocks(lengths, most):
+                seen[key] += 1
+                assert seen[key].size <= most
+            assert (seen == 1).all()
+
+
+def test_axes_of_every_kind():
+    model = duffing()
+    many = my.study(model, my.grid(my.zip({k: [0.2, 0.3], x: [1.0, 2.0]}), {v: my.logspace(1, 100, 3), B: 0.3}),
+                    time=(0, 0), draws=4).run()
+    assert many.shape == (2, 3, 4)
+    np.testing.assert_allclose(many["v_end"][0, :, 0], [1, 10, 100])
+    np.testing.assert_array_equal(many["x_end"][:, 2, 3], [1, 2])
+    paired = my.study(model, {"k": np.linspace(0, 1, 5), "B": 0.3}, start={"x": my.linspace(1, 5, 5), v: 0},
+                      time=(0, 0)).run()
+    np.testing.assert_array_equal(paired["x_end"], [1, 2, 3, 4, 5])
+    ends = my.study(my.model({x: 1.0}), my.grid({my.t_end: [1.0, 2.0, 5.0]}), start={x: 0}, time=(0, None),
+                    interpreted=True).run()
+    np.testing.assert_allclose(ends["x_end"], [1, 2, 5])
+    assert np.asarray(my.linspace(0, 1, 3)).tolist() == [0, 0.5, 1]
+    here = my.solve(model, my.grid({k: my.linspace(0, 1, 3)}, {B: 0.3}), start={x: 1, v: 0}, time=(0, 1))
+    np.testing.assert_array_equal(here["k"], [0, 0.5, 1])
+
+
+def test_random_values_depend_on_the_seed_and_the_instance():
+    def drawn(seed, **more):
+        study = my.study(duffing(), {k: my.random_uniform(0.2, 0.3), B: 0.3}, start={x: my.random_normal(1, 2), v: 0},
+                         time=(0, 0), draws=2000, seed=seed, **more)
+        return study.run(chunk=300)
+    first = drawn(1)
+    np.testing.assert_array_equal(first["x_begin"], first["x_end"])
+    assert 0.2 <= first["k"].min() < 0.201 and 0.299 < first["k"].max() < 0.3
+    assert abs(first["x_end"].mean() - 1) < 5 * 2 / 2000**0.5 and abs(first["x_end"].std() - 2) < 0.2
+    np.testing.assert_array_equal(first["k"], drawn(1)["k"])
+    assert (first["k"] != drawn(2)["k"]).all()
+    assert "k" not in drawn(1, keep=dict(end=[x], random=False)).names
+    with pytest.raises(my.Error, match="is drawn for each instance of a study"):
+        my.solve(duffing(), {k: my.random_uniform(0, 1), B: 0.3}, start={x: 1, v: 0}, time=(0, 1))
+
+
+def test_reductions_are_numpys():
+    edges = np.linspace(-1, 1, 9)
+    several = [my.reduce.mean("x"), my.reduce.maximum("x_end"), my.reduce.minimum("v_end"),
+               my.reduce.histogram("x", edges),
+               my.reduce.total("energy", ["x_end", "x"], 2, lambda c: [(c["x_end"]**2).sum(), c["x"][:, 1].sum()])]
+    result = my.study(duffing(), grid(), keep=[x, v], reduce=several, **call).run(chunk=10)
+    np.testing.assert_allclose(result["x_mean"], result["x"].mean(axis=(0, 1)), rtol=1e-14)
+    assert result["x_end_maximum"] == result["x_end"].max() and result["v_end_minimum"] == result["v_end"].min()
+    np.testing.assert_array_equal(result["x_histogram"], np.histogram(result["x"], edges)[0])
+    np.testing.assert_allclose(result["energy"], [(result["x_end"]**2).sum(), result["x"][..., 1].sum()])
+    alone = my.study(duffing(), grid(), reduce=several[0], record=[x],
+                     **{n: c for n, c in call.items() if n != "record"}, keep=dict(records=False))
+    assert "x" not in alone.run().names
+
+
+def test_failures_are_statuses():
+    model = my.model({x: my.sqrt(k) * x})
+    result = my.study(model, {k: np.linspace(-2, 2, 5)}, start={x: 1}, time=(0, 1), reduce=my.reduce.mean("x_end"),
+                      keep=[x], interpreted=True).run()
+    assert result.by_status == {"not_finite": 2, "success": 3}
+    done = result["status"] == my.status_names.index("success")
+    assert done.tolist() == [False, False, True, True, True]
+    assert result["x_end_mean"] == pytest.approx(result["x_end"][done].mean(), rel=1e-15)
+
+
+def test_tables_samples_and_events_of_models():
+    weights = my.table("W", np.array([[0.0, 1.0], [-1.0, 0.0]]))
+    bounces = my.integer_accessory("bounces")
+    model = my.model(dict(zip((x, v), weights @ [x, v])),
+                     events=[my.event(x, direction="falling", tolerance=1e-10, do={bounces: bounces + 1})],
+                     initialise={bounces: 0})
+    for interpreted in (False, True):  # of which the latter has more components than the model
+        result = my.study(model, my.grid({x: [1.0, 2.0]}), start={v: 0}, time=(0, 10), samples=5, rtol=1e-10,
+                          atol=1e-10, keep=[bounces], interpreted=interpreted).run()
+        np.testing.assert_allclose(result["x_sample"], np.outer([1, 2], np.cos(np.linspace(0, 10, 5))), atol=1e-7)
+        np.testing.assert_array_equal(result[bounces], [2, 2])
+
+
+SLOW = """
+import sys, threading
+import numpy as np, myriad as my
+x, v = my.states("x v")
+k = my.parameter("k")
+study = my.study(my.model({x: v, v: -k * x}), my.grid({k: my.linspace(1, 2, 4000)}), start={x: 1, v: 0},
+                 time=(0, float(sys.argv[2])), keep=[x], interpreted=True)
+begun = lambda done, total: done and print("begun", flush=True)
+try:
+    result = study.run(sys.argv[1], chunk=int(sys.argv[3]), device="cpu:1", progress=begun)
+    print("ended", result.done, result.instances)
+except my.Interrupted as stopped:
+    print("stopped", stopped.run.done, stopped.run.complete)
+"""
+
+
+def run_slowly(store, sent=None, chunk=50, end=300):
+    child = subprocess.Popen([sys.executable, "-c", SLOW, str(store), str(end), str(chunk)], stdout=subprocess.PIPE,
+                             text=True)
+    if sent is not None:
+        child.stdout.readline()
+        child.send_signal(sent)
+    told = child.communicate(timeout=120)[0].split()
+    return told[told.index("stopped"):] if "stopped" in told else told[told.index("ended"):] if "ended" in told else []
+
+
+def test_a_study_goes_on_after_an_interrupt_and_after_a_kill(tmp_path):
+    stopped, done, complete = run_slowly(tmp_path / "store", signal.SIGINT)
+    assert stopped == "stopped" and 0 < int(done) < 4000 and complete == "False"
+    assert my.open_study(tmp_path / "store").done == int(done)
+    before = [int(done)]
+    assert run_slowly(tmp_path / "store", signal.SIGKILL) == []
+    before.append(my.open_study(tmp_path / "store").done)
+    assert before[0] <= before[1] < 4000
+    ended, all_done, now = run_slowly(tmp_path / "store")
+    assert ended == "ended" and int(all_done) == 4000 and int(now) == 4000 - before[1]
+    whole = my.open_study(tmp_path / "store")
+    assert whole.complete and whole.verify() == []
+    some = my.solve(my.model({x: v, v: -k * x}), {k: np.linspace(1, 2, 4000)[::399]}, start={x: 1, v: 0},
+                    time=(0, 300), interpreted=True)
+    np.testing.assert_array_equal(whole["x_end"][::399], some["x"])
+
+
+def test_damage_is_found_and_mended(tmp_path):
+    study = my.study(duffing(), grid(), keep=[x], **call)
+    expected = study.run(tmp_path / "store", chunk=10)["x_end"]
+    file = sorted(p for p in pathlib.Path(tmp_path / "store" / "x_end").rglob("*") if p.is_file() and
+                  p.name != "zarr.json")[2]
+    data = bytearray(file.read_bytes())
+    data[3] ^= 1
+    file.write_bytes(data)
+    damage, = my.verify(tmp_path / "store")
+    assert damage.variable == "x_end" and "checksum" in damage.reason
+    with pytest.raises(my.Error, match="checksum"):
+        my.open_study(tmp_path / "store")["x_end"]
+    mended = study.run(tmp_path / "store", check="checksums")
+    assert mended.instances == 10
+    np.testing.assert_array_equal(mended["x_end"], expected)
+
+
+def test_a_store_of_another_study_is_refused(tmp_path):
+    my.study(duffing(), grid(), **call).run(tmp_path / "store")
+    with pytest.raises(my.Error, match="options.rtol: .1e-09. in the store, .1e-08. here"):
+        my.study(duffing(), grid(), **{**call, "rtol": 1e-8}).run(tmp_path / "store")
+    other = my.model({x: v, v: x - x**3 - k * v + B * my.sin(my.time)})
+    with pytest.raises(my.Error, match="notes.model"):
+        my.study(other, grid(), **call).run(tmp_path / "store")
+
+
+@pytest.mark.parametrize("change, message", [
+    (dict(start={}), "the initial value of 'v' is missing"),
+    (dict(sweep={k: 1}), "the value of 'B' is missing|initial value"),
+    (dict(time=3), "time is 3"),
+    (dict(keep=["y"]), "'y' is no component"),
+    (dict(keep=dict(ends=[x])), "'ends' is no choice of keep="),
+    (dict(reduce=["mean"]), "give reductions"),
+    (dict(reduce=[my.reduce.Reduction("mean_of", "q_end")]), 'of "q_end", which is not computed'),
+    (dict(start={v: [1, 2]}), "beside a grid"),
+    (dict(start={v: 0, x: 1}), "in the sweep and in start="),
+    (dict(samples=np.zeros((2, 2))), "no sample times for each instance"),
+    (dict(method="runge_kutta_4"), "give step="),
+    (dict(draws=0), "draws= is given 0 values"),
+])
+def test_messages(change, message):
+    with pytest.raises(my.Error, match=message):
+        my.study(duffing(), **{"sweep": grid(), **call, **change}).run()
+
+
+def test_messages_of_axes():
+    with pytest.raises(my.Error, match="is no axis"):
+        my.linspace("a", 1, 2)
+    with pytest.raises(my.Error):
+        my.linspace(0, 1, 0)
+    with pytest.raises(my.Error, match="shared by all instances and has several values"):
+        my.study(duffing(), my.grid({k: 1, B: [1, 2]}), start={x: 1, v: 0}, time=(0, 1))
+    with pytest.raises(my.Error, match="has 3 values and 'state.x' has 2"):
+        my.study(duffing(), {k: [1, 2, 3], B: 1}, start={x: [1, 2], v: 0}, time=(0, 1))
+
+
+def test_an_exception_of_the_progress_function_ends_the_run():
+    def refuse(done, total):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        my.study(duffing(), grid(), **call).run(progress=refuse)
+
+
+def test_an_exception_of_a_sum_arrives():
+    study = my.study(duffing(), grid(), reduce=my.reduce.total("wrong", [], 1, lambda c: 1 / 0), **call)
+    with pytest.raises(ZeroDivisionError):
+        study.run()
+    with pytest.raises(my.Error, match="gives 2 numbers, and 1 are expected"):
+        my.study(duffing(), grid(), reduce=my.reduce.total("wrong", [], 1, lambda c: [1, 2]), **call).run()
+
+
+def test_other_threads_run_meanwhile():
+    study = my.study(duffing(), grid(400), **{**call, "phases": 300})
+    turns, over = [], threading.Event()
+    counter = threading.Thread(target=lambda: [turns.append(1) for _ in iter(lambda: over.wait(0.001), True)])
+    counter.start()
+    study.run(device="cpu:1")
+    over.set()
+    counter.join()
+    assert len(turns) > 3
+
+
+def test_a_gpu_is_refused_for_a_study():
+    with pytest.raises(my.Error, match="studies run on the CPU alone"):
+        my.study(duffing(), grid(), keep=[x], **call).run(device="cuda")

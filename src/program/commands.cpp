@@ -1,0 +1,558 @@
+// SPDX-License-Identifier: MIT
+// The commands of the program.
+#include "program/commands.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "myriad/host/backend/device.hpp"
+#include "myriad/host/core/error.hpp"
+#include "myriad/host/report/progress.hpp"
+#include "myriad/program.hpp"
+#include "myriad/study/export.hpp"
+#include "myriad/study/file_system.hpp"
+#include "myriad/study/metadata.hpp"
+#include "myriad/study/stop_signals.hpp"
+#include "myriad/study/store.hpp"
+#include "myriad/study/study.hpp"
+#include "myriad/version.hpp"
+#include "program/child_process.hpp"
+#include "program/model_compiler.hpp"
+#include "program/model_source.hpp"
+#include "program/study_file.hpp"
+
+namespace myriad::programs {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Files that belong to the program: the flags for models, and the script that draws.
+std::string data_file(const char* name) {
+    std::error_code unknown;
+    const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
+    return (program.parent_path() / MYRIAD_PROGRAM_DATA / name).lexically_normal().string();
+}
+
+std::string read_file(const std::string& path) {
+    const std::optional<std::string> text =
+        fs::is_regular_file(path) ? studies::read_text(studies::file_system::real(), path) : std::nullopt;
+    if (!text) throw input_error(path + ": there is no such file");
+    return *text;
+}
+
+/// For errors that are the input's, with exit status 2.
+template <class Function>
+auto as_input(Function&& function) {
+    try {
+        return function();
+    } catch (const studies::file_error&) {
+        throw;
+    } catch (const input_error&) {
+        throw;
+    } catch (const error& e) {
+        throw input_error(e.what());
+    }
+}
+
+store open_store(const std::string& folder) {
+    return as_input([&] { return store::open(folder); });
+}
+
+std::vector<device> devices_of(const std::vector<std::string>& names) {
+    return as_input([&] {
+        std::vector<device> all;
+        for (const std::string& name : names) all.push_back(device::parse(name));
+        return all;
+    });
+}
+
+void tell(const std::string& text) { std::cerr << text << '\n'; }
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Models
+// ---------------------------------------------------------------------------------------------------------------------
+
+const program_model* registered_model(std::string_view name) {
+    for (const program_model& m : registered_models())
+        if (plain_name(m.names.model()) == plain_name(name)) return &m;
+    return nullptr;
+}
+const program_method* method_of(const program_model& model, std::string_view name, studies::element real) {
+    // The last one: what was compiled now, if a program has the same.
+    for (auto m = model.methods.rbegin(); m != model.methods.rend(); ++m)
+        if (m->real == real && m->name == plain_name(name)) return &*m;
+    return nullptr;
+}
+
+/// The text that follows a key's place.
+input_error wrong_at(const text_place& place, const std::string& text) { return input_error(position(place) + text); }
+
+/// The name of the method, dense where samples are wanted.
+std::string method_wanted(const study_file::model_choice& wanted) {
+    const bool is_dense = plain_name(wanted.method).starts_with("dense<");
+    return wanted.samples && !is_dense ? "dense<" + wanted.method + '>' : wanted.method;
+}
+
+const program_model& find_model(const study_file::model_choice& wanted) {
+    if (wanted.model.empty())
+        throw wrong_at(wanted.model_place, "no model is named: write model = \"...\", or give --model");
+    const program_model* const model = registered_model(wanted.model);
+    if (model == nullptr) {
+        std::vector<std::string> names;
+        for (const program_model& m : registered_models()) names.push_back(plain_name(m.names.model()));
+        throw wrong_at(wanted.model_place, message("model: this program has no model \"", wanted.model, '"',
+                                                   names.empty() ? ": name its header, header = \"model.hpp\""
+                                                                 : suggestion(wanted.model, names)));
+    }
+    return *model;
+}
+const program_method& find_method(const program_model& model, const study_file::model_choice& wanted) {
+    const std::string name = method_wanted(wanted);
+    const program_method* const method = method_of(model, name, wanted.real);
+    if (method != nullptr) return *method;
+    std::vector<std::string> names;
+    for (const program_method& m : model.methods)
+        names.push_back(m.name + (m.real == studies::element::f32 ? " (float)" : ""));
+    throw wrong_at(wanted.method_place,
+                   message("method: ", plain_name(model.names.model()), " was not compiled for ", name,
+                           wanted.real == studies::element::f32 ? " (float)" : "", suggestion(name, names)));
+}
+
+/// The names of the structs that a header defines.
+std::vector<std::string> structs_of(const std::string& text) {
+    std::vector<std::string> names;
+    for (const std::string_view word : {"struct ", "class ", "using "}) {
+        for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos;) {
+            at += word.size();
+            const std::size_t end = text.find_first_of(" \t\n{:;=<", at);
+            if (end != std::string::npos && end > at) names.push_back(text.substr(at, end - at));
+        }
+    }
+    return names;
+}
+
+/// Compiles a model's header and registers it.
+void compile_model(const study_file::model_choice& wanted, const model_source& source, bool quiet) {
+    const std::string name = wanted.model.substr(0, wanted.model.find('<'));
+    const std::vector<std::string> structs = structs_of(source.text);
+    const std::string last = name.substr(name.rfind(':') == std::string::npos ? 0 : name.rfind(':') + 1);
+    if (wanted.model == name && std::find(structs.begin(), structs.end(), last) == structs.end())
+        throw wrong_at(wanted.model_place,
+                       message("model: ", source.name, " defines no \"", wanted.model, '"', suggestion(last, structs)));
+    constexpr const char* methods[] = {"runge_kutta_4", "cash_karp",        "dormand_prince_5", "tsitouras_5",
+                                       "verner_7",      "dormand_prince_8", "rosenbrock_23",    "rodas_5p"};
+    const std::string method = plain_name(wanted.method);
+    const bool is_plain = method.find_first_of("<:") == std::string::npos;
+    if (is_plain && std::find(std::begin(methods), std::end(methods), method) == std::end(methods) &&
+        source.text.find(method) == std::string::npos)
+        throw wrong_at(wanted.method_place,
+                       message("method: there is no method \"", wanted.method, '"',
+                               suggestion(method, std::vector<std::string>(std::begin(methods), std::end(methods)))));
+    try {
+        compile_and_load({source, wanted.model, method_wanted(wanted), wanted.real}, data_file("model_flags.txt"),
+                         [&](const std::string& text) {
+                             if (!quiet) tell(text);
+                         });
+    } catch (const error& e) {
+        throw wrong_at(wanted.header_place, e.what());
+    }
+}
+
+void show_list(const char* what, const std::vector<std::string>& names) {
+    if (names.empty()) return;
+    std::string line = message("  ", what, ':');
+    line.resize(std::max<std::size_t>(line.size() + 1, 22), ' ');
+    for (std::size_t i = 0; i < names.size(); ++i) line += message(i > 0 ? ", " : "", names[i]);
+    std::cout << line << '\n';
+}
+
+void show_model(const program_model& model) {
+    using enum studies::component_kind;
+    std::cout << plain_name(model.names.model()) << '\n';
+    constexpr std::pair<studies::component_kind, const char*> kinds[] = {
+        {state, "states"},          {parameter, "parameters"},
+        {shared, "shared"},         {shared_integer, "shared integers"},
+        {accessory, "accessories"}, {integer_accessory, "integer accessories"}};
+    for (const auto& [kind, what] : kinds) {
+        std::vector<std::string> names;
+        for (const studies::component& c : model.names.all())
+            if (c.kind == kind) names.push_back(c.name.empty() ? std::to_string(c.number) : c.name);
+        show_list(what, names);
+    }
+    std::vector<std::string> events;
+    for (std::size_t e = 0; e < model.events.size(); ++e)
+        events.push_back(model.events[e].empty() ? std::to_string(e) : model.events[e]);
+    show_list("events", events);
+    std::vector<std::string> methods;
+    for (const program_method& m : model.methods)
+        methods.push_back(m.name + (m.real == studies::element::f32 ? " (float)" : ""));
+    show_list("methods", methods);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Studies
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// What the command line says of a run.
+struct run_request {
+    std::string file, folder, model, header;
+    std::vector<std::string> devices;
+    std::string exported;
+    bool only_check = false, checksums = false, quiet = false;
+};
+
+/// Files of the program in the folder of results.
+std::string kept_study(const std::string& folder) { return folder + "/myriad/study.toml"; }
+std::string kept_model(const std::string& folder) { return folder + "/myriad/model.hpp"; }
+
+void keep_file(const std::string& path, const std::string& text) {
+    studies::file_system& files = studies::file_system::real();
+    if (fs::is_regular_file(path) && studies::read_text(files, path) == text) return;
+    studies::write_text(files, message(path, ".part-", ::getpid()), path, text);
+}
+
+/// A header as `kept_model` has it.
+model_source kept_source(const std::string& path) {
+    model_source source{"model.hpp", read_file(path)};
+    const std::size_t begin = source.text.find('"'), end = source.text.find('"', begin + 1);
+    if (source.text.starts_with("#line 1 \"") && end != std::string::npos)
+        source.name = source.text.substr(begin + 1, end - begin - 1);
+    return source;
+}
+
+void export_results(const studies::results& from, const std::string& path, const std::string& variable) {
+    const std::string kind = fs::path(path).extension().string();
+    if (kind != ".npy" && !variable.empty())
+        throw input_error("--variable is for NPY files, which hold one variable: others hold all");
+    if (kind == ".nc") return export_netcdf(from, path);
+    if (kind == ".csv") return export_csv(from, path);
+    if (kind != ".npy") throw input_error(path + ": the name must end in .nc (netCDF), .csv or .npy");
+    if (variable.empty()) throw input_error("an NPY file holds one variable: name it by --variable");
+    as_input([&] { return from.content().find(variable); });
+    export_npy(from, variable, path);
+}
+
+/// A path that a file names, which is from the folder of that file.
+std::string beside(const std::string& file, const std::string& path) {
+    return (fs::path(file).parent_path() / path).lexically_normal().string();
+}
+
+/// Runs a study; the header is there already when it goes on.
+int run_study(const run_request& asked, study_file& file, const std::string& text, const std::string& folder,
+              study_file::model_choice wanted, const std::optional<model_source>& header) {
+    if (header) compile_model(wanted, *header, asked.quiet);
+    const program_model& model = find_model(wanted);
+    any_study study(find_method(model, wanted).make());
+    file.describe(study, model, devices_of(asked.devices));
+    if (header) study.note("source of the model", header->digest());
+    studies::store_options options = file.store_options();
+    if (asked.checksums) options.check = studies::resume_check::checksums;
+    if (asked.only_check) {
+        try {
+            study.check();
+        } catch (const error& e) {
+            throw file.placed_error(e);
+        }
+        std::cout << study.size() << " instances\n";
+        return 0;
+    }
+    study.store(folder, options);
+    study.stop_on_signals = true;
+    if (!asked.quiet) study.progress = progress_line();
+    try {
+        study.check();
+    } catch (const studies::file_error&) {
+        throw;
+    } catch (const error& e) {
+        throw file.placed_error(e);
+    }
+    keep_file(kept_study(folder), text);
+    if (header) keep_file(kept_model(folder), header->text);
+
+    const study_result result = study.run();
+    std::cout << result << "results: " << folder << '\n';
+    if (!result.complete) {
+        const int signal = studies::stop_signals::last();
+        tell(message("stopped: `myriad resume ", folder, "` goes on"));
+        return signal > 0 ? 128 + signal : 1;
+    }
+    if (!asked.exported.empty()) export_results(result.results(), asked.exported, "");
+    return 0;
+}
+
+int run(const run_request& asked) {
+    const std::string text = read_file(asked.file);
+    study_file file(asked.file, text);
+    study_file::model_choice wanted = file.model();
+    const auto choose = [](std::string& to, const std::string& given, const text_place& place, const char* what) {
+        if (given.empty()) return;
+        if (!to.empty() && to != given)
+            throw wrong_at(place, message(what, " is ", to, ", and --", what, " is ", given, ": give one of them"));
+        to = given;
+    };
+    choose(wanted.model, asked.model, wanted.model_place, "model");
+    std::optional<model_source> header;
+    if (!wanted.header.empty() && !asked.header.empty())
+        throw wrong_at(wanted.header_place, "header is given here and as --header: give one of them");
+    const std::string path = asked.header.empty() ? beside(asked.file, wanted.header) : asked.header;
+    if (!wanted.header.empty() || !asked.header.empty()) {
+        try {
+            header = read_model_source(path);
+        } catch (const error& e) {
+            throw wrong_at(wanted.header_place, e.what());
+        }
+        if (wanted.model.empty())
+            throw wrong_at(wanted.header_place, "no model of the header is named: write model = \"...\"");
+    }
+    std::string folder = asked.folder;
+    if (folder.empty() && !file.folder().empty()) folder = beside(asked.file, file.folder());
+    if (folder.empty()) folder = fs::path(asked.file).stem().string();
+    return run_study(asked, file, text, folder, wanted, header);
+}
+
+int resume(const run_request& asked) {
+    const store there = open_store(asked.folder);
+    const std::string folder = there.folder();
+    const std::string path = kept_study(folder);
+    if (!fs::is_regular_file(path))
+        throw input_error(message("the folder ", folder,
+                                  " was not made by `myriad run`: start the program that made it "
+                                  "again, which goes on"));
+    const std::string text = read_file(path);
+    study_file file(path, text);
+    study_file::model_choice wanted = file.model();
+    if (wanted.model.empty()) {
+        for (const studies::attribute& a : studies::attributes_of(there.content().description))
+            if (a.name == "model") wanted.model = std::get<std::string>(a.value);
+    }
+    std::optional<model_source> header;
+    if (fs::is_regular_file(kept_model(folder))) header = kept_source(kept_model(folder));
+    return run_study(asked, file, text, folder, wanted, header);
+}
+
+int list(const std::vector<std::string>& files, const std::string& model) {
+    for (const std::string& path : files) {
+        study_file::model_choice wanted;
+        std::string header = path;
+        std::optional<study_file> file;
+        if (fs::path(path).extension() == ".toml") {
+            file.emplace(path, read_file(path));
+            wanted = file->model();
+            header = wanted.header.empty() ? "" : beside(path, wanted.header);
+        }
+        if (!model.empty()) wanted.model = model;
+        if (!header.empty()) {
+            const model_source source = as_input([&] { return read_model_source(header); });
+            if (wanted.model.empty()) throw input_error(path + ": name the model in it, by --model");
+            compile_model(wanted, source, false);
+        }
+        show_model(find_model(wanted));
+    }
+    if (!files.empty()) return 0;
+    for (const program_model& m : registered_models()) show_model(m);
+    if (registered_models().empty())
+        std::cout << "This program has no models of its own: `myriad list model.hpp --model NAME` shows those of a "
+                     "header, and `header = \"model.hpp\"` in a study's file compiles them.\n";
+    return 0;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Results
+// ---------------------------------------------------------------------------------------------------------------------
+
+std::string text_of(const studies::attribute& a) {
+    const auto joined = [](const auto& list) {
+        std::string all;
+        for (const auto value : list) all += message(all.empty() ? "" : ", ", value);
+        return message('[', all, ']');
+    };
+    if (const auto* const text = std::get_if<std::string>(&a.value)) return *text;
+    if (const auto* const number = std::get_if<double>(&a.value)) return studies::exact_text(*number);
+    if (const auto* const number = std::get_if<std::int64_t>(&a.value)) return std::to_string(*number);
+    if (const auto* const list = std::get_if<std::vector<double>>(&a.value)) return joined(*list);
+    return joined(std::get<std::vector<std::int64_t>>(a.value));
+}
+
+std::string shape_text(const studies::layout& content, const studies::variable& v) {
+    std::string text;
+    const auto add = [&](const std::string& name, std::int64_t length) {
+        text += message(text.empty() ? "" : ", ", name, " = ", length);
+    };
+    if (v.extent == studies::along::instances)
+        for (const studies::dimension& d : content.axes) add(d.name, d.length);
+    for (const studies::dimension& d : v.inner) add(d.name, d.length);
+    return text.empty() ? "one value" : text;
+}
+
+int info(const std::string& folder, bool verify) {
+    store there = open_store(folder);
+    const studies::layout& content = there.content();
+    const studies::store_progress now = there.progress();
+    std::cout << there.folder() << '\n'
+              << message("done: ", now.chunks, " of ", now.all_chunks, " chunks, ", now.instances, " of ",
+                         now.all_instances, " instances; ", now.seconds, " s of computing\n");
+    for (const auto& [name, count] : now.statuses) std::cout << message("  ", name, ": ", count, '\n');
+    for (const std::string& device : there.devices()) std::cout << "device: " << device << '\n';
+    std::cout << "variables:\n";
+    for (const studies::variable& v : content.variables)
+        if (v.extent != studies::along::chunks)
+            std::cout << message("  ", v.name, ": ", studies::name_of(v.type), ", ", shape_text(content, v), '\n');
+    std::cout << "study:\n";
+    for (const studies::attribute& a : studies::attributes_of(content.description)) {
+        std::string text = text_of(a);
+        if (text.size() > 200) text = text.substr(0, 200) + " ...";
+        std::cout << message("  ", a.name, ": ", text, '\n');
+    }
+    if (!verify) return 0;
+    const std::vector<studies::damage> damaged = there.verify();
+    for (const studies::damage& d : damaged)
+        tell(message("damaged: ", d.chunk >= 0 ? message("chunk ", d.chunk, ", ") : "", d.variable, ": ", d.reason));
+    if (damaged.empty()) std::cout << "all checksums are right\n";
+    return damaged.empty() ? 0 : 1;
+}
+
+/// What `plot` passes on to its script.
+struct plot_request {
+    std::vector<std::string> sources, at;
+    std::string output, variable, over, value;
+};
+
+/// A Python that can draw: the first on the PATH may not be the one that the system's packages are for.
+std::string find_python(bool is_folder) {
+    const char* const imports = is_folder ? "import matplotlib" : "import matplotlib, netCDF4";
+    for (const char* python : {"python3", "/usr/bin/python3"})
+        if (child_process({python, "-c", imports}, "/dev/null").wait() == 0) return python;
+    throw error(message("pictures need a Python 3 with matplotlib", is_folder ? "" : " and netCDF4",
+                        ": install it (Debian, Ubuntu: apt-get install python3-matplotlib",
+                        is_folder ? ")" : " python3-netcdf4), or draw the folder of the results"));
+}
+
+int plot(const plot_request& asked) {
+    const std::string script = data_file("plot.py");
+    if (!fs::is_regular_file(script)) throw error("this program draws nothing, as " + script + " is missing");
+    if (!asked.output.empty() && asked.sources.size() > 1)
+        throw input_error("--output names one picture, and several results are given");
+    for (std::string source : asked.sources) {
+        while (source.size() > 1 && source.back() == '/') source.pop_back();
+        const std::string picture =
+            !asked.output.empty() ? asked.output : fs::path(source).replace_extension(".png").string();
+        const bool is_folder = fs::is_directory(source);
+        std::vector<std::string> words{find_python(is_folder), "-B", script, source, picture};
+        for (const auto& [option, value] :
+             {std::pair("--variable", asked.variable), {"--over", asked.over}, {"--value", asked.value}})
+            if (!value.empty()) words.push_back(message(option, '=', value));
+        for (const std::string& place : asked.at) words.push_back("--at=" + place);
+        if (const int status = child_process(words).wait(); status != 0) return status == 2 ? 2 : 1;
+        std::cout << "picture: " << picture << '\n';
+    }
+    return 0;
+}
+
+int parse_and_run(int argc, const char* const* argv) {
+    CLI::App app("Parameter studies of ordinary differential equations, as files describe them");
+    app.set_version_flag("--version", MYRIAD_VERSION);
+    app.require_subcommand(1);
+    app.footer("Exit status: 0 done, 1 a failure, 2 bad input, 130 and 143 stopped by SIGINT and SIGTERM.");
+    run_request asked;
+    plot_request picture;
+    std::vector<std::string> files;
+    std::string target, variable;
+    bool verify = false;
+    int status = 0;
+
+    CLI::App* const list_command = app.add_subcommand("list", "Show models and their components");
+    list_command->add_option("FILE", files, "Studies or headers of models; none: the models of this program");
+    list_command->add_option("--model", asked.model, "The model of a header");
+    list_command->callback([&] { status = list(files, asked.model); });
+
+    const auto add_run_options = [&](CLI::App* command) {
+        command
+            ->add_option("--device", asked.devices, "Where to compute, instead of what the file says; may be repeated")
+            ->type_name("NAME");
+        command->add_option("--export", asked.exported, "When all is done, write a file: .nc or .csv")
+            ->type_name("FILE");
+        command->add_flag("--quiet", asked.quiet, "Show no progress");
+    };
+    CLI::App* const run_command = app.add_subcommand("run", "Run a study, or go on with it");
+    run_command->add_option("STUDY", asked.file, "File that describes the study, in TOML")->required();
+    run_command->add_option("--store", asked.folder, "Folder of the results, instead of what the file says")
+        ->type_name("FOLDER");
+    run_command->add_option("--model", asked.model, "Its model, if the file names none")->type_name("NAME");
+    run_command->add_option("--header", asked.header, "The model's header, if the file names none")->type_name("FILE");
+    run_command->add_flag("--check", asked.only_check, "Only say whether the file is right, and how many instances");
+    add_run_options(run_command);
+    run_command->callback([&] { status = run(asked); });
+
+    CLI::App* const resume_command = app.add_subcommand("resume", "Go on with the study in a folder");
+    resume_command->add_option("FOLDER", asked.folder, "Folder of the results")->required();
+    resume_command->add_flag("--checksums", asked.checksums, "Read all that is there, and do what is damaged again");
+    add_run_options(resume_command);
+    resume_command->callback([&] { status = resume(asked); });
+
+    CLI::App* const info_command = app.add_subcommand("info", "Show what is in a folder of results");
+    info_command->add_option("FOLDER", asked.folder, "Folder of the results")->required();
+    info_command->add_flag("--verify", verify, "Compare all checksums too");
+    info_command->callback([&] { status = info(asked.folder, verify); });
+
+    CLI::App* const export_command = app.add_subcommand("export", "Write results as one file");
+    export_command->add_option("FOLDER", asked.folder, "Folder of the results")->required();
+    export_command->add_option("FILE", target, "File to write: .nc (netCDF-4), .csv or .npy")->required();
+    export_command->add_option("--variable", variable, "The variable of an NPY file")->type_name("NAME");
+    export_command->callback([&] { export_results(open_store(asked.folder), target, variable); });
+
+    CLI::App* const plot_command = app.add_subcommand("plot", "Draw diagrams over one or two parameters");
+    plot_command->add_option("RESULTS", picture.sources, "Folders of results, or netCDF files")->required();
+    plot_command->add_option("--output", picture.output, "The picture (default: RESULTS.png)")->type_name("PNG");
+    plot_command->add_option("--variable", picture.variable, "What to show (default: the first one)")
+        ->type_name("NAME");
+    plot_command->add_option("--over", picture.over, "One axis, or two with a comma (default: the longest ones)")
+        ->type_name("AXES");
+    plot_command->add_option("--at", picture.at, "For another axis the value nearest to this; may be repeated")
+        ->type_name("AXIS=VALUE");
+    plot_command
+        ->add_option("--value", picture.value,
+                     "Over two axes, of several phases or starts: last, minimum, maximum, mean, or distinct (how many "
+                     "values there are)")
+        ->type_name("WHICH");
+    plot_command->callback([&] { status = plot(picture); });
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 2;
+    }
+    return status;
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error that writers report
+    int status = 1;
+    try {
+        status = parse_and_run(argc, argv);
+    } catch (const input_error& e) {
+        tell(e.what());
+        status = 2;
+    } catch (const std::exception& e) {
+        tell(e.what());
+    }
+    if (std::cout.flush() && std::fflush(stdout) == 0) return status;
+    tell("standard output cannot be written");
+    return status == 0 ? 1 : status;
+}
+
+}  // namespace myriad::programs

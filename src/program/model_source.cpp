@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Headers of models as one text.
+#include "program/model_source.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include "myriad/host/core/error.hpp"
+
+namespace myriad::programs {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    require(!fs::is_directory(path) && file.good() && text.good(), "the header ", path.string(),
+            " cannot be read: give the path of a file with the model");
+    return text.str();
+}
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t\r");
+    if (begin == std::string_view::npos) return {};
+    return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+}
+
+/// The words of a directive without the #: "include "x.hpp"" of `#  include "x.hpp"`; empty for another line.
+std::string_view directive(std::string_view line) {
+    line = trimmed(line);
+    if (line.empty() || line[0] != '#') return {};
+    return trimmed(line.substr(1));
+}
+
+/// The file that a line includes in quotes; empty for another line.
+std::string_view quoted_file(std::string_view line) {
+    std::string_view words = directive(line);
+    if (!words.starts_with("include")) return {};
+    words = trimmed(words.substr(std::string_view("include").size()));
+    if (words.empty() || words[0] != '"') return {};
+    words.remove_prefix(1);
+    return words.substr(0, words.find('"'));
+}
+
+class joiner {
+public:
+    explicit joiner(const fs::path& header) : folder_(fs::weakly_canonical(header).parent_path()) {}
+
+    void add(const fs::path& path, int depth = 0) {
+        require(depth < 100, path.string(), " includes itself: put #pragma once at its beginning");
+        const fs::path place = fs::weakly_canonical(path);
+        if (once_.contains(place)) return;
+        const std::string text = contents_of(path);
+        const std::string name = place.lexically_relative(folder_).string();
+        say_line(1, name);
+        int number = 0;
+        for (std::size_t at = 0; at < text.size();) {
+            const std::size_t end = std::min(text.find('\n', at), text.size());
+            const std::string_view line(text.data() + at, end - at);
+            at = end + 1;
+            ++number;
+            if (directive(line) == "pragma once") {
+                once_.insert(place);
+                joined += '\n';
+                continue;
+            }
+            const fs::path included = path.parent_path() / quoted_file(line);
+            if (quoted_file(line).empty() || !fs::is_regular_file(included)) {
+                joined += line;
+                joined += '\n';
+                continue;
+            }
+            add(included, depth + 1);
+            say_line(number + 1, name);
+        }
+    }
+
+    std::string joined;
+
+private:
+    void say_line(int number, const std::string& name) { joined += message("#line ", number, " \"", name, "\"\n"); }
+
+    fs::path folder_;
+    std::set<fs::path> once_;
+};
+
+}  // namespace
+
+model_source read_model_source(const std::string& path) {
+    const fs::path header = fs::absolute(path);
+    joiner all(header);
+    all.add(header);
+    return {header.filename().string(), std::move(all.joined)};
+}
+
+std::string text_hash(std::string_view text) {
+    std::uint64_t hash = 0xcbf29ce484222325;
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    std::string digits(16, '0');
+    for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
+    return digits;
+}
+
+std::string model_source::digest() const {
+    std::string own;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+        if (!text.substr(at, 6).starts_with("#line ")) own.append(text, at, end - at);
+        at = end;
+    }
+    return text_hash(own);
+}
+
+}  // namespace myriad::programs

@@ -1,0 +1,281 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Draws diagrams of a study over one or two of its parameters: what `myriad plot` runs.
+
+Usage: plot.py RESULTS PNG [--variable=NAME] [--over=AXIS[,AXIS]] [--at=AXIS=VALUE]... [--value=WHICH]
+
+RESULTS is the folder of a study, or a netCDF file. Over one axis, every value is a dot: all phases, and all places of
+axes that --at does not fix. Over two, colours show one value for each place, of several the one that --value says.
+"""
+
+import argparse
+import json
+import os
+import sys
+
+import figure as figures
+
+REDUCTIONS = ("last", "minimum", "maximum", "mean", "distinct")
+CHECKSUM_BYTES = 4
+
+
+class Folder:
+    """Results in a folder: arrays of Zarr, divided into files along their outermost dimension. Files that are not there
+    yet have the fill value."""
+
+    def __init__(self, numpy, path):
+        self.numpy, self.path = numpy, path
+        try:
+            with open(os.path.join(path, "zarr.json"), encoding="utf-8") as file:
+                group = json.load(file)
+            self.arrays = group["consolidated_metadata"]["metadata"]
+            description = group["attributes"]["myriad"]
+        except (OSError, KeyError, ValueError) as error:
+            raise figures.PlotError(f"{path} is no folder of a study: {getattr(error, 'strerror', None) or error}") \
+                from error
+        self.dimensions = dict(description["axes"])  # those of the grid, in place of the dimension "instance"
+        self.grid = list(self.dimensions)
+        self.aside = {v["name"] for v in description["variables"] if v["along"] == "chunks" or v["role"] != "data"}
+
+    def names(self):
+        return [name for name in self.arrays if "/" not in name and "shape" in self.arrays[name]]
+
+    def dims(self, name):
+        dims = list(self.arrays[name].get("dimension_names") or [])
+        return (list(self.dimensions) + dims[1:]) if dims[:1] == ["instance"] else dims
+
+    def attributes(self, name):
+        return self.arrays[name].get("attributes", {})
+
+    def read(self, name):
+        numpy, array = self.numpy, self.arrays[name]
+        shape, chunk = array["shape"], array["chunk_grid"]["configuration"]["chunk_shape"]
+        kind = numpy.dtype(array["data_type"])
+        fill = array["fill_value"]
+        values = numpy.full(shape, numpy.nan if fill == "NaN" else fill, kind)
+        separator = array["chunk_key_encoding"]["configuration"].get("separator", "/")
+        inner = separator.join(["0"] * (len(shape) - 1))
+        for number in range(-(-shape[0] // chunk[0]) if shape else 1):
+            key = separator.join(["c", str(number)] + ([inner] if inner else [])) if shape else "c"
+            path = os.path.join(self.path, name, key)
+            if not os.path.exists(path):
+                continue
+            stored = numpy.fromfile(path, numpy.uint8)[:-CHECKSUM_BYTES].view(kind)
+            if not shape:
+                return stored[0]
+            part = values[number * chunk[0]:(number + 1) * chunk[0]]
+            part[...] = stored.reshape(chunk)[:len(part)]
+        if (array.get("dimension_names") or [""])[0] == "instance":
+            values = values.reshape(list(self.dimensions.values()) + shape[1:])
+        return values
+
+
+class File:
+    """Results in a netCDF file."""
+
+    def __init__(self, _numpy, path):
+        self.data = figures.open_netcdf(path, "myriad export", [])
+        dimensions = json.loads(getattr(self.data, "axes.dimensions", "[]"))
+        self.grid = [dimension["name"] for dimension in dimensions]
+        self.aside = {place for variable in self.data.variables.values()
+                      for place in getattr(variable, "coordinates", "").split()}
+
+    def names(self):
+        return list(self.data.variables)
+
+    def dims(self, name):
+        return list(self.data.variables[name].dimensions)
+
+    def attributes(self, name):
+        variable = self.data.variables[name]
+        return {key: variable.getncattr(key) for key in variable.ncattrs()}
+
+    def read(self, name):
+        return self.data.variables[name][...]
+
+
+def choose_variable(data, wanted):
+    """The variable to draw: the first result that has an axis of the grid, or the one that is named."""
+    coordinates = {name for name in data.names() if data.dims(name) == [name]}
+    usable = [name for name in data.names()
+              if name not in coordinates and any(axis in data.names() for axis in data.dims(name))]
+    if wanted is not None:
+        if wanted not in data.names():
+            raise figures.PlotError(f"there is no variable {wanted}: there are {', '.join(usable)}")
+        return wanted
+    results = [name for name in usable if name not in data.aside]
+    of_grid = [name for name in results if len(data.dims(name)) > 1 or data.dims(name)[0] in data.grid]
+    results.sort(key=lambda name: (name == "status", name not in of_grid))
+    if not results:
+        raise figures.PlotError("the results have no variable over an axis")
+    return results[0]
+
+
+def label_of(data, name):
+    unit = data.attributes(name).get("units") if name in data.names() else None
+    return f"{name} ({unit})" if unit else name
+
+
+def fix_axes(numpy, data, values, dims, places):
+    """Takes the place nearest to a value along some axes."""
+    for place in places:
+        axis, _, text = place.partition("=")
+        if axis not in dims:
+            raise figures.PlotError(f"--at {place}: there is no axis {axis}: there are {', '.join(dims)}")
+        try:
+            value = float(text)
+        except ValueError:
+            raise figures.PlotError(f"--at {place}: write a number, as {axis}=0.5") from None
+        along = axis_values(numpy, data, axis, values.shape[dims.index(axis)])
+        values = values.take(int(numpy.abs(along - value).argmin()), axis=dims.index(axis))
+        dims = [name for name in dims if name != axis]
+    return values, dims
+
+
+def axis_values(numpy, data, axis, length):
+    return data.read(axis) if axis in data.names() else numpy.arange(length, dtype=float)
+
+
+def choose_axes(data, values, dims, wanted):
+    """The axes to draw over: the named ones, or the longest ones that have coordinates, two if there are."""
+    if wanted is None:
+        axes = [name for name in dims if name in data.names() and name not in ("phase", "sample")]
+        axes.sort(key=lambda name: -values.shape[dims.index(name)])
+        axes = [name for name in axes[:2] if values.shape[dims.index(name)] > 1] or axes[:1]
+        return sorted(axes, key=dims.index)
+    axes = wanted.split(",")
+    for axis in axes:
+        if axis not in dims:
+            raise figures.PlotError(f"--over {wanted}: there is no axis {axis}: there are {', '.join(dims)}")
+    if len(axes) not in (1, 2) or len(set(axes)) != len(axes):
+        raise figures.PlotError(f"--over {wanted}: give one axis or two")
+    return axes
+
+
+def is_geometric(numpy, values):
+    """Whether values have a constant ratio, so that their axis is logarithmic."""
+    if len(values) < 3 or not (numpy.all(values > 0) or numpy.all(values < 0)):
+        return False
+    ratios = numpy.log(values[1:] / values[:-1])
+    return bool(abs(ratios[0]) > 1e-3 and numpy.allclose(ratios, ratios[0], rtol=1e-6))
+
+
+def distinct(numpy, row):
+    """How many values differ by more than a thousandth of their range over all, or of their size."""
+    row = numpy.sort(row[numpy.isfinite(row)])
+    if not row.size:
+        return numpy.nan
+    return 1 + int(numpy.count_nonzero(numpy.diff(row) > 1e-3 * max(1e-300, float(numpy.abs(row).max()))))
+
+
+def reduce_rows(numpy, rows, which):
+    """One number for each row; phases that an instance did not reach are NaN."""
+    if rows.shape[-1] == 1:
+        return rows[..., 0]
+    if which == "distinct":
+        return numpy.apply_along_axis(lambda row: distinct(numpy, row), -1, rows)
+    if which == "last":
+        return rows[..., -1]
+    masked = numpy.ma.masked_invalid(rows)
+    take = {"minimum": masked.min, "maximum": masked.max, "mean": masked.mean}[which]
+    return numpy.ma.filled(take(axis=-1), numpy.nan)
+
+
+def draw_dots(pyplot, numpy, across, rows):
+    figure, axis = pyplot.subplots(figsize=(7.2, 4.4))
+    x = numpy.repeat(across, rows.shape[1])
+    y = rows.ravel()
+    shown = numpy.isfinite(y)
+    if not shown.any():
+        raise figures.PlotError("there is no finite value to draw")
+    size = float(numpy.clip(60 / shown.sum() ** 0.4, 0.35, 2.5))
+    axis.plot(x[shown], y[shown], linestyle="none", marker="o", markersize=size, markeredgewidth=0,
+              color=figures.BLUE, rasterized=True)
+    axis.set_xlim(*sorted((across[0], across[-1])) if len(across) > 1 else (across[0] - 0.5, across[0] + 0.5))
+    axis.set_ylim(*figures.limits(numpy, y))
+    return figure, axis
+
+
+def draw_map(pyplot, numpy, across, up, values, names):
+    figure, axis = pyplot.subplots(figsize=(6.4, 4.8))
+    axis.set_facecolor("0.85")
+    x, y = ((figures.edges_of_ratios if is_geometric(numpy, side) else figures.edges)(numpy, side)
+            for side in (across, up))
+    if names is None:
+        if not numpy.isfinite(values).any():
+            raise figures.PlotError("there is no finite value to draw")
+        cells = axis.pcolormesh(x, y, numpy.ma.masked_invalid(values).T, cmap="viridis", rasterized=True)
+        return figure, axis, figure.colorbar(cells, ax=axis)
+    from matplotlib.colors import BoundaryNorm, ListedColormap  # pylint: disable=import-outside-toplevel
+    present = numpy.unique(values)
+    colours = ListedColormap([figures.COLOURS[i % len(figures.COLOURS)] for i in range(len(present))])
+    norm = BoundaryNorm(numpy.arange(len(present) + 1) - 0.5, len(present))
+    cells = axis.pcolormesh(x, y, numpy.searchsorted(present, values).T, cmap=colours, norm=norm, rasterized=True)
+    bar = figure.colorbar(cells, ax=axis, ticks=numpy.arange(len(present)))
+    bar.ax.set_yticklabels([names.get(int(value), str(value)) for value in present])
+    bar.ax.minorticks_off()
+    return figure, axis, bar
+
+
+def draw(pyplot, numpy, data, asked):
+    """The figure."""
+    variable = choose_variable(data, asked.variable)
+    values, dims = fix_axes(numpy, data, numpy.asarray(data.read(variable)), data.dims(variable), asked.at)
+    if not dims:
+        raise figures.PlotError(f"{variable} is one number: name a variable with an axis")
+    over = choose_axes(data, values, dims, asked.over)
+    if not over:
+        over = dims[:1]
+    attributes = data.attributes(variable)
+    names = None
+    if "flag_meanings" in attributes:
+        flags = numpy.atleast_1d(attributes["flag_values"])
+        names = dict(zip((int(flag) for flag in flags), attributes["flag_meanings"].split()))
+    elif values.dtype.kind in "iu":
+        fill = attributes.get("_FillValue")
+        values = numpy.where(values == fill, numpy.nan, values) if fill is not None else values.astype(float)
+    order = [dims.index(axis) for axis in over]
+    values = values.transpose(order + [i for i in range(len(dims)) if i not in order])
+    sides = [axis_values(numpy, data, axis, values.shape[i]) for i, axis in enumerate(over)]
+    rows = values.reshape(values.shape[:len(over)] + (-1,))
+    if len(over) == 1:
+        figure, axis = draw_dots(pyplot, numpy, sides[0], rows.astype(float))
+        axis.set_ylabel(label_of(data, variable))
+    else:
+        reduced = reduce_rows(numpy, rows, asked.value if names is None else "last")
+        figure, axis, bar = draw_map(pyplot, numpy, *sides, reduced, names)
+        of_several = rows.shape[-1] > 1 and names is None
+        bar.set_label(f"{asked.value} of {label_of(data, variable)}" if of_several else label_of(data, variable))
+        axis.set_ylabel(label_of(data, over[1]))
+        if is_geometric(numpy, sides[1]):
+            axis.set_yscale("log")
+            figures.label_ticks(pyplot, axis.yaxis)
+    axis.set_xlabel(label_of(data, over[0]))
+    if is_geometric(numpy, sides[0]):
+        axis.set_xscale("log")
+        figures.label_ticks(pyplot, axis.xaxis)
+    figure.tight_layout()
+    return figure
+
+
+def main():
+    """Reads the arguments; exit status 2 if something is missing or wrong."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results")
+    parser.add_argument("picture")
+    parser.add_argument("--variable")
+    parser.add_argument("--over")
+    parser.add_argument("--at", action="append", default=[])
+    parser.add_argument("--value", choices=REDUCTIONS, default="last")
+    asked = parser.parse_args()
+    try:
+        pyplot, numpy = figures.import_libraries()
+        data = (Folder if os.path.isdir(asked.results) else File)(numpy, asked.results)
+        figures.save(draw(pyplot, numpy, data, asked), asked.picture, dpi=200)
+    except figures.PlotError as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// A table of a TOML file while it is read: values of the wanted types, and errors that name the place and the key. Host
+// code only.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "program/toml_value.hpp"
+
+namespace myriad::programs {
+
+/// `"relativ_tolerance": did you mean "relative_tolerance"?`: the choice that is most like a name, as the end of a
+/// message; without one that is at all like it, all choices.
+std::string suggestion(std::string_view name, const std::vector<std::string>& choices);
+
+/// A number: as such, or a multiple of pi as "2 pi" or "pi/2".
+double number_in(const toml_value& v, std::string_view key);
+/// A whole number; also one as 1e6.
+std::int64_t integer_in(const toml_value& v, std::string_view key);
+/// A string.
+const std::string& text_in(const toml_value& v, std::string_view key);
+/// true or false.
+bool truth_in(const toml_value& v, std::string_view key);
+/// The items of an array; another value is the only one.
+std::vector<const toml_value*> items_in(const toml_value& v);
+/// An array of numbers.
+std::vector<double> numbers_in(const toml_value& v, std::string_view key);
+/// An array of strings, or a single one.
+std::vector<std::string> texts_in(const toml_value& v, std::string_view key);
+
+/// "file:line:column: key: " and the text, as an error.
+input_error wrong(const toml_value& v, std::string_view key, std::string_view text);
+/// Calls a function, and gives errors that it throws the place and the key.
+void placed(const toml_value& v, std::string_view key, const std::function<void()>& function);
+
+/// A table, whose keys are asked for one after the other. What was not asked for is unknown.
+class section {
+public:
+    /// `path` is its name in messages; empty: the document.
+    section(const toml_value& table, std::string path);
+
+    /// The value of a key; null if it is not there.
+    const toml_value* find(std::string_view key);
+    /// Calls `function(value, name of the key)` if the key is there.
+    template <class Function>
+    void with(std::string_view key, Function&& function) {
+        if (const toml_value* const v = find(key)) function(*v, full(key));
+    }
+    void read(std::string_view key, double& to) {
+        with(key, [&](const toml_value& v, const std::string& name) { to = number_in(v, name); });
+    }
+    void read(std::string_view key, std::int64_t& to) {
+        with(key, [&](const toml_value& v, const std::string& name) { to = integer_in(v, name); });
+    }
+    void read(std::string_view key, bool& to) {
+        with(key, [&](const toml_value& v, const std::string& name) { to = truth_in(v, name); });
+    }
+    void read(std::string_view key, std::string& to) {
+        with(key, [&](const toml_value& v, const std::string& name) { to = text_in(v, name); });
+    }
+    /// One of some words.
+    template <class T>
+    void read(std::string_view key, T& to, std::initializer_list<std::pair<const char*, T>> choices) {
+        with(key, [&](const toml_value& v, const std::string& name) {
+            const std::string& word = text_in(v, name);
+            std::vector<std::string> words;
+            for (const auto& [choice, value] : choices) {
+                if (word == choice) {
+                    to = value;
+                    return;
+                }
+                words.emplace_back(choice);
+            }
+            throw wrong(v, name, message('"', word, "\" is none of its values", suggestion(word, words)));
+        });
+    }
+    /// A key's name in messages, with those of the tables that it is in.
+    std::string full(std::string_view key) const;
+    const toml_value& whole() const { return table_; }
+    /// Throws `input_error` for a key that was not asked for.
+    void finish() const;
+
+private:
+    const toml_value& table_;
+    std::string path_;
+    std::vector<std::string> asked_;
+};
+
+}  // namespace myriad::programs

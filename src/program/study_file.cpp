@@ -1,0 +1,528 @@
+// SPDX-License-Identifier: MIT
+// From TOML to a study.
+#include "program/study_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+#include "myriad/host/backend/device.hpp"
+
+namespace myriad::programs {
+
+using studies::component;
+using studies::component_kind;
+using studies::component_names;
+using enum studies::component_kind;
+
+namespace {
+
+constexpr std::string_view axis_choices =
+    "must be an array of values, or one of {linspace = [first, last, number]}, {logspace = [first, last, number]}, "
+    "{values = [...]}, {random_uniform = [from, to]} and {random_normal = [mean, deviation]}";
+
+/// The arguments of one of the functions that make axes.
+std::vector<double> arguments_in(const toml_value& v, const std::string& key, std::size_t count, const char* form) {
+    const auto* const array = v.as<toml_value::array>();
+    if (array == nullptr || array->size() != count) throw wrong(v, key, message("must be ", form));
+    return numbers_in(v, key);
+}
+axis_values spaced(const toml_value& v, const std::string& key,
+                   axis_values (*make)(double first, double last, std::int64_t size)) {
+    const std::vector<double> given = arguments_in(v, key, 3, "[first, last, number of values]");
+    return make(given[0], given[1], integer_in((*v.as<toml_value::array>())[2], key));
+}
+axis_values drawn(const toml_value& v, const std::string& key, const char* form, axis_values (*make)(double, double)) {
+    const std::vector<double> given = arguments_in(v, key, 2, form);
+    return make(given[0], given[1]);
+}
+
+using axis_maker = axis_values (*)(const toml_value&, const std::string&);
+constexpr std::pair<std::string_view, axis_maker> axis_makers[] = {
+    {"linspace", [](const toml_value& v, const std::string& key) { return spaced(v, key, &linspace); }},
+    {"logspace", [](const toml_value& v, const std::string& key) { return spaced(v, key, &logspace); }},
+    {"values", [](const toml_value& v, const std::string& key) { return values(numbers_in(v, key)); }},
+    {"random_uniform",
+     [](const toml_value& v, const std::string& key) { return drawn(v, key, "[from, to]", &random_uniform); }},
+    {"random_normal",
+     [](const toml_value& v, const std::string& key) { return drawn(v, key, "[mean, deviation]", &random_normal); }},
+};
+const axis_maker* maker_of(std::string_view name) {
+    for (const auto& [known, maker] : axis_makers)
+        if (known == name) return &maker;
+    return nullptr;
+}
+
+axis_values axis_in(const toml_value& v, const std::string& key) {
+    const auto* const table = v.as<toml_value::table>();
+    std::vector<axis_values> made;
+    if (v.as<toml_value::array>() != nullptr) {
+        placed(v, key, [&] { made.push_back(values(numbers_in(v, key))); });
+    } else if (table != nullptr && table->size() == 1) {
+        const toml_value::entry& e = table->front();
+        const axis_maker* const make = maker_of(e.key);
+        if (make == nullptr) {
+            std::vector<std::string> names;
+            for (const auto& [known, maker] : axis_makers) names.emplace_back(known);
+            throw wrong(e.value, message(key, '.', e.key), "no axis is made in this way" + suggestion(e.key, names));
+        }
+        placed(e.value, key, [&] { made.push_back((*make)(e.value, key)); });
+    } else {
+        throw wrong(v, key, axis_choices);
+    }
+    return made.front();
+}
+
+/// Whether `{name = ...}` are the components of a kind, and not the values of a component of that name.
+bool is_kind(const toml_value::entry& e) {
+    const auto* const table = e.value.as<toml_value::table>();
+    if (table == nullptr ||
+        std::any_of(table->begin(), table->end(), [](const auto& inner) { return maker_of(inner.key) != nullptr; }))
+        return false;
+    constexpr component_kind kinds[] = {state, parameter, accessory, integer_accessory, shared, shared_integer};
+    return std::any_of(std::begin(kinds), std::end(kinds), [&](component_kind k) { return name_of(k) == e.key; });
+}
+
+/// Calls a function for every component in a table, with its name and its key in messages. Components may be in tables
+/// of their kind: `parameter.k` is a key of a table in TOML.
+template <class Function>
+void for_each_component(const toml_value& table, const std::string& path, Function&& function) {
+    const section checked(table, path);  // that it is a table
+    for (const toml_value::entry& e : *table.as<toml_value::table>()) {
+        const std::string key = checked.full(e.key);
+        if (!is_kind(e)) {
+            function(e.key, e.value, key);
+            continue;
+        }
+        for (const toml_value::entry& inner : *e.value.as<toml_value::table>())
+            function(message(e.key, '.', inner.key), inner.value, message(key, '.', inner.key));
+    }
+}
+
+std::vector<std::string> names_of(const component_names& all, std::initializer_list<component_kind> kinds) {
+    std::vector<std::string> names;
+    for (const component& c : all.all())
+        if (!c.name.empty() && std::find(kinds.begin(), kinds.end(), c.kind) != kinds.end()) names.push_back(c.name);
+    return names;
+}
+
+/// Calls a function that looks for a component, and says which one may have been meant.
+void with_component(const component_names& all, const std::string& name, const toml_value& v, const std::string& key,
+                    std::initializer_list<component_kind> kinds, const std::function<void()>& function) {
+    try {
+        placed(v, key, function);
+    } catch (const input_error& e) {
+        const std::string text = e.what();
+        if (text.find("is no component of") == std::string::npos) throw;
+        const std::string meant = suggestion(name, names_of(all, kinds));
+        if (meant.find("did you mean") == std::string::npos) throw;
+        throw input_error(text + meant);
+    }
+}
+
+/// The numbers of components of one kind.
+component_list components_in(const toml_value& v, const std::string& key, const component_names& all,
+                             component_kind kind) {
+    component_list list;
+    for (const toml_value* const item : items_in(v)) {
+        const std::string& name = text_in(*item, key);
+        with_component(all, name, *item, key, {kind}, [&] { list.push_back(all.find(name, {kind}).number); });
+    }
+    return list;
+}
+
+}  // namespace
+
+study_file::study_file(std::string path, std::string_view text)
+    : path_(std::move(path)), document_(parse_toml(text, path_)), root_(document_, "") {
+    read_model();
+    read_store();
+}
+
+void study_file::read_model() {
+    const text_place whole{path_, 0, 0};
+    model_.model_place = model_.header_place = model_.method_place = whole;
+    const auto read = [&](std::string_view key, std::string& to, text_place& place) {
+        root_.with(key, [&](const toml_value& v, const std::string& name) {
+            to = text_in(v, name);
+            if (to.empty()) throw wrong(v, name, "is empty");
+            place = v.place;
+        });
+    };
+    read("model", model_.model, model_.model_place);
+    read("header", model_.header, model_.header_place);
+    read("method", model_.method, model_.method_place);
+    root_.read("real", model_.real, {{"double", studies::element::f64}, {"float", studies::element::f32}});
+    if (const toml_value* const o = root_.find("options"); o != nullptr && o->as<toml_value::table>() != nullptr)
+        model_.samples = section(*o, "options").find("samples") != nullptr;
+}
+
+void study_file::read_store() {
+    const toml_value* const v = root_.find("store");
+    if (v == nullptr) return;
+    if (v->as<toml_value::table>() == nullptr) {
+        folder_ = text_in(*v, "store");
+        return;
+    }
+    section from(*v, "store");
+    from.read("folder", folder_);
+    double expiry = 60;
+    from.with("expiry", [&](const toml_value& value, const std::string& name) {
+        expiry = number_in(value, name);
+        if (!(expiry >= 1e-3 && expiry <= 1e9)) throw wrong(value, name, message("is ", expiry, ": give seconds"));
+    });
+    store_options_.expiry = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * expiry));
+    from.read("check", store_options_.check,
+              {{"sizes", studies::resume_check::sizes}, {"checksums", studies::resume_check::checksums}});
+    from.finish();
+}
+
+void study_file::describe(any_study& study, const program_model& model, const std::vector<device>& instead) {
+    names_ = &model.names;
+    read_axes(study);
+    read_values(study);
+    read_options(study, model);
+    root_.with("keep", [&](const toml_value&, const std::string&) { read_kept(study.keep); });
+    read_reductions(study);
+    read_texts("units",
+               [&](const std::string& component, std::string unit) { study.unit(component, std::move(unit)); });
+    read_texts("notes", [&](const std::string& key, std::string text) { study.note(key, std::move(text)); });
+    root_.with("title", [&](const toml_value& v, const std::string& name) { study.title(text_in(v, name)); });
+    root_.with("seed", [&](const toml_value& v, const std::string& name) {
+        const std::int64_t seed = integer_in(v, name);
+        if (seed < 0) throw wrong(v, name, message("is ", seed, " (must not be negative)"));
+        study.seed(static_cast<std::uint64_t>(seed));
+    });
+    root_.with("chunk", [&](const toml_value& v, const std::string& name) {
+        study.chunk = integer_in(v, name);
+        if (study.chunk < 0)
+            throw wrong(v, name, message("is ", study.chunk, " (must be positive, or 0 for a choice)"));
+    });
+    root_.with("devices", [&](const toml_value& v, const std::string& key) {
+        for (const toml_value* const item : items_in(v)) {
+            const std::string& name = text_in(*item, key);
+            if (instead.empty()) placed(*item, key, [&] { study.devices.push_back(device::parse(name)); });
+        }
+    });
+    if (!instead.empty()) study.devices = instead;
+    root_.finish();
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Instances
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+constexpr auto settable = {state, parameter, accessory, integer_accessory, shared, shared_integer, t_begin, t_end};
+
+}  // namespace
+
+void study_file::read_axes(any_study& study) {
+    root_.with("axes", [&](const toml_value& v, const std::string& path) {
+        if (const auto* const array = v.as<toml_value::array>()) {  // one dimension each
+            for (const toml_value& dimension : *array) read_dimension(study, dimension, path);
+            return;
+        }
+        for_each_component(v, path, [&](const std::string& name, const toml_value& given, const std::string& key) {
+            const axis_values all = axis_in(given, key);
+            with_component(*names_, name, given, key, settable, [&] { study.axis(name, all); });
+        });
+    });
+    root_.with("repeat", [&](const toml_value& v, const std::string& name) {
+        placed(v, name, [&] { study.repeat(integer_in(v, name)); });
+    });
+}
+
+void study_file::read_dimension(any_study& study, const toml_value& table, const std::string& path) {
+    std::vector<std::pair<std::string, axis_values>> paired;
+    std::vector<std::pair<const toml_value*, std::string>> places;
+    for_each_component(table, path, [&](const std::string& name, const toml_value& given, const std::string& key) {
+        paired.emplace_back(name, axis_in(given, key));
+        places.emplace_back(&given, key);
+    });
+    if (paired.empty()) throw wrong(table, path, "this axis has no component: write k = {linspace = [0, 1, 11]}");
+    if (paired.size() == 1) {
+        const auto& [name, all] = paired[0];
+        with_component(*names_, name, *places[0].first, places[0].second, settable, [&] { study.axis(name, all); });
+        return;
+    }
+    std::vector<std::string> full_names;
+    for (std::size_t i = 0; i < paired.size(); ++i) {
+        const std::string& name = paired[i].first;
+        with_component(*names_, name, *places[i].first, places[i].second, settable,
+                       [&] { full_names.push_back(names_->find(name, settable).full_name()); });
+    }
+    try {
+        study.zip(paired);
+    } catch (const error& e) {
+        std::size_t i = paired.size() - 1;  // the last one that the message is about
+        while (i > 0 && std::string_view(e.what()).find(full_names[i] + ' ') == std::string_view::npos) --i;
+        throw wrong(*places[i].first, places[i].second, e.what());
+    }
+}
+
+void study_file::read_values(any_study& study) {
+    root_.with("set", [&](const toml_value& v, const std::string& path) {
+        for_each_component(v, path, [&](const std::string& name, const toml_value& given, const std::string& key) {
+            const double value = number_in(given, key);
+            with_component(*names_, name, given, key, settable, [&] { study.set(name, value); });
+        });
+    });
+    root_.with("time_domain", [&](const toml_value& v, const std::string& key) {
+        const std::vector<double> ends = arguments_in(v, key, 2, "[t_begin, t_end]");
+        placed(v, key, [&] { study.time_domain(ends[0], ends[1]); });
+    });
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Options
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// A number for all states, an array with one for each, or a table of states, where the others keep the default.
+void read_tolerance(section& from, std::string_view key, per_component& to, const component_names& names) {
+    from.with(key, [&](const toml_value& v, const std::string& path) {
+        if (v.as<toml_value::array>() != nullptr) {
+            to = per_component(numbers_in(v, path));
+            return;
+        }
+        const auto* const table = v.as<toml_value::table>();
+        if (table == nullptr) {
+            to = number_in(v, path);
+            return;
+        }
+        std::vector<double> each;
+        for (const component& c : names.all())
+            if (c.kind == state) each.push_back(to[0]);
+        for (const toml_value::entry& e : *table) {
+            const std::string name = message(path, '.', e.key);
+            with_component(names, e.key, e.value, name, {state}, [&] {
+                each[static_cast<std::size_t>(names.find(e.key, {state}).number)] = number_in(e.value, name);
+            });
+        }
+        to = per_component(std::move(each));
+    });
+}
+
+event_options event_in(const toml_value& v, const std::string& path) {
+    event_options made;
+    section from(v, path);
+    from.read("direction", made.direction,
+              {{"falling", direction::falling}, {"either", direction::either}, {"rising", direction::rising}});
+    from.read("tolerance", made.tolerance);
+    from.read("stop_after", made.stop_after);
+    from.finish();
+    return made;
+}
+
+}  // namespace
+
+void study_file::read_events(const toml_value& v, const std::string& path, options& to, const program_model& model) {
+    to.events.assign(model.events.size(), event_options{});
+    if (const auto* const array = v.as<toml_value::array>()) {
+        if (array->size() != model.events.size())
+            throw wrong(v, path,
+                        message("has ", array->size(), " events, and the model has ", model.events.size(),
+                                ": give one table for each, or tables with their names"));
+        for (std::size_t e = 0; e < array->size(); ++e) to.events[e] = event_in((*array)[e], path);
+        return;
+    }
+    const section checked(v, path);
+    for (const toml_value::entry& e : *v.as<toml_value::table>()) {
+        const std::string key = checked.full(e.key);
+        const auto found = std::find(model.events.begin(), model.events.end(), e.key);
+        if (found == model.events.end())
+            throw wrong(e.value, key,
+                        message("the model has no event \"", e.key, '"', suggestion(e.key, model.events)));
+        to.events[static_cast<std::size_t>(found - model.events.begin())] = event_in(e.value, key);
+    }
+}
+
+void study_file::read_record(section& from, record_options& to, const component_names& names) {
+    from.read("from_phase", to.from_phase);
+    const auto read = [&](std::string_view key, component_list& list, component_kind kind) {
+        from.with(key,
+                  [&](const toml_value& v, const std::string& name) { list = components_in(v, name, names, kind); });
+    };
+    read("states", to.states, state);
+    read("accessories", to.accessories, accessory);
+    read("integer_accessories", to.integer_accessories, integer_accessory);
+    from.read("time", to.time);
+}
+
+void study_file::read_samples(section& from, sample_options& to, const component_names& names) {
+    from.with("states",
+              [&](const toml_value& v, const std::string& name) { to.states = components_in(v, name, names, state); });
+    from.read("capacity", to.capacity);
+    from.read("evenly", to.evenly);
+    from.with("times", [&](const toml_value& v, const std::string& name) { to.times = numbers_in(v, name); });
+    from.read("every", to.every);
+    from.read("minimum_spacing", to.minimum_spacing);
+    from.read("from_phase", to.from_phase);
+}
+
+void study_file::read_options(any_study& study, const program_model& model) {
+    root_.with("options", [&](const toml_value& v, const std::string& path) {
+        section from(v, path);
+        options& o = study.options;
+        from.read("phases", o.phases);
+        read_tolerance(from, "relative_tolerance", o.relative_tolerance, *names_);
+        read_tolerance(from, "absolute_tolerance", o.absolute_tolerance, *names_);
+        from.read("step", o.step);
+        from.read("minimum_step", o.minimum_step);
+        from.read("maximum_step", o.maximum_step);
+        from.read("growth_limit", o.growth_limit);
+        from.read("shrink_limit", o.shrink_limit);
+        from.read("max_steps", o.max_steps);
+        from.read("phase_time", o.phase_time, {{"restart", phase_time::restart}, {"carry_on", phase_time::carry_on}});
+        from.read("phase_length", o.phase_length);
+        from.read("phase_step", o.phase_step, {{"restart", phase_step::restart}, {"carry_on", phase_step::carry_on}});
+        from.with("events",
+                  [&](const toml_value& events, const std::string& key) { read_events(events, key, o, model); });
+        from.read("sub_samples", o.sub_samples);
+        from.read("accumulation_limit", o.accumulation_limit);
+        from.with("record", [&](const toml_value& table, const std::string& key) {
+            section record(table, key);
+            read_record(record, o.record, *names_);
+            record.finish();
+        });
+        from.with("samples", [&](const toml_value& table, const std::string& key) {
+            section samples(table, key);
+            read_samples(samples, o.samples, *names_);
+            samples.finish();
+            if (o.samples.states.empty())
+                throw wrong(table, key, "names no states: write states = [...] with those that are sampled");
+        });
+        from.read("counting", o.counting, {{"off", counting::off}, {"on", counting::on}});
+        from.read("advice", o.advice, {{"off", advice::off}, {"on", advice::on}});
+        from.read("schedule", o.schedule,
+                  {{"automatic", schedule::automatic},
+                   {"in_order", schedule::in_order},
+                   {"dynamic", schedule::dynamic},
+                   {"by_cost", schedule::by_cost}});
+        from.read("block_size", o.block_size);
+        from.read("chunk_size", o.chunk_size);
+        from.finish();
+    });
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// What is kept
+// ---------------------------------------------------------------------------------------------------------------------
+
+void study_file::read_kept(kept_values& keep) {
+    const toml_value& v = *root_.find("keep");
+    section from(v, "keep");
+    from.with("end", [&](const toml_value& list, const std::string& key) {
+        keep.end = texts_in(list, key);
+        static constexpr auto kinds = {state, parameter, accessory, integer_accessory};
+        for (const toml_value* const item : items_in(list)) {
+            const std::string& name = text_in(*item, key);
+            if (name != "t")
+                with_component(*names_, name, *item, key, kinds, [&] { static_cast<void>(names_->find(name, kinds)); });
+        }
+    });
+    from.read("records", keep.records);
+    from.read("samples", keep.samples);
+    from.read("random", keep.random);
+    from.read("status", keep.status);
+    from.read("work", keep.work);
+    from.finish();
+}
+
+void study_file::read_reductions(any_study& study) {
+    root_.with("reduce", [&](const toml_value& v, const std::string& path) {
+        for (const toml_value* const item : items_in(v)) {
+            section from(*item, path);
+            const toml_value* const edges = from.find("edges");
+            bool has_any = false;
+            from.with("histogram_of", [&](const toml_value& names, const std::string& key) {
+                if (edges == nullptr)
+                    throw wrong(names, key, "a histogram needs edges: write edges = {linspace = [-1, 1, 101]}");
+                has_any = true;
+                const axis_values all = axis_in(*edges, from.full("edges"));
+                for (const std::string& name : texts_in(names, key))
+                    placed(*edges, from.full("edges"), [&] { study.reduce(histogram_of(name, all)); });
+            });
+            if (edges != nullptr && !has_any) throw wrong(*edges, from.full("edges"), "are for histogram_of alone");
+            constexpr std::pair<const char*, ensemble_reduction (*)(std::string_view)> others[] = {
+                {"minimum_of", &minimum_of}, {"maximum_of", &maximum_of}, {"mean_of", &mean_of}};
+            for (const auto& [key, make] : others)
+                from.with(key, [&, reduction = make](const toml_value& names, const std::string& full_key) {
+                    has_any = true;
+                    for (const std::string& name : texts_in(names, full_key))
+                        placed(names, full_key, [&] { study.reduce(reduction(name)); });
+                });
+            from.finish();
+            if (!has_any)
+                throw wrong(*item, path, "has none of histogram_of, minimum_of, maximum_of and mean_of: give one");
+        }
+    });
+}
+
+void study_file::read_texts(std::string_view key, const std::function<void(const std::string&, std::string)>& set) {
+    root_.with(key, [&](const toml_value& v, const std::string& path) {
+        for_each_component(v, path, [&](const std::string& name, const toml_value& text, const std::string& full_key) {
+            placed(text, full_key, [&] { set(name, text_in(text, full_key)); });
+        });
+    });
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Places of errors
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// The entry of a table; null if there is none, or if the value is no table.
+const toml_value* entry_of(const toml_value& v, std::string_view key) {
+    const auto* const table = v.as<toml_value::table>();
+    if (table == nullptr) return nullptr;
+    for (const toml_value::entry& e : *table)
+        if (e.key == key) return &e.value;
+    return nullptr;
+}
+
+/// As far as the words of "options.record.states" are keys, each of a table in the last one: the last of them.
+const toml_value* follow(const toml_value& from, std::string_view path) {
+    const toml_value* found = nullptr;
+    for (const toml_value* at = &from; at != nullptr && !path.empty();) {
+        const std::size_t end = std::min(path.find('.'), path.size());
+        at = entry_of(*at, path.substr(0, end));
+        if (at != nullptr) found = at;
+        path.remove_prefix(std::min(end + 1, path.size()));
+    }
+    return found;
+}
+
+}  // namespace
+
+input_error study_file::placed_error(const error& found) const {
+    const std::string text = found.what();
+    const auto is_part = [&](std::size_t i) {
+        return std::isalnum(static_cast<unsigned char>(text[i])) != 0 || text[i] == '_' || text[i] == '.';
+    };
+    constexpr std::string_view differs = "differs in";
+    const bool of_store = text.find(differs) != std::string::npos;
+    const bool is_of_folder =
+        !of_store && (text.starts_with("the folder") || text.find("the disk of") != std::string::npos);
+    const toml_value* key = is_of_folder ? entry_of(document_, "store") : nullptr;
+    // The first word of the message that is a key. Words that are keys by accident come later than what it is about.
+    for (std::size_t at = of_store ? text.find(differs) : 0; at < text.size() && key == nullptr && !is_of_folder;) {
+        std::size_t end = at;
+        while (end < text.size() && is_part(end)) ++end;
+        const std::string_view path(text.data() + at, end - at);
+        for (const std::string_view table : {"options", "keep", ""}) {
+            const toml_value* const from = table.empty() ? &document_ : entry_of(document_, table);
+            if (key == nullptr && from != nullptr && path != "model" && path != "store") key = follow(*from, path);
+        }
+        at = end + 1;
+    }
+    if (key == nullptr && of_store) key = entry_of(document_, "store");
+    return input_error(position(key != nullptr ? key->place : text_place{path_, 0, 0}) + text);
+}
+
+}  // namespace myriad::programs
