@@ -137,7 +137,7 @@ TEST_CASE("Only what is kept leaves the device, and reductions are those of all 
     reduce_all(s, "y_end", linspace(-20, 20, 11));
     s.reduce(sum_of("first_x", {"x_end"}, 1, [](const chunk_columns& chunk, std::span<double> sums) {
         if (chunk.first() == 0) sums[0] = static_cast<double>(chunk.values<float>("x_end")[0]);
-        CHECK_THROWS_AS(chunk.find("y_end"), error);
+        if (!tests::tests_cpu()) CHECK_THROWS_AS(chunk.find("y_end"), error);
     }));
     const study_result r = s.run();
     CHECK(r.values("first_x")[0] == r.values("x_end")[0]);
