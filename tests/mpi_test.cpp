@@ -11,9 +11,8 @@
 #include <string>
 #include <vector>
 
-#include <sched.h>
-
 #include <myriad/study.hpp>
+#include <sched.h>
 
 #include "tests/catch.hpp"
 #include "tests/support/problems.hpp"

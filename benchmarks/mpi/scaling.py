@@ -4,9 +4,9 @@
 
 Usage: scaling.py MPI_STUDY [--ranks 1,2] [--repeat 5] [--instances 20000]
 
-Prints CSV: ranks, the median time of a run with mpirun's start and of the study alone (its slowest rank), and the median
-of speedup over the first number of ranks in the same repetition. `processes` are as many processes that share the folder
-without MPI, by claims alone. A number of ranks above that of cores shows nothing.
+Prints CSV: ranks, the median time of a run with mpirun's start and of the study alone (its slowest rank), and the
+speedup over the first number of ranks in the same repetition: its median, least and largest value. `processes` are as
+many processes that share the folder without MPI, by claims alone. A number of ranks above that of cores shows nothing.
 """
 
 import argparse

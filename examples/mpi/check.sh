@@ -9,7 +9,9 @@ instances=6144
 
 same() {
     local variable
-    for variable in k x status; do diff -rq "whole/$variable" "$1/$variable" || fail "the results of $1 are others"; done
+    for variable in k x status; do
+        diff -rq "whole/$variable" "$1/$variable" || fail "the results of $1 are others"
+    done
 }
 chunks() { find "$1/myriad/chunks" -name '*.json' 2>/dev/null | wc -l; }
 

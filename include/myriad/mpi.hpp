@@ -42,8 +42,8 @@ public:
 
     /// Runs the study with the other ranks and returns when it ends, with the results of all and the counts of this
     /// rank. If `devices` of the study is empty, it is what `devices()` gives for this run. Throws `error` as
-    /// `any_study::run`, for what is wrong with the study before the start on rank 0, and on the others that it is. A rank
-    /// that throws later waits for the others, who do its chunks.
+    /// `any_study::run`: where the study cannot start, rank 0 says why, and the others that it does not. A rank that
+    /// throws later waits for the others, who do its chunks.
     study_result run(any_study& s);
 
     /// Whether another rank has died, as far as `run` has seen. The study ends without it, where the job goes on

@@ -29,10 +29,10 @@ namespace {
 using clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr auto poll_every = milliseconds(1);       // where other ranks need this one to make progress
-constexpr auto look_every = milliseconds(200);     // whether a process has ended
-constexpr milliseconds patience = std::chrono::seconds(10);  // with the counter: it takes microseconds, and never if it is lost
-constexpr auto last_wait = std::chrono::seconds(60);  // for ranks of other machines, when the study is complete
+constexpr milliseconds poll_every{1};      // where other ranks need this one to make progress
+constexpr milliseconds look_every{200};    // whether a process has ended
+constexpr milliseconds patience{10'000};   // with the counter, which takes microseconds unless its rank is dead
+constexpr milliseconds last_wait{60'000};  // for ranks of other machines, when the study is complete
 
 /// An MPI call that must not fail.
 void check(int result, const char* doing) {
@@ -227,8 +227,9 @@ mpi_ranks::mpi_ranks(MPI_Comm ranks) {
     } else {
         MPI_Query_thread(&level);
     }
-    require(level >= MPI_THREAD_SERIALIZED, "MPI was initialised for one thread alone: call MPI_Init_thread with "
-                                            "MPI_THREAD_SERIALIZED, or leave it to myriad::mpi_ranks");
+    require(level >= MPI_THREAD_SERIALIZED,
+            "MPI was initialised for one thread alone: call MPI_Init_thread with "
+            "MPI_THREAD_SERIALIZED, or leave it to myriad::mpi_ranks");
     check(MPI_Comm_dup(ranks, &ranks_), "the start");
     MPI_Comm_set_errhandler(ranks_, MPI_ERRORS_RETURN);
     MPI_Comm_rank(ranks_, &rank_);

@@ -84,9 +84,9 @@ struct store_options {
 /// Results in a folder. All functions may be called by several threads at a time, and several processes may have the
 /// folder open, also on several machines that share it.
 ///
-/// A process takes a chunk by `claim_next` or `claim`, computes it, and hands it over by `commit`, which returns when it is
-/// durable. Every function throws `error`: for a disk that is full or fails, with what to do. What was committed before
-/// is never lost by that, and the study can be started again.
+/// A process takes a chunk by `claim_next` or `claim`, computes it, and hands it over by `commit`, which returns when
+/// it is durable. Every function throws `error`: for a disk that is full or fails, with what to do. What was committed
+/// before is never lost by that, and the study can be started again.
 class store final : public studies::results {
 public:
     /// Makes a new store in a folder that is empty or does not exist, or goes on with the one that is there if it is of
