@@ -24,13 +24,7 @@
 
 namespace myriad {
 
-using namespace studies;
-
-static_assert(std::endian::native == std::endian::little, "stores hold little-endian numbers as they are in memory");
-
-namespace {
-
-constexpr std::int64_t piece = std::int64_t{1} << 20;  // stays in a core's cache between its checksum and its copy
+namespace studies::inline MYRIAD_ABI {
 
 // An array of a store, in a folder of its name.
 struct stored_array {
@@ -38,6 +32,16 @@ struct stored_array {
     array_shape shape;
     std::vector<attribute> attributes;
 };
+
+}  // namespace studies::inline MYRIAD_ABI
+
+using namespace studies;
+
+static_assert(std::endian::native == std::endian::little, "stores hold little-endian numbers as they are in memory");
+
+namespace {
+
+constexpr std::int64_t piece = std::int64_t{1} << 20;  // stays in a core's cache between its checksum and its copy
 
 std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count); }
 
