@@ -5,7 +5,7 @@
 # shellcheck source=examples/common/check.sh
 source "$(dirname "$(realpath "$0")")/../common/check.sh"
 mpirun=$here/../common/mpirun.sh
-instances=6144
+instances=4096
 
 same() {
     local variable

@@ -239,7 +239,9 @@ mpi_ranks::mpi_ranks(MPI_Comm ranks) {
 }
 
 mpi_ranks::~mpi_ranks() {
-    if (lost_) return;
+    int is_over = 0;
+    MPI_Finalized(&is_over);
+    if (lost_ || is_over != 0) return;
     MPI_Comm_free(&ranks_);
     if (finalizes_) MPI_Finalize();
 }
