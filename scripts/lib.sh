@@ -63,6 +63,8 @@ has_package() {
         libxsimd-dev) has_header xsimd/xsimd.hpp ;;
         libcli11-dev) has_header CLI/CLI.hpp ;;
         libnetcdf-dev) has_header netcdf.h ;;
+        libopenmpi-dev) has_command mpicxx ;;
+        openmpi-bin) has_command mpirun ;;
         libtomlplusplus-dev) has_header toml++/toml.h ;;
         nlohmann-json3-dev) has_header nlohmann/json.hpp ;;
         libboost-dev) has_header boost/numeric/odeint.hpp ;;

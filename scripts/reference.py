@@ -45,6 +45,7 @@ PAGES = {
     "study": ("Studies", "`<myriad/study.hpp>`, target `myriad::study`. Axes, what is kept, the run, results on disk.",
               ["study/study.hpp", "study/model_study.hpp", "study/axes.hpp", "study/reduction.hpp", "study/",
                "kernel/study/"]),
+    "mpi": ("Studies over MPI", "`<myriad/mpi.hpp>`, target `myriad::mpi`.", ["mpi.hpp"]),
     "program": ("The command-line program", "`<myriad/program.hpp>`, target `myriad::program`: models for it.",
                 ["program.hpp"]),
     "methods": ("Methods", "`<myriad/methods.hpp>`, and `<myriad/tableau.hpp>` for a method of your own.",

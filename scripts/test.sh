@@ -71,8 +71,8 @@ wants() { [[ " ${steps[*]} " == *" $1 "* ]]; }
 
 packages=(g++ cmake ninja-build python3 libeigen3-dev libxsimd-dev catch2 libnetcdf-dev nlohmann-json3-dev)
 if wants ci || wants cuda || wants clang; then
-    packages+=(libboost-dev libcli11-dev libsundials-dev libtomlplusplus-dev python3-matplotlib python3-scipy
-        python3-netcdf4 python3-xarray)
+    packages+=(libboost-dev libcli11-dev libopenmpi-dev libsundials-dev libtomlplusplus-dev openmpi-bin
+        python3-matplotlib python3-scipy python3-netcdf4 python3-xarray)
 fi
 if wants ci || wants docs; then packages+=(doxygen); fi
 if wants docs || wants python; then packages+=(python3-venv); fi

@@ -24,6 +24,13 @@ if plotting_python >/dev/null; then
     myriad plot bifurcation
     # end of snippet
     [[ $(head -c 4 bifurcation.png | tail -c 3) == PNG ]] || fail 'no picture'
+    if python_with matplotlib, netCDF4 >/dev/null; then
+        expect 0 '' myriad plot bifurcation.nc --output of_file.png
+        cmp bifurcation.png of_file.png || fail 'the picture of the netCDF file is another than that of the folder'
+        echo 'k,x' >table.nc
+        expect 2 'table\.nc cannot be read' myriad plot table.nc
+        expect 2 'absent\.nc cannot be read: No such file' myriad plot absent.nc
+    fi
 fi
 expect 0 '^$' myriad resume bifurcation --quiet # nothing is compiled again
 sed -i 's/y\[v\], y\[x\]/y[w], y[x]/' ../quickstart/model.hpp

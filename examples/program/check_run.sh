@@ -24,12 +24,18 @@ kill -9 $!
 wait $! 2>/dev/null || true
 "$program" info killed >facts
 grep -q '^done: .* of 96 chunks' facts || fail 'info says nothing of chunks'
-"$program" resume killed --quiet >/dev/null 2>&1 &
-wait_for 12 killed
-kill -TERM $!
-status=0
-wait $! || status=$?
-[[ $status == 143 ]] || fail "a study that SIGTERM stopped ends with $status"
+# stopped_by SIGNAL STATUS COUNT: ends with this status when so many chunks are done.
+stopped_by() {
+    local status=0
+    # What a shell starts in the background ignores SIGINT otherwise.
+    env --default-signal=INT "$program" resume killed --quiet >/dev/null 2>&1 &
+    wait_for "$3" killed
+    kill -s "$1" $!
+    wait $! || status=$?
+    [[ $status == "$2" ]] || fail "a study that SIG$1 stopped ends with $status"
+}
+stopped_by TERM 143 12
+stopped_by INT 130 20
 rm study.toml # the folder alone suffices
 expect 0 '' "$program" resume killed --quiet
 "$program" export killed killed.csv

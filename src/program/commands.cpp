@@ -447,9 +447,10 @@ int plot(const plot_request& asked) {
         throw input_error("--output names one picture, and several results are given");
     for (std::string source : asked.sources) {
         while (source.size() > 1 && source.back() == '/') source.pop_back();
-        const std::string picture =
-            !asked.output.empty() ? asked.output : fs::path(source).replace_extension(".png").string();
         const bool is_folder = fs::is_directory(source);
+        // The name of a folder may have dots.
+        const std::string beside = is_folder ? source + ".png" : fs::path(source).replace_extension(".png").string();
+        const std::string picture = asked.output.empty() ? beside : asked.output;
         std::vector<std::string> words{find_python(is_folder), "-B", script, source, picture};
         for (const auto& [option, value] :
              {std::pair("--variable", asked.variable), {"--over", asked.over}, {"--value", asked.value}})

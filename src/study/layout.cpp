@@ -9,9 +9,8 @@
 #include <memory>
 #include <set>
 
-#include <nlohmann/json.hpp>
-
 #include "myriad/host/core/error.hpp"
+#include "myriad/study/metadata.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
@@ -184,8 +183,7 @@ void layout::check() const {
     for (const coordinate& c : coordinates)
         require(!lengths.has(c.name) || c.name == c.dimension, "coordinate ", c.name,
                 " has the name of a dimension that it is not along: rename one of them");
-    require(nlohmann::json::accept(description) && nlohmann::json::parse(description).is_object(),
-            "the description of the study is no JSON object");
+    require(is_json_object(description), "the description of the study is no JSON object");
 }
 
 chunk_range range_of(const layout& content, std::int64_t chunk) {

@@ -209,6 +209,8 @@ void flatten(const std::string& name, const json& value, json& flat) {
 
 }  // namespace
 
+bool is_json_object(std::string_view text) { return json::parse(text, nullptr, false).is_object(); }
+
 std::string hexadecimal(std::uint32_t value) {
     char text[9];
     std::snprintf(text, sizeof text, "%08x", value);

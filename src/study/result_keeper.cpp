@@ -3,6 +3,7 @@
 #include "myriad/study/result_keeper.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstring>
 #include <mutex>
@@ -137,11 +138,24 @@ private:
 
 class store_keeper final : public result_keeper {
 public:
-    store_keeper(const std::string& folder, const layout& content, const store_options& options)
-        : store_(std::make_shared<store>(store::create_or_resume(folder, content, options))) {}
+    store_keeper(const std::string& folder, const layout& content, const store_options& options,
+                 std::function<std::int64_t()> counter)
+        : store_(std::make_shared<store>(store::create_or_resume(folder, content, options))),
+          counter_(std::move(counter)), counts_(counter_ != nullptr) {}
 
     const layout& content() const override { return store_->content(); }
-    std::optional<std::int64_t> claim_next() override { return store_->claim_next(); }
+    std::optional<std::int64_t> claim_next() override {
+        while (counts_) {
+            const std::int64_t chunk = counter_();
+            if (chunk >= 0 && chunk < content().chunks()) {
+                if (store_->claim(chunk)) return chunk;
+            } else if (counts_.exchange(false)) {
+                store_->refresh();  // what others have done meanwhile
+            }
+        }
+        // What is left is with others, was given back, or lost with a process.
+        return store_->claim_next();
+    }
     void commit(std::int64_t chunk, std::span<const column> columns, const chunk_record& record) override {
         store_->commit(chunk, columns, record);
     }
@@ -158,6 +172,8 @@ public:
 
 private:
     std::shared_ptr<store> store_;
+    std::function<std::int64_t()> counter_;
+    std::atomic<bool> counts_;  // it is there and not at its end
 };
 
 }  // namespace
@@ -166,8 +182,8 @@ std::unique_ptr<result_keeper> keep_in_memory(const layout& content) {
     return std::make_unique<memory_keeper>(content);
 }
 std::unique_ptr<result_keeper> keep_in_store(const std::string& folder, const layout& content,
-                                             const store_options& options) {
-    return std::make_unique<store_keeper>(folder, content, options);
+                                             const store_options& options, std::function<std::int64_t()> counter) {
+    return std::make_unique<store_keeper>(folder, content, options, std::move(counter));
 }
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

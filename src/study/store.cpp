@@ -24,13 +24,7 @@
 
 namespace myriad {
 
-using namespace studies;
-
-static_assert(std::endian::native == std::endian::little, "stores hold little-endian numbers as they are in memory");
-
-namespace {
-
-constexpr std::int64_t piece = std::int64_t{1} << 20;  // stays in a core's cache between its checksum and its copy
+namespace studies::inline MYRIAD_ABI {
 
 // An array of a store, in a folder of its name.
 struct stored_array {
@@ -38,6 +32,16 @@ struct stored_array {
     array_shape shape;
     std::vector<attribute> attributes;
 };
+
+}  // namespace studies::inline MYRIAD_ABI
+
+using namespace studies;
+
+static_assert(std::endian::native == std::endian::little, "stores hold little-endian numbers as they are in memory");
+
+namespace {
+
+constexpr std::int64_t piece = std::int64_t{1} << 20;  // stays in a core's cache between its checksum and its copy
 
 std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count); }
 
@@ -516,6 +520,18 @@ struct store::implementation {
         write_text(files, self->temporary(), record_path(chunk), record_json(content, chunk, stored));
     }
 
+    // Gives a claim back if another process had done the chunk before.
+    bool keep_claim(std::int64_t chunk) {
+        try {
+            if (!exists(record_path(chunk))) return true;
+        } catch (...) {
+            self->release(chunk);
+            throw;
+        }
+        self->release(chunk);
+        return false;
+    }
+
     // Once more if another process took this one for dead and removed its folder.
     template <class F>
     void with_writer(F write) {
@@ -645,16 +661,8 @@ std::optional<std::int64_t> store::claim_next() {
         const std::int64_t chunk = s.next;
         s.next = (s.next + 1) % all;
         if (s.is_finished(chunk) || !s.self->claim(chunk)) continue;
-        bool taken = true;
-        try {
-            taken = s.exists(s.record_path(chunk));
-        } catch (...) {
-            s.self->release(chunk);
-            throw;
-        }
-        if (!taken) return chunk;
+        if (s.keep_claim(chunk)) return chunk;
         // Another process has done it since, and so probably others too.
-        s.self->release(chunk);
         if (std::chrono::steady_clock::now() - s.looked > std::chrono::milliseconds(200)) {
             s.refresh();
             s.looked = std::chrono::steady_clock::now();
@@ -665,6 +673,17 @@ std::optional<std::int64_t> store::claim_next() {
     }
     s.refresh();
     return std::nullopt;
+}
+
+bool store::claim(std::int64_t chunk) {
+    implementation& s = *self_;
+    s.require_writable();
+    s.check_chunk(chunk);
+    if (s.is_finished(chunk) || !s.self->claim(chunk)) return false;
+    if (s.keep_claim(chunk)) return true;
+    const std::lock_guard lock(s.mutex);
+    s.finish(chunk);
+    return false;
 }
 
 void store::commit(std::int64_t chunk, std::span<const column> columns, const chunk_record& record) {

@@ -230,6 +230,8 @@ struct any_study::planned_run {
 
 any_study::planned_run any_study::plan() const {
     studies::run_settings settings{.devices = devices, .progress = progress, .warning = warning};
+    require(!chunk_counter || !folder_.empty(),
+            "a study that several processes run together needs a folder that they share: give it one by store");
     if (settings.devices.empty()) settings.devices.push_back(device::best());
     for (const device& d : settings.devices) model_->check(d, options);
     studies::study_plan made = studies::plan_study(request());
@@ -243,7 +245,7 @@ any_study::planned_run any_study::plan() const {
 }
 
 std::unique_ptr<studies::result_keeper> any_study::open_store(const planned_run& planned) const {
-    auto keeper = studies::keep_in_store(folder_, planned.plan.content, store_options_);
+    auto keeper = studies::keep_in_store(folder_, planned.plan.content, store_options_, chunk_counter);
     check_memory(planned.host_bytes, keeper->content(), planned.settings.devices,
                  "use fewer devices, or start the study in a new folder with a smaller chunk");
     return keeper;

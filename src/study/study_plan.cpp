@@ -16,7 +16,7 @@
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
-using json = nlohmann::json;
+using sorted_json = nlohmann::json;
 using enum component_kind;
 
 std::string partial_name(const ensemble_reduction& r) { return r.definition().name + "_partial"; }
@@ -58,16 +58,16 @@ namespace {
 // ---------------------------------------------------------------------------------------------------------------------
 
 /// JSON has no NaN, which stands for a default, and no infinity.
-json number(double value) {
+sorted_json number_or_word(double value) {
     if (std::isnan(value)) return "default";
     if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
     return value;
 }
-json numbers(const std::vector<double>& all) {
+sorted_json numbers(const std::vector<double>& all) {
     constexpr std::size_t most = 1000;
-    json list = json::array();
+    sorted_json list = sorted_json::array();
     if (all.size() <= most) {
-        for (const double value : all) list.push_back(number(value));
+        for (const double value : all) list.push_back(number_or_word(value));
         return list;
     }
     std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a of their bytes
@@ -78,13 +78,13 @@ json numbers(const std::vector<double>& all) {
     }
     return message(all.size(), " values from ", all.front(), " to ", all.back(), ", hash ", hash);
 }
-json numbers(const per_component& all) {
+sorted_json numbers(const per_component& all) {
     std::vector<double> list;
     for (std::size_t i = 0; i < all.size(); ++i) list.push_back(all[i]);
     return numbers(list);
 }
 
-json describe(const axis_values& v) {
+sorted_json describe(const axis_values& v) {
     if (v.which() == axis_values::kind::list) return numbers(v.listed());
     constexpr const char* names[] = {"linspace", "logspace", "values", "random_uniform", "random_normal"};
     std::string text = names[static_cast<int>(v.which())];
@@ -93,10 +93,11 @@ json describe(const axis_values& v) {
     return text + ')';
 }
 
-json describe(const axes& all) {
-    json made{{"dimensions", json::array()}, {"values", json::object()}, {"random", json::object()}};
+sorted_json describe(const axes& all) {
+    sorted_json made{
+        {"dimensions", sorted_json::array()}, {"values", sorted_json::object()}, {"random", sorted_json::object()}};
     for (std::size_t d = 0; d < all.dimensions().size(); ++d) {
-        json along{{"name", all.dimensions()[d].name}, {"length", all.dimensions()[d].length}};
+        sorted_json along{{"name", all.dimensions()[d].name}, {"length", all.dimensions()[d].length}};
         for (const axes::entry& e : all.entries())
             if (e.dimension == static_cast<int>(d)) along["components"][e.what.full_name()] = describe(e.values);
         made["dimensions"].push_back(along);
@@ -106,40 +107,40 @@ json describe(const axes& all) {
         if (e.values.random()) {
             made["random"][e.what.full_name()] = describe(e.values);
         } else {
-            made["values"][e.what.full_name()] = number(e.values[0]);
+            made["values"][e.what.full_name()] = number_or_word(e.values[0]);
         }
     }
     if (!made["random"].empty()) made["seed"] = all.seed();
     return made;
 }
 
-json names_of(const component_names& names, component_kind kind, const component_list& list) {
-    json made = json::array();
+sorted_json names_of(const component_names& names, component_kind kind, const component_list& list) {
+    sorted_json made = sorted_json::array();
     for (const int c : list) made.push_back(names.find(message(name_of(kind), '.', c), {kind}).full_name());
     return made;
 }
 
-json describe(const options& o, const component_names& names) {
-    json events = json::array();
+sorted_json describe(const options& o, const component_names& names) {
+    sorted_json events = sorted_json::array();
     for (const event_options& e : o.events)
         events.push_back({{"direction", static_cast<int>(e.direction)},
-                          {"tolerance", number(e.tolerance)},
+                          {"tolerance", number_or_word(e.tolerance)},
                           {"stop_after", e.stop_after}});
-    json made{{"phases", o.phases},
-              {"relative_tolerance", numbers(o.relative_tolerance)},
-              {"absolute_tolerance", numbers(o.absolute_tolerance)},
-              {"step", number(o.step)},
-              {"minimum_step", number(o.minimum_step)},
-              {"maximum_step", number(o.maximum_step)},
-              {"growth_limit", number(o.growth_limit)},
-              {"shrink_limit", number(o.shrink_limit)},
-              {"max_steps", o.max_steps},
-              {"phase_time", o.phase_time == phase_time::restart ? "restart" : "carry_on"},
-              {"phase_length", number(o.phase_length)},
-              {"phase_step", o.phase_step == phase_step::restart ? "restart" : "carry_on"},
-              {"events", events},
-              {"sub_samples", o.sub_samples},
-              {"accumulation_limit", o.accumulation_limit}};
+    sorted_json made{{"phases", o.phases},
+                     {"relative_tolerance", numbers(o.relative_tolerance)},
+                     {"absolute_tolerance", numbers(o.absolute_tolerance)},
+                     {"step", number_or_word(o.step)},
+                     {"minimum_step", number_or_word(o.minimum_step)},
+                     {"maximum_step", number_or_word(o.maximum_step)},
+                     {"growth_limit", number_or_word(o.growth_limit)},
+                     {"shrink_limit", number_or_word(o.shrink_limit)},
+                     {"max_steps", o.max_steps},
+                     {"phase_time", o.phase_time == phase_time::restart ? "restart" : "carry_on"},
+                     {"phase_length", number_or_word(o.phase_length)},
+                     {"phase_step", o.phase_step == phase_step::restart ? "restart" : "carry_on"},
+                     {"events", events},
+                     {"sub_samples", o.sub_samples},
+                     {"accumulation_limit", o.accumulation_limit}};
     if (!o.record.empty()) {
         made["record"] = {{"from_phase", o.record.from_phase},
                           {"states", names_of(names, state, o.record.states)},
@@ -153,7 +154,7 @@ json describe(const options& o, const component_names& names) {
                            {"evenly", o.samples.evenly},
                            {"times", numbers(o.samples.times)},
                            {"every", o.samples.every},
-                           {"minimum_spacing", number(o.samples.minimum_spacing)},
+                           {"minimum_spacing", number_or_word(o.samples.minimum_spacing)},
                            {"from_phase", o.samples.from_phase}};
     }
     return made;
@@ -164,19 +165,19 @@ std::string describe(const study_request& asked, const study_plan& plan) {
     std::map<std::string, int> components;
     for (const component& c : names.all())
         if (c.kind != t_begin && c.kind != t_end) ++components[name_of(c.kind)];
-    json kept = json::array(), reductions = json::object();
+    sorted_json kept = sorted_json::array(), reductions = sorted_json::object();
     for (const quantity& q : plan.quantities)
         if (q.stored) kept.push_back(q.as.name);
     for (const ensemble_reduction& r : asked.reductions)
         reductions[r.definition().name] = {{"of", r.definition().inputs}, {"what", r.definition().description}};
-    json made{{"model", names.model()},
-              {"components", components},
-              {"method", asked.method},
-              {"real", name_of(asked.real)},
-              {"version", MYRIAD_VERSION},
-              {"axes", describe(asked.axes)},
-              {"options", describe(asked.options, names)},
-              {"kept", kept}};
+    sorted_json made{{"model", names.model()},
+                     {"components", components},
+                     {"method", asked.method},
+                     {"real", name_of(asked.real)},
+                     {"version", MYRIAD_VERSION},
+                     {"axes", describe(asked.axes)},
+                     {"options", describe(asked.options, names)},
+                     {"kept", kept}};
     if (!asked.title.empty()) made["title"] = asked.title;
     if (!reductions.empty()) made["reductions"] = reductions;
     if (!asked.generator.empty()) made["generator"] = asked.generator;
@@ -218,8 +219,8 @@ private:
     void check_texts() const {
         const auto check = [](const std::string& what, const std::string& text) {
             try {
-                (void)json(text).dump();
-            } catch (const json::exception&) {
+                (void)sorted_json(text).dump();
+            } catch (const sorted_json::exception&) {
                 throw error(message(what, " is no text in UTF-8: give it in that encoding"));
             }
         };

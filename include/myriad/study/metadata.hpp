@@ -30,6 +30,9 @@ struct array_shape {
     std::string file_name(std::int64_t file) const;
 };
 
+/// Whether a text is JSON, and an object: here, so that one file less includes the JSON library.
+bool is_json_object(std::string_view text);
+
 /// The array of a variable or of a coordinate.
 array_shape shape_of(const layout& content, const variable& v);
 array_shape shape_of(const layout& content, const coordinate& c);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -32,8 +33,9 @@ public:
 
 /// Throws `error` if there is not enough memory.
 std::unique_ptr<result_keeper> keep_in_memory(const layout& content);
-/// Throws `error` as `store::create_or_resume`.
+/// Throws `error` as `store::create_or_resume`. With a counter, it says which chunk is claimed next: see
+/// `any_study::chunk_counter`.
 std::unique_ptr<result_keeper> keep_in_store(const std::string& folder, const layout& content,
-                                             const store_options& options);
+                                             const store_options& options, std::function<std::int64_t()> counter = {});
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

@@ -84,9 +84,9 @@ struct store_options {
 /// Results in a folder. All functions may be called by several threads at a time, and several processes may have the
 /// folder open, also on several machines that share it.
 ///
-/// A process takes a chunk by `claim_next`, computes it, and hands it over by `commit`, which returns when it is
-/// durable. Every function throws `error`: for a disk that is full or fails, with what to do. What was committed before
-/// is never lost by that, and the study can be started again.
+/// A process takes a chunk by `claim_next` or `claim`, computes it, and hands it over by `commit`, which returns when
+/// it is durable. Every function throws `error`: for a disk that is full or fails, with what to do. What was committed
+/// before is never lost by that, and the study can be started again.
 class store final : public studies::results {
 public:
     /// Makes a new store in a folder that is empty or does not exist, or goes on with the one that is there if it is of
@@ -131,6 +131,8 @@ public:
     /// if there is none: then either the store is complete, or others are at work on the rest. Who waits for them asks
     /// again after a while, since the claims of dead processes are taken over.
     std::optional<std::int64_t> claim_next();
+    /// Takes this chunk; false if it is done, or claimed by a living process.
+    bool claim(std::int64_t chunk);
     /// Writes a chunk: a column for every variable with along::instances or along::chunks, with as many values as the
     /// chunk has, in any order. It is done and durable when this returns. The claim ends, also if this throws. Without
     /// a claim it does the same, for those who divide the chunks among themselves otherwise; two processes may write

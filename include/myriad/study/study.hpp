@@ -137,6 +137,10 @@ public:
     std::vector<device> devices = {};  ///< all at the same time; none: `device::best()`
     std::int64_t chunk = 0;  ///< instances that are computed and stored together; 0: by memory and number. A store that
                              ///< exists keeps its own
+    /// For processes that run the study together and share a counter, as over MPI: each call gives one of them the next
+    /// number, from 0 on, or a negative one if the counter has failed. Chunks are claimed in that order, and looked for
+    /// only when it is at its end. Needs a folder. Called by several threads.
+    std::function<std::int64_t()> chunk_counter = {};
     bool stop_on_signals = false;  ///< SIGINT and SIGTERM end the run as `stop` does
     /// Called in the thread of `run` several times a second, the last time when it ends. An exception ends the run as
     /// `stop` does, and is rethrown. `progress_line()` shows a line.

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Headers of models as one text: what is put in its place, and what the text stands for.
+#include "program/model_source.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include "tests/catch.hpp"
+
+using namespace myriad::programs;
+using Catch::Matchers::Contains;
+
+namespace {
+
+struct folder {
+    std::filesystem::path path;
+    folder() {
+        std::string name = (std::filesystem::temp_directory_path() / "myriad_source_XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+        path = name;
+    }
+    folder(const folder&) = delete;
+    folder& operator=(const folder&) = delete;
+    ~folder() { std::filesystem::remove_all(path); }
+    void write(const std::string& name, const std::string& text) const {
+        std::filesystem::create_directories((path / name).parent_path());
+        std::ofstream(path / name) << text;
+    }
+    model_source read(const std::string& name) const { return read_model_source((path / name).string()); }
+};
+
+}  // namespace
+
+TEST_CASE("headers in quotes are put in their place, and lines say from where") {
+    const folder here;
+    here.write("model.hpp",
+               "#pragma once\n#include <myriad/model.hpp>\n  #  include \"parts/rates.hpp\"  // rates\n"
+               "#include \"parts/rates.hpp\"\n#include \"absent.hpp\"\nstruct m {};");
+    here.write("parts/rates.hpp", "#pragma once\n#include \"more.hpp\"\nconst int rates = 1;\n");
+    here.write("parts/more.hpp", "const int more = 2;\n");
+    const model_source source = here.read("model.hpp");
+    CHECK(source.name == "model.hpp");
+    CHECK(source.text ==
+          "#line 1 \"model.hpp\"\n"
+          "\n"
+          "#include <myriad/model.hpp>\n"
+          "#line 1 \"parts/rates.hpp\"\n"
+          "\n"
+          "#line 1 \"parts/more.hpp\"\n"
+          "const int more = 2;\n"
+          "#line 3 \"parts/rates.hpp\"\n"
+          "const int rates = 1;\n"
+          "#line 4 \"model.hpp\"\n"
+          "#line 5 \"model.hpp\"\n"
+          "#include \"absent.hpp\"\n"
+          "struct m {};\n");
+}
+
+TEST_CASE("a header without #pragma once is there each time it is included, and not without end") {
+    const folder here;
+    here.write("model.hpp", "#include \"list.inc\"\n#include \"list.inc\"\n");
+    here.write("list.inc", "x,\n");
+    const std::string text = here.read("model.hpp").text;
+    const std::size_t first = text.find("x,\n");
+    REQUIRE(first != std::string::npos);
+    CHECK(text.find("x,\n", first + 1) != std::string::npos);
+    here.write("list.inc", "#include \"list.inc\"\n");
+    CHECK_THROWS_WITH(here.read("model.hpp"), Contains("list.inc includes itself: put #pragma once at its beginning"));
+}
+
+TEST_CASE("what stands for a source changes with its text alone, not with its place") {
+    const folder one, other;
+    for (const folder* const f : {&one, &other}) {
+        f->write("a/model.hpp", "#pragma once\n#include \"../b/rates.hpp\"\nstruct m {};\n");
+        f->write("b/rates.hpp", "const int rates = 1;\n");
+    }
+    const std::string digest = one.read("a/model.hpp").digest();
+    CHECK(digest.size() == 16);
+    CHECK(digest == other.read("a/model.hpp").digest());
+    other.write("b/rates.hpp", "const int rates = 2;\n");
+    CHECK(digest != other.read("a/model.hpp").digest());
+    // The text itself, kept in one file, is the same source.
+    one.write("joined/model.hpp", one.read("a/model.hpp").text);
+    CHECK(digest == one.read("joined/model.hpp").digest());
+}
+
+TEST_CASE("the hash of a text is FNV-1a") {
+    CHECK(text_hash("") == "cbf29ce484222325");
+    CHECK(text_hash("a") == "af63dc4c8601ec8c");
+    CHECK(text_hash("foobar") == "85944171f73967e8");
+}
+
+TEST_CASE("a header that cannot be read is refused") {
+    const folder here;
+    CHECK_THROWS_WITH(here.read("none.hpp"), Contains("none.hpp cannot be read: give the path of a file"));
+    here.write("folder.hpp/x", "");
+    CHECK_THROWS_WITH(here.read("folder.hpp"), Contains("cannot be read"));
+}
