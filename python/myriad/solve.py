@@ -393,6 +393,25 @@ def make_options(components, size, *, phases, record, samples, step, minimum_ste
     return options, recorded, sampled
 
 
+def device_names(device, interpreted):
+    """The names of one device or of several, each once, as the core knows them, and why "auto" takes no GPU."""
+    found = [_device_name(d, interpreted) for d in ([device] if isinstance(device, str) else device)]
+    if not found:
+        raise Error("device= names no device: leave it out, or give \"cpu\"")
+    return list(dict.fromkeys(name for name, _ in found)), next((why for _, why in found if why), None)
+
+
+def kernel_for(device, model, components, method, control, sampled, precision, interpreted):
+    """The kernel of a model and a method for a device of the core, and the names of all components that it has."""
+    if not device.startswith("cuda"):
+        return choose_kernel(model, components, method, control, sampled, precision, interpreted)
+    if interpreted:
+        raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
+    names = components.names
+    return nvrtc.kernel(*model.source(), method_type(method, control, sampled), precision,
+                        (len(names[2]), len(names[3])), int(device.partition(":")[2])), names
+
+
 def choose_kernel(model, components, method, control, sampled, precision, interpreted):
     """The kernel for a model and a method, compiled or interpreted, and the names of all components that it has."""
     written = method_type(method, control, sampled)
@@ -456,7 +475,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
         method = "cash_karp" if samples is None else "dormand_prince_5"
     components = Components(model)
     given, domain, count = _gather(components, sweep, start, time, size)
-    written = method_type(method, control, samples is not None)
+    method_type(method, control, samples is not None)  # refuses what does not exist
     if method in fixed_step and step is None:
         raise Error(f"{method} takes fixed steps: give step=")
     options, recorded, sampled = make_options(
@@ -469,14 +488,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     elif invalid != "refuse":
         raise Error(f"invalid is {invalid!r}: give \"refuse\" or \"mark\"")
 
-    if on_gpu:
-        if interpreted:
-            raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
-        names = components.names
-        gpu = int(where.partition(":")[2])
-        kernel = nvrtc.kernel(*model.source(), written, precision, (len(names[2]), len(names[3])), gpu)
-    else:
-        kernel, names = choose_kernel(model, components, method, control, samples is not None, precision, interpreted)
+    kernel, names = kernel_for(where, model, components, method, control, samples is not None, precision, interpreted)
     options.set_tolerances(_per_state(rtol, components, "rtol", len(names[0])),
                            _per_state(atol, components, "atol", len(names[0])))
     _set_events(options, events, components, len(names[-1]))
@@ -486,7 +498,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
         ensemble = kind(kernel.library, *names, count)
         _fill(ensemble, components, given, domain, names, np.dtype("f8" if precision == "double" else "f4"))
         if on_gpu and any(isinstance(array, DeviceInput) for array in given.values()):
-            _core.wait_for_gpu(gpu)  # for what other libraries do there
+            _core.wait_for_gpu(int(where.partition(":")[2]))  # for what other libraries do there
         if tolerance_scale is not None:
             scale = _numbers(tolerance_scale, "tolerance_scale")
             if isinstance(scale, DeviceInput):

@@ -150,7 +150,8 @@ detail::run_statistics run_library(const host::any_run& all, const detail::run_o
 }  // namespace
 
 template <class R>
-std::unique_ptr<report<R>> solve(const library& with, const device& where, ensemble<R>& instances, const options& o) {
+std::unique_ptr<report<R>> solve(const library& with, const device& where, ensemble<R>& instances, const options& o,
+                                 results_are results) {
     const detail::default_arithmetic here;
     auto& data = instances.data;
     const model_facts& kernel = with.facts();
@@ -180,7 +181,8 @@ std::unique_ptr<report<R>> solve(const library& with, const device& where, ensem
                                     &run_library<R>, data.size,
                                     o.phases,        static_cast<openmp::instruction_set>(with.cpu().instruction_set)};
             host::integrate_all<R>(where, o, &run, nullptr, data, check, *result);
-        } else if (auto gpu = std::make_shared<resident<R>>(with, where, o, call); gpu->fits(instances)) {
+        } else if (auto gpu = std::make_shared<resident<R>>(with, where, o, call);
+                   results == results_are::anywhere && gpu->fits(instances)) {
             instances.gpu = result->gpu = gpu;
             gpu->integrate(instances, o, check, *result);
         } else {
@@ -201,7 +203,9 @@ std::unique_ptr<report<R>> solve(const library& with, const device& where, ensem
     if (kernel.embedded_order > 0) host::note_raised_tolerances<R>(*result, o);
     return result;
 }
-template std::unique_ptr<report<double>> solve(const library&, const device&, ensemble<double>&, const options&);
-template std::unique_ptr<report<float>> solve(const library&, const device&, ensemble<float>&, const options&);
+template std::unique_ptr<report<double>> solve(const library&, const device&, ensemble<double>&, const options&,
+                                               results_are);
+template std::unique_ptr<report<float>> solve(const library&, const device&, ensemble<float>&, const options&,
+                                              results_are);
 
 }  // namespace myriad::python

@@ -86,3 +86,26 @@ def test_an_exception_of_the_progress_function_arrives(oscillator):
 
     with pytest.raises(RuntimeError, match="enough"):
         solve(oscillator, progress=refuse)
+
+
+@pytest.mark.parametrize("interpreted", [False, True], ids=["compiled", "interpreted"])
+@pytest.mark.parametrize("options", [dict(), dict(method="runge_kutta_4", step=1e-4), dict(phases=1 << 30, end=1e-3),
+                                     dict(device="cpu:2", x=[1, 0])],
+                         ids=["adaptive", "fixed", "phases", "other thread"])
+def test_an_instance_that_takes_for_ever_ends_on_an_interrupt(interpreted, options):
+    options = dict(options)
+    x, v = my.states("x v")
+    begin = np.array(options.pop("x", [1.0]))
+    end = np.where(begin != 0, options.pop("end", 1e12), 1.0)  # the first instance is for another thread, or alone
+    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+    options = {**dict(max_steps=(1 << 31) - 1, rtol=1e-10, device="cpu:1"), **options}
+    my.solve(my.model({x: v, v: -x}), start={x: begin, v: 0}, time=(0, 1e-3), interpreted=interpreted,
+             **{**options, "phases": 1})  # compiles the model
+    began = time.perf_counter()
+    with pytest.raises(my.Interrupted) as raised:
+        my.solve(my.model({x: v, v: -x}), start={x: begin, v: 0}, time=(0, end), interpreted=interpreted, **options)
+    assert time.perf_counter() - began < 8
+    run = raised.value.run
+    assert run.report.by_status.pop("interrupted") == 1 and run.done == len(begin) - 1
+    assert my.status_names[run.status[0]] == "interrupted" and run.failed[0]
+    assert np.isfinite(run["x"]).all() and 0 < run["t"][0] < 1e12 and "instance 0 ended as interrupted" in str(run)

@@ -170,7 +170,7 @@ private:
     }
 
     void work(used_device& d, done_of_chunk& mine) {
-        const std::unique_ptr<chunk_solver> solver = model_.make_solver(plan_);
+        const std::unique_ptr<chunk_solver> solver = model_.make_solver(plan_, d.where);
         std::vector<std::vector<std::byte>> values(plan_.quantities.size());
         std::int64_t piece = settings_.piece > 0 ? std::min(settings_.piece, content().chunk) : content().chunk;
         while (const std::optional<std::int64_t> chunk = next_chunk(d)) {

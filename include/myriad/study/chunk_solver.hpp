@@ -99,7 +99,8 @@ public:
     virtual void check(const device& where, const options& o) const = 0;
     /// Bytes of memory that a call takes on the host for one instance.
     virtual double bytes_per_instance(const options& o) const = 0;
-    virtual std::unique_ptr<chunk_solver> make_solver(const study_plan& plan) const = 0;
+    /// A solver for that device.
+    virtual std::unique_ptr<chunk_solver> make_solver(const study_plan& plan, const device& where) const = 0;
     /// What stands for the generator of instances; empty if there is none.
     virtual std::string generator() const = 0;
 };

@@ -95,6 +95,9 @@ struct integrator {
     MYRIAD_FUNCTION bool fill_lanes(Source& source, event_locator_type& locator) {
         watch_type watch{args, s};
         if (is_pack<S> || !any(s.ended)) watch.look();
+        if constexpr (requires { source.gives_up(std::int64_t{}); }) {
+            if (source.gives_up(s.all_iterations_of(args))) watch.interrupt();
+        }
         if (!any(s.ended)) {
             watch.plan();
             return true;
@@ -190,8 +193,9 @@ private:
 };
 
 /// Integrates all instances that `source.next()` returns (indices, then -1) on one pack of lanes of kind S. The source
-/// of a CUDA thread also says whether it `gives_only_one()`. Returns the number of iterations of the loop, each a trial
-/// step in every lane. `shared` replaces `args.shared` where a backend has moved these parameters.
+/// of a CUDA thread also says whether it `gives_only_one()`, that of a CPU's whether it `gives_up(iterations)`, which
+/// ends all instances. Returns the number of iterations of the loop, each a trial step in every lane. `shared` replaces
+/// `args.shared` where a backend has moved these parameters.
 template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
                                        const shared_parameters<real_of<S>>& shared, Source& source) {
