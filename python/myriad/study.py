@@ -324,6 +324,7 @@ def _compute(payload, chunk, chunk_size, devices):
 
 
 _lost = (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError, OSError)
+_lost_by_name = ("KilledWorker", "WorkerLost", "ManagerLost")  # of Dask and Parsl
 
 
 class _ExecutedRun:
@@ -390,7 +391,7 @@ class _ExecutedRun:
             values = future.result()
         except BaseException as error:
             self._handed.release(chunk)
-            if isinstance(error, _lost) or type(error).__name__ == "KilledWorker":  # Dask's
+            if isinstance(error, _lost) or type(error).__name__ in _lost_by_name:
                 raise self._died(error) from error
             raise
         self._handed.commit(chunk, values)
@@ -403,7 +404,10 @@ class _ExecutedRun:
     def _end(self):
         """Takes what is done, and gives the rest back."""
         for future in list(self._under_way):
-            future.cancel()
+            try:
+                future.cancel()
+            except NotImplementedError:  # Parsl's
+                pass
         concurrent.futures.wait([f for f in self._under_way if not f.cancelled()], timeout=self._patience)
         for future, chunk in list(self._under_way.items()):
             try:

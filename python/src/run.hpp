@@ -111,9 +111,15 @@ enum class results_are {
     on_host,
 };
 
-/// `solve`. Throws `error`.
+/// A kernel for a device.
+struct placed_kernel {
+    const library* kernel;
+    device where;
+};
+
+/// `solve` on one device, or on several GPUs at a time, whose results are on the host. Throws `error`.
 template <class R>
-std::unique_ptr<report<R>> solve(const library& kernel, const device& where, ensemble<R>& instances, const options& o,
+std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<R>& instances, const options& o,
                                  results_are results = results_are::anywhere);
 
 }  // namespace myriad::python

@@ -100,7 +100,7 @@ public:
             d.shared.data()[first + i] = static_cast<R>(model_.tables[i]);
     }
     report_of<R> solve(const device& where, const options& o) override {
-        made_ = python::solve<R>(*kernel_.kernel, where, instances_, kernel_.fitted(o), results_are::on_host);
+        made_ = python::solve<R>({{kernel_.kernel, where}}, instances_, kernel_.fitted(o), results_are::on_host);
         return *made_;
     }
     const R* recorded(component_kind kind, int number) const override {

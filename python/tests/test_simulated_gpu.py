@@ -237,3 +237,58 @@ expected = study(60).run(device="cuda")
 with concurrent.futures.ThreadPoolExecutor(2) as pool:
     assert same(study(60).run(executor=pool, device="cuda", chunk=7), expected, ["x_end", "n_end", "status"])
 """)
+
+
+def test_several_gpus_in_one_call_have_the_bits_of_one(run):
+    run("""
+for more in (dict(record=dict(states=[x], accessories=[peak, n], time=True), phases=2), dict(samples=3),
+             dict(precision="float", rtol=1e-5)):
+    one = solve("cuda:1", 1000, **more)
+    all_three = solve(["cuda:0", "cuda:2", "cuda:1"], 1000, **more)
+    assert all_three.report.device == "cuda:0, cuda:2, cuda:1" and all_three.report.registers == 99
+    for name in ("x", "v", "peak", "n", "k", *(["t"] if "record" in more else [])):
+        assert np.array_equal(one[name], all_three[name], equal_nan=True), (name, more)
+    assert np.array_equal(one.steps(), all_three.steps()) and np.array_equal(one.status, all_three.status)
+    assert one.report.accepted_steps == all_three.report.accepted_steps and one.report.by_status == {"success": 1000}
+assert "is not on a GPU" in message(lambda: all_three.device["x"])
+assert np.array_equal(solve(["cuda:0", "cuda:1", "cuda:2"], 2)["x"], solve("cuda", 2)["x"])
+assert solve(["cuda", "cuda:0"], 2).device["x"].shape == (2,)  # one GPU
+told = []
+solve(["cuda:0", "cuda:1"], 100, progress=lambda done, total: told.append((done, total)))
+assert told[-1] == (100, 100) and told == sorted(told)
+assert "several devices of a call must be GPUs" in message(lambda: solve(["cuda", "cpu"], 5))
+assert "interpreted on the CPU alone" in message(lambda: solve(["cuda", "cuda:1"], 5, interpreted=True))
+given = OnGpu(np.linspace(0.2, 0.3, 50))
+assert "several devices are given" in message(lambda: my.solve(
+    model, {k: given, B: 0.3}, start={x: 1, v: 0}, time=(0, 1), device=["cuda:0", "cuda:1"]))
+bad = np.linspace(0.2, 0.3, 50)
+bad[7] = np.nan
+call = lambda **more: my.solve(model, {k: bad, B: 0.3}, start={x: 1, v: 0}, time=(0, 1), device=["cuda:0", "cuda:1"],
+                               **more)
+assert "is not finite in 1 of 50 instances" in message(call)
+assert call(invalid="mark").report.by_status == {"success": 49, "invalid_input": 1}
+def stop(done, total):
+    raise KeyboardInterrupt
+try:
+    solve(["cuda:0", "cuda:1"], 20_000, time=(0, 0.01), progress=stop)
+except my.Interrupted as interrupted:
+    assert 0 < interrupted.run.done <= 20_000 and interrupted.run.report.device == "cuda:0, cuda:1"
+else:
+    raise AssertionError("was not interrupted")
+""", MYRIAD_SIMULATED_GPUS=3)
+
+
+def test_a_call_on_several_gpus_ends_with_the_error_of_one_that_fails(run):
+    run("""
+assert "unspecified launch failure" in message(lambda: [solve(["cuda:0", "cuda:1"], 200) for _ in range(9)])
+assert solve("cuda:0", 5).report.by_status == {"success": 5}
+""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_LAUNCHES=6)
+
+
+def test_parts_on_several_gpus_have_the_bits_of_a_whole(run):
+    run("""
+call = lambda device: my.solve(model, sweep(270_000), start={x: 1, v: 0.1}, time=(0, 0.1), device=device)
+one, two = call("cuda"), call(["cuda:0", "cuda:1"])
+for name in ("x", "v", "peak", "n"):
+    assert np.array_equal(one[name], two[name]), name
+""", MYRIAD_SIMULATED_GPUS=2)

@@ -95,9 +95,8 @@ struct integrator {
     MYRIAD_FUNCTION bool fill_lanes(Source& source, event_locator_type& locator) {
         watch_type watch{args, s};
         if (is_pack<S> || !any(s.ended)) watch.look();
-        if constexpr (requires { source.gives_up(std::int64_t{}); }) {
-            if (source.gives_up(s.all_iterations_of(args))) watch.interrupt();
-        }
+        const bool over = gives_up(source);
+        if (over) watch.interrupt();
         if (!any(s.ended)) {
             watch.plan();
             return true;
@@ -109,6 +108,7 @@ struct integrator {
             set_lane(begun, i, phase_driver<Model, Method, S>{*arguments, s, locator.sides, o}.advance(i, source));
         });
         s.ended = mask(false);
+        if (over) watch.interrupt();  // those that have begun another phase
         watch.plan();
         if constexpr (chooses_first_step<Method>) {
             const mask open = begun & s.control.first_step_open;
@@ -186,6 +186,16 @@ struct integrator {
     }
 
 private:
+    /// Whether the host wishes all instances to end as they are.
+    template <class Source>
+    MYRIAD_FUNCTION bool gives_up(Source& source) {
+        if constexpr (requires { source.gives_up(std::int64_t{}); }) {
+            return source.gives_up(s.all_iterations_of(args));
+        } else {
+            return false;
+        }
+    }
+
     /// Only hooks see the step just taken.
     static constexpr bool shows_step = has_after_step<Model> || has_after_event<Model> || has_finalise<Model>;
     /// Time at the end of the trial.
