@@ -55,12 +55,13 @@ def parsl():
     import parsl
     from parsl.executors import HighThroughputExecutor
     from parsl.providers import LocalProvider
-    environment = f"export PATH={pathlib.Path(sys.executable).parent}:$PATH"
+    programs, here = pathlib.Path(sys.executable).parent, pathlib.Path(__file__).parent
+    environment = f"export PATH={programs}:$PATH PYTHONPATH={here}:$PYTHONPATH"
     workers = HighThroughputExecutor(label="local", address="127.0.0.1", max_workers_per_node=2, encrypted=False,
-                                     interchange_launch_cmd=[str(pathlib.Path(sys.executable).parent / "interchange.py")],
+                                     interchange_launch_cmd=[str(programs / "interchange.py")],
                                      provider=LocalProvider(worker_init=environment, init_blocks=1, max_blocks=1))
     folder = tempfile.mkdtemp(prefix="myriad-parsl-")
-    return concurrent_of_parsl.ParslPoolExecutor(config=parsl.Config(executors=[workers], run_dir=folder))
+    return concurrent_of_parsl.ParslPoolExecutor(config=parsl.Config(executors=[workers], strategy="none", run_dir=folder))
 
 
 @pytest.mark.parametrize("make", [lambda: concurrent.futures.ThreadPoolExecutor(3), spawned, loky, dask, parsl],
