@@ -228,8 +228,10 @@ class Study:
         expiry     seconds after which chunks of a process on another machine that gives no sign of life are taken over
         progress   True for a bar, or a function of the numbers of instances done and of all
 
-        A GPU that fails is left out with a warning, and its chunks are done by the other devices. All GPUs have the
-        same bits; the CPU's differ by rounding errors. Ctrl-C ends a run when the chunks under way are done, or after ten seconds, and raises `myriad.Interrupted`,
+        A GPU that fails is left out with a warning, and its chunks are done by the other devices. GPUs of one kind give
+        the same bits; those of a CPU differ by rounding errors.
+
+        Ctrl-C ends a run when the chunks under way are done, or after ten seconds, and raises `myriad.Interrupted`,
         whose `run` has what is done; so does the store, in which the next run goes on. Raises `myriad.Error` if the
         store is of another study, with what differs, if a disk is full, and if a worker of an executor dies; what was
         done stays in the store, and `error.result` has it."""

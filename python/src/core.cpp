@@ -310,8 +310,7 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
             text << static_cast<const report_of<R>&>(r);
             return text.str();
         });
-    m.def("solve", &solve_from_python<R>, "kernels"_a, "ensemble"_a, "options"_a,
-          "progress"_a.none() = nb::none());
+    m.def("solve", &solve_from_python<R>, "kernels"_a, "ensemble"_a, "options"_a, "progress"_a.none() = nb::none());
 }
 
 void bind_options(nb::module_& m) {

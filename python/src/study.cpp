@@ -493,15 +493,14 @@ void bind_study(nb::module_& m) {
         .def("instances_done", &run::instances_done, nb::call_guard<nb::gil_scoped_release>());
 
     nb::class_<python_study>(m, "Study")
-        .def(
-            "__init__",
-            [](python_study* self, const names_of_kinds& names, std::vector<double> tables, const std::string& real,
-               std::string name, std::string method) {
-                new (self) python_study(
-                    std::make_shared<study_model>(model_of_study{names_from(names), std::move(tables)},
-                                                  real == studies::name_of(element::f64) ? element::f64 : element::f32,
-                                                  std::move(name), std::move(method)));
-            })
+        .def("__init__",
+             [](python_study* self, const names_of_kinds& names, std::vector<double> tables, const std::string& real,
+                std::string name, std::string method) {
+                 new (self) python_study(
+                     std::make_shared<study_model>(model_of_study{names_from(names), std::move(tables)},
+                                                   real == studies::name_of(element::f64) ? element::f64 : element::f32,
+                                                   std::move(name), std::move(method)));
+             })
         .def(
             "add_kernel",
             [](python_study& s, const std::string& where, const library& kernel, const names_of_kinds& names) {

@@ -61,7 +61,7 @@ def parsl():
                                      interchange_launch_cmd=[str(programs / "interchange.py")],
                                      provider=LocalProvider(worker_init=environment, init_blocks=1, max_blocks=1))
     folder = tempfile.mkdtemp(prefix="myriad-parsl-")
-    return concurrent_of_parsl.ParslPoolExecutor(config=parsl.Config(executors=[workers], strategy="none", run_dir=folder))
+    return concurrent_of_parsl.ParslPoolExecutor(parsl.Config(executors=[workers], strategy="none", run_dir=folder))
 
 
 @pytest.mark.parametrize("make", [lambda: concurrent.futures.ThreadPoolExecutor(3), spawned, loky, dask, parsl],

@@ -59,9 +59,7 @@ public:
     }
 
     /// Whether instances under way are to end as they are. The loop asks now and then, with its iterations so far.
-    bool gives_up(std::int64_t iterations) {
-        return iterations >= ask_at_ && ask(iterations);
-    }
+    bool gives_up(std::int64_t iterations) { return iterations >= ask_at_ && ask(iterations); }
 
 private:
     static constexpr std::int64_t ask_every = 1024;
