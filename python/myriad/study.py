@@ -314,14 +314,16 @@ class _Progress:
 
 # -- Executors ---------------------------------------------------------------------------------------------------------
 
-_received = threading.local()  # the last study of each thread of a worker
+_received = threading.local()  # the last study of each thread of a worker, and its devices and chunks
 
 
 def _compute(payload, chunk, chunk_size, devices):
     """A chunk of a study, in a worker."""
     if getattr(_received, "payload", None) != payload:
-        _received.study, _received.payload = Study(*pickle.loads(payload)), payload
+        _received.study, _received.payload, _received.use = Study(*pickle.loads(payload)), payload, None
+    if _received.use != (devices, chunk_size):
         _received.study._use(devices, chunk_size)
+        _received.use = devices, chunk_size
     return _received.study._core.compute(chunk, chunk_size)
 
 

@@ -137,9 +137,18 @@ void integrate_on_several(const std::vector<placed_kernel>& on, shaped_arguments
     data.untouched = false;
     host::progress_relay relay{o.progress, data.size, nullptr};
     std::vector<std::thread> threads;
-    all.working = workers.size();
-    for (std::size_t w = 0; w < workers.size(); ++w)
-        threads.emplace_back([&one = *workers[w], first = static_cast<std::int64_t>(w) * part] { one.work(first); });
+    try {
+        for (std::size_t w = 0; w < workers.size(); ++w) {
+            const std::lock_guard lock(all.mutex);
+            threads.emplace_back(
+                [&one = *workers[w], first = static_cast<std::int64_t>(w) * part] { one.work(first); });
+            ++all.working;
+        }
+    } catch (...) {
+        const std::lock_guard lock(all.mutex);
+        all.failure = std::current_exception();
+        all.stopped = true;
+    }
     {
         std::unique_lock lock(all.mutex);
         while (all.working > 0) {

@@ -116,6 +116,18 @@ if __name__ == "__main__":
     assert done.returncode == 0 and done.stdout == "well\n", done.stdout + done.stderr
 
 
+def test_a_worker_takes_the_devices_of_each_run(monkeypatch):
+    class_of_studies, used = my.study.__globals__["Study"], []
+    use = class_of_studies._use
+    monkeypatch.setattr(class_of_studies, "_use", lambda study, devices, chunk: (
+        used.append((threading.current_thread() is threading.main_thread(), devices)), use(study, devices, chunk)))
+    study = oscillator()
+    with concurrent.futures.ThreadPoolExecutor(1) as executor:
+        for threads in (1, 2, 2):
+            study.run(executor=executor, device=f"cpu:{threads}", chunk=60)
+    assert [devices for here, devices in used if not here] == [["cpu:1"], ["cpu:2"]]
+
+
 class LossyExecutor(concurrent.futures.Executor):
     """Its second task is lost, as Parsl says it, and it cannot cancel the others, which never end."""
 

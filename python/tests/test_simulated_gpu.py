@@ -228,7 +228,7 @@ assert len(result.warnings) == 1 and "cuda:1 is left out" in result.warnings[0],
 assert "unspecified launch failure" in result.warnings[0]
 alone = study(300)
 assert "no device is left" in message(lambda: alone.run(device="cuda:1"))
-""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_LAUNCHES=8)
+""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_LAUNCHES=2)
 
 
 def test_a_worker_of_an_executor_uses_its_gpu(run):
@@ -241,8 +241,7 @@ with concurrent.futures.ThreadPoolExecutor(2) as pool:
 
 def test_several_gpus_in_one_call_have_the_bits_of_one(run):
     run("""
-for more in (dict(record=dict(states=[x], accessories=[peak, n], time=True), phases=2), dict(samples=3),
-             dict(precision="float", rtol=1e-5)):
+for more in (dict(record=dict(states=[x], accessories=[peak, n], time=True), phases=2), dict(samples=3)):
     one = solve("cuda:1", 1000, **more)
     all_three = solve(["cuda:0", "cuda:2", "cuda:1"], 1000, **more)
     assert all_three.report.device == "cuda:0, cuda:2, cuda:1" and all_three.report.registers == 99
@@ -282,13 +281,13 @@ def test_a_call_on_several_gpus_ends_with_the_error_of_one_that_fails(run):
     run("""
 assert "unspecified launch failure" in message(lambda: [solve(["cuda:0", "cuda:1"], 200) for _ in range(9)])
 assert solve("cuda:0", 5).report.by_status == {"success": 5}
-""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_LAUNCHES=6)
+""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_LAUNCHES=2)
 
 
 def test_parts_on_several_gpus_have_the_bits_of_a_whole(run):
     run("""
-call = lambda device: my.solve(model, sweep(270_000), start={x: 1, v: 0.1}, time=(0, 0.1), device=device)
-one, two = call("cuda"), call(["cuda:0", "cuda:1"])
+call = lambda device: my.solve(model, sweep(270_000), start={x: 1, v: 0.1}, time=(0, 0.01), device=device)
+one, two = call("cuda"), call(["cuda:0", "cuda:1"])  # in four parts
 for name in ("x", "v", "peak", "n"):
     assert np.array_equal(one[name], two[name]), name
 """, MYRIAD_SIMULATED_GPUS=2)
