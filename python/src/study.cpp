@@ -87,7 +87,7 @@ public:
         instances_.samples.clear();
         instances_.data.restart();
     }
-    void generate(std::int64_t) override {
+    void generate(std::int64_t, std::uint64_t) override {
         auto& d = instances_.data;
         const auto clear = [](auto& array, const std::vector<std::string>& used) {
             for (int c = static_cast<int>(used.size()); c < array.components(); ++c) array.fill_component(c, R(0));
