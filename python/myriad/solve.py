@@ -394,6 +394,25 @@ def make_options(components, size, *, phases, record, samples, step, minimum_ste
     return options, recorded, sampled
 
 
+def device_names(device, interpreted):
+    """The names of one device or of several, each once, as the core knows them, and why "auto" takes no GPU."""
+    found = [_device_name(d, interpreted) for d in ([device] if isinstance(device, str) else device)]
+    if not found:
+        raise Error("device= names no device: leave it out, or give \"cpu\"")
+    return list(dict.fromkeys(name for name, _ in found)), next((why for _, why in found if why), None)
+
+
+def kernel_for(device, model, components, method, control, sampled, precision, interpreted):
+    """The kernel of a model and a method for a device of the core, and the names of all components that it has."""
+    if not device.startswith("cuda"):
+        return choose_kernel(model, components, method, control, sampled, precision, interpreted)
+    if interpreted:
+        raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
+    names = components.names
+    return nvrtc.kernel(*model.source(), method_type(method, control, sampled), precision,
+                        (len(names[2]), len(names[3])), int(device.partition(":")[2])), names
+
+
 def choose_kernel(model, components, method, control, sampled, precision, interpreted):
     """The kernel for a model and a method, compiled or interpreted, and the names of all components that it has."""
     written = method_type(method, control, sampled)
@@ -440,18 +459,23 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     size              number of instances, if no array gives it
     precision         "double" or "float"
     device            "cpu", "cpu:4" (threads), "cuda", "cuda:1" (the second GPU), or "auto", the first GPU if there is
-                      one, and NVRTC to compile for it, and the CPU otherwise
+                      one, and NVRTC to compile for it, and the CPU otherwise; or a list of GPUs, which divide the
+                      instances among them, with the bits that one of them has
     interpreted       True runs the model without compiling it, several times slower; None does so only where there
                       is no compiler, which the report tells
     progress          True for a bar, or a function of the numbers of instances done and of all
 
     Raises `myriad.Error` if something is missing or does not fit, before any work. Ctrl-C raises
-    `myriad.Interrupted`, whose `run` has what is done."""
+    `myriad.Interrupted`, whose `run` has what is done; on the CPU, instances that take more than a second longer end as
+    "interrupted", and on a GPU those under way come to their end."""
     begin = clock.perf_counter()
     if precision not in ("double", "float"):
         raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
-    where, no_gpu = _device_name(device, interpreted)
-    on_gpu = where.startswith("cuda")
+    devices, no_gpu = device_names(device, interpreted)
+    on_gpu = devices[0].startswith("cuda")
+    if len(devices) > 1 and not all(d.startswith("cuda") for d in devices):
+        raise Error(f"device is {device!r}, and several devices of a call must be GPUs: name GPUs alone, or use "
+                    "myriad.study, which uses CPU and GPUs together")
     if not hasattr(model, "source"):
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
@@ -459,7 +483,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
         method = "cash_karp" if samples is None else "dormand_prince_5"
     components = Components(model)
     given, domain, count = _gather(components, sweep, start, time, size)
-    written = method_type(method, control, samples is not None)
+    method_type(method, control, samples is not None)  # refuses what does not exist
     if method in fixed_step and step is None:
         raise Error(f"{method} takes fixed steps: give step=")
     options, recorded, sampled = make_options(
@@ -472,14 +496,9 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     elif invalid != "refuse":
         raise Error(f"invalid is {invalid!r}: give \"refuse\" or \"mark\"")
 
-    if on_gpu:
-        if interpreted:
-            raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
-        names = components.names
-        gpu = int(where.partition(":")[2])
-        kernel = nvrtc.kernel(*model.source(), written, precision, (len(names[2]), len(names[3])), gpu)
-    else:
-        kernel, names = choose_kernel(model, components, method, control, samples is not None, precision, interpreted)
+    kernels = [kernel_for(d, model, components, method, control, samples is not None, precision, interpreted)
+               for d in devices]
+    kernel, names = kernels[0]
     options.set_tolerances(_per_state(rtol, components, "rtol", len(names[0])),
                            _per_state(atol, components, "atol", len(names[0])))
     _set_events(options, events, components, len(names[-1]))
@@ -489,7 +508,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
         ensemble = kind(kernel.library, *names, count)
         _fill(ensemble, components, given, domain, names, np.dtype("f8" if precision == "double" else "f4"))
         if on_gpu and any(isinstance(array, DeviceInput) for array in given.values()):
-            _core.wait_for_gpu(gpu)  # for what other libraries do there
+            _core.wait_for_gpu(int(devices[0].partition(":")[2]))  # for what other libraries do there
         if tolerance_scale is not None:
             scale = _numbers(tolerance_scale, "tolerance_scale")
             if isinstance(scale, DeviceInput):
@@ -497,7 +516,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
             if scale.ndim and len(scale) != count:
                 raise Error(f"'tolerance_scale' has {len(scale)} values for {count} instances: give one for each")
             ensemble.array("tolerance_scale")[...] = scale
-        report, failure = _core.solve(kernel.library, where, ensemble, options, function)
+        report, failure = _core.solve([(k.library, d) for (k, _), d in zip(kernels, devices)], ensemble, options,
+                                      function)
     except Error as error:
         raise in_python(error) from None
     finally:

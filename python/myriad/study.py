@@ -20,7 +20,7 @@ from .grid import Sweep
 from .methods import fixed_step, method_type
 from .reduce import Reduction
 from .run import Interrupted
-from .solve import (_by_name, _device_name, _numbers, _only, _per_state, _set_events, _whole, choose_kernel, in_python,
+from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, device_names, in_python, kernel_for,
                     make_options, refuse_missing)
 from .study_result import StudyResult
 from .symbols import t_begin, t_end, time as time_symbol
@@ -35,13 +35,6 @@ _terms = (
     ("make chunk smaller", "make chunk= smaller"),
     ("repeat is given", "draws= is given"),
 )
-
-
-def _on_cpu(device):
-    """The name of a CPU as the core knows it: the kernels of studies are compiled for CPUs."""
-    if str(device).startswith("cuda"):
-        raise Error(f"device is {device!r}, but studies run on the CPU alone: give \"cpu\", or use myriad.solve")
-    return _device_name(device, interpreted=True)[0]  # "auto" then looks for no GPU
 
 
 def _in_terms(error):
@@ -81,18 +74,17 @@ class Study:
             raise Error("a study has no sample times for each instance: give the same times for all, or a number of "
                         "evenly spaced ones")
         options, recorded, sampled = make_options(components, 0, record=record, samples=samples, **others)
-        self._kernel, names = choose_kernel(model, components, method, control, samples is not None, precision,
-                                            interpreted)
-        self._interpreted = self._kernel.origin.startswith("interpreted")
-        options.set_tolerances(_per_state(rtol, components, "rtol", len(names[0])),
-                               _per_state(atol, components, "atol", len(names[0])))
-        _set_events(options, events, components, len(names[-1]))
+        count = len(components.states)
+        options.set_tolerances(_per_state(rtol, components, "rtol", count), _per_state(atol, components, "atol", count))
+        _set_events(options, events, components, len(components.events))
         options.mark_invalid()
-        used = [len(components.states), len(components.parameters), len(components.accessories)]
+        self._interpreted, self._kernels = interpreted, {}
+        self._kernel_for = lambda device: kernel_for(device, model, components, method, control, samples is not None,
+                                                     precision, self._interpreted)
         try:
             made = self._core = core.Study(
-                self._kernel.library, [list(n) for n in names], used, list(components.tables.values()),
-                getattr(model, "name", None) or "model",
+                [list(n) for n in components.names], list(components.tables.values()),
+                "float64" if precision == "double" else "float32", getattr(model, "name", None) or "model",
                 method_type(method, control, samples is not None).replace("myriad::", ""))
             made.options(options)
             self._set_instances(made, components, sweep, start, time)
@@ -111,7 +103,6 @@ class Study:
                 made.title(title)
             values = np.array(list(components.tables.values()), float)
             made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
-            made.note("kernel", "interpreted" if self._interpreted else "compiled")
             for key, text in _by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
                 made.note(f"user.{key}", str(text))
         except Error as error:
@@ -213,19 +204,32 @@ class Study:
 
     # -- The run ------------------------------------------------------------------------------------------------------
 
+    def _use(self, devices, chunk):
+        """Sets the devices of the next run, and gets their kernels."""
+        for device in devices:
+            if device not in self._kernels:
+                self._kernels[device], names = self._kernel_for(device)
+                self._core.add_kernel(device, self._kernels[device].library, [list(n) for n in names])
+        self._runs_interpreted = any(self._kernels[d].origin.startswith("interpreted") for d in devices)
+        self._core.note("kernel", "interpreted" if self._runs_interpreted else "compiled")
+        self._core.set_run(devices, _whole(chunk or 0, "chunk", 1 << 62))
+
     def run(self, store=None, *, device="auto", chunk=None, executor=None, check="sizes", expiry=60, progress=None):
         """Computes what is not there yet, and returns a `StudyResult`.
 
         store      a folder, in which the study goes on if it is run again, also by several processes at a time, each
                    with this call; it is a Zarr group (version 3). None: results are in memory
-        device     a device or a list of devices, which are used at the same time: "auto", "cpu", "cpu:4"; with an
-                   executor that of each worker, by default "cpu:1"
+        device     a device or a list of devices, which are used at the same time: "cpu", "cpu:4", "cuda", "cuda:1", or
+                   "auto", which is as in `solve`; with an executor those of each worker, by default "cpu:1"
         chunk      instances that are computed and stored together; None: by memory and number. A store keeps its own
         executor   any executor of `concurrent.futures`, as ProcessPoolExecutor or those of Dask, loky, mpi4py and
                    Parsl: its workers compute chunks, and send their values here, where they are kept
         check      what is looked at of a store that exists: "sizes" of files, or "checksums", for which all is read
         expiry     seconds after which chunks of a process on another machine that gives no sign of life are taken over
         progress   True for a bar, or a function of the numbers of instances done and of all
+
+        A GPU that fails is left out with a warning, and its chunks are done by the other devices. GPUs of one kind give
+        the same bits; those of a CPU differ by rounding errors.
 
         Ctrl-C ends a run when the chunks under way are done, or after ten seconds, and raises `myriad.Interrupted`,
         whose `run` has what is done; so does the store, in which the next run goes on. Raises `myriad.Error` if the
@@ -236,9 +240,7 @@ class Study:
         folder = "" if store is None else os.path.abspath(os.fspath(store))
         if device == "auto" and executor is not None:
             device = "cpu:1"
-        devices = [_on_cpu(d) for d in ([device] if isinstance(device, str) else device)]
-        if not devices:
-            raise Error("device= names no device: leave it out, or give \"cpu\"")
+        devices, no_gpu = device_names(device, self._interpreted)
         show = _Progress(progress)
         try:
             if not folder and self._has_store:  # from an earlier run
@@ -247,8 +249,9 @@ class Study:
             self._has_store = bool(folder)
             if executor is not None:
                 return _ExecutedRun(self, executor, devices, chunk, folder or None, show).run()
-            self._core.set_run(devices, _whole(chunk or 0, "chunk", 1 << 62))
+            self._use(devices, chunk)
             (results, facts), failure = self._core.run(show)
+            facts["notes"] += [no_gpu] if no_gpu else []
             result = self._result(results, facts, folder or None)
             if failure is not None:
                 if isinstance(failure, KeyboardInterrupt):
@@ -263,7 +266,8 @@ class Study:
             show.close()
 
     def _result(self, results, facts, folder):
-        return StudyResult(results, folder, {**facts, "kernel": self._kernel.origin})
+        origins = dict.fromkeys(kernel.origin for kernel in self._kernels.values())
+        return StudyResult(results, folder, {**facts, "kernel": ", ".join(origins)})
 
     def _payload(self):
         """This study as bytes, for other processes, which are to run the same kernel. By cloudpickle if it is there,
@@ -274,7 +278,7 @@ class Study:
             by = pickle
         model, sweep, options = self._given
         try:
-            return by.dumps((model, sweep, {**options, "interpreted": self._interpreted}))
+            return by.dumps((model, sweep, {**options, "interpreted": self._runs_interpreted}))
         except Exception as error:
             raise Error("the study cannot be sent to the workers of an executor, as it does not pickle: "
                         f"{error}") from None
@@ -310,18 +314,21 @@ class _Progress:
 
 # -- Executors ---------------------------------------------------------------------------------------------------------
 
-_received = threading.local()  # the last study of each thread of a worker
+_received = threading.local()  # the last study of each thread of a worker, and its devices and chunks
 
 
 def _compute(payload, chunk, chunk_size, devices):
     """A chunk of a study, in a worker."""
     if getattr(_received, "payload", None) != payload:
-        _received.study, _received.payload = Study(*pickle.loads(payload)), payload
-        _received.study._core.set_run(devices, chunk_size)
+        _received.study, _received.payload, _received.use = Study(*pickle.loads(payload)), payload, None
+    if _received.use != (devices, chunk_size):
+        _received.study._use(devices, chunk_size)
+        _received.use = devices, chunk_size
     return _received.study._core.compute(chunk, chunk_size)
 
 
 _lost = (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError, OSError)
+_lost_by_name = ("KilledWorker", "WorkerLost", "ManagerLost")  # of Dask and Parsl
 
 
 class _ExecutedRun:
@@ -336,7 +343,7 @@ class _ExecutedRun:
         self._most = 2 * workers + 2  # chunks under way
         if not chunk:  # several for each worker, and not too large to send
             chunk = min(max(1, -(-study.size // (8 * workers))), 1 << 16)
-        study._core.set_run(devices, _whole(chunk, "chunk", 1 << 62))
+        study._use(devices, chunk)
         self._payload = study._payload()
         self._handed = study._core.hand_out()
         self._earlier, self._begin = self._handed.instances_done(), clock.perf_counter()
@@ -388,7 +395,7 @@ class _ExecutedRun:
             values = future.result()
         except BaseException as error:
             self._handed.release(chunk)
-            if isinstance(error, _lost) or type(error).__name__ == "KilledWorker":  # Dask's
+            if isinstance(error, _lost) or type(error).__name__ in _lost_by_name:
                 raise self._died(error) from error
             raise
         self._handed.commit(chunk, values)
@@ -401,7 +408,10 @@ class _ExecutedRun:
     def _end(self):
         """Takes what is done, and gives the rest back."""
         for future in list(self._under_way):
-            future.cancel()
+            try:
+                future.cancel()
+            except NotImplementedError:  # Parsl's
+                pass
         concurrent.futures.wait([f for f in self._under_way if not f.cancelled()], timeout=self._patience)
         for future, chunk in list(self._under_way.items()):
             try:

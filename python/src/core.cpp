@@ -213,14 +213,16 @@ private:
 
 /// The report, and the exception that ended the call early or None.
 template <class R>
-nb::tuple solve_from_python(const library& kernel, const std::string& where, ensemble<R>& instances, options o,
-                            nb::handle progress) {
+nb::tuple solve_from_python(const std::vector<std::pair<const library*, std::string>>& kernels, ensemble<R>& instances,
+                            options o, nb::handle progress) {
+    std::vector<placed_kernel> on;
+    for (const auto& [kernel, where] : kernels) on.push_back({kernel, device::parse(where)});
     watcher watch(progress);
     o.progress = [&watch](std::int64_t done, std::int64_t total) { watch(done, total); };
     std::unique_ptr<report<R>> made;
     {
         const nb::gil_scoped_release unlocked;
-        made = solve<R>(kernel, device::parse(where), instances, o);
+        made = solve<R>(on, instances, o);
     }
     const nb::object failure = watch.failure ? watch.failure : nb::none();
     return nb::make_tuple(nb::cast(std::move(made)), failure);
@@ -308,8 +310,7 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
             text << static_cast<const report_of<R>&>(r);
             return text.str();
         });
-    m.def("solve", &solve_from_python<R>, "library"_a, "device"_a, "ensemble"_a, "options"_a,
-          "progress"_a.none() = nb::none());
+    m.def("solve", &solve_from_python<R>, "kernels"_a, "ensemble"_a, "options"_a, "progress"_a.none() = nb::none());
 }
 
 void bind_options(nb::module_& m) {

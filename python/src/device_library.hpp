@@ -5,7 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "myriad/cuda/chunk_engine.cuh"
 #include "myriad/host/backend/arrays.hpp"
 #include "myriad/host/model/model_shape.hpp"
+#include "myriad/host/options/options.hpp"
 #include "myriad/python/any_arguments.hpp"
 #include "myriad/python/device_layout.hpp"
 
@@ -101,5 +104,20 @@ extern template class loaded_kernel<float>;
 
 template <class R>
 using device_engine = cuda::chunk_engine<loaded_kernel<R>>;
+
+/// Makes engines for a program on a GPU.
+template <class R>
+using engine_source =
+    std::function<std::unique_ptr<cuda::engine_for<shaped_arguments<R>>>(const cuda::engine_options& how)>;
+template <class R>
+engine_source<R> engines_of(device_program& program) {
+    return [&program](const cuda::engine_options& how) {
+        return std::make_unique<device_engine<R>>(how, loaded_kernel<R>(program.on(how.device)));
+    };
+}
+/// How they are to run a call.
+inline cuda::engine_options engine_options_for(device_program& program, int device, const options& o) {
+    return {device, o.block_size, program.on(device).facts.shared_placement, o.schedule};
+}
 
 }  // namespace myriad::python

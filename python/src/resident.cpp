@@ -33,9 +33,7 @@ cudaError_t launch_over(const void* kernel, std::int64_t size, void** arguments,
 template <class R>
 resident<R>::resident(const library& kernel, const device& where, const options& o,
                       std::shared_ptr<prepared_call<R>> call)
-    : program_(*kernel.gpu()), how_{where.number(), o.block_size, program_.on(where.number()).facts.shared_placement,
-                                    o.schedule},
-      call_(std::move(call)) {}
+    : program_(*kernel.gpu()), how_(engine_options_for(program_, where.number(), o)), call_(std::move(call)) {}
 
 template <class R>
 resident<R>::~resident() {
@@ -50,17 +48,9 @@ resident<R>::~resident() {
 }
 
 template <class R>
-std::function<std::unique_ptr<cuda::engine_for<shaped_arguments<R>>>(const cuda::engine_options&)> resident<R>::maker()
-    const {
-    return [&program = program_](const cuda::engine_options& how) {
-        return std::make_unique<device_engine<R>>(how, loaded_kernel<R>(program.on(how.device)));
-    };
-}
-
-template <class R>
 void resident<R>::take_engine() {
     auto idle = host::take_idle_engine(key(), how_);
-    if (idle == nullptr) idle = maker()(how_);
+    if (idle == nullptr) idle = engines_of<R>(program_)(how_);
     engine_.reset(static_cast<device_engine<R>*>(idle.release()));
 }
 

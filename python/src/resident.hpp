@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <set>
 
@@ -23,8 +22,6 @@ namespace myriad::python {
 /// One call, in one chunk. Its engine, with the memory on the device, is its own for as long as it lives.
 template <class R>
 class resident {
-    using engine = cuda::engine_for<shaped_arguments<R>>;
-
 public:
     /// The memory of the arguments is the ensemble's, which lives longer, and the call's.
     resident(const library& kernel, const device& where, const options& o, std::shared_ptr<prepared_call<R>> call);
@@ -46,12 +43,8 @@ public:
     void* on_device(const void* values) { return engine_ ? engine_->find(call_->arguments, values).address : nullptr; }
     int number() const { return how_.device; }
 
-    /// For a call in chunks, in the place of this.
-    host::engine_key key() const { return &program_; }
-    std::function<std::unique_ptr<engine>(const cuda::engine_options&)> maker() const;
-    const cuda::engine_options& engine_options() const { return how_; }
-
 private:
+    host::engine_key key() const { return &program_; }
     void take_engine();
     std::size_t bytes_per_instance() const;
     void take_inputs(const ensemble<R>& instances, bool mark_invalid);

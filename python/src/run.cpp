@@ -14,6 +14,7 @@
 #include "myriad/host/threads/default_arithmetic.hpp"
 #include "prepared_call.hpp"
 #include "resident.hpp"
+#include "several_gpus.hpp"
 #include "threads.hpp"
 
 namespace myriad::python {
@@ -150,15 +151,25 @@ detail::run_statistics run_library(const host::any_run& all, const detail::run_o
 }  // namespace
 
 template <class R>
-std::unique_ptr<report<R>> solve(const library& with, const device& where, ensemble<R>& instances, const options& o) {
+std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<R>& instances, const options& o,
+                                 results_are results) {
     const detail::default_arithmetic here;
+    require(!on.empty(), "no device is given");
+    const library& with = *on.front().kernel;
+    const device& where = on.front().where;
     auto& data = instances.data;
     const model_facts& kernel = with.facts();
     require(kernel.real_bytes == sizeof(R), "the kernel and the ensemble differ in precision");
     const bool on_gpu = where.which() == device::kind::cuda;
-    host::check_kernel(where, (with.gpu() != nullptr) == on_gpu);
+    for (const placed_kernel& k : on) {
+        host::check_kernel(k.where, (k.kernel->gpu() != nullptr) == on_gpu && k.where.which() == where.which());
+        require(k.kernel->facts().real_bytes == sizeof(R), "the kernels differ in precision");
+    }
+    require(on_gpu || on.size() == 1, "the CPU is named several times");
     require(on_gpu || instances.on_device.empty(),
             "the sweep has arrays on a GPU, and the device is the CPU: copy them, or give device=\"cuda\"");
+    require(on.size() == 1 || instances.on_device.empty(),
+            "the sweep has arrays on a GPU, and several devices are given: copy them to the host, or name one device");
     const auto claim = data.take();
     check_options<R>(*instances.shape, kernel, o);
     host::check_ended(data, o, data.size);
@@ -180,19 +191,24 @@ std::unique_ptr<report<R>> solve(const library& with, const device& where, ensem
                                     &run_library<R>, data.size,
                                     o.phases,        static_cast<openmp::instruction_set>(with.cpu().instruction_set)};
             host::integrate_all<R>(where, o, &run, nullptr, data, check, *result);
-        } else if (auto gpu = std::make_shared<resident<R>>(with, where, o, call); gpu->fits(instances)) {
+        } else if (on.size() > 1) {
+            integrate_on_several<R>(on, call->arguments, o, data, check, *result);
+        } else if (auto gpu = std::make_shared<resident<R>>(with, where, o, call);
+                   results == results_are::anywhere && gpu->fits(instances)) {
             instances.gpu = result->gpu = gpu;
             gpu->integrate(instances, o, check, *result);
         } else {
             require(instances.on_device.empty(),
                     "the sweep has arrays on the GPU, whose memory does not suffice to "
                     "integrate all of it at once: divide it into smaller parts");
-            host::chunks_of chunks(gpu->key(), gpu->maker(), gpu->engine_options(), call->arguments);
+            device_program& program = *with.gpu();
+            host::chunks_of chunks(&program, engines_of<R>(program), engine_options_for(program, where.number(), o),
+                                   call->arguments);
             host::integrate_all<R>(where, o, nullptr, &chunks, data, check, *result);
         }
     } catch (const interruption&) {
         result->interrupted = true;
-        result->device = where.name();
+        result->device = names_of(on);
     }
     result->first_state.resize(std::min(result->first_state.size(), used(instances.shape->names.states)));
     result->first_parameter.resize(std::min(result->first_parameter.size(), used(instances.shape->names.parameters)));
@@ -201,7 +217,9 @@ std::unique_ptr<report<R>> solve(const library& with, const device& where, ensem
     if (kernel.embedded_order > 0) host::note_raised_tolerances<R>(*result, o);
     return result;
 }
-template std::unique_ptr<report<double>> solve(const library&, const device&, ensemble<double>&, const options&);
-template std::unique_ptr<report<float>> solve(const library&, const device&, ensemble<float>&, const options&);
+template std::unique_ptr<report<double>> solve(const std::vector<placed_kernel>&, ensemble<double>&, const options&,
+                                               results_are);
+template std::unique_ptr<report<float>> solve(const std::vector<placed_kernel>&, ensemble<float>&, const options&,
+                                              results_are);
 
 }  // namespace myriad::python

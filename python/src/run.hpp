@@ -105,8 +105,21 @@ void check_options(const named_shape& shape, const model_facts& kernel, const op
 template <class R>
 double bytes_per_instance(const named_shape& shape, const model_facts& kernel, const options& o);
 
-/// `solve`. Throws `error`.
+/// Where the results of a GPU are after a call.
+enum class results_are {
+    anywhere,  ///< on the GPU until they are asked for, if it has the room
+    on_host,
+};
+
+/// A kernel for a device.
+struct placed_kernel {
+    const library* kernel;
+    device where;
+};
+
+/// `solve` on one device, or on several GPUs at a time, whose results are on the host. Throws `error`.
 template <class R>
-std::unique_ptr<report<R>> solve(const library& kernel, const device& where, ensemble<R>& instances, const options& o);
+std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<R>& instances, const options& o,
+                                 results_are results = results_are::anywhere);
 
 }  // namespace myriad::python

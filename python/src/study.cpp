@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -47,20 +48,39 @@ namespace {
 using studies::component_kind;
 using studies::element;
 
-/// A model out of a library, and what the study does not set: the components that an interpreter has besides, and the
-/// values of tables.
+/// A model out of a library, and what the study does not set: the components that an interpreter has besides.
 struct study_kernel {
-    const library& kernel;
-    component_names names;                          // of all components that the kernel has
-    std::array<int, 3> used;                        // states, parameters, accessories of the model
-    std::vector<std::pair<int, double>> of_tables;  // shared values by number
+    study_kernel(const library& with, component_names its_names)
+        : kernel(&with), names(std::move(its_names)), shape(with.facts(), names) {}
+
+    /// Options with values for the states and events that an interpreter has besides.
+    options fitted(options o) const {
+        for (per_component* const tolerances : {&o.relative_tolerance, &o.absolute_tolerance}) {
+            if (tolerances->size() == 1) continue;  // for all states
+            std::vector<double> all(static_cast<std::size_t>(shape.n_state), 1);
+            for (std::size_t c = 0; c < tolerances->size(); ++c) all.at(c) = (*tolerances)[c];
+            *tolerances = std::move(all);
+        }
+        o.events.resize(static_cast<std::size_t>(shape.n_event));
+        return o;
+    }
+
+    const library* kernel;
+    component_names names;
+    named_shape shape;
+};
+
+/// A model of a study, and the values of its tables, which are its last shared parameters.
+struct model_of_study {
+    component_names names;
+    std::vector<double> tables;
 };
 
 template <class R>
 class study_instances final : public studies::model_instances<R> {
 public:
-    study_instances(const study_kernel& of, std::int64_t size)
-        : of_(of), instances_(of.kernel.facts(), of.names, size) {}
+    study_instances(const model_of_study& model, const study_kernel& kernel, std::int64_t size)
+        : model_(model), kernel_(kernel), instances_(kernel.kernel->facts(), kernel.names, size) {}
 
     host::ensemble_data<R>& data() override { return instances_.data; }
     void restart() override {
@@ -69,16 +89,18 @@ public:
     }
     void generate(std::int64_t, std::uint64_t) override {
         auto& d = instances_.data;
-        const auto clear = [](auto& array, int from) {
-            for (int c = from; c < array.components(); ++c) array.fill_component(c, R(0));
+        const auto clear = [](auto& array, const std::vector<std::string>& used) {
+            for (int c = static_cast<int>(used.size()); c < array.components(); ++c) array.fill_component(c, R(0));
         };
-        clear(d.state, of_.used[0]);
-        clear(d.parameter, of_.used[1]);
-        clear(d.accessory, of_.used[2]);
-        for (const auto& [number, value] : of_.of_tables) d.shared.data()[number] = static_cast<R>(value);
+        clear(d.state, model_.names.states);
+        clear(d.parameter, model_.names.parameters);
+        clear(d.accessory, model_.names.accessories);
+        const std::size_t first = model_.names.shared.size() - model_.tables.size();
+        for (std::size_t i = 0; i < model_.tables.size(); ++i)
+            d.shared.data()[first + i] = static_cast<R>(model_.tables[i]);
     }
     report_of<R> solve(const device& where, const options& o) override {
-        made_ = python::solve<R>(of_.kernel, where, instances_, o);
+        made_ = python::solve<R>({{kernel_.kernel, where}}, instances_, kernel_.fitted(o), results_are::on_host);
         return *made_;
     }
     const R* recorded(component_kind kind, int number) const override {
@@ -96,64 +118,85 @@ public:
     const std::int32_t* samples_stored() const override { return instances_.samples.stored.data(); }
 
 private:
-    const study_kernel& of_;
+    const model_of_study& model_;
+    const study_kernel& kernel_;
     ensemble<R> instances_;
     std::unique_ptr<report<R>> made_;
 };
 
 /// Those that a study sets and keeps: tables have values already.
-std::vector<studies::component> components_of(const study_kernel& of) {
+std::vector<studies::component> components_of(const model_of_study& model) {
     std::vector<studies::component> all;
-    const auto add = [&](component_kind kind, const std::vector<std::string>& names, std::size_t count) {
-        for (std::size_t c = 0; c < count; ++c) all.push_back({kind, static_cast<int>(c), names[c]});
+    const auto add = [&](component_kind kind, const std::vector<std::string>& names, std::size_t but = 0) {
+        for (std::size_t c = 0; c + but < names.size(); ++c) all.push_back({kind, static_cast<int>(c), names[c]});
     };
-    const component_names& n = of.names;
-    add(component_kind::state, n.states, static_cast<std::size_t>(of.used[0]));
-    add(component_kind::parameter, n.parameters, static_cast<std::size_t>(of.used[1]));
-    add(component_kind::accessory, n.accessories, static_cast<std::size_t>(of.used[2]));
-    const auto is_used = [](const std::string& name) { return name.compare(0, 7, "unused ") != 0; };
-    add(component_kind::integer_accessory, n.integer_accessories,
-        static_cast<std::size_t>(std::count_if(n.integer_accessories.begin(), n.integer_accessories.end(), is_used)));
-    add(component_kind::shared, n.shared, n.shared.size() - of.of_tables.size());
-    add(component_kind::shared_integer, n.shared_integers, n.shared_integers.size());
+    add(component_kind::state, model.names.states);
+    add(component_kind::parameter, model.names.parameters);
+    add(component_kind::accessory, model.names.accessories);
+    add(component_kind::integer_accessory, model.names.integer_accessories);
+    add(component_kind::shared, model.names.shared, model.tables.size());
+    add(component_kind::shared_integer, model.names.shared_integers);
     return all;
 }
 
+/// A model with a kernel for each device that a run uses.
 class study_model final : public studies::any_model {
 public:
-    study_model(study_kernel of, std::string name, std::string method)
-        : of_(std::move(of)), shape_(of_.kernel.facts(), of_.names), names_(std::move(name), components_of(of_)),
+    study_model(model_of_study model, element real, std::string name, std::string method)
+        : model_(std::move(model)), real_(real), names_(std::move(name), components_of(model_)),
           method_(std::move(method)) {}
+
+    /// Kernels that are used already stay as they are.
+    void add_kernel(const device& where, const library& kernel, component_names names) {
+        kernels_.try_emplace(place_of(where), kernel, std::move(names));
+    }
 
     const studies::component_names& names() const override { return names_; }
     std::string method() const override { return method_; }
-    element real() const override { return is_double() ? element::f64 : element::f32; }
-    void check(const device&, const options& o) const override {
-        is_double() ? check_options<double>(shape_, facts(), o) : check_options<float>(shape_, facts(), o);
+    element real() const override { return real_; }
+    void check(const device& where, const options& o) const override {
+        const study_kernel& k = kernel_for(where);
+        with_real([&]<class R>(R) { check_options<R>(k.shape, k.kernel->facts(), k.fitted(o)); });
     }
     double bytes_per_instance(const options& o) const override {
-        return is_double() ? python::bytes_per_instance<double>(shape_, facts(), o)
-                           : python::bytes_per_instance<float>(shape_, facts(), o);
+        double most = 0;
+        for (const auto& [place, k] : kernels_)
+            with_real([&]<class R>(R) {
+                most = std::max(most, python::bytes_per_instance<R>(k.shape, k.kernel->facts(), k.fitted(o)));
+            });
+        return most;
     }
-    std::unique_ptr<studies::chunk_solver> make_solver(const studies::study_plan& plan) const override {
-        if (is_double()) return solver_of<double>(plan);
-        return solver_of<float>(plan);
+    std::unique_ptr<studies::chunk_solver> make_solver(const studies::study_plan& plan,
+                                                       const device& where) const override {
+        std::unique_ptr<studies::chunk_solver> made;
+        with_real([&]<class R>(R) {
+            made = std::make_unique<studies::chunk_solver_of<R>>(
+                plan, [this, &kernel = kernel_for(where)](std::int64_t size) {
+                    return std::make_unique<study_instances<R>>(model_, kernel, size);
+                });
+        });
+        return made;
     }
     std::string generator() const override { return {}; }
 
 private:
-    const model_facts& facts() const { return of_.kernel.facts(); }
-    bool is_double() const { return facts().real_bytes == sizeof(double); }
-    template <class R>
-    std::unique_ptr<studies::chunk_solver> solver_of(const studies::study_plan& plan) const {
-        return std::make_unique<studies::chunk_solver_of<R>>(
-            plan, [this](std::int64_t size) { return std::make_unique<study_instances<R>>(of_, size); });
+    using place = std::pair<device::kind, int>;
+    static place place_of(const device& where) { return {where.which(), where.number()}; }
+    const study_kernel& kernel_for(const device& where) const {
+        const auto found = kernels_.find(place_of(where));
+        require(found != kernels_.end(), "the study has no kernel for ", where.name());
+        return found->second;
+    }
+    template <class Function>
+    void with_real(Function&& function) const {
+        real_ == element::f64 ? function(double{}) : function(float{});
     }
 
-    study_kernel of_;
-    named_shape shape_;
+    model_of_study model_;
+    element real_;
     studies::component_names names_;
     std::string method_;
+    std::map<place, study_kernel> kernels_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -167,22 +210,6 @@ nb::object array_of(std::vector<T> values, std::vector<std::size_t> shape) {
     const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
     return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), shape.size(), shape.data(), owner),
                     nb::rv_policy::reference);
-}
-/// Calls a function with a value of the C++ type of an element.
-template <class Function>
-auto with_type(element type, Function&& function) {
-    switch (type) {
-        case element::f64:
-            return function(double{});
-        case element::f32:
-            return function(float{});
-        case element::i64:
-            return function(std::int64_t{});
-        case element::i32:
-            return function(std::int32_t{});
-        default:
-            return function(std::uint8_t{});
-    }
 }
 std::vector<std::size_t> shape_of(const studies::variable& v, std::size_t items) {
     std::vector<std::size_t> shape{items};
@@ -208,7 +235,7 @@ struct opened_results {
     const studies::layout& content() const { return all->content(); }
     nb::object read(const std::string& name, std::int64_t first, std::int64_t count) const {
         const studies::variable& v = content().variables[content().find(name)];
-        return with_type(v.type, [&]<class T>(T) {
+        return studies::with_type(v.type, [&]<class T>(T) {
             std::vector<T> values;
             {
                 const nb::gil_scoped_release unlocked;
@@ -295,7 +322,7 @@ ensemble_reduction sum_by_python(const std::string& name, const std::vector<std:
             nb::dict given;
             const auto give = [&](const std::string& input) {
                 const auto& column = chunk.find(input);
-                given[input.c_str()] = with_type(column.what->type, [&]<class T>(T) {
+                given[input.c_str()] = studies::with_type(column.what->type, [&]<class T>(T) {
                     const auto values = chunk.values<T>(input);
                     return array_of(std::vector<T>(values.begin(), values.end()),
                                     shape_of(*column.what, static_cast<std::size_t>(chunk.size())));
@@ -313,11 +340,18 @@ ensemble_reduction sum_by_python(const std::string& name, const std::vector<std:
         });
 }
 
+using names_of_kinds = std::vector<std::vector<std::string>>;
+component_names names_from(const names_of_kinds& n) {
+    require(n.size() == 7, "a model has seven kinds of components");
+    return {n[0], n[1], n[2], n[3], n[4], n[5], n[6]};
+}
+
 nb::object or_none(const nb::object& o) { return o.is_valid() ? o : nb::none(); }
 
 /// A study from Python.
 struct python_study {
-    explicit python_study(const std::shared_ptr<study_model>& model) : study(model) {}
+    explicit python_study(const std::shared_ptr<study_model>& of) : model(of), study(of) {}
+    std::shared_ptr<study_model> model;
     any_study study;
 
     void set_run(const std::vector<std::string>& devices, std::int64_t chunk) {
@@ -459,21 +493,20 @@ void bind_study(nb::module_& m) {
         .def("instances_done", &run::instances_done, nb::call_guard<nb::gil_scoped_release>());
 
     nb::class_<python_study>(m, "Study")
+        .def("__init__",
+             [](python_study* self, const names_of_kinds& names, std::vector<double> tables, const std::string& real,
+                std::string name, std::string method) {
+                 new (self) python_study(
+                     std::make_shared<study_model>(model_of_study{names_from(names), std::move(tables)},
+                                                   real == studies::name_of(element::f64) ? element::f64 : element::f32,
+                                                   std::move(name), std::move(method)));
+             })
         .def(
-            "__init__",
-            [](python_study* self, const library& kernel, const std::vector<std::vector<std::string>>& names,
-               const std::array<int, 3>& used, const std::vector<double>& of_tables, std::string model,
-               std::string method) {
-                require(names.size() == 7, "a model has seven kinds of components");
-                study_kernel of{
-                    kernel, {names[0], names[1], names[2], names[3], names[4], names[5], names[6]}, used, {}};
-                const auto first = static_cast<int>(names[2].size() - of_tables.size());
-                for (std::size_t i = 0; i < of_tables.size(); ++i)
-                    of.of_tables.emplace_back(first + static_cast<int>(i), of_tables[i]);
-                new (self)
-                    python_study(std::make_shared<study_model>(std::move(of), std::move(model), std::move(method)));
+            "add_kernel",
+            [](python_study& s, const std::string& where, const library& kernel, const names_of_kinds& names) {
+                s.model->add_kernel(device::parse(where), kernel, names_from(names));
             },
-            nb::keep_alive<1, 2>())
+            nb::keep_alive<1, 3>())
         .def("axis", [](python_study& s, const std::string& name, const axis_values& v) { s.study.axis(name, v); })
         .def("zip",
              [](python_study& s, const std::vector<std::pair<std::string, axis_values>>& all) { s.study.zip(all); })

@@ -170,16 +170,60 @@ def test_a_known_model_starts_at_once_in_another_process():
     assert told.stdout == "cache memory\n", told.stdout + told.stderr
 
 
-def test_all_devices_have_the_same_bits():
-    first = integrate("duffing", "cuda")
-    for number in range(1, 64):
+def all_gpus():
+    found = []
+    while True:
         try:
-            other = integrate("duffing", f"cuda:{number}")
+            found.append(_core.check_device(f"cuda:{len(found)}"))
         except my.Error as error:
             assert "does not exist" in str(error)
-            break
-        assert other.report.device == f"cuda:{number}"
+            return found
+
+
+def test_all_devices_have_the_same_bits():
+    first = integrate("duffing", "cuda")
+    for number, name in enumerate(all_gpus()):
+        other = integrate("duffing", name)
+        assert other.report.device == name
         assert np.array_equal(first["x"], other["x"]) and other.device["v"].__dlpack_device__() == (2, number)
+
+
+def test_several_gpus_in_one_call_have_the_bits_of_one():
+    if len(all_gpus()) < 2:
+        pytest.skip("there is one GPU")
+    mu = np.linspace(1, 3, 1_000_000)
+    for name in ("duffing", "relief valve", "stick slip", "hooks that write"):
+        one, all_of_them = integrate(name, "cuda"), integrate(name, all_gpus())
+        assert all_of_them.report.device == ", ".join(all_gpus()) and all_of_them.report.kernel_seconds > 0
+        for key in (*one.records, *one.samples, *one.states):
+            assert np.array_equal(one[key], all_of_them[key], equal_nan=True), (name, key)
+    x, v, m = *my.states("x v"), my.parameter("mu")
+    one, all_of_them = (my.solve(my.model({x: v, v: m * (1 - x * x) * v - x}), {m: mu}, start={x: 1, v: 0},
+                                 time=(0, 5), device=d) for d in ("cuda", all_gpus()))
+    assert np.array_equal(one["x"], all_of_them["x"]) and one.report.accepted_steps == all_of_them.report.accepted_steps
+
+
+def a_study(name):
+    make, values, start, options = sweeps[name]
+    return my.study(make(), values, start=start, **{**dict(rtol=1e-9, atol=1e-9), **options})
+
+
+@pytest.mark.parametrize("name", ["duffing", "relief valve", "stick slip", "tables"])
+def test_studies_have_the_bits_of_calls_on_all_gpus(name, tmp_path):
+    whole = integrate(name, "cuda")
+    for devices, chunk in (("cuda", None), (all_gpus(), 170)):
+        result = a_study(name).run(tmp_path / str(chunk), device=devices, chunk=chunk)
+        assert result.complete and not result.warnings and sum(result.by_status.values()) == whole.size
+        for key, array in {**whole.records, **{f"{n}_sample": s for n, s in whole.samples.items()}}.items():
+            assert np.array_equal(result[key], array, equal_nan=True), (key, devices)
+        if not whole.records and not whole.samples:
+            assert all(np.array_equal(result[f"{n}_end"], s) for n, s in whole.states.items())
+
+
+def test_a_study_uses_the_cpu_and_all_gpus_together():
+    result = a_study("duffing").run(device=["cpu", *all_gpus()], chunk=64)
+    cpu = integrate("duffing", "cpu")
+    assert result.complete and np.isclose(result["x"], cpu["x"], rtol=1e-5, atol=1e-5).mean() > 0.998
 
 
 def test_bad_inputs_are_refused_on_the_host_and_on_the_gpu():
@@ -192,7 +236,6 @@ def test_bad_inputs_are_refused_on_the_host_and_on_the_gpu():
     fine = van_der_pol(1, 0)
     with pytest.raises(my.Error, match="the run is in float32"):
         van_der_pol(fine.device["x"], 0, precision="float")
-
 
 
 def test_a_sweep_that_takes_much_of_the_memory_is_integrated_in_chunks():

@@ -86,3 +86,28 @@ def test_an_exception_of_the_progress_function_arrives(oscillator):
 
     with pytest.raises(RuntimeError, match="enough"):
         solve(oscillator, progress=refuse)
+
+
+@pytest.mark.parametrize("options", [
+    dict(size=100, device="cpu:2"), dict(interpreted=True, method="runge_kutta_4", step=1e-5, end=1.5e4),
+    dict(interpreted=True, phases=1_000_000_000, end=1e-3)], ids=["compiled", "fixed steps", "phases"])
+def test_an_instance_that_takes_for_ever_ends_on_an_interrupt(oscillator, options):
+    options = {"device": "cpu:1", **options}
+    x, v, w = *my.states("x v"), my.parameter("w")
+    model = my.model({x: v, v: -w * w * x}) if "interpreted" in options else oscillator
+    end = np.ones(options.pop("size", 1))
+    end[len(end) // 2] = options.pop("end", 1e12)
+    options = dict(sweep={"w": 1}, start={"x": 1, "v": 0}, max_steps=2_000_000_000, rtol=1e-8, **options)
+    my.solve(model, time=(0, 1e-3), **{**options, "phases": 1})  # compiles it
+    began = time.perf_counter()
+    interrupt = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    with pytest.raises(my.Interrupted) as raised:
+        interrupt.start()
+        my.solve(model, time=(0, end), **options)
+    assert time.perf_counter() - began < 8
+    run = raised.value.run
+    assert run.report.by_status.pop("interrupted") == 1 and run.done == len(end) - 1
+    endless = len(end) // 2
+    assert my.status_names[run.status[endless]] == "interrupted" and run.failed[endless]
+    assert np.isfinite(run["x"]).all() and 0 <= run.t[endless] < 1e12
+    assert f"instance {endless} ended as interrupted" in str(run.report)

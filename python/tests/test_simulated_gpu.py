@@ -38,6 +38,13 @@ class OnGpu:  # an array of another library
         self.__cuda_array_interface__ = dict(shape=self.values.shape, typestr=self.values.dtype.str, version=3,
                                              data=(self.values.ctypes.data, False), strides=strides)
 
+def study(size, **more):
+    return my.study(model, my.grid({k: my.linspace(0.2, 0.3, size)}, B=0.3),
+                    **{**dict(start={x: -0.5, v: -0.1}, time=(0, 6), rtol=1e-9, keep=[x, peak, n]), **more})
+
+def same(a, b, names):
+    return all(np.array_equal(a[name], b[name], equal_nan=True) for name in names)
+
 def message(call, kind=my.Error):
     try:
         call()
@@ -171,3 +178,116 @@ assert os.waitpid(child, 0)[1] == 0
 """, MYRIAD_SIMULATED_GPUS=2)
     run("assert solve(\"auto\", 5).report.device == \"cpu\"\n"
         "assert \"no CUDA-capable device\" in message(lambda: solve(\"cuda\", 5))", MYRIAD_SIMULATED_GPUS=0)
+
+
+def test_chunks_of_studies_run_on_all_devices_with_the_same_bits(run):
+    run("""
+for more in ({}, dict(phases=3, record=dict(states=[x], accessories=[peak, n], time=True)),
+             dict(samples=4, precision="float", rtol=1e-5, keep=dict(end=[x, peak, n], work=True))):
+    s = study(200, **more)
+    names = s.run(device="cuda").names
+    one = study(200, **more).run(device="cuda", chunk=200)
+    whole = my.solve(model, sweep(200), start={x: -0.5, v: -0.1}, time=(0, 6), rtol=more.get("rtol", 1e-9),
+                     device="cuda", **{a: b for a, b in more.items() if a not in ("rtol", "keep")})
+    assert np.array_equal(one["x_end"], whole.states["x"]) and np.array_equal(one["n_end"], whole["n"][..., -1]
+                                                                             if "record" in more else whole["n"])
+    both = study(200, **more).run(device=["cuda:0", "cuda:1"], chunk=17)
+    assert both.complete and both.by_status == {"success": 200} and same(both, one, names) and not both.warnings
+    assert both.kernel == "memory"
+with_cpu = study(200).run(device=["cuda:1", "cpu", "cuda:1"], chunk=9)
+assert with_cpu.complete and np.allclose(with_cpu["x_end"], study(200).run(device="cpu")["x_end"], atol=1e-6)
+assert study(5).run(device="auto").kernel == "memory"
+assert "interpreted on the CPU alone" in message(lambda: study(5, interpreted=True).run(device="cuda"))
+assert "this machine has 2 GPUs" in message(lambda: study(5).run(device="cuda:7"))
+assert "names no device" in message(lambda: study(5).run(device=[]))
+""", MYRIAD_SIMULATED_GPUS=2)
+
+
+def test_a_study_on_an_interpreter_and_a_gpu(run):
+    run("""
+from myriad import compiler
+compiler.find_compiler = lambda: None
+linear = my.model({x: v, v: -k * x}, events=[my.event(v, direction="falling", do={n: n + 1})],
+                  accessories={n: 0})
+made = lambda: my.study(linear, my.grid({k: my.linspace(1, 2, 300)}), start={x: 1, v: 0}, time=(0, 5),
+                        rtol={x: 1e-9, v: 1e-8}, keep=[x, n])
+cpu, both, gpu = (made().run(device=d, chunk=20) for d in ("cpu", ["cpu", "cuda"], "cuda"))
+assert "interpreted" in cpu.kernel and "interpreted" in both.kernel and "interpreted" not in gpu.kernel
+exact = np.cos(np.sqrt(np.linspace(1, 2, 300)) * 5)
+assert all(np.allclose(result["x_end"], exact, atol=1e-6) for result in (cpu, both, gpu))
+assert np.array_equal(cpu["n_end"], both["n_end"]) and np.array_equal(cpu["n_end"], gpu["n_end"])
+""")
+
+
+def test_a_device_that_fails_is_left_out_and_its_chunks_are_done_elsewhere(run):
+    run("""
+expected = study(300).run(device="cuda:0")
+result = study(300).run(device=["cuda:0", "cuda:1"], chunk=10)
+assert result.complete and same(result, expected, ["x_end", "peak_end", "n_end", "status"])
+assert len(result.warnings) == 1 and "cuda:1 is left out" in result.warnings[0], result.warnings
+assert "unspecified launch failure" in result.warnings[0]
+alone = study(300)
+assert "no device is left" in message(lambda: alone.run(device="cuda:1"))
+""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_LAUNCHES=2)
+
+
+def test_a_worker_of_an_executor_uses_its_gpu(run):
+    run("""
+expected = study(60).run(device="cuda")
+with concurrent.futures.ThreadPoolExecutor(2) as pool:
+    assert same(study(60).run(executor=pool, device="cuda", chunk=7), expected, ["x_end", "n_end", "status"])
+""")
+
+
+def test_several_gpus_in_one_call_have_the_bits_of_one(run):
+    run("""
+for more in (dict(record=dict(states=[x], accessories=[peak, n], time=True), phases=2), dict(samples=3)):
+    one = solve("cuda:1", 1000, **more)
+    all_three = solve(["cuda:0", "cuda:2", "cuda:1"], 1000, **more)
+    assert all_three.report.device == "cuda:0, cuda:2, cuda:1" and all_three.report.registers == 99
+    for name in ("x", "v", "peak", "n", "k", *(["t"] if "record" in more else [])):
+        assert np.array_equal(one[name], all_three[name], equal_nan=True), (name, more)
+    assert np.array_equal(one.steps(), all_three.steps()) and np.array_equal(one.status, all_three.status)
+    assert one.report.accepted_steps == all_three.report.accepted_steps and one.report.by_status == {"success": 1000}
+assert "is not on a GPU" in message(lambda: all_three.device["x"])
+assert np.array_equal(solve(["cuda:0", "cuda:1", "cuda:2"], 2)["x"], solve("cuda", 2)["x"])
+assert solve(["cuda", "cuda:0"], 2).device["x"].shape == (2,)  # one GPU
+told = []
+solve(["cuda:0", "cuda:1"], 100, progress=lambda done, total: told.append((done, total)))
+assert told[-1] == (100, 100) and told == sorted(told)
+assert "several devices of a call must be GPUs" in message(lambda: solve(["cuda", "cpu"], 5))
+assert "interpreted on the CPU alone" in message(lambda: solve(["cuda", "cuda:1"], 5, interpreted=True))
+given = OnGpu(np.linspace(0.2, 0.3, 50))
+assert "several devices are given" in message(lambda: my.solve(
+    model, {k: given, B: 0.3}, start={x: 1, v: 0}, time=(0, 1), device=["cuda:0", "cuda:1"]))
+bad = np.linspace(0.2, 0.3, 50)
+bad[7] = np.nan
+call = lambda **more: my.solve(model, {k: bad, B: 0.3}, start={x: 1, v: 0}, time=(0, 1), device=["cuda:0", "cuda:1"],
+                               **more)
+assert "is not finite in 1 of 50 instances" in message(call)
+assert call(invalid="mark").report.by_status == {"success": 49, "invalid_input": 1}
+def stop(done, total):
+    raise KeyboardInterrupt
+try:
+    solve(["cuda:0", "cuda:1"], 20_000, time=(0, 0.01), progress=stop)
+except my.Interrupted as interrupted:
+    assert 0 < interrupted.run.done <= 20_000 and interrupted.run.report.device == "cuda:0, cuda:1"
+else:
+    raise AssertionError("was not interrupted")
+""", MYRIAD_SIMULATED_GPUS=3)
+
+
+def test_a_call_on_several_gpus_ends_with_the_error_of_one_that_fails(run):
+    run("""
+assert "unspecified launch failure" in message(lambda: [solve(["cuda:0", "cuda:1"], 200) for _ in range(9)])
+assert solve("cuda:0", 5).report.by_status == {"success": 5}
+""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_LAUNCHES=2)
+
+
+def test_parts_on_several_gpus_have_the_bits_of_a_whole(run):
+    run("""
+call = lambda device: my.solve(model, sweep(270_000), start={x: 1, v: 0.1}, time=(0, 0.01), device=device)
+one, two = call("cuda"), call(["cuda:0", "cuda:1"])  # in four parts
+for name in ("x", "v", "peak", "n"):
+    assert np.array_equal(one[name], two[name]), name
+""", MYRIAD_SIMULATED_GPUS=2)

@@ -80,18 +80,7 @@ void append_at(std::string& text, const std::byte* values, std::size_t place) {
 }
 
 void append_value(std::string& text, element type, const std::byte* values, std::size_t place) {
-    switch (type) {
-        case element::f64:
-            return append_at<double>(text, values, place);
-        case element::f32:
-            return append_at<float>(text, values, place);
-        case element::i64:
-            return append_at<std::int64_t>(text, values, place);
-        case element::i32:
-            return append_at<std::int32_t>(text, values, place);
-        case element::u8:
-            return append_at<std::uint8_t>(text, values, place);
-    }
+    with_type(type, [&]<class T>(T) { append_at<T>(text, values, place); });
 }
 
 // "x", or "x[0][0]" to "x[2][1]".

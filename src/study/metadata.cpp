@@ -31,27 +31,14 @@ json number(double value) {
 }
 
 json fill_value(element type) {
-    switch (type) {
-        case element::f64:
-        case element::f32:
+    return with_type(type, [type]<class T>(T value) -> json {
+        if constexpr (std::is_floating_point_v<T>) {
             return "NaN";
-        case element::i64: {
-            std::int64_t value = 0;
+        } else {
             fill(type, &value, 1);
             return value;
         }
-        case element::i32: {
-            std::int32_t value = 0;
-            fill(type, &value, 1);
-            return value;
-        }
-        case element::u8: {
-            std::uint8_t value = 0;
-            fill(type, &value, 1);
-            return value;
-        }
-    }
-    return {};
+    });
 }
 
 json as_json(const std::vector<attribute>& attributes) {

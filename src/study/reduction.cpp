@@ -47,18 +47,7 @@ void for_each_value(const chunk_columns& chunk, const std::string& name, Visit&&
             for (std::size_t j = 0; j < inner; ++j) visit(j, next[j] == unset ? none : static_cast<double>(next[j]));
         }
     };
-    switch (chunk.find(name).what->type) {
-        case element::f64:
-            return visit_all(double{});
-        case element::f32:
-            return visit_all(float{});
-        case element::i64:
-            return visit_all(std::int64_t{});
-        case element::i32:
-            return visit_all(std::int32_t{});
-        case element::u8:
-            return visit_all(std::uint8_t{});
-    }
+    studies::with_type(chunk.find(name).what->type, visit_all);
 }
 
 class histogram_state final : public reduction_state {

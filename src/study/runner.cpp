@@ -173,7 +173,7 @@ private:
 
     void work(used_device& d, done_of_chunk& mine) {
         std::unique_ptr<chunk_solver> solver = model_.make_device_solver(plan_, d.where);
-        if (solver == nullptr) solver = model_.make_solver(plan_);
+        if (solver == nullptr) solver = model_.make_solver(plan_, d.where);
         const std::vector<bool> wanted =
             solver->on_device() ? plan_.needed_on_host() : std::vector<bool>(plan_.quantities.size(), true);
         std::int64_t piece = settings_.piece > 0 ? std::min(settings_.piece, content().chunk) : content().chunk;

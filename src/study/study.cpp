@@ -154,19 +154,7 @@ std::vector<double> study_result::values(std::string_view name) const {
             });
         }
     };
-    switch (v.type) {
-        case element::f32:
-            convert(float{});
-            break;
-        case element::i64:
-            convert(std::int64_t{});
-            break;
-        case element::i32:
-            convert(std::int32_t{});
-            break;
-        default:
-            convert(std::uint8_t{});
-    }
+    studies::with_type(v.type, convert);
     return all;
 }
 

@@ -3,6 +3,7 @@
 // stacks and in a floating-point environment of their own; and exceptions from a model's function.
 #include <atomic>
 #include <cfenv>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -148,6 +149,29 @@ TEST_CASE(
     INFO("status " << ended);
     CHECK(WIFEXITED(ended));
     CHECK(WEXITSTATUS(ended) == 0);
+}
+
+TEST_CASE("an instance that takes for ever ends as interrupted when the progress function throws") {
+    for (const int threads : {1, 2}) {
+        auto e = roots(200);
+        e.t_end() = 1.0;
+        e.t_end()[150] = 1e9;
+        myriad::options o;
+        o.maximum_step = 1e-4;  // which takes days
+        o.step = o.maximum_step;
+        o.max_steps = 2'000'000'000;
+        o.progress = [begin = std::chrono::steady_clock::now()](std::int64_t, std::int64_t) {
+            if (std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(200))
+                throw std::runtime_error("enough");
+        };
+        REQUIRE_THROWS_WITH((myriad::solve<cash_karp>(device::cpu(threads), e, o)), "enough");
+        CHECK(e.status(150) == status::interrupted);
+        CHECK(e.t()[150] > 0);
+        CHECK(e.t()[150] < 1e9);
+        CHECK(e.state(root::x)[150] > 1);
+        for (std::int64_t i = 0; i < e.size(); ++i)
+            if (i != 150) CHECK((e.status(i) == status::success || e.status(i) == status::not_started));
+    }
 }
 
 TEST_CASE("stacks of OpenMP that are too small are refused", "[.spawned]") {

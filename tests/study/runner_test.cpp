@@ -37,7 +37,7 @@ public:
     void check(const device&, const options&) const override {}
     double bytes_per_instance(const options&) const override { return 16; }
     std::string generator() const override { return {}; }
-    std::unique_ptr<chunk_solver> make_solver(const study_plan& plan) const override {
+    std::unique_ptr<chunk_solver> make_solver(const study_plan& plan, const device&) const override {
         struct solver final : chunk_solver {
             solver(const study_plan& p, const event& e) : plan(p), integrated(e) {}
             void prepare(std::int64_t from, std::int64_t count) override {

@@ -183,7 +183,8 @@ public:
     virtual void check(const device& where, const options& o) const = 0;
     /// Bytes of memory that a call takes on the host for one instance.
     virtual double bytes_per_instance(const options& o) const = 0;
-    virtual std::unique_ptr<chunk_solver> make_solver(const study_plan& plan) const = 0;
+    /// A solver for that device.
+    virtual std::unique_ptr<chunk_solver> make_solver(const study_plan& plan, const device& where) const = 0;
     /// One that sets and reduces instances on the GPU; null if that cannot be.
     virtual std::unique_ptr<chunk_solver> make_device_solver(const study_plan& /*plan*/,
                                                              const device& /*where*/) const {

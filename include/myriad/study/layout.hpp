@@ -47,6 +47,23 @@ inline constexpr element element_of = std::same_as<T, double>         ? element:
                                       : std::same_as<T, std::int32_t> ? element::i32
                                                                       : element::u8;
 
+/// Calls a function with a value of the C++ type of an element.
+template <class Function>
+decltype(auto) with_type(element type, Function&& function) {
+    switch (type) {
+        case element::f64:
+            return function(double{});
+        case element::f32:
+            return function(float{});
+        case element::i64:
+            return function(std::int64_t{});
+        case element::i32:
+            return function(std::int32_t{});
+        default:
+            return function(std::uint8_t{});
+    }
+}
+
 /// A named dimension. Names are unique in a layout: a dimension of the same name always has the same length.
 struct dimension {
     std::string name;

@@ -246,7 +246,7 @@ public:
         host::add_memory_of_call<Model, R>(need, 1, nullptr, o, host::traits_of<Method>);
         return need.bytes();
     }
-    std::unique_ptr<chunk_solver> make_solver(const study_plan& plan) const override {
+    std::unique_ptr<chunk_solver> make_solver(const study_plan& plan, const device&) const override {
         return std::make_unique<chunk_solver_of<R>>(plan, [generate = generate_](std::int64_t size) {
             return std::make_unique<instances_of<Model, Method, R>>(size, generate);
         });

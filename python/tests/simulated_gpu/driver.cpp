@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A driver of GPUs, libcuda.so.1, that computes on this CPU: device memory is the host's, streams do their work at
 // once, and programs are shared objects of device.hpp, whose threads are run one block at a time, each with a stack of
-// its own. MYRIAD_SIMULATED_GPUS says how many devices there are, MYRIAD_SIMULATED_CAPABILITY which, and
-// MYRIAD_SIMULATED_MEGABYTES what memory each has.
+// its own. MYRIAD_SIMULATED_GPUS says how many devices there are, MYRIAD_SIMULATED_CAPABILITY which,
+// MYRIAD_SIMULATED_MEGABYTES what memory each has, and MYRIAD_SIMULATED_LAUNCHES how many kernels the last one runs
+// before it fails.
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -22,7 +24,7 @@
 namespace {
 
 constexpr int success = 0, invalid_value = 1, out_of_memory = 2, no_device = 100, invalid_context = 201,
-              no_kernel_image = 209, not_found = 500;
+              no_kernel_image = 209, not_found = 500, launch_failed = 719;
 int number_from(const char* variable, int otherwise) {
     const char* const text = std::getenv(variable);
     return text != nullptr ? std::atoi(text) : otherwise;
@@ -30,7 +32,14 @@ int number_from(const char* variable, int otherwise) {
 const std::size_t memory_per_device = static_cast<std::size_t>(number_from("MYRIAD_SIMULATED_MEGABYTES", 1024)) << 20;
 int devices() { return number_from("MYRIAD_SIMULATED_GPUS", 1); }
 
+std::atomic<int> launches_left{number_from("MYRIAD_SIMULATED_LAUNCHES", 1 << 30)};  // of the last device
+
 thread_local int current = -1;  // device; contexts are its number plus one
+/// Whether the current device works.
+int state() {
+    if (current < 0) return invalid_context;
+    return current == devices() - 1 && launches_left <= 0 ? launch_failed : success;
+}
 std::mutex mutex;
 std::set<void*> on_device, pinned;
 
@@ -106,7 +115,7 @@ private:
 
 #define DRIVER extern "C" __attribute__((visibility("default"))) int
 #define NEEDS_CONTEXT \
-    if (current < 0) return invalid_context
+    if (state() != success) return state()
 
 DRIVER cuInit(unsigned) { return devices() > 0 ? success : no_device; }
 DRIVER cuDriverGetVersion(int* version) {
@@ -114,7 +123,9 @@ DRIVER cuDriverGetVersion(int* version) {
     return success;
 }
 DRIVER cuGetErrorString(int status, const char** text) {
-    *text = status == no_device ? "no CUDA-capable device is detected" : "simulated error";
+    *text = status == no_device       ? "no CUDA-capable device is detected"
+            : status == launch_failed ? "unspecified launch failure"
+                                      : "simulated error";
     return success;
 }
 DRIVER cuGetErrorName(int, const char** text) {
@@ -172,7 +183,7 @@ DRIVER cuCtxGetDevice(int* device) {
     *device = current;
     return current >= 0 ? success : invalid_context;
 }
-DRIVER cuCtxSynchronize() { return current >= 0 ? success : invalid_context; }
+DRIVER cuCtxSynchronize() { return state(); }
 DRIVER cuMemAlloc_v2(std::uintptr_t* memory, std::size_t bytes) {
     NEEDS_CONTEXT;
     if (bytes > memory_per_device) return out_of_memory;
@@ -234,13 +245,13 @@ DRIVER cuStreamDestroy_v2(void* stream) {
     delete static_cast<char*>(stream);
     return success;
 }
-DRIVER cuStreamSynchronize(void*) { return current >= 0 ? success : invalid_context; }
-DRIVER cuStreamQuery(void*) { return current >= 0 ? success : invalid_context; }
-DRIVER cuStreamWaitEvent(void*, void*, unsigned) { return current >= 0 ? success : invalid_context; }
+DRIVER cuStreamSynchronize(void*) { return state(); }
+DRIVER cuStreamQuery(void*) { return state(); }
+DRIVER cuStreamWaitEvent(void*, void*, unsigned) { return state(); }
 DRIVER cuEventCreate(void** event, unsigned) { return cuStreamCreate(event, 0); }
 DRIVER cuEventDestroy_v2(void* event) { return cuStreamDestroy_v2(event); }
 DRIVER cuEventSynchronize(void*) { return success; }
-DRIVER cuEventRecord(void*, void*) { return current >= 0 ? success : invalid_context; }
+DRIVER cuEventRecord(void*, void*) { return state(); }
 DRIVER cuEventElapsedTime(float* milliseconds, void*, void*) {
     *milliseconds = 1;
     return success;
@@ -257,6 +268,7 @@ DRIVER cuOccupancyMaxActiveBlocksPerMultiprocessor(int* blocks, const void*, int
 DRIVER cuLaunchKernel(const void* function, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned, unsigned,
                       unsigned, void*, void** arguments, void**) {
     NEEDS_CONTEXT;
+    if (current == devices() - 1) --launches_left;
     static std::mutex one_at_a_time;
     const std::lock_guard lock(one_at_a_time);
     for (unsigned b = 0; b < blocks; ++b)

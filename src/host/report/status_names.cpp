@@ -6,8 +6,9 @@ namespace myriad {
 
 const char* name_of(status s) {
     constexpr const char* names[status_count] = {
-        "not_started",    "success",    "stopped_by_event",   "stopped_by_user",   "max_steps",
-        "step_underflow", "not_finite", "event_accumulation", "singular_jacobian", "invalid_input"};
+        "not_started",       "success",        "stopped_by_event", "stopped_by_user",
+        "max_steps",         "step_underflow", "not_finite",       "event_accumulation",
+        "singular_jacobian", "invalid_input",  "interrupted"};
     return names[static_cast<int>(s)];
 }
 

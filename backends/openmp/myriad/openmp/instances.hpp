@@ -18,15 +18,23 @@ struct common_supply {
     std::atomic<std::int64_t> begun{0};  // instances handed out
     std::atomic<std::int64_t> done{0};   // reported as done by the threads
     std::atomic<bool> stopped{false};    // the progress function returned false, or a function of the model threw
+    std::atomic<bool> given_up{false};   // instances under way are to end, too
 
     /// Makes sure that none of the `size` instances is started any more.
     void stop(std::int64_t size) {
         stopped = true;
         begun.store(size, std::memory_order_relaxed);
     }
+    /// Does what the host wishes.
+    void follow(const run_options& options, std::int64_t size) {
+        const run_wish wish = options.wish(options.context);
+        if (wish == run_wish::go_on) return;
+        stop(size);
+        if (wish == run_wish::end_now) given_up = true;
+    }
 };
 
-/// One thread's source of instances; the loop uses only `next()`.
+/// One thread's source of instances; the loop uses only `next()` and `gives_up()`.
 class chunked_instances {
 public:
     /// `lanes` lanes ask for instances in turn; `order`, if not null, maps positions to instances. `reports`: this
@@ -34,7 +42,8 @@ public:
     chunked_instances(common_supply& all, std::int64_t size, std::int64_t chunk, int lanes, const std::uint32_t* order,
                       const run_options& options, bool reports)
         : all_(all), size_(size), chunk_(chunk), order_(order), options_(options), reports_(reports), done_(-lanes),
-          tell_at_(options.progress ? interval_ : std::numeric_limits<std::int64_t>::max()) {}
+          tell_at_(options.progress ? interval_ : std::numeric_limits<std::int64_t>::max()),
+          ask_at_(options.wish ? ask_every : std::numeric_limits<std::int64_t>::max()) {}
 
     /// The next instance, or -1 when all are taken. Once the progress function returns false, no more are handed out.
     std::int64_t next() {
@@ -49,7 +58,20 @@ public:
         return order_ != nullptr ? order_[place] : place;
     }
 
+    /// Whether instances under way are to end as they are. The loop asks now and then, with its iterations so far.
+    bool gives_up(std::int64_t iterations) { return iterations >= ask_at_ && ask(iterations); }
+
 private:
+    static constexpr std::int64_t ask_every = 1024;
+
+    __attribute__((noinline)) bool ask(std::int64_t iterations) {
+        if (reports_) all_.follow(options_, size_);
+        if (all_.stopped) next_ = end_;
+        const bool over = all_.given_up;
+        ask_at_ = over ? 0 : iterations + ask_every;
+        return over;
+    }
+
     void tell() {
         tell_at_ = done_ + interval_;
         const std::int64_t since = done_ - told_;
@@ -68,6 +90,7 @@ private:
     std::int64_t done_;      // instances that this thread has finished; negative: lanes that have not asked yet
     std::int64_t told_ = 0;  // instances already added to the shared count
     std::int64_t tell_at_;
+    std::int64_t ask_at_;  // iterations
     std::int64_t next_ = 0, end_ = 0;
 };
 

@@ -9,6 +9,9 @@
 #include <cstdint>
 #include <type_traits>
 
+#include <sched.h>
+#include <time.h>
+
 #include "myriad/host/backend/cpu_backend.hpp"
 #include "myriad/host/threads/parallel.hpp"
 #if !defined(MYRIAD_WITHOUT_XSIMD)
@@ -89,6 +92,7 @@ struct team_run {
     std::int64_t count, chunk;
     common_supply supply{};
     std::atomic<std::int64_t> iterations{0};
+    std::atomic<int> at_work{0};  // threads
     bool failed = false;
 
     /// An exception from a function of the model ends the run: no further instance is started. The host stores the
@@ -96,6 +100,7 @@ struct team_run {
     /// instruction sets.
     static void work(void* context, int part) noexcept {
         auto& run = *static_cast<team_run*>(context);
+        ++run.at_work;
         chunked_instances instances(run.supply, run.count, run.chunk, lanes_of<S>, run.arguments.order, run.options,
                                     part == 0);
         try {
@@ -104,6 +109,23 @@ struct team_run {
             const bool first = !__atomic_exchange_n(&run.failed, true, __ATOMIC_ACQ_REL);
             if (first && run.options.caught != nullptr) run.options.caught(run.options.failure);
             run.supply.stop(run.count);
+        }
+        --run.at_work;
+        if (part == 0 && run.options.wish != nullptr) run.wait_for_others();
+    }
+
+    /// The calling thread asks what the host wishes while the last instances of other threads are under way. It sleeps
+    /// for small parts of the time that it has waited already.
+    void wait_for_others() {
+        constexpr int soon = 2000;
+        constexpr std::int64_t shortest = 20'000, longest = 20'000'000;  // ns
+        for (int i = 0; i < soon && at_work > 0; ++i) sched_yield();
+        for (std::int64_t waited = 0; at_work > 0;) {
+            supply.follow(options, count);
+            const std::int64_t next = std::clamp(waited / 64, shortest, longest);
+            const timespec nap{0, static_cast<long>(next)};
+            nanosleep(&nap, nullptr);
+            waited += next;
         }
     }
 };

@@ -2,30 +2,50 @@
 // Passes progress from a backend to the user's function.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <functional>
 
+#include "myriad/host/backend/cpu_backend.hpp"
 #include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 
 /// Forwards progress from a backend, which must not see exceptions, to the user's function, which may throw.
 struct progress_relay {
+    using clock = std::chrono::steady_clock;
+    /// Instances under way have that long to end once the function has thrown.
+    static constexpr auto patience = std::chrono::seconds(1);
+    static constexpr auto ask_every = std::chrono::milliseconds(20);
+
     const std::function<void(std::int64_t, std::int64_t)>& function;
     std::int64_t total;
     std::exception_ptr failure;
+    std::int64_t last_done = 0;
+    clock::time_point last_call{}, failed_at{};
 
     /// `done` instances are done. False once the function has thrown: no further instance is to be begun.
     static bool call(void* context, std::int64_t done) {
         auto& relay = *static_cast<progress_relay*>(context);
         if (relay.failure || !relay.function) return !relay.failure;
+        relay.last_done = done;
+        relay.last_call = clock::now();
         try {
             relay.function(done, relay.total);
         } catch (...) {
             relay.failure = std::current_exception();
+            relay.failed_at = clock::now();
         }
         return !relay.failure;
+    }
+    /// What the user wishes, who is called again if that was long ago, as no instance has ended since.
+    static detail::run_wish ask(void* context) {
+        auto& relay = *static_cast<progress_relay*>(context);
+        const auto now = clock::now();
+        if (!relay.failure && now - relay.last_call > ask_every) call(context, relay.last_done);
+        if (!relay.failure) return detail::run_wish::go_on;
+        return now - relay.failed_at > patience ? detail::run_wish::end_now : detail::run_wish::begin_no_more;
     }
 };
 

@@ -155,7 +155,8 @@ struct options {
 
     /// Called by `solve` from time to time, in the calling thread, with the number of instances done, which never
     /// falls, and the number of all instances; with all done exactly once, at the end. An exception it throws ends the
-    /// work and reaches the caller of `solve`. A solver, which is asynchronous, refuses it.
+    /// work and reaches the caller of `solve`: no instance is begun any more, and on the CPU those that take more than
+    /// a second longer end as `interrupted`. A solver, which is asynchronous, refuses it.
     std::function<void(std::int64_t done, std::int64_t total)> progress = {};
 };
 

@@ -95,6 +95,8 @@ struct integrator {
     MYRIAD_FUNCTION bool fill_lanes(Source& source, event_locator_type& locator) {
         watch_type watch{args, s};
         if (is_pack<S> || !any(s.ended)) watch.look();
+        const bool over = gives_up(source);
+        if (over) watch.interrupt();
         if (!any(s.ended)) {
             watch.plan();
             return true;
@@ -104,6 +106,7 @@ struct integrator {
             set_lane(begun, i, phase_driver<Model, Method, S>{args, s, locator.sides, o}.advance(i, source));
         });
         s.ended = mask(false);
+        if (over) watch.interrupt();  // those that have begun another phase
         watch.plan();
         if constexpr (chooses_first_step<Method>) {
             const mask open = begun & s.control.first_step_open;
@@ -181,6 +184,16 @@ struct integrator {
     }
 
 private:
+    /// Whether the host wishes all instances to end as they are.
+    template <class Source>
+    MYRIAD_FUNCTION bool gives_up(Source& source) {
+        if constexpr (requires { source.gives_up(std::int64_t{}); }) {
+            return source.gives_up(s.all_iterations_of(args));
+        } else {
+            return false;
+        }
+    }
+
     /// Only hooks see the step just taken.
     static constexpr bool shows_step = has_after_step<Model> || has_after_event<Model> || has_finalise<Model>;
     /// Time at the end of the trial.
@@ -188,8 +201,9 @@ private:
 };
 
 /// Integrates all instances that `source.next()` returns (indices, then -1) on one pack of lanes of kind S. The source
-/// of a CUDA thread also says whether it `gives_only_one()`. Returns the number of iterations of the loop, each a trial
-/// step in every lane. `shared` replaces `args.shared` where a backend has moved these parameters.
+/// of a CUDA thread also says whether it `gives_only_one()`, that of a CPU's whether it `gives_up(iterations)`, which
+/// ends all instances. Returns the number of iterations of the loop, each a trial step in every lane. `shared` replaces
+/// `args.shared` where a backend has moved these parameters.
 template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
                                        const shared_parameters<real_of<S>>& shared, Source& source) {

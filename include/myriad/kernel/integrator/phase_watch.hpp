@@ -14,6 +14,8 @@ struct phase_watch {
     using stepping_type = stepping<Model, Method, S>;
     using iteration_number = typename integration_state<Model, Method, S>::iteration_number;
     static constexpr std::int32_t look_interval = stepping_type::look_interval;
+    /// The most iterations of a pack without a check, so that a call can end.
+    static constexpr std::int32_t longest_wait = 1 << 14;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
@@ -43,10 +45,14 @@ struct phase_watch {
             }
         });
     }
+    /// Ends all phases, and with them the instances.
+    MYRIAD_FUNCTION void interrupt() {
+        for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, status::interrupted); });
+    }
     /// Sets when a pack checks next: when the first of its phases is due. A single instance needs no such counter.
     MYRIAD_FUNCTION void plan() {
         if constexpr (is_pack<S>) {
-            s.next_look = s.iteration + args.max_steps;
+            s.next_look = s.iteration + (args.max_steps < longest_wait ? args.max_steps : longest_wait);
             for_each_lane(s.active, [&](int i) MYRIAD_LAMBDA {
                 const iteration_number next = s.iteration + left_after(s.iterations_of(args, i));
                 s.next_look = next < s.next_look ? next : s.next_look;

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// Calls on several GPUs.
+#include "several_gpus.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "myriad/host/chunks/chunk_plan.hpp"
+#include "myriad/host/chunks/chunked_solve.hpp"
+#include "myriad/host/chunks/progress_relay.hpp"
+#include "myriad/host/core/error.hpp"
+
+namespace myriad::python {
+
+namespace {
+
+/// What the threads of all GPUs share.
+struct parts_of_call {
+    parts_of_call(std::int64_t instances, cuda::past of_instances) : size(instances), past(of_instances) {}
+
+    const std::int64_t size;
+    const cuda::past past;
+    std::int64_t part = 1;                       // instances of a part
+    std::atomic<std::int64_t> next{0}, done{0};  // instances
+    std::atomic<bool> stopped{false};
+
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::size_t working = 0;  // threads
+    std::exception_ptr failure;
+    double kernel_seconds = 0;  // of the GPU that took longest
+    cuda::kernel_facts facts{};
+};
+
+/// The work of one GPU: one part is copied while another one is integrated.
+template <class R>
+class gpu_worker {
+    using chunks = host::chunks_of<shaped_arguments<R>, engine_source<R>>;
+
+public:
+    gpu_worker(const placed_kernel& on, shaped_arguments<R>& arguments, const options& o, parts_of_call& all)
+        : chunks_(on.kernel->gpu(), engines_of<R>(*on.kernel->gpu()),
+                  engine_options_for(*on.kernel->gpu(), on.where.number(), o), arguments),
+          all_(all) {
+        slots_[0].engine = chunks_.take();
+        clock_ = slots_[0].engine->start_clock();
+    }
+
+    /// Instances of the largest part that it takes.
+    std::int64_t largest(const options& o) { return chunks_.plan(o, *slots_[0].engine).largest(); }
+
+    /// From the part that begins with that instance on.
+    void work(std::int64_t first) {
+        try {
+            for (std::size_t turn = 0; first < all_.size && !all_.stopped; ++turn) {
+                slot& s = slots_[turn % slots_.size()];
+                take_back(s);
+                if (s.engine == nullptr) s.engine = chunks_.take();
+                s.count = std::min(all_.part, all_.size - first);
+                chunks_.begin(*s.engine, first, s.count, all_.past);
+                chunks_.download(*s.engine);
+                first = all_.next.fetch_add(all_.part);
+            }
+            for (slot& s : slots_) take_back(s);
+            const std::lock_guard lock(all_.mutex);
+            all_.kernel_seconds = std::max(all_.kernel_seconds, kernel_seconds_);
+            all_.facts = slots_[0].engine->facts();
+            for (slot& s : slots_)
+                if (s.engine != nullptr) chunks_.give(std::move(s.engine));
+        } catch (...) {
+            const std::lock_guard lock(all_.mutex);
+            if (!all_.failure) all_.failure = std::current_exception();
+            all_.stopped = true;
+        }
+        const std::lock_guard lock(all_.mutex);
+        --all_.working;
+        all_.changed.notify_all();
+    }
+
+private:
+    struct slot {
+        std::unique_ptr<cuda::any_engine> engine;
+        std::int64_t count = 0;  // instances under way
+    };
+
+    void take_back(slot& s) {
+        if (s.count == 0) return;
+        s.engine->wait();
+        all_.done += std::exchange(s.count, 0);
+        const auto [from, to] = s.engine->kernel_interval(clock_);
+        kernel_seconds_ += std::max(0.0, to - std::max(from, kernels_until_));
+        kernels_until_ = std::max(kernels_until_, to);
+    }
+
+    chunks chunks_;
+    parts_of_call& all_;
+    std::array<slot, 2> slots_;
+    void* clock_ = nullptr;
+    double kernel_seconds_ = 0, kernels_until_ = 0;
+};
+
+}  // namespace
+
+std::string names_of(const std::vector<placed_kernel>& on) {
+    std::string names;
+    for (const placed_kernel& k : on) names += (names.empty() ? "" : ", ") + k.where.name();
+    return names;
+}
+
+template <class R>
+void integrate_on_several(const std::vector<placed_kernel>& on, shaped_arguments<R>& arguments, const options& o,
+                          host::ensemble_data<R>& data, host::data_check<R>& check, report_of<R>& result) {
+    const auto begin = std::chrono::steady_clock::now();
+    if (!check.passes(0, data.size)) check.run();
+    const host::work_count before = data.untouched ? host::work_count{} : host::counted_work(data, data.size);
+    parts_of_call all(data.size, data.untouched ? cuda::past::none : cuda::past::kept);
+    std::vector<std::unique_ptr<gpu_worker<R>>> workers;
+    for (const placed_kernel& k : on) workers.push_back(std::make_unique<gpu_worker<R>>(k, arguments, o, all));
+    // As many for each GPU as on one alone, so that the faster ones take more of them, but none too small.
+    constexpr std::int64_t worth_a_part = 65'536, most = 8;
+    const auto gpus = static_cast<std::int64_t>(on.size());
+    const std::int64_t parts = gpus * std::clamp<std::int64_t>(data.size / (gpus * worth_a_part), 1, most);
+    std::int64_t part = (data.size + parts - 1) / parts;
+    for (const auto& w : workers) part = std::min(part, w->largest(o));
+    all.part = part;
+    all.next = gpus * part;  // each has one to begin with
+
+    data.untouched = false;
+    host::progress_relay relay{o.progress, data.size, nullptr};
+    std::vector<std::thread> threads;
+    try {
+        for (std::size_t w = 0; w < workers.size(); ++w) {
+            const std::lock_guard lock(all.mutex);
+            threads.emplace_back(
+                [&one = *workers[w], first = static_cast<std::int64_t>(w) * part] { one.work(first); });
+            ++all.working;
+        }
+    } catch (...) {
+        const std::lock_guard lock(all.mutex);
+        all.failure = std::current_exception();
+        all.stopped = true;
+    }
+    {
+        std::unique_lock lock(all.mutex);
+        while (all.working > 0) {
+            all.changed.wait_for(lock, std::chrono::milliseconds{20});
+            lock.unlock();
+            const std::int64_t done = all.done;
+            if (done < data.size && !host::progress_relay::call(&relay, done)) all.stopped = true;
+            lock.lock();
+        }
+    }
+    for (std::thread& t : threads) t.join();
+    if (all.failure) std::rethrow_exception(all.failure);
+    if (all.done == data.size) host::progress_relay::call(&relay, data.size);
+
+    host::summarise(data, result, data.size);
+    host::set_work(result, before, host::counted_work(data, data.size));
+    host::note_ended(result, data, data.size);
+    data.remember_ended();
+    result.kernel = all.facts;
+    result.kernel_seconds = all.kernel_seconds;
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result.device = names_of(on);
+    if (relay.failure) std::rethrow_exception(relay.failure);
+}
+template void integrate_on_several(const std::vector<placed_kernel>&, shaped_arguments<double>&, const options&,
+                                   host::ensemble_data<double>&, host::data_check<double>&, report_of<double>&);
+template void integrate_on_several(const std::vector<placed_kernel>&, shaped_arguments<float>&, const options&,
+                                   host::ensemble_data<float>&, host::data_check<float>&, report_of<float>&);
+
+}  // namespace myriad::python
