@@ -108,10 +108,10 @@ void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
         void* arguments[] = {&values, &count, &first};
         cuda::check(launch_over(all.find_not_finite, size, arguments, stream), "the check of the inputs");
         unsigned long long found = none;
-        engine_->fetch(&found, static_cast<const std::byte*>(scratch_.data()), sizeof found);
+        engine_->copy_to_host(&found, static_cast<const std::byte*>(scratch_.data()), sizeof found);
         if (found == none) continue;
         R value{};
-        engine_->fetch(&value, to + found * sizeof(R), sizeof value);
+        engine_->copy_to_host(&value, to + found * sizeof(R), sizeof value);
         const auto& d = instances.data;
         const std::int64_t in_states = input.component - d.state.data(), n_states = size * d.shape->n_state;
         const bool is_state = in_states >= 0 && in_states < n_states;
@@ -154,7 +154,7 @@ host::work_count resident<R>::work() {
         void* arguments[] = {&values, &size, &sum};
         cuda::check(launch_over(program_.on(how_.device).sum, size, arguments, stream), "the sum of all steps");
     }
-    engine_->fetch(&sums, static_cast<const std::byte*>(scratch_.data()), sizeof sums);
+    engine_->copy_to_host(&sums, static_cast<const std::byte*>(scratch_.data()), sizeof sums);
     return sums;
 }
 
@@ -212,7 +212,7 @@ void resident<R>::bring(const void* values, std::size_t bytes) {
     const auto there = engine_->find(call_->arguments, values);
     const bool differs = there.access != array_access::read || given_there_.count(values) > 0;
     if (there.address == nullptr || !differs) return;
-    engine_->fetch(const_cast<void*>(values), there.address, bytes);
+    engine_->copy_to_host(const_cast<void*>(values), there.address, bytes);
     brought_.insert(values);
 }
 

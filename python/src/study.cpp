@@ -67,7 +67,7 @@ public:
         instances_.samples.clear();
         instances_.data.restart();
     }
-    void generate(std::int64_t) override {
+    void generate(std::int64_t, std::uint64_t) override {
         auto& d = instances_.data;
         const auto clear = [](auto& array, int from) {
             for (int c = from; c < array.components(); ++c) array.fill_component(c, R(0));

@@ -10,7 +10,7 @@
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/model/random.hpp"
+#include "myriad/kernel/study/axis_rule.hpp"
 
 namespace myriad {
 
@@ -20,14 +20,20 @@ using studies::component_kind;
 axis_values::axis_values(axis_values::kind kind, double first, double last, std::int64_t size, std::vector<double> list)
     : kind_(kind), first_(first), last_(last), size_(size), list_(std::move(list)) {}
 
-double axis_values::operator[](std::int64_t i) const {
-    if (kind_ == kind::list) return list_[static_cast<std::size_t>(i)];
-    if (i == 0) return first_;
-    if (i == size_ - 1) return last_;
-    const auto steps = static_cast<double>(size_ - 1), at = static_cast<double>(i);
-    if (kind_ == kind::linear) return first_ + at * ((last_ - first_) / steps);
-    return std::copysign(std::exp(first_log_ + at * log_step_), first_);
+detail::axis_rule axis_values::rule() const {
+    using enum detail::axis_kind;
+    constexpr detail::axis_kind kinds[] = {linear, logarithmic, table, uniform, normal};  // in the order of `kind`
+    detail::axis_rule made{.kind = kinds[static_cast<int>(kind_)],
+                           .length = size_,
+                           .first = first_,
+                           .last = last_,
+                           .first_log = first_log_,
+                           .table = kind_ == kind::list ? list_.data() : nullptr};
+    if (kind_ == kind::linear && size_ > 1) made.step = (last_ - first_) / static_cast<double>(size_ - 1);
+    if (kind_ == kind::logarithmic) made.step = log_step_;
+    return made;
 }
+double axis_values::operator[](std::int64_t i) const { return detail::value_on_axis(rule(), i); }
 
 namespace {
 
@@ -175,36 +181,30 @@ void axes::set(std::string_view name, double value) {
     entries_.push_back({c, std::move(one)});
 }
 
-namespace {
-
-/// Where hooks have the phase, so that they draw other numbers with the same seed.
-constexpr std::int32_t no_phase = -1;
-
-double draw(const axes::entry& e, std::uint64_t seed, std::int64_t instance) {
-    const auto component = static_cast<std::uint32_t>(e.what.kind) << 28 | static_cast<std::uint32_t>(e.what.number);
-    random_numbers<double> random(seed, instance, no_phase, component);
-    return e.values.which() == axis_values::kind::uniform ? random.uniform(e.values.first(), e.values.last())
-                                                          : random.normal(e.values.first(), e.values.last());
+detail::axis_rule axes::rule(const entry& e) const {
+    detail::axis_rule made = e.values.rule();
+    made.draw = static_cast<std::uint32_t>(e.what.kind) << 28 | static_cast<std::uint32_t>(e.what.number);
+    if (e.dimension) made.stride = dimensions_[static_cast<std::size_t>(*e.dimension)].stride;
+    return made;
 }
-
-}  // namespace
 
 template <class T>
 void axes::fill_with(const entry& e, std::int64_t first, std::int64_t count, T* to) const {
+    const detail::axis_rule axis = rule(e);
     host::in_parallel(count, 65'536, [&](std::int64_t begin, std::int64_t end) {
         if (e.values.random()) {
-            for (std::int64_t i = begin; i < end; ++i) to[i] = static_cast<T>(draw(e, seed_, first + i));
+            for (std::int64_t i = begin; i < end; ++i)
+                to[i] = static_cast<T>(detail::value_in_instance(axis, seed_, first + i));
             return;
         }
-        if (!e.dimension) {
+        if (axis.length == 1) {
             std::fill(to + begin, to + end, static_cast<T>(e.values[0]));
             return;
         }
-        const axes::dimension& d = dimensions_[static_cast<std::size_t>(*e.dimension)];
         for (std::int64_t i = begin; i < end;) {  // runs of instances with the same value
             const std::int64_t instance = first + i;
-            const std::int64_t last = std::min(end, i + d.stride - instance % d.stride);
-            std::fill(to + i, to + last, static_cast<T>(e.values[instance / d.stride % d.length]));
+            const std::int64_t last = std::min(end, i + axis.stride - instance % axis.stride);
+            std::fill(to + i, to + last, static_cast<T>(detail::value_in_instance(axis, seed_, instance)));
             i = last;
         }
     });

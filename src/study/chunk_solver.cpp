@@ -51,22 +51,11 @@ void mark_missing_phases(const std::int32_t* phases_done, std::int64_t from_phas
 }  // namespace
 
 template <class R>
-void chunk_solver_of<R>::prepare(std::int64_t first, std::int64_t count) {
-    if (instances_ != nullptr && instances_->data().size != count) instances_.reset();
-    if (instances_ == nullptr) instances_ = make_(count);
-    instances_->restart();
-    auto& t = instances_->data().t;
-    t.fill_instances(0, count, host::ensemble_data<R>::unset);  // which restart leaves as it was
-    first_ = instances_->data().first_index = first;
-    set_components();
-    set_domains();
-    instances_->generate(first);
-}
-
-template <class R>
-void chunk_solver_of<R>::set_components() {
-    auto& data = instances_->data();
-    const axes& all = plan_.asked.axes;
+void set_instances(model_instances<R>& instances, const axes& all, std::int64_t first) {
+    instances.restart();
+    auto& data = instances.data();
+    data.t.fill_instances(0, data.size, host::ensemble_data<R>::unset);  // which restart leaves as it was
+    data.first_index = first;
     using enum component_kind;
     const auto entry_of = [&](component_kind kind, int number) -> const axes::entry* {
         for (const axes::entry& e : all.entries())
@@ -80,7 +69,7 @@ void chunk_solver_of<R>::set_components() {
             if (e == nullptr) {
                 array.fill_component(c, unset);
             } else {
-                all.fill(*e, first_, array.length(), array.component(c));
+                all.fill(*e, first, array.length(), array.component(c));
             }
         }
     };
@@ -89,31 +78,35 @@ void chunk_solver_of<R>::set_components() {
     set(parameter, data.parameter, unset);
     set(accessory, data.accessory, unset);
     set(integer_accessory, data.integer_accessory, std::int32_t{0});
+    R begin = unset, end = unset;
+    bool varies = false;
     for (const axes::entry& e : all.entries()) {
         if (e.what.kind == shared) data.shared.data()[e.what.number] = static_cast<R>(e.values[0]);
         if (e.what.kind == shared_integer)
             data.shared_integer.data()[e.what.number] = static_cast<std::int32_t>(e.values[0]);
-    }
-}
-
-template <class R>
-void chunk_solver_of<R>::set_domains() {
-    auto& data = instances_->data();
-    const axes& all = plan_.asked.axes;
-    R begin = host::ensemble_data<R>::unset, end = begin;
-    bool varies = false;
-    for (const axes::entry& e : all.entries()) {
-        if (e.what.kind != component_kind::t_begin && e.what.kind != component_kind::t_end) continue;
+        if (e.what.kind != t_begin && e.what.kind != t_end) continue;
         varies = varies || e.dimension || e.values.random();
-        (e.what.kind == component_kind::t_begin ? begin : end) = static_cast<R>(e.values[0]);
+        (e.what.kind == t_begin ? begin : end) = static_cast<R>(e.values[0]);
     }
     data.set_domain(begin, end);
-    if (!varies) return;
-    auto& own = data.own_domains();
-    for (const axes::entry& e : all.entries()) {
-        if (e.what.kind == component_kind::t_begin) all.fill(e, first_, data.size, own.t_begin.data());
-        if (e.what.kind == component_kind::t_end) all.fill(e, first_, data.size, own.t_end.data());
+    if (varies) {
+        auto& own = data.own_domains();
+        for (const axes::entry& e : all.entries()) {
+            if (e.what.kind == t_begin) all.fill(e, first, data.size, own.t_begin.data());
+            if (e.what.kind == t_end) all.fill(e, first, data.size, own.t_end.data());
+        }
     }
+    instances.generate(first, all.seed());
+}
+template void set_instances(model_instances<double>&, const axes&, std::int64_t);
+template void set_instances(model_instances<float>&, const axes&, std::int64_t);
+
+template <class R>
+void chunk_solver_of<R>::prepare(std::int64_t first, std::int64_t count) {
+    if (instances_ != nullptr && instances_->data().size != count) instances_.reset();
+    if (instances_ == nullptr) instances_ = make_(count);
+    first_ = first;
+    set_instances(*instances_, plan_.asked.axes, first);
 }
 
 template <class R>

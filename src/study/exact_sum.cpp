@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "myriad/kernel/core/abi.hpp"
+#include "myriad/kernel/study/reduced_values.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
@@ -19,18 +20,8 @@ constexpr std::int64_t most_added = std::int64_t{1} << 30;
 }  // namespace
 
 void exact_sum::add(double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    const auto exponent = static_cast<int>(bits >> 52 & 0x7ff);
-    const std::uint64_t fraction =
-        (bits & ((std::uint64_t{1} << 52) - 1)) | (exponent > 0 ? std::uint64_t{1} << 52 : 0);
-    const int place = exponent > 0 ? exponent - 1 : 0;  // of the lowest bit, above 2^-1074
-    const auto first = static_cast<std::size_t>(place / 32);
-    const int shift = place % 32;
-    const std::uint64_t low = fraction << shift, high = shift > 0 ? fraction >> (64 - shift) : 0;
-    const std::int64_t sign = bits >> 63 ? -1 : 1;
-    digit_[first] += sign * static_cast<std::int64_t>(low & low_bits);
-    digit_[first + 1] += sign * static_cast<std::int64_t>(low >> 32);
-    if (high > 0) digit_[first + 2] += sign * static_cast<std::int64_t>(high);
+    const detail::digits_of_number added = detail::digits_of(value);
+    for (std::size_t i = 0; i < 3; ++i) digit_[static_cast<std::size_t>(added.first) + i] += added.digit[i];
     if (++added_ == most_added) carry();
 }
 

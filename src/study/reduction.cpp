@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/kernel/study/reduced_values.hpp"
 #include "myriad/study/exact_sum.hpp"
 
 namespace myriad {
@@ -66,10 +67,16 @@ public:
         : of_(std::move(of)), edges_(std::move(edges)), count_(bins() + 3) {}
 
     void add(const chunk_columns& chunk) override {
-        for_each_value(chunk, of_, [this](std::size_t, double value) { ++count_[place_of(value)]; });
+        const auto bins = static_cast<std::int64_t>(edges_.size()) - 1;
+        for_each_value(chunk, of_, [&](std::size_t, double value) {
+            ++count_[static_cast<std::size_t>(detail::place_in_histogram(value, edges_.data(), bins))];
+        });
     }
     void add(std::span<const double> partial) override {
         for (std::size_t i = 0; i < count_.size(); ++i) count_[i] += partial[i];
+    }
+    void add_words(std::span<const std::int64_t> words) override {
+        for (std::size_t i = 0; i < count_.size(); ++i) count_[i] += static_cast<double>(words[i]);
     }
     std::vector<double> partial() override { return count_; }
     std::vector<std::vector<double>> results() override {
@@ -79,18 +86,6 @@ public:
 
 private:
     std::size_t bins() const { return edges_.size() - 1; }
-    std::size_t place_of(double value) const {
-        if (!std::isfinite(value)) return bins() + 2;
-        if (value < edges_.front()) return bins();
-        if (value >= edges_.back()) return value == edges_.back() ? bins() - 1 : bins() + 1;
-        // Most histograms have bins of equal width; the guess is at most one bin wrong for them.
-        const double share = (value - edges_.front()) / (edges_.back() - edges_.front());
-        std::size_t guess = std::min(static_cast<std::size_t>(share * static_cast<double>(bins())), bins() - 1);
-        if (guess > 0 && value < edges_[guess]) --guess;
-        if (guess + 1 < bins() && value >= edges_[guess + 1]) ++guess;
-        if (value >= edges_[guess] && value < edges_[guess + 1]) return guess;
-        return static_cast<std::size_t>(std::upper_bound(edges_.begin(), edges_.end(), value) - edges_.begin()) - 1;
-    }
 
     std::string of_;
     std::vector<double> edges_, count_;  // counts are exact up to 2^53
@@ -104,11 +99,15 @@ public:
 
     void add(const chunk_columns& chunk) override {
         for_each_value(chunk, of_, [this](std::size_t j, double value) {
-            if (std::isfinite(value)) most_[j] = std::max(most_[j], sign_ * value);
+            if (std::isfinite(value)) add(j, sign_ * value);
         });
     }
     void add(std::span<const double> partial) override {
-        for (std::size_t j = 0; j < most_.size(); ++j) most_[j] = std::max(most_[j], partial[j]);
+        for (std::size_t j = 0; j < most_.size(); ++j) add(j, partial[j]);
+    }
+    void add_words(std::span<const std::int64_t> words) override {
+        for (std::size_t j = 0; j < most_.size(); ++j)
+            if (words[j] != 0) add(j, detail::number_of_ordered(static_cast<std::uint64_t>(words[j])));
     }
     std::vector<double> partial() override { return most_; }
     std::vector<std::vector<double>> results() override {
@@ -118,6 +117,11 @@ public:
     }
 
 private:
+    /// Of zeros too, the order of the values must not decide.
+    void add(std::size_t j, double value) {
+        if (detail::ordered(value) > detail::ordered(most_[j])) most_[j] = value;
+    }
+
     static constexpr double none = -std::numeric_limits<double>::infinity();
     std::string of_;
     double sign_;
@@ -168,6 +172,13 @@ public:
         sum_.add(partial);
         const auto counts = partial.last(count_.size());
         for (std::size_t j = 0; j < count_.size(); ++j) count_[j] += counts[j];
+    }
+    void add_words(std::span<const std::int64_t> words) override {
+        for (std::size_t j = 0; j < count_.size(); ++j) {
+            const auto of_sum = words.subspan(j * (sums::stored + 1), sums::stored + 1);
+            sum_[j].add(of_sum.first<sums::stored>());
+            count_[j] += static_cast<double>(of_sum.back());
+        }
     }
     std::vector<double> partial() override {
         std::vector<double> all;
@@ -226,16 +237,19 @@ variable result(std::string name, element type, std::vector<studies::dimension> 
 
 /// A reduction with one result that has the inner dimensions of what it reduces.
 template <class State, class... More>
-ensemble_reduction one_value(std::string_view of, const char* what, std::int64_t partial_values, More... more) {
+ensemble_reduction one_value(std::string_view of, const char* what, std::int64_t partial_values,
+                             detail::reduction_kind on_device, More... more) {
     studies::reduction_definition made;
     made.name = message(of, '_', what);
     made.inputs = {std::string(of)};
     made.description = message(what, " of ", of);
-    made.plan = [name = made.name, of = std::string(of), partial_values, more...](const inputs& in) {
+    made.plan = [=, name = made.name, of = std::string(of)](const inputs& in) {
         const std::int64_t size = in[0]->values_per_item();
-        return reduction_plan{size * partial_values, {result(name, element::f64, in[0]->inner)}, {}, [=] {
-                                  return std::make_unique<State>(of, size, more...);
-                              }};
+        return reduction_plan{size * partial_values,
+                              {result(name, element::f64, in[0]->inner)},
+                              {},
+                              [=] { return std::make_unique<State>(of, size, more...); },
+                              cuda::device_reduction{on_device}};
     };
     return ensemble_reduction(std::move(made));
 }
@@ -270,13 +284,20 @@ ensemble_reduction histogram_of(std::string_view of, const axis_values& edges) {
                       "how many values are below the first edge, above the last one, and not finite or "
                       "missing"}})},
             {studies::with_values(dimension, dimension, middles, {{"long_name", "middle of the bin"}})},
-            [=] { return std::make_unique<histogram_state>(of, all); }};
+            [=] { return std::make_unique<histogram_state>(of, all); },
+            cuda::device_reduction{detail::reduction_kind::histogram, all}};
     };
     return ensemble_reduction(std::move(made));
 }
-ensemble_reduction minimum_of(std::string_view of) { return one_value<extremum_state>(of, "minimum", 1, -1.0); }
-ensemble_reduction maximum_of(std::string_view of) { return one_value<extremum_state>(of, "maximum", 1, 1.0); }
-ensemble_reduction mean_of(std::string_view of) { return one_value<mean_state>(of, "mean", exact_sum::digits + 1); }
+ensemble_reduction minimum_of(std::string_view of) {
+    return one_value<extremum_state>(of, "minimum", 1, detail::reduction_kind::minimum, -1.0);
+}
+ensemble_reduction maximum_of(std::string_view of) {
+    return one_value<extremum_state>(of, "maximum", 1, detail::reduction_kind::maximum, 1.0);
+}
+ensemble_reduction mean_of(std::string_view of) {
+    return one_value<mean_state>(of, "mean", exact_sum::digits + 1, detail::reduction_kind::sum);
+}
 
 ensemble_reduction sum_of(std::string name, std::vector<std::string> of, std::int64_t size, user_function function) {
     require(!name.empty(), "a reduction needs a name");

@@ -14,10 +14,12 @@
 #include <new>
 #include <optional>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/status_names.hpp"
+#include "myriad/host/threads/parallel.hpp"
 #include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
@@ -170,16 +172,21 @@ private:
     }
 
     void work(used_device& d, done_of_chunk& mine) {
-        const std::unique_ptr<chunk_solver> solver = model_.make_solver(plan_);
-        std::vector<std::vector<std::byte>> values(plan_.quantities.size());
+        std::unique_ptr<chunk_solver> solver = model_.make_device_solver(plan_, d.where);
+        if (solver == nullptr) solver = model_.make_solver(plan_);
+        const std::vector<bool> wanted =
+            solver->on_device() ? plan_.needed_on_host() : std::vector<bool>(plan_.quantities.size(), true);
         std::int64_t piece = settings_.piece > 0 ? std::min(settings_.piece, content().chunk) : content().chunk;
+        as_device(d, *solver, [&] { piece = std::min(piece, solver->most_at_a_time()); });
         while (const std::optional<std::int64_t> chunk = next_chunk(d)) {
             const chunk_range range = range_of(content(), *chunk);
             const auto begin = clock::now();
             try {
-                const solved how = compute(d, *solver, range, piece, values, mine);
+                computed made(plan_);
+                compute(d, *solver, range, piece, wanted, made, mine);
                 const double seconds = seconds_since(begin);
-                commit(*chunk, range, values, how, d, seconds);
+                commit(*chunk, range, made, d, seconds);
+                const solved& how = made.how;
                 const std::lock_guard lock(mutex_);
                 committed_ += range.count;
                 outcome_.instances += range.count;
@@ -228,25 +235,33 @@ private:
         return chunk / mine.per_second <= std::max(left / together, chunk / fastest);
     }
 
-    /// Sets and integrates a chunk, in pieces if memory is short, and copies what is kept.
-    solved compute(used_device& d, chunk_solver& solver, const chunk_range& range, std::int64_t& piece,
-                   std::vector<std::vector<std::byte>>& values, done_of_chunk& mine) {
-        solved sum;
+    /// What was computed of a chunk: the values of quantities, and the reductions that the device has done.
+    struct computed {
+        explicit computed(const study_plan& plan) : values(plan.quantities.size()), reduced(plan.reductions.size()) {}
+
+        solved how;
+        std::vector<std::vector<std::byte>> values;
+        std::vector<std::unique_ptr<reduction_state>> reduced;
+    };
+
+    /// Sets and integrates a chunk, in pieces if memory is short, and copies or reduces what is kept.
+    void compute(used_device& d, chunk_solver& solver, const chunk_range& range, std::int64_t& piece,
+                 const std::vector<bool>& wanted, computed& made, done_of_chunk& mine) {
         double seconds = 0;
         for (std::int64_t at = 0; at < range.count;) {
             const std::int64_t count = std::min(piece, range.count - at);
             try {
-                for (std::size_t q = 0; q < values.size(); ++q)
-                    values[q].resize(static_cast<std::size_t>(range.count) * bytes_of(plan_.quantities[q]));
-                solver.prepare(range.first + at, count);
+                for (std::size_t q = 0; q < wanted.size(); ++q)
+                    if (wanted[q])
+                        made.values[q].resize(static_cast<std::size_t>(range.count) * bytes_of(plan_.quantities[q]));
+                as_device(d, solver, [&] { solver.prepare(range.first + at, count); });
                 const auto progress = [&](std::int64_t done) {
                     mine = at + done;
                     if (done < count && is_over()) throw given_up();
                 };
-                add(sum, integrate(d, solver, progress, seconds));
-                for (std::size_t q = 0; q < values.size(); ++q)
-                    solver.copy(plan_.quantities[q],
-                                &values[q][static_cast<std::size_t>(at) * bytes_of(plan_.quantities[q])]);
+                const solved how = integrate(d, solver, progress, seconds);
+                as_device(d, solver, [&] { take(solver, at, wanted, made); });
+                add(made.how, how);
             } catch (const out_of_memory& e) {
                 halve(piece, count, solver, e.what());
                 continue;
@@ -257,24 +272,54 @@ private:
             at += count;
         }
         if (seconds > 0) d.per_second = static_cast<double>(range.count) / seconds;
-        return sum;
+    }
+    /// Copies and reduces a piece. Nothing is reduced twice if this throws.
+    void take(chunk_solver& solver, std::int64_t at, const std::vector<bool>& wanted, computed& made) {
+        for (std::size_t q = 0; q < wanted.size(); ++q)
+            if (wanted[q])
+                solver.copy(plan_.quantities[q],
+                            &made.values[q][static_cast<std::size_t>(at) * bytes_of(plan_.quantities[q])]);
+        std::vector<std::vector<double>> parts(plan_.reductions.size());
+        for (std::size_t r = 0; r < parts.size(); ++r) {
+            const auto part = plan_.reductions[r].start();
+            if (solver.reduce(r, *part)) parts[r] = part->partial();
+        }
+        for (std::size_t r = 0; r < parts.size(); ++r) {
+            if (parts[r].empty()) continue;
+            if (made.reduced[r] == nullptr) made.reduced[r] = plan_.reductions[r].start();
+            made.reduced[r]->add(std::span<const double>(parts[r]));
+        }
     }
     solved integrate(used_device& d, chunk_solver& solver, const std::function<void(std::int64_t)>& progress,
                      double& seconds) {
         const std::lock_guard turn(d.turn);
         if (d.failed) throw device_lost();
+        const auto begin = clock::now();
+        // A GPU is lost with a driver's error. On the CPU, it is the model or the study that is wrong.
+        solved how =
+            losing(d, d.where.which() != device::kind::cpu, [&] { return solver.integrate(d.where, progress); });
+        seconds += seconds_since(begin);
+        return how;
+    }
+    /// Does what a solver that works on the device by itself does there.
+    template <class Work>
+    void as_device(used_device& d, const chunk_solver& solver, Work&& work) {
+        if (solver.on_device() && d.failed) throw device_lost();
+        losing(d, solver.on_device(), work);
+    }
+    /// Drops the device if the work on it fails.
+    template <class Work>
+    std::invoke_result_t<Work&> losing(used_device& d, bool on_device, Work&& work) {
         try {
-            const auto begin = clock::now();
-            solved how = solver.integrate(d.where, progress);
-            seconds += seconds_since(begin);
-            return how;
+            return work();
         } catch (const out_of_memory&) {
+            throw;
+        } catch (const std::bad_alloc&) {
             throw;
         } catch (const given_up&) {
             throw;
         } catch (const std::exception& e) {
-            // A GPU is lost with a driver's error. On the CPU, it is the model or the study that is wrong.
-            if (d.where.which() != device::kind::cpu) drop(d, e.what());
+            if (on_device && !d.failed) drop(d, e.what());
             throw;
         }
     }
@@ -294,29 +339,59 @@ private:
         warn(message("memory is short, so ", piece, " instances are integrated at a time: ", why));
     }
 
-    void commit(std::int64_t chunk, const chunk_range& range, const std::vector<std::vector<std::byte>>& values,
-                const solved& how, const used_device& d, double seconds) {
+    void commit(std::int64_t chunk, const chunk_range& range, const computed& made, const used_device& d,
+                double seconds) {
         std::vector<column> columns;
         std::vector<chunk_columns::column> all;
-        for (std::size_t q = 0; q < values.size(); ++q) {
+        for (std::size_t q = 0; q < made.values.size(); ++q) {
             const quantity& is = plan_.quantities[q];
-            all.push_back({&is.as, values[q]});
-            if (is.stored) columns.push_back({is.as.name, is.as.type, values[q]});
+            if (made.values[q].empty()) continue;
+            all.push_back({&is.as, made.values[q]});
+            if (is.stored) columns.push_back({is.as.name, is.as.type, made.values[q]});
         }
         std::deque<std::vector<double>> partial;
         std::deque<std::string> names;  // which columns refer to
-        const chunk_columns of_chunk(range.first, range.count, all);
         for (std::size_t r = 0; r < plan_.reductions.size(); ++r) {
-            const auto state = plan_.reductions[r].start();
-            state->add(of_chunk);
-            columns.push_back(column_of(names.emplace_back(partial_name(plan_.asked.reductions[r])),
-                                        partial.emplace_back(state->partial())));
+            auto& found = partial.emplace_back(made.reduced[r] != nullptr ? made.reduced[r]->partial()
+                                                                          : reduced(plan_.reductions[r], range, all));
+            columns.push_back(column_of(names.emplace_back(partial_name(plan_.asked.reductions[r])), found));
         }
         chunk_record record{d.where.description(), seconds, {}};
-        for (std::size_t s = 0; s < how.by_status.size(); ++s)
-            if (how.by_status[s] > 0)
-                record.statuses.emplace_back(myriad::name_of(static_cast<myriad::status>(s)), how.by_status[s]);
+        for (std::size_t s = 0; s < made.how.by_status.size(); ++s)
+            if (made.how.by_status[s] > 0)
+                record.statuses.emplace_back(myriad::name_of(static_cast<myriad::status>(s)), made.how.by_status[s]);
         keeper_.commit(chunk, columns, record);
+    }
+    /// The partial result of a chunk. The library's own reductions do not depend on the order, so that several threads
+    /// share them.
+    static std::vector<double> reduced(const reduction_plan& plan, const chunk_range& range,
+                                       const std::vector<chunk_columns::column>& all) {
+        const auto state = plan.start();
+        if (!plan.on_device) {
+            state->add(chunk_columns(range.first, range.count, all));
+            return state->partial();
+        }
+        std::mutex mutex;
+        std::exception_ptr failure;
+        host::in_parallel(range.count, 65'536, [&](std::int64_t begin, std::int64_t end) {
+            try {
+                std::vector<chunk_columns::column> mine(all);
+                for (chunk_columns::column& c : mine) {
+                    const std::size_t each = c.bytes.size() / static_cast<std::size_t>(range.count);
+                    c.bytes = c.bytes.subspan(static_cast<std::size_t>(begin) * each,
+                                              static_cast<std::size_t>(end - begin) * each);
+                }
+                const auto part = plan.start();
+                part->add(chunk_columns(range.first + begin, end - begin, mine));
+                const std::lock_guard lock(mutex);
+                state->add(std::span<const double>(part->partial()));
+            } catch (...) {
+                const std::lock_guard lock(mutex);
+                failure = std::current_exception();
+            }
+        });
+        if (failure) std::rethrow_exception(failure);
+        return state->partial();
     }
 
     // -- Both ---------------------------------------------------------------------------------------------------------

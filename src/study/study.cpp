@@ -29,6 +29,12 @@ std::int64_t items_of(const studies::layout& content, const studies::variable& v
                                                  : 1;
 }
 
+/// Whether all devices set and reduce instances themselves.
+bool on_devices(const studies::any_model& model, const studies::study_plan& plan, const std::vector<device>& devices) {
+    return std::all_of(devices.begin(), devices.end(),
+                       [&](const device& d) { return model.make_device_solver(plan, d) != nullptr; });
+}
+
 /// Instances of a chunk, and of them those to be integrated at a time, as far as free memory goes.
 struct chunk_sizes {
     std::int64_t chunk, piece;
@@ -37,7 +43,9 @@ chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_p
                          const std::vector<device>& devices) {
     const std::int64_t n = plan.content.instances();
     const double worked_on =
-        model.bytes_per_instance(plan.asked.options) + static_cast<double>(plan.bytes_per_instance());
+        on_devices(model, plan, devices)
+            ? static_cast<double>(std::max(plan.bytes_needed_on_host(), std::int64_t{8}))
+            : model.bytes_per_instance(plan.asked.options) + static_cast<double>(plan.bytes_per_instance());
     // Two threads for each device; half of what the results leave stays free.
     double free = host::available_memory().bytes;
     if (in_memory) free -= static_cast<double>(plan.content.bytes());
@@ -57,10 +65,10 @@ chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_p
 
 /// Refuses chunks whose values alone do not fit: they are in memory as a whole, however few instances are integrated at
 /// a time.
-void check_memory(const studies::study_plan& plan, const studies::layout& content, const std::vector<device>& devices,
+void check_memory(double bytes_per_instance, const studies::layout& content, const std::vector<device>& devices,
                   const char* advice) {
     host::memory_need need;
-    need.add("values", static_cast<double>(plan.bytes_per_instance()) * static_cast<double>(content.chunk));
+    need.add("values", bytes_per_instance * static_cast<double>(content.chunk));
     const std::int64_t at_once = std::min(2 * static_cast<std::int64_t>(devices.size()), content.chunks());
     need.add("values of other chunks at the same time", need.bytes() * static_cast<double>(at_once - 1));
     need.check(message("chunks of ", content.chunk, " instances"), advice);
@@ -209,13 +217,15 @@ studies::study_request any_study::request() const {
             .generator = model_->generator(),
             .notes = notes_,
             .units = units_,
-            .title = title_};
+            .title = title_,
+            .generates_itself = model_->generates_itself()};
 }
 
 /// What a run begins with.
 struct any_study::planned_run {
     studies::run_settings settings;
     studies::study_plan plan;
+    double host_bytes;  // of the values of an instance
 };
 
 any_study::planned_run any_study::plan() const {
@@ -226,13 +236,15 @@ any_study::planned_run any_study::plan() const {
     const chunk_sizes sizes = choose_sizes(*model_, made, folder_.empty(), settings.devices);
     made.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
     settings.piece = sizes.piece;
-    check_memory(made, made.content, settings.devices, "make chunk smaller, or keep less");
-    return {std::move(settings), std::move(made)};
+    const auto bytes = static_cast<double>(on_devices(*model_, made, settings.devices) ? made.bytes_needed_on_host()
+                                                                                       : made.bytes_per_instance());
+    check_memory(bytes, made.content, settings.devices, "make chunk smaller, or keep less");
+    return {std::move(settings), std::move(made), bytes};
 }
 
 std::unique_ptr<studies::result_keeper> any_study::open_store(const planned_run& planned) const {
     auto keeper = studies::keep_in_store(folder_, planned.plan.content, store_options_);
-    check_memory(planned.plan, keeper->content(), planned.settings.devices,
+    check_memory(planned.host_bytes, keeper->content(), planned.settings.devices,
                  "use fewer devices, or start the study in a new folder with a smaller chunk");
     return keeper;
 }
@@ -278,13 +290,13 @@ std::optional<studies::computed_chunk> any_study::compute(std::int64_t number, s
         std::atomic<bool>& stopped;
         ~stop_once() { stopped = false; }
     } once{stopped_};
-    auto [settings, plan] = this->plan();
+    auto [settings, plan, host_bytes] = this->plan();
     require(chunk_size > 0 && chunk_size <= size(), "chunks of ", chunk_size,
             " instances are asked for, of a study of ", size());
     plan.content.chunk = chunk_size;
     require(number >= 0 && number < plan.content.chunks(), "there is no chunk ", number, " in a study of ",
             plan.content.chunks());
-    check_memory(plan, plan.content, settings.devices, "use fewer devices, or make chunk smaller");
+    check_memory(host_bytes, plan.content, settings.devices, "use fewer devices, or make chunk smaller");
     studies::one_chunk_keeper keeper(plan.content, number);
     settings.stops = [&] { return stopped_ || keeper.done(); };
     studies::run_outcome outcome = studies::run_study(*model_, plan, keeper, settings);

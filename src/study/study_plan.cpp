@@ -28,6 +28,29 @@ std::int64_t study_plan::bytes_per_instance() const {
     return bytes;
 }
 
+std::vector<bool> study_plan::needed_on_host() const {
+    std::vector<bool> needed;
+    for (const quantity& q : quantities) {
+        bool reduced = false;
+        for (std::size_t r = 0; r < reductions.size(); ++r) {
+            if (reductions[r].on_device) continue;
+            const auto& inputs = asked.reductions[r].definition().inputs;
+            reduced = reduced || q.from == origin::status ||
+                      std::find(inputs.begin(), inputs.end(), q.as.name) != inputs.end();
+        }
+        needed.push_back(q.stored || reduced);
+    }
+    return needed;
+}
+std::int64_t study_plan::bytes_needed_on_host() const {
+    const std::vector<bool> needed = needed_on_host();
+    std::int64_t bytes = 0;
+    for (std::size_t q = 0; q < needed.size(); ++q)
+        if (needed[q])
+            bytes += quantities[q].as.values_per_item() * static_cast<std::int64_t>(size_of(quantities[q].as.type));
+    return bytes;
+}
+
 namespace {
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -157,6 +180,7 @@ std::string describe(const study_request& asked, const study_plan& plan) {
     if (!asked.title.empty()) made["title"] = asked.title;
     if (!reductions.empty()) made["reductions"] = reductions;
     if (!asked.generator.empty()) made["generator"] = asked.generator;
+    if (asked.generates_itself) made["axes"]["seed"] = asked.axes.seed();
     if (!asked.notes.empty()) made["notes"] = asked.notes;
     if (!asked.units.empty()) made["units"] = asked.units;
     return made.dump(2);

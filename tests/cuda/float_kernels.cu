@@ -6,9 +6,7 @@
 // forbid: f64 in integrate_ensemble
 // limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers 48
 // limit: integrate_ensemble<bouncer, cash_karp> stack 56 spill 0
-// With 90 registers this kernel would spill nothing; the compiler prefers 80, with which three blocks of 256 run at a
-// time.
-// limit: integrate_ensemble<bouncer, dense<tsitouras_5>> stack 64 spill 192
+// limit: integrate_ensemble<bouncer, dense<tsitouras_5>> registers 80 stack 56 spill 0
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>

@@ -6,3 +6,4 @@
 
 MYRIAD_INSTANTIATE(studied::duffing, myriad::dense<myriad::tsitouras_5>)
 MYRIAD_INSTANTIATE_FLOAT(studied::lorenz, myriad::runge_kutta_4)
+MYRIAD_INSTANTIATE(studied::wave, myriad::cash_karp)

@@ -46,4 +46,31 @@ struct lorenz {
     }
 };
 
+/// A wave that is stopped at zero, and set by the model itself: every seventh instance is infinite.
+struct wave {
+    enum state { x, v, n_state };
+    enum parameter { omega, n_parameter };
+    enum shared { size, n_shared };
+    enum accessory { start, n_accessory };
+    enum integer_accessory { rank, n_integer_accessory };
+    enum event { zero, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {y[v], -(p[omega] * p[omega]) * y[x]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return {y[x]};
+    }
+    MYRIAD_FUNCTION static void generate(auto& instance) {
+        instance.y[x] = instance.random.uniform(1, 2) * instance.shared[size];
+        instance.y[v] = instance.random.normal();
+        if (instance.index % 7 == 6) instance.y[v] = instance.y[x] * 1e308 * 1e308;
+        instance.accessory[start] = instance.parameter[omega];
+        instance.integer_accessory[rank] = static_cast<int>(instance.index % 3);
+        instance.parameter[omega] = instance.parameter[omega] * 2;
+    }
+};
+
 }  // namespace studied

@@ -15,7 +15,6 @@
 #include <myriad/study/runner.hpp>
 
 #include "tests/catch.hpp"
-#include "tests/host/solve/simulated_engine.hpp"
 #include "tests/host/solve/simulated_gpu.hpp"
 #include "tests/study/models.hpp"
 
@@ -128,18 +127,6 @@ struct test_run {
 bool is_gpu(const device& d) { return d.which() == device::kind::cuda; }
 
 }  // namespace
-
-namespace myriad::cuda {
-
-template <class Model, class Method, class R, class Counts>
-std::unique_ptr<engine<Model, R>> make_engine(const engine_options&) {
-    simulated::the_gpu.meet(simulated::call::make_engine);
-    return std::make_unique<simulated::engine<Model, Method, R>>();
-}
-template std::unique_ptr<engine<studied::duffing, double>> make_engine<studied::duffing, dense<tsitouras_5>, double>(
-    const engine_options&);
-
-}  // namespace myriad::cuda
 
 TEST_CASE("All devices get chunks, each chunk is done once", "[runner]") {
     std::atomic<int> on_cpu{0}, on_gpu{0};

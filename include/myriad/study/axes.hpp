@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "myriad/kernel/core/abi.hpp"
+#include "myriad/kernel/study/axis_rule.hpp"
 #include "myriad/study/component_names.hpp"
 
 namespace myriad {
@@ -42,6 +43,8 @@ public:
     double operator[](std::int64_t i) const;
     /// The values given one by one.
     const std::vector<double>& listed() const { return list_; }
+    /// The same for kernels, with a stride of 1; used by the library. A list must outlive it.
+    detail::axis_rule rule() const;
 
 private:
     friend class axes;
@@ -124,6 +127,8 @@ public:
     void fill(const entry& e, std::int64_t first, std::int64_t count, double* to) const;
     void fill(const entry& e, std::int64_t first, std::int64_t count, float* to) const;
     void fill(const entry& e, std::int64_t first, std::int64_t count, std::int32_t* to) const;
+    /// The same values for kernels; used by the library. The axes must outlive it.
+    detail::axis_rule rule(const entry& e) const;
 
 private:
     const studies::component& find_free(std::string_view name) const;

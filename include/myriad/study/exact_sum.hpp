@@ -8,6 +8,7 @@
 #include <span>
 
 #include "myriad/kernel/core/abi.hpp"
+#include "myriad/kernel/study/reduced_values.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
@@ -16,7 +17,7 @@ namespace myriad::studies::inline MYRIAD_ABI {
 class exact_sum {
 public:
     /// The digits, of 32 bits each, the least significant first: the first has the weight 2^-1074.
-    static constexpr int digits = 67;
+    static constexpr int digits = detail::sum_digits;
     /// Their number as they are stored, between the sums of chunks.
     using stored = std::span<const std::int64_t, digits>;
 

@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "myriad/host/backend/backend.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/axes.hpp"
 #include "myriad/study/chunk_columns.hpp"
@@ -25,6 +27,8 @@ public:
     virtual ~reduction_state() = default;
     virtual void add(const chunk_columns& values) = 0;
     virtual void add(std::span<const double> partial) = 0;
+    /// Adds what a device found in a part of the chunk; for reductions that have `on_device`.
+    virtual void add_words(std::span<const std::int64_t>) {}
     /// What `add` takes, of a length that depends on the reduction alone.
     virtual std::vector<double> partial() = 0;
     /// The values of each of the `results`.
@@ -37,6 +41,9 @@ struct reduction_plan {
     std::vector<variable> results = {};        ///< of the whole study, f64 or i64
     std::vector<coordinate> coordinates = {};  ///< of their inner dimensions
     std::function<std::unique_ptr<reduction_state>()> start = {};
+    /// What a device computes of the only input; nothing if the reduction is a function of the user's. Such reductions
+    /// may also be divided among threads.
+    std::optional<cuda::device_reduction> on_device = {};
 };
 
 /// The definition of a reduction.

@@ -71,6 +71,7 @@ struct study_request {
     std::map<std::string, std::string> notes;  ///< further things that tell studies apart
     std::map<std::string, std::string> units;  ///< by component, and "t"
     std::string title;
+    bool generates_itself = false;  ///< the generator is the model's own, which draws random numbers by the seed
 };
 
 /// A study ready to be computed.
@@ -82,6 +83,11 @@ struct study_plan {
 
     /// Bytes of all quantities of one instance.
     std::int64_t bytes_per_instance() const;
+    /// Which quantities the host needs where a device sets and reduces instances itself: those that are stored, and
+    /// those that a user's function reduces.
+    std::vector<bool> needed_on_host() const;
+    /// Bytes of these.
+    std::int64_t bytes_needed_on_host() const;
 };
 
 /// Throws `error` if a component is unknown, if one that must be set is not, or if two variables have the same name.

@@ -3,13 +3,16 @@
 // CPU's kernel.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <exception>
 #include <functional>
 #include <future>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -18,6 +21,9 @@
 #include <vector>
 
 #include <myriad/host/threads/worker_thread.hpp>
+#include <myriad/kernel/study/axis_rule.hpp>
+#include <myriad/kernel/study/generator.hpp>
+#include <myriad/kernel/study/reduced_values.hpp>
 #include <myriad/myriad.hpp>
 
 #include "tests/host/solve/simulated_gpu.hpp"
@@ -121,6 +127,78 @@ public:
             for (const rows& r : pinned) r.to_host(memory_.get());
         });
     }
+    void generate(const arguments& host, std::shared_ptr<const myriad::cuda::generation> how, std::int64_t first,
+                  std::int64_t count) override {
+        const turn mine(taken_, call::upload);
+        demand(!fetching_, "instances are generated while some are downloaded");
+        grow(host, count);
+        first_ = first;
+        count_ = count;
+        shared_.assign(host.shared.real, host.shared.real + myriad::detail::n_shared<Model>);
+        shared_integer_.assign(host.shared.integer, host.shared.integer + myriad::detail::n_shared_integer<Model>);
+        ask([=, this] { set(host, *how, first, count); });
+    }
+    void fetch(const arguments& host, const myriad::cuda::device_values& what, std::byte* to) override {
+        const turn mine(taken_, call::download);
+        std::vector<std::byte> drawn;
+        const auto all = on_device(host, what, drawn);
+        the_gpu.wrote = true;
+        std::size_t bytes = 8;
+        if (all.type == type::f32 || all.type == type::i32) bytes = 4;
+        if (all.type == type::u8) bytes = 1;
+        for (std::int64_t i = 0; i < all.size; ++i) {
+            for (std::int64_t j = 0; j < all.inner; ++j, to += bytes) {
+                const bool there = all.phases == nullptr || j < all.phases[i] - all.from_phase;
+                const auto at = static_cast<std::size_t>(j * all.size + i);
+                constexpr std::int32_t missing = std::numeric_limits<std::int32_t>::min() + 1;
+                std::memcpy(to,
+                            there ? static_cast<const std::byte*>(all.values) + at * bytes
+                                  : reinterpret_cast<const std::byte*>(&missing),
+                            bytes);
+            }
+        }
+    }
+    std::vector<std::int64_t> reduce(const arguments& host, const myriad::cuda::device_values& what,
+                                     const myriad::cuda::device_reduction& how) override {
+        const turn mine(taken_, call::download);
+        using namespace myriad::detail;
+        std::vector<std::byte> drawn;
+        const auto all = on_device(host, what, drawn);
+        const auto* const statuses = reinterpret_cast<const myriad::status*>(&memory_[place_of(host, host.status)]);
+        std::vector<std::int64_t> words(static_cast<std::size_t>(how.words(all.inner)));
+        const auto word = [&](std::int64_t w) -> std::int64_t& { return words[static_cast<std::size_t>(w)]; };
+        for (std::int64_t i = all.size; i-- > 0;) {  // in another order than a CPU's
+            if (how.kind == reduction_kind::statuses) ++word(static_cast<std::int64_t>(statuses[i]));
+            if (how.kind == reduction_kind::statuses || is_failure(statuses[i])) continue;
+            for (std::int64_t j = 0; j < all.inner; ++j) {
+                const double value = value_at(all, i, j);
+                if (how.kind == reduction_kind::histogram)
+                    ++word(
+                        place_in_histogram(value, how.edges.data(), static_cast<std::int64_t>(how.edges.size()) - 1));
+                if (how.kind == reduction_kind::histogram || !is_finite_number(value)) continue;
+                if (how.kind == reduction_kind::sum) {
+                    const digits_of_number d = digits_of(value);
+                    for (int k = 0; k < 3; ++k) word(j * (sum_digits + 1) + d.first + k) += d.digit[k];
+                    ++word(j * (sum_digits + 1) + sum_digits);
+                } else {
+                    const auto place = ordered(how.kind == reduction_kind::minimum ? -value : value);
+                    word(j) = static_cast<std::int64_t>(std::max(static_cast<std::uint64_t>(word(j)), place));
+                }
+            }
+        }
+        return words;
+    }
+    void fetch_first(const arguments& host, std::int64_t count) override {
+        const turn mine(taken_, call::download);
+        synchronise();
+        arguments to = host;
+        std::size_t at = 0;
+        for_each_array(to, [&](auto*& array, std::int64_t components, access, kind) {
+            for (std::int64_t c = 0; c < components; ++c)
+                std::memcpy(array + c * host.size, &memory_[at + bytes_of(array, c * count_)], bytes_of(array, count));
+            at += (bytes_of(array, components * count_) + 63) / 64 * 64;
+        });
+    }
     void wait() override {
         const turn mine(taken_, call::wait);
         finish_download();
@@ -164,6 +242,79 @@ public:
     }
 
 private:
+    using type = myriad::detail::value_type;
+
+    void set(const arguments& host, const myriad::cuda::generation& how, std::int64_t first, std::int64_t count) {
+        using namespace myriad::detail;
+        arguments now = host;
+        walk(now, count, [&](auto*& array, std::size_t at, std::int64_t components, access, kind what) {
+            std::memset(&memory_[at], 0x5a, bytes_of(array, components * count));  // what was there before
+            if (what == kind::bookkeeping || what == kind::samples)
+                clear(array, &memory_[at], components * count, what);
+            array = reinterpret_cast<std::remove_reference_t<decltype(array)>>(&memory_[at]);
+        });
+        now.size = count;
+        now.first_index = host.first_index + first;
+        const auto mark = [&](std::int64_t i) {
+            now.ended[i] = 1;
+            now.status[i] = myriad::status::invalid_input;
+        };
+        for (const myriad::cuda::generated_component& c : how.components) {
+            arguments copy = host;
+            walk(copy, count, [&](auto* array, std::size_t at, std::int64_t, access, kind) {
+                if (array != c.array) return;
+                using value_of = std::remove_cvref_t<decltype(*array)>;
+                auto* const to = reinterpret_cast<value_of*>(&memory_[at]) + c.component * count;
+                for (std::int64_t i = 0; i < count; ++i) {
+                    to[i] = static_cast<value_of>(value_in_instance(c.rule, how.seed, now.first_index + i));
+                    if constexpr (std::is_floating_point_v<value_of>) {
+                        using valid = myriad::cuda::generated_component::valid;
+                        if (c.must_be == valid::finite && !std::isfinite(to[i])) mark(i);
+                        if (c.must_be == valid::not_nan && std::isnan(to[i])) mark(i);
+                    }
+                }
+            });
+        }
+        if constexpr (generates<Model, R>) {
+            for (std::int64_t i = 0; i < count && how.calls_model; ++i)
+                if (!generate_instance<Model, R>(now, now, {shared_.data(), shared_integer_.data()}, how.seed, i))
+                    mark(i);
+        }
+    }
+    std::size_t place_of(const arguments& host, const void* array) {
+        std::size_t found = bytes_;
+        walk(host, count_, [&](auto* there, std::size_t at, std::int64_t, access, kind) {
+            if (there == array) found = at;
+        });
+        demand(found < bytes_, "an array is not on the device");
+        return found;
+    }
+    myriad::detail::value_array on_device(const arguments& host, const myriad::cuda::device_values& what,
+                                          std::vector<std::byte>& drawn) {
+        synchronise();
+        myriad::detail::value_array all{nullptr, what.type, count_, what.inner};
+        const std::size_t bytes = what.type == type::f32 || what.type == type::i32 ? 4 : what.type == type::u8 ? 1 : 8;
+        if (what.rule != nullptr) {
+            drawn.resize(static_cast<std::size_t>(count_) * bytes);
+            for (std::int64_t i = 0; i < count_; ++i) {
+                const double value =
+                    myriad::detail::value_in_instance(*what.rule, what.seed, host.first_index + first_ + i);
+                const auto rounded = static_cast<float>(value);
+                std::memcpy(&drawn[static_cast<std::size_t>(i) * bytes],
+                            bytes == 4 ? static_cast<const void*>(&rounded) : &value, bytes);
+            }
+            all.values = drawn.data();
+        } else if (what.array != nullptr) {
+            all.values =
+                &memory_[place_of(host, what.array) + bytes * static_cast<std::size_t>(what.component * count_)];
+        }
+        if (what.ends_with_phases) {
+            all.phases = reinterpret_cast<const std::int32_t*>(&memory_[place_of(host, host.phase)]);
+            all.from_phase = what.from_phase;
+        }
+        return all;
+    }
+
     /// Calls `visit(pointer, place on the device, components, access, kind)` for each array; returns the bytes of all.
     template <class Visit>
     static std::size_t walk(arguments& host, std::int64_t count, Visit&& visit) {

@@ -21,9 +21,10 @@
 
 namespace myriad::cuda {
 
-/// The kernels are those of a class like `compiled_kernel`.
-template <class Kernel>
-class chunk_engine final : public engine_for<typename Kernel::arguments> {
+/// The kernels are those of a class like `compiled_kernel`. `Interface` is what a derived class implements the rest of.
+template <class Kernel, class Interface = engine_for<typename Kernel::arguments>>
+class chunk_engine : public Interface {
+protected:
     using arguments = typename Kernel::arguments;
     using R = typename Kernel::real;
 
@@ -78,11 +79,7 @@ public:
     void upload(const arguments& host, std::int64_t first, std::int64_t count, past of_instances,
                 Elsewhere&& elsewhere) {
         const current_device here(device_);
-        finish_download();
-        first_ = first;
-        count_ = count;
-        scheduler_.forget_costs();
-        reserve(host, count);
+        begin_chunk(host, first, count);
         arguments from = host;
         const bool fresh_samples = of_instances == past::none || !has_samples(host);
         const auto is_cleared = [&](array_kind kind) {
@@ -109,19 +106,8 @@ public:
             pooled_staging(device_)->upload(list, stream_.get());
         }
         // After the copies: clearing needs multiprocessors, so that the copies would wait for kernels of other chunks.
-        std::byte *zeros = nullptr, *end_of_zeros = nullptr;
-        walk(from, [&](auto*&, auto* target, std::int64_t components, array_access, array_kind kind) {
-            if (!is_cleared(kind)) return;
-            if (kind == array_kind::samples) return clear(target, components);
-            auto* const begin = reinterpret_cast<std::byte*>(target);
-            if (zeros == nullptr) zeros = begin;
-            end_of_zeros = begin + bytes_of(target, components * count_);
-        });
-        // Bookkeeping arrays are contiguous.
-        if (zeros != nullptr)
-            MYRIAD_CUDA(cudaMemsetAsync(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
-        launcher_.set_shared(host.shared);
-        if (launcher_.facts().shared_placement != shared_placement::constant_bank) upload_shared(host.shared);
+        clear_arrays(from, is_cleared);
+        set_shared(host.shared);
     }
 
     void integrate(const arguments& host) override {
@@ -198,7 +184,7 @@ public:
         return found;
     }
     /// Copies from this device's memory to the host's, and waits.
-    void fetch(void* to, const std::byte* from, std::size_t bytes) {
+    void copy_to_host(void* to, const std::byte* from, std::size_t bytes) {
         const current_device here(device_);
         finish_download();
         const row_list list{{static_cast<std::byte*>(to), const_cast<std::byte*>(from), bytes, 1, bytes}};
@@ -288,7 +274,21 @@ public:
         return static_cast<std::int64_t>(0.9 * static_cast<double>(free) / taken);
     }
 
-private:
+protected:
+    /// Before the instances of another chunk are put on the device: makes room for them.
+    void begin_chunk(const arguments& host, std::int64_t first, std::int64_t count) {
+        finish_download();
+        first_ = first;
+        count_ = count;
+        scheduler_.forget_costs();
+        reserve(host, count);
+    }
+    /// Stores the shared parameters where the kernel reads them, and in device memory too if they are `in_memory`.
+    void set_shared(const shared_parameters<R>& shared, bool in_memory = false) {
+        launcher_.set_shared(shared);
+        if (in_memory || launcher_.facts().shared_placement != shared_placement::constant_bank) upload_shared(shared);
+    }
+
     /// Calls `visit(host pointer, device pointer, components, access, kind)` for every array.
     template <class Visit>
     void walk(arguments& host, Visit&& visit) {
@@ -320,6 +320,21 @@ private:
         if (const auto lent = std::move(fetching_)) (*lent)->finish_download();
     }
 
+    /// Clears the arrays of the kinds for which `is_cleared` holds: bookkeeping to zero.
+    template <class Test>
+    void clear_arrays(arguments& from, Test&& is_cleared) {
+        std::byte *zeros = nullptr, *end_of_zeros = nullptr;
+        walk(from, [&](auto*&, auto* target, std::int64_t components, array_access, array_kind kind) {
+            if (!is_cleared(kind)) return;
+            if (kind == array_kind::samples) return clear(target, components);
+            auto* const begin = reinterpret_cast<std::byte*>(target);
+            if (zeros == nullptr) zeros = begin;
+            end_of_zeros = begin + bytes_of(target, components * count_);
+        });
+        // Bookkeeping arrays are contiguous.
+        if (zeros != nullptr)
+            MYRIAD_CUDA(cudaMemsetAsync(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
+    }
     /// Sets reals to NaN, which means that nothing was written, and integers to 0.
     template <class T>
     void clear(T* device, std::int64_t components) {

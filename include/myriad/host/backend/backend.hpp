@@ -15,6 +15,8 @@
 #include "myriad/host/core/weak.hpp"
 #include "myriad/host/options/schedule.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
+#include "myriad/kernel/study/axis_rule.hpp"
+#include "myriad/kernel/study/reduced_values.hpp"
 
 // Weak, as are the functions of the CPU's backend (cpu_backend.hpp).
 namespace myriad {
@@ -71,6 +73,49 @@ public:
     virtual void rest() = 0;
 };
 
+/// How one component of all instances is set on the device: `array` is a pointer of the host's arguments.
+struct generated_component {
+    const void* array;
+    std::int64_t component;
+    axis_rule rule;                                                  ///< its table is on the host
+    enum class valid { any, finite, not_nan } must_be = valid::any;  ///< otherwise the instance is marked
+};
+/// How instances are set on the device.
+struct generation {
+    std::vector<generated_component> components;
+    std::uint64_t seed = 0;
+    bool calls_model = false;  ///< the model's `generate`, after all components are set
+};
+
+/// Values on the device: `inner` components of an array of the host's arguments, or what `rule` gives.
+struct device_values {
+    const void* array = nullptr;
+    std::int64_t component = 0, inner = 1;
+    value_type type = value_type::f64;
+    const axis_rule* rule = nullptr;  ///< as among the components of `generation`
+    std::uint64_t seed = 0;           ///< of the rule
+    bool ends_with_phases = false;    ///< a phase that an instance did not do has no value,
+    std::int32_t from_phase = 0;      ///< which counts from here
+};
+/// A reduction over the instances of a chunk that have not failed.
+struct device_reduction {
+    reduction_kind kind;
+    std::vector<double> edges = {};  ///< of a histogram
+    /// How many integers the result has for so many inner values.
+    std::int64_t words(std::int64_t inner) const {
+        switch (kind) {
+            case reduction_kind::histogram:
+                return static_cast<std::int64_t>(edges.size()) + 2;
+            case reduction_kind::sum:
+                return inner * (sum_digits + 1);
+            case reduction_kind::statuses:
+                return status_count;
+            default:
+                return inner;
+        }
+    }
+};
+
 /// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and
 /// uploads of host memory that is not pinned, return before the work is done; work is done in the order of submission.
 /// Downloaded data are on the host after the next `wait`, not before. Only one thread at a time may use an engine, but
@@ -92,9 +137,23 @@ public:
                           void* context = nullptr) = 0;
 };
 
-/// The engines for a model.
+/// An engine for a compiled model. It can also set and reduce instances on the device, instead of an upload and a
+/// download: the host's arguments then have arrays of fewer instances, which only say which arrays there are; `first`
+/// is the number of the first instance from that of the arguments on. All but `generate` wait for the work before.
 template <class Model, class R>
-using engine = engine_for<kernel_arguments<Model, R>>;
+class engine : public engine_for<kernel_arguments<Model, R>> {
+public:
+    /// Sets a chunk of instances without a past.
+    virtual void generate(const kernel_arguments<Model, R>& host, std::shared_ptr<const generation> how,
+                          std::int64_t first, std::int64_t count) = 0;
+    /// Copies values of all instances of the chunk, the instance outermost.
+    virtual void fetch(const kernel_arguments<Model, R>& host, const device_values& what, std::byte* to) = 0;
+    /// The result of a reduction.
+    virtual std::vector<std::int64_t> reduce(const kernel_arguments<Model, R>& host, const device_values& what,
+                                             const device_reduction& how) = 0;
+    /// Copies all arrays of the first `count` instances of the chunk to those of the host.
+    virtual void fetch_first(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
+};
 
 /// The engine for a model, method and real type. Throws `error` if the device does not exist or cannot run the kernel.
 template <class Model, class Method, class R, class Counts = component_counts<Model>>

@@ -33,11 +33,14 @@
 #define MYRIAD_UNROLL_BY_FOUR _Pragma("unroll 4")
 /// Keeps device code from unrolling the following loop.
 #define MYRIAD_ROLLED _Pragma("unroll 1")
+/// a * b rounded, where nvcc would fuse it with an addition: for results that are to be the host's.
+#define MYRIAD_ROUNDED_PRODUCT(a, b) __dmul_rn(a, b)
 #else
 #define MYRIAD_REJOIN static_cast<void>(0)
 #define MYRIAD_UNROLL
 #define MYRIAD_UNROLL_BY_FOUR
 #define MYRIAD_ROLLED
+#define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))
 #endif
 #define MYRIAD_TARGET cuda_lane
 #define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
@@ -58,6 +61,7 @@
 #define MYRIAD_REJOIN static_cast<void>(0)
 #define MYRIAD_UNROLL_BY_FOUR
 #define MYRIAD_ROLLED
+#define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))
 #if defined(__clang__)
 #define MYRIAD_UNROLL _Pragma("clang loop unroll(full)")
 #else

@@ -101,9 +101,7 @@ struct integrator {
         }
         mask begun = mask(false);
         for_each_lane(s.ended, [&](int i) MYRIAD_LAMBDA {
-            const auto* arguments = &args;
-            MYRIAD_FORGET(arguments);  // else the values it points to occupy registers through the loop
-            set_lane(begun, i, phase_driver<Model, Method, S>{*arguments, s, locator.sides, o}.advance(i, source));
+            set_lane(begun, i, phase_driver<Model, Method, S>{args, s, locator.sides, o}.advance(i, source));
         });
         s.ended = mask(false);
         watch.plan();

@@ -78,38 +78,46 @@ struct functions<T> {
     }
 
 #if defined(__CUDA_ARCH__)
-    // Correctly rounded, like CUDA's own, but branch-free: one third-order step from the hardware's 20 bits, and
-    // Markstein's correction of the root by its remainder. Small numbers are scaled, as the remainder must not
-    // underflow.
+    // Correctly rounded, like CUDA's own, but shorter: one third-order step from the hardware's 20 bits, and
+    // Markstein's correction of the root by its remainder. Numbers whose remainder would underflow are scaled by 2^108.
     static MYRIAD_FUNCTION T sqrt(T x) {
         if constexpr (sizeof(T) == sizeof(double)) {
-            const bool small = __double2hiint(x) < 0x03500000;
-            const double scaled = x * __hiloint2double(small ? 0x46b00000 : 0x3ff00000, 0);  // by 2^108 or 1
-            double r;
-            asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(r) : "d"(scaled));
-            const double error = fma(-scaled * r, r, 1.0);
-            r = fma(r * error, fma(error, 0.375, 0.5), r);
-            const double root = scaled * r;
-            const double corrected = fma(fma(-root, root, scaled), 0.5 * r, root);
-            const double result = corrected * __hiloint2double(small ? 0x3c900000 : 0x3ff00000, 0);  // by 2^-54 or 1
-            return x == 0 || __double2hiint(x) == 0x7ff00000 ? x : result;
+            constexpr unsigned smallest = 0x03500000, infinite = 0x7ff00000;  // high words
+            const bool ordinary = static_cast<unsigned>(__double2hiint(x)) - smallest < infinite - smallest;
+            double root = sqrt_of_ordinary(x);
+            if (MYRIAD_UNLIKELY(!ordinary)) root = sqrt_of_extreme(x);
+            return root;
         } else {
             return std::sqrt(x);
         }
     }
+    static MYRIAD_FUNCTION double sqrt_of_ordinary(double x) {
+        double r;
+        asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(r) : "d"(x));
+        const double error = fma(-x * r, r, 1.0);
+        r = fma(r * error, fma(error, 0.375, 0.5), r);
+        const double root = x * r;
+        return fma(fma(-root, root, x), 0.5 * r, root);
+    }
+    static MYRIAD_FUNCTION double sqrt_of_extreme(double x) {
+        return x == 0 || x > largest ? x : 0x1p-54 * sqrt_of_ordinary(0x1p108 * x);
+    }
     static MYRIAD_FUNCTION T fma(T a, T b, T c) { return std::fma(a, b, c); }
+    // The branches for large angles come last: with what precedes them in one block, the compiler overlaps it.
     static MYRIAD_FUNCTION T sin(T x) {
         if constexpr (sizeof(T) == sizeof(double)) {
-            const bool large = !(std::fabs(x) <= half_wave<T>::limit);
-            return MYRIAD_UNLIKELY(large) ? sin_of_large(x) : half_wave<T>::sin(x);
+            T result = half_wave<T>::sin(x);
+            if (MYRIAD_UNLIKELY(!(std::fabs(x) <= half_wave<T>::limit))) result = sin_of_large(x);
+            return result;
         } else {
             return std::sin(x);
         }
     }
     static MYRIAD_FUNCTION T cos(T x) {
         if constexpr (sizeof(T) == sizeof(double)) {
-            const bool large = !(std::fabs(x) <= half_wave<T>::limit);
-            return MYRIAD_UNLIKELY(large) ? cos_of_large(x) : half_wave<T>::cos(x);
+            T result = half_wave<T>::cos(x);
+            if (MYRIAD_UNLIKELY(!(std::fabs(x) <= half_wave<T>::limit))) result = cos_of_large(x);
+            return result;
         } else {
             return std::cos(x);
         }

@@ -76,13 +76,14 @@ struct trigonometry_constants<float> {
     }
 };
 
-/// For half_wave, as operands of its instructions: 1 / pi; pi in three parts; and the first coefficients of
+/// For half_wave, as operands of its instructions: 1 / pi; pi in three parts; the coefficients of
 /// (sin(r) / r - 1) / r^2 in powers of r^2, minimax in the relative error of the sine on [-pi/2, pi/2] (our own Remez
-/// fit, 2^-57.4 with the last three, which a GPU's instructions contain).
+/// fit, 2^-57.4), without the two before the last, which a GPU's instructions contain; and 2^52, less a half.
 template <std::same_as<double> T>
-MYRIAD_CONSTANT_MEMORY T half_wave_constant[] = {
-    0x1.45f306dc9c883p-2, 0x1.921fb54442d18p+1,   0x1.1a62633145c07p-53, -0x1.f1976b7ed8fbcp-109, -0x1.5555555555558p-3,
-    0x1.11111111111cfp-7, -0x1.a01a01a01c314p-13, 0x1.71de3a540d937p-19, -0x1.ae64551239f0dp-26};
+MYRIAD_CONSTANT_MEMORY T half_wave_constant[] = {0x1.45f306dc9c883p-2,    0x1.921fb54442d18p+1,  0x1.1a62633145c07p-53,
+                                                 -0x1.f1976b7ed8fbcp-109, -0x1.5555555555558p-3, 0x1.11111111111cfp-7,
+                                                 -0x1.a01a01a01c314p-13,  0x1.71de3a540d937p-19, -0x1.ae64551239f0dp-26,
+                                                 0x1.8829ap-49,           0x1p52 - 0.5};
 
 /// Sine and cosine of a plain double, each by one polynomial over half a wave: on a GPU in two thirds of the
 /// instructions, and in a shorter chain, than CUDA's own, which convert to integers and load coefficients by quadrant.
@@ -105,7 +106,7 @@ struct half_wave {
 #else
         const T shifted = std::floor(magnitude * half_wave_constant<T>[0]) + whole;
 #endif
-        return negated_if_odd(of_rest(magnitude, (shifted - whole) + T(0.5)), shifted, sign_bit);
+        return negated_if_odd(of_rest(magnitude, shifted - half_wave_constant<T>[10]), shifted, sign_bit);
     }
 
 private:
@@ -118,7 +119,7 @@ private:
         const auto& c = half_wave_constant<T>;
         const T r = std::fma(-n, c[3], std::fma(-n, c[2], std::fma(-n, c[1], x)));
         const T z = r * r;
-        T sum = T(0x1.8829ap-49);
+        T sum = c[9];
         sum = std::fma(sum, z, T(-0x1.ae432p-41));
         sum = std::fma(sum, z, T(0x1.6123dp-33));
         MYRIAD_UNROLL

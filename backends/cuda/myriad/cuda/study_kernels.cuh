@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// The kernels that set the instances of a study before they are integrated, and reduce what is kept of them after.
+#pragma once
+
+#include <cstdint>
+
+#include "myriad/cuda/check.cuh"
+#include "myriad/kernel/study/axis_rule.hpp"
+#include "myriad/kernel/study/generator.hpp"
+#include "myriad/kernel/study/reduced_values.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// A component of all instances of a chunk, on the device.
+struct filled_component {
+    axis_rule rule;
+    void* to;
+    value_type type;  // f64, f32 or i32
+    bool must_be_finite, must_not_be_nan;
+};
+/// The components that one launch sets.
+struct fill_arguments {
+    static constexpr int most = 32;
+    filled_component components[most];
+    int count;
+    std::uint64_t seed;
+    std::int64_t first, size;  // the number of the first instance in the study, instances
+    std::uint8_t* ended;       // of those that are marked; null: none is
+    status* how;
+};
+
+__device__ __forceinline__ void mark_invalid(std::uint8_t* ended, status* how, std::int64_t i) {
+    ended[i] = 1;
+    how[i] = status::invalid_input;
+}
+__device__ __forceinline__ std::int64_t thread_number() {
+    return static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+}
+__device__ __forceinline__ std::int64_t all_threads() { return static_cast<std::int64_t>(gridDim.x) * blockDim.x; }
+
+// Templates, so that every file that includes this may have them.
+template <class = void>
+__global__ void fill_components(const __grid_constant__ fill_arguments all) {
+    for (std::int64_t i = thread_number(); i < all.size; i += all_threads()) {
+        bool valid = true;
+        for (int c = 0; c < all.count; ++c) {
+            const filled_component& is = all.components[c];
+            double value = detail::value_in_instance(is.rule, all.seed, all.first + i);
+            if (is.type == value_type::f32) {
+                const auto rounded = static_cast<float>(value);
+                static_cast<float*>(is.to)[i] = rounded;
+                value = static_cast<double>(rounded);
+            } else if (is.type == value_type::f64) {
+                static_cast<double*>(is.to)[i] = value;
+            } else {
+                static_cast<std::int32_t*>(is.to)[i] = static_cast<std::int32_t>(value);
+            }
+            if (is.must_be_finite) valid = valid && detail::is_finite_number(value);
+            if (is.must_not_be_nan) valid = valid && value == value;
+        }
+        if (!valid && all.ended != nullptr) mark_invalid(all.ended, all.how, i);
+    }
+}
+
+template <class Model, class R>
+__global__ void generate_instances(const instance_arrays<array_pointer, R> arrays, const instance_range range,
+                                   const shared_parameters<R> shared, const std::uint64_t seed) {
+    for (std::int64_t i = thread_number(); i < range.size; i += all_threads())
+        if (!detail::generate_instance<Model, R>(arrays, range, shared, seed, i))
+            mark_invalid(arrays.ended, arrays.status, i);
+}
+
+/// From one component after the other to one instance after the other; what has no value gets `fill`, if it is of 4
+/// bytes.
+template <class T>
+__global__ void gather_values(const value_array all, const std::int32_t fill, T* to) {
+    const auto* const from = static_cast<const T*>(all.values);
+    for (std::int64_t i = thread_number(); i < all.size; i += all_threads()) {
+        const std::int64_t there = all.phases != nullptr ? all.phases[i] - all.from_phase : all.inner;
+        for (std::int64_t j = 0; j < all.inner; ++j)
+            to[i * all.inner + j] = j < there ? from[j * all.size + i] : static_cast<T>(fill);
+    }
+}
+
+/// A reduction, and where its result goes: integers that are zero before.
+struct reduce_arguments {
+    value_array all;
+    const status* how;  // of each instance
+    reduction_kind kind;
+    const double* edges;
+    std::int64_t bins;
+    bool in_shared_memory;  // the counts of a histogram
+    unsigned long long* to;
+};
+
+/// The exact sum of a thread's numbers, whose digits are mostly the same few.
+class thread_sum {
+public:
+    __device__ explicit thread_sum(unsigned long long* to) : to_(to) {}
+    __device__ void add(double value) {
+        const digits_of_number digits = detail::digits_of(value);
+        if (digits.first != first_) {
+            flush();
+            first_ = digits.first;
+        }
+        for (int k = 0; k < 3; ++k) digit_[k] += digits.digit[k];
+        ++count_;
+    }
+    __device__ void flush() {
+        for (int k = 0; k < 3; ++k) {
+            if (digit_[k] != 0) atomicAdd(to_ + first_ + k, static_cast<unsigned long long>(digit_[k]));
+            digit_[k] = 0;
+        }
+    }
+    __device__ unsigned count() const { return count_; }
+
+private:
+    unsigned long long* to_;
+    int first_ = 0;
+    unsigned count_ = 0;
+    std::int64_t digit_[3] = {};
+};
+
+extern __shared__ unsigned long long reduced_in_block[];
+
+template <class = void>
+__global__ void reduce_values(const __grid_constant__ reduce_arguments a) {
+    const bool is_histogram = a.kind == reduction_kind::histogram;
+    const auto skipped = [&](std::int64_t i) { return is_failure(a.how[i]); };
+    if (is_histogram) {
+        const std::int64_t words = a.bins + 3;
+        auto* const counts = reinterpret_cast<unsigned*>(reduced_in_block);
+        if (a.in_shared_memory) {
+            for (std::int64_t w = threadIdx.x; w < words; w += blockDim.x) counts[w] = 0;
+            __syncthreads();
+        }
+        for (std::int64_t i = thread_number(); i < a.all.size; i += all_threads()) {
+            if (skipped(i)) continue;
+            for (std::int64_t j = 0; j < a.all.inner; ++j) {
+                const std::int64_t place = detail::place_in_histogram(detail::value_at(a.all, i, j), a.edges, a.bins);
+                if (a.in_shared_memory) {
+                    atomicAdd(counts + place, 1u);
+                } else {
+                    atomicAdd(a.to + place, 1ull);
+                }
+            }
+        }
+        if (!a.in_shared_memory) return;
+        __syncthreads();
+        for (std::int64_t w = threadIdx.x; w < words; w += blockDim.x)
+            if (counts[w] != 0) atomicAdd(a.to + w, static_cast<unsigned long long>(counts[w]));
+        return;
+    }
+    if (a.kind == reduction_kind::statuses) {
+        if (threadIdx.x < status_count) reduced_in_block[threadIdx.x] = 0;
+        __syncthreads();
+        for (std::int64_t i = thread_number(); i < a.all.size; i += all_threads())
+            atomicAdd(reduced_in_block + static_cast<int>(a.how[i]), 1ull);
+        __syncthreads();
+        if (threadIdx.x < status_count) atomicAdd(a.to + threadIdx.x, reduced_in_block[threadIdx.x]);
+        return;
+    }
+    constexpr int words_of_sum = sum_digits + 1;
+    for (std::int64_t j = blockIdx.y; j < a.all.inner; j += gridDim.y) {
+        const bool is_sum = a.kind == reduction_kind::sum;
+        const int words = is_sum ? words_of_sum : 1;
+        for (int w = static_cast<int>(threadIdx.x); w < words; w += static_cast<int>(blockDim.x))
+            reduced_in_block[w] = 0;
+        __syncthreads();
+        thread_sum sum(reduced_in_block);
+        unsigned long long most = 0;
+        for (std::int64_t i = thread_number(); i < a.all.size; i += all_threads()) {
+            if (skipped(i)) continue;
+            const double value = detail::value_at(a.all, i, j);
+            if (!detail::is_finite_number(value)) continue;
+            if (is_sum) {
+                sum.add(value);
+            } else {
+                const std::uint64_t place = detail::ordered(a.kind == reduction_kind::minimum ? -value : value);
+                most = place > most ? place : most;
+            }
+        }
+        if (is_sum) {
+            sum.flush();
+            if (sum.count() > 0) atomicAdd(reduced_in_block + sum_digits, static_cast<unsigned long long>(sum.count()));
+        } else if (most > 0) {
+            atomicMax(reduced_in_block, most);
+        }
+        __syncthreads();
+        for (int w = static_cast<int>(threadIdx.x); w < words; w += static_cast<int>(blockDim.x)) {
+            if (reduced_in_block[w] == 0) continue;
+            if (is_sum) {
+                atomicAdd(a.to + j * words_of_sum + w, reduced_in_block[w]);
+            } else {
+                atomicMax(a.to + j, reduced_in_block[w]);
+            }
+        }
+        __syncthreads();
+    }
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
