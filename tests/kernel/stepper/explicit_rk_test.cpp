@@ -16,6 +16,10 @@
 
 namespace {
 
+struct large_circle : problems::timed_circle {
+    static constexpr bool large_rhs = true;
+};
+
 using local_order::check_local_order;
 using local_order::mean_error;
 using myriad::cash_karp;
@@ -314,9 +318,6 @@ TEST_CASE("the last slope of a tsitouras_5 step is the right-hand side at its en
 
 #if defined(MYRIAD_STRICT)  // else the compiler may contract the copies differently
 TEST_CASE("a step that calls a large right-hand side has the bits of one that contains it") {
-    struct large_circle : problems::timed_circle {
-        static constexpr bool large_rhs = true;
-    };
     const single_step<dormand_prince_8, problems::timed_circle> contains(0.75, 0.1);
     const single_step<dormand_prince_8, large_circle> calls(0.75, 0.1);
     for (int c = 0; c < calls.n; ++c) {
