@@ -34,7 +34,7 @@ class Report:
         #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
         #: with a note if the cache cannot be used
         self.kernel = kernel.origin
-        self.kernel_seconds = kernel.seconds  #: that it took to get the kernel
+        self.compile_seconds = kernel.seconds  #: that it took to get the kernel, compiled or from the cache
         self.total_seconds = seconds  #: of the whole call
 
     def __getattr__(self, name):
@@ -50,7 +50,7 @@ class Report:
                           *(f"note: {note}" for note in self.notes[len(self._report.notes):])])
         origin = f"from {self.kernel}" if self.kernel in ("cache", "memory") else self.kernel
         if not self.kernel.startswith("interpreted"):
-            origin += f" in {self.kernel_seconds:.3g} s"
+            origin += f" in {self.compile_seconds:.3g} s"
         return f"{text}\nkernel {origin}; {self.total_seconds:.3g} s in all"
 
     __repr__ = __str__

@@ -19,6 +19,7 @@ def test_end_values_are_those_of_the_closed_form(oscillator):
     np.testing.assert_array_equal(run.t, 10)
     np.testing.assert_array_equal(run["w"], w)
     assert run.steps().sum() == run.report.accepted_steps > 0
+    assert 0 < run.report.compile_seconds < run.report.total_seconds and run.report.kernel_seconds == 0  # a GPU's
 
 
 @pytest.mark.parametrize("method", ["dormand_prince_8", "rodas_5p"])

@@ -54,6 +54,7 @@ struct with_declarations : bare {
     static constexpr bool accessories_are_outputs = true;
     static constexpr bool scalar_only = true;
     static constexpr bool rare_events = true;
+    static constexpr bool large_rhs = true;
 };
 struct with_declarations_denied : bare {
     static constexpr bool writes_parameters = false;
@@ -132,7 +133,8 @@ TEST_CASE("observed quantities show with the number of their reductions", "[desc
 
 TEST_CASE("declarations show, but not those that are denied", "[describe]") {
     CHECK(has(describe<with_declarations>(),
-              "declares: writes_parameters, writes_time_domain, accessories_are_outputs, scalar_only, rare_events\n"));
+              "declares: writes_parameters, writes_time_domain, accessories_are_outputs, scalar_only, rare_events, "
+              "large_rhs\n"));
     CHECK(has(describe<with_declarations_denied>(), "declares: nothing\n"));
     CHECK(has(describe<branching>(), "declares: scalar_only\n"));
 }

@@ -98,7 +98,7 @@ struct team_run {
     /// An exception from a function of the model ends the run: no further instance is started. The host stores the
     /// exception, as functions of the standard library that are not inlined here are shared with files for other
     /// instruction sets.
-    static void work(void* context, int part) noexcept {
+    MYRIAD_FLATTEN static void work(void* context, int part) noexcept {
         auto& run = *static_cast<team_run*>(context);
         ++run.at_work;
         chunked_instances instances(run.supply, run.count, run.chunk, lanes_of<S>, run.arguments.order, run.options,

@@ -35,6 +35,7 @@ template <class Model>
     add(declares, detail::accessories_are_outputs<Model>, "accessories_are_outputs");
     add(declares, detail::scalar_only<Model>, "scalar_only");
     add(declares, detail::rare_events<Model>, "rare_events");
+    add(declares, detail::large_rhs<Model>, "large_rhs");
     return message(
         "components: ", detail::n_state<Model>, " state, ", detail::n_parameter<Model>, " parameter, ",
         detail::n_shared<Model>, " shared, ", detail::n_shared_integer<Model>, " shared integer, ",

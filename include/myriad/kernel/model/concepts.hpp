@@ -111,6 +111,8 @@ MYRIAD_MODEL_DECLARATION(accessories_are_outputs)
 MYRIAD_MODEL_DECLARATION(scalar_only)
 /// Many steps lie between events, so that on the CPU packs as large as those without events pay off.
 MYRIAD_MODEL_DECLARATION(rare_events)
+/// The right-hand side is so long that on the CPU a copy in every stage would only make the kernel larger.
+MYRIAD_MODEL_DECLARATION(large_rhs)
 #undef MYRIAD_MODEL_DECLARATION
 
 // Whether a model has a member of that name, whatever its signature: a class that inherits the name twice finds it

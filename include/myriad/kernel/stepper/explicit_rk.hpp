@@ -13,11 +13,22 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
+/// `evaluate_rhs` out of line.
+template <class Model, class S>
+MYRIAD_LARGE_FUNCTION vec<S, n_state<Model>> call_rhs(const S& t, const vec<S, n_state<Model>>& y,
+                                                      const inputs<Model, S>& p) {
+    return Model::template rhs<S>(t, y, p);
+}
+
 /// Evaluates the model's right-hand side.
 template <class Model, class S>
 MYRIAD_FUNCTION vec<S, n_state<Model>> evaluate_rhs(const S& t, const vec<S, n_state<Model>>& y,
                                                     const inputs<Model, S>& p) {
-    return Model::template rhs<S>(t, y, p);
+    if constexpr (large_rhs<Model>) {
+        return detail::call_rhs<Model>(t, y, p);
+    } else {
+        return Model::template rhs<S>(t, y, p);
+    }
 }
 
 /// Refuses a method with an incomplete tableau.
