@@ -18,7 +18,8 @@ function(myriad_install_component component target)
             FILE myriad-${component}.cmake)
 endfunction()
 
-myriad_install_component(core myriad include/myriad EXCEPT study* program.hpp mpi.hpp)
+myriad_install_component(core myriad include/myriad EXCEPT myriad/study myriad/study.hpp myriad/program.hpp
+                         myriad/mpi.hpp)
 myriad_install_component(openmp myriad_openmp backends/openmp/myriad)
 if(MYRIAD_BUILD_STUDY)
     install(TARGETS myriad_study EXPORT myriad_study ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT study)
