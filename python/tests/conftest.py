@@ -2,6 +2,7 @@
 """Shared by the tests: a cache of their own, and models whose solutions are known."""
 
 import os
+import signal
 import tempfile
 
 import pytest
@@ -10,6 +11,9 @@ _cache = tempfile.TemporaryDirectory(prefix="myriad-tests-")
 os.environ["MYRIAD_CACHE_DIR"] = _cache.name  # before the package is imported, and for the processes that tests start
 if os.environ.get("MYRIAD_TEST_DEVICE") != "cuda":  # as in the tests of the C++ library
     os.environ["CUDA_VISIBLE_DEVICES"] = "-1"
+
+# What a shell starts in the background ignores Ctrl-C, and with it Python and the processes that tests start.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 import myriad as my  # noqa: E402
 
