@@ -230,7 +230,7 @@ TEST_CASE("A slow device takes no chunk that the others are done with earlier", 
     t.chunk = 10;
     t.devices = {device::cpu(1), device::cuda()};
     t.integrate = [&](const device& where, std::int64_t, std::int64_t) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(is_gpu(where) ? 100 : 1));
+        std::this_thread::sleep_for(std::chrono::milliseconds(is_gpu(where) ? 400 : 1));
         if (is_gpu(where)) ++on_gpu;
     };
     CHECK(t.run().complete);
