@@ -39,7 +39,7 @@ void integrate_all(const device& where, const options& o, const any_run* on_cpu,
         how.threads = where.threads();
         how.schedule = o.schedule;
         how.progress = &progress_relay::call;
-        if (o.progress) how.wish = &progress_relay::ask;
+        if (o.progress) how.stop = &progress_relay::ask;
         how.context = &relay;
         const run_statistics used = run_kernel(*on_cpu, how);
         result.lane_turns = used.lane_turns;

@@ -43,24 +43,24 @@ TEST_CASE("what the function throws is kept, and it is not called again") {
     CHECK_THROWS_WITH(std::rethrow_exception(r.failure), "enough");
 }
 
-TEST_CASE("who asks for the user's wish calls the function now and then, and waits a second before instances end") {
-    using myriad::detail::run_wish;
+TEST_CASE("asking whether to stop calls the function now and then, and lets instances end for a second") {
+    using myriad::detail::stop_request;
     std::vector<std::int64_t> seen;
     const std::function<void(std::int64_t, std::int64_t)> f = [&](std::int64_t done, std::int64_t) {
         seen.push_back(done);
         if (seen.size() == 3) throw std::runtime_error("enough");
     };
     relay r{f, 7, {}};
-    CHECK(relay::ask(&r) == run_wish::go_on);
+    CHECK(relay::ask(&r) == stop_request::none);
     CHECK(relay::call(&r, 2));
-    for (int i = 0; i < 5; ++i) CHECK(relay::ask(&r) == run_wish::go_on);
+    for (int i = 0; i < 5; ++i) CHECK(relay::ask(&r) == stop_request::none);
     CHECK(seen == std::vector<std::int64_t>{0, 2});
     r.last_call -= 2 * relay::ask_every;
-    CHECK(relay::ask(&r) == run_wish::begin_no_more);
+    CHECK(relay::ask(&r) == stop_request::begin_no_more);
     CHECK(seen == std::vector<std::int64_t>{0, 2, 2});
-    CHECK(relay::ask(&r) == run_wish::begin_no_more);
+    CHECK(relay::ask(&r) == stop_request::begin_no_more);
     r.failed_at -= 2 * relay::patience;
-    CHECK(relay::ask(&r) == run_wish::end_now);
+    CHECK(relay::ask(&r) == stop_request::end_now);
     CHECK(seen.size() == 3);
 }
 

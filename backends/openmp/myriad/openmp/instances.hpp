@@ -25,12 +25,12 @@ struct common_supply {
         stopped = true;
         begun.store(size, std::memory_order_relaxed);
     }
-    /// Does what the host wishes.
+    /// Stops as far as the host asks for it.
     void follow(const run_options& options, std::int64_t size) {
-        const run_wish wish = options.wish(options.context);
-        if (wish == run_wish::go_on) return;
+        const stop_request asked = options.stop(options.context);
+        if (asked == stop_request::none) return;
         stop(size);
-        if (wish == run_wish::end_now) given_up = true;
+        if (asked == stop_request::end_now) given_up = true;
     }
 };
 
@@ -43,7 +43,7 @@ public:
                       const run_options& options, bool reports)
         : all_(all), size_(size), chunk_(chunk), order_(order), options_(options), reports_(reports), done_(-lanes),
           tell_at_(options.progress ? interval_ : std::numeric_limits<std::int64_t>::max()),
-          ask_at_(options.wish ? ask_every : std::numeric_limits<std::int64_t>::max()) {}
+          ask_at_(options.stop ? ask_every : std::numeric_limits<std::int64_t>::max()) {}
 
     /// The next instance, or -1 when all are taken. Once the progress function returns false, no more are handed out.
     std::int64_t next() {

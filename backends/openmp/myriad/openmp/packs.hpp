@@ -111,11 +111,11 @@ struct team_run {
             run.supply.stop(run.count);
         }
         --run.at_work;
-        if (part == 0 && run.options.wish != nullptr) run.wait_for_others();
+        if (part == 0 && run.options.stop != nullptr) run.wait_for_others();
     }
 
-    /// The calling thread asks what the host wishes while the last instances of other threads are under way. It sleeps
-    /// for small parts of the time that it has waited already.
+    /// The calling thread asks the host whether to stop while the last instances of other threads are under way. It
+    /// sleeps for small parts of the time that it has waited already.
     void wait_for_others() {
         constexpr int soon = 2000;
         constexpr std::int64_t shortest = 20'000, longest = 20'000'000;  // ns

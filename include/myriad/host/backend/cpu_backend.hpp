@@ -13,9 +13,9 @@
 
 namespace myriad::detail {
 
-/// What is to become of a run.
-enum class run_wish : std::uint8_t {
-    go_on,
+/// How far a run is to stop.
+enum class stop_request : std::uint8_t {
+    none,
     begin_no_more,  ///< of its instances
     end_now,        ///< those under way end as `interrupted`
 };
@@ -26,7 +26,7 @@ struct run_options {
     /// Called in the calling thread with the number of instances done, the last time with all of them; may be null.
     bool (*progress)(void* context, std::int64_t done) = nullptr;  ///< returns whether to continue
     /// Asked in the calling thread many times a second, also while an instance takes long; may be null.
-    run_wish (*wish)(void* context) = nullptr;
+    stop_request (*stop)(void* context) = nullptr;
     void* context = nullptr;
     std::int64_t count = 0;  ///< instances to integrate, the first ones; 0: all
     myriad::schedule schedule = myriad::schedule::automatic;

@@ -39,13 +39,13 @@ struct progress_relay {
         }
         return !relay.failure;
     }
-    /// What the user wishes, who is called again if that was long ago, as no instance has ended since.
-    static detail::run_wish ask(void* context) {
+    /// Whether to stop. Calls the function again if the last call was long ago, as no instance has ended since.
+    static detail::stop_request ask(void* context) {
         auto& relay = *static_cast<progress_relay*>(context);
         const auto now = clock::now();
         if (!relay.failure && now - relay.last_call > ask_every) call(context, relay.last_done);
-        if (!relay.failure) return detail::run_wish::go_on;
-        return now - relay.failed_at > patience ? detail::run_wish::end_now : detail::run_wish::begin_no_more;
+        if (!relay.failure) return detail::stop_request::none;
+        return now - relay.failed_at > patience ? detail::stop_request::end_now : detail::stop_request::begin_no_more;
     }
 };
 

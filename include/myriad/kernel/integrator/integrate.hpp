@@ -184,7 +184,7 @@ struct integrator {
     }
 
 private:
-    /// Whether the host wishes all instances to end as they are.
+    /// Whether the host asks for all instances to end as they are.
     template <class Source>
     MYRIAD_FUNCTION bool gives_up(Source& source) {
         if constexpr (requires { source.gives_up(std::int64_t{}); }) {
