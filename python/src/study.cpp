@@ -467,8 +467,12 @@ void bind_study(nb::module_& m) {
              [](python_study& s, const std::string& key, const std::string& value) { s.study.note(key, value); })
         .def("reduce", [](python_study& s, const ensemble_reduction& r) { s.study.reduce(r); })
         .def("options", [](python_study& s, const options& o) { s.study.options = o; })
-        .def("keep", [](python_study& s, const std::vector<std::string>& end, bool records, bool samples, bool random,
-                        bool status, bool work) { s.study.keep = {end, records, samples, random, status, work}; })
+        .def("keep",
+             [](python_study& s, const std::vector<std::string>& end, bool records, bool samples, bool random,
+                bool status, bool work) {
+                 s.study.keep = {end, records, samples, random, status, work};
+                 s.study.options.counting = work ? counting::on : counting::off;
+             })
         .def_prop_ro("size", [](const python_study& s) { return s.study.size(); })
         .def("set_run", &python_study::set_run)
         .def("set_store", &python_study::set_store)

@@ -92,6 +92,9 @@ public:
 
 private:
     void call_generate(std::uint64_t seed) {
+        require(kernel_.kernel->cpu().generate != nullptr,
+                "the model's struct has no generate to set instances: it must be `MYRIAD_FUNCTION static void "
+                "generate(auto& instance)`, and public");
         auto& d = instances_.data;
         any_arguments<R> arguments{};
         arguments.size = d.size;

@@ -227,6 +227,27 @@ def test_an_instance_is_no_index_and_no_complex_number():
         lorenz(generate={x: 1j * my.instance})
 
 
+def test_a_model_in_cpp_generates_too():
+    text, struct = lorenz(generate=everything).source()
+    written = my.CppModel(text, struct, "x y z", "rho", "beta", accessories="a", integer_accessories="n",
+                          generates="x y z rho n a")
+    ours, theirs = generated(100).run(device="cpu"), generated(100, written).run(device="cpu")
+    for name in kept:
+        np.testing.assert_array_equal(ours[name], theirs[name], name)
+    with pytest.raises(my.Error, match="value of 'x', 'y', 'z' is missing"):
+        generated(5, my.CppModel(text, struct, "x y z", "rho", "beta", accessories="a", integer_accessories="n"))
+    with pytest.raises(my.Error, match="the model's struct has no generate"):
+        plain, name = lorenz().source()
+        generated(5, my.CppModel(plain, name, "x y z", "rho", "beta", generates="x y z rho"), keep=[x]).run(
+            device="cpu")
+
+
+def test_work_is_counted_where_it_is_kept():
+    result = generated(20, keep=dict(end=[x], work=True)).run(device="cpu")
+    np.testing.assert_array_equal(result["accepted_steps"], np.full(20, 10))
+    assert "accepted_steps" not in generated(20).run(device="cpu").names
+
+
 def test_messages_of_studies():
     model = lorenz(generate=random_starts)
     for sweep, more, message in (
