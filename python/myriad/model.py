@@ -355,8 +355,11 @@ class Model:
         return made
 
     def _generate(self, given):
-        """The assignments of `generate`, checked."""
+        """The assignments of `generate`, checked. Texts may name the instance's number."""
+        names = self._names
+        self._names = {"instance": sym.instance, **names}
         made = self._assignments(given, "generate")
+        self._names = names
         for symbol in symbols_of([value for _, value in made]):
             kind, name = symbol.value
             if kind in ("event_count", "action") or kind == "built-in" and name != "instance":

@@ -448,6 +448,7 @@ def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples
           carry_on=False, carry_on_step=False, events=None, sub_samples=1, accumulation_limit=50,
           schedule="automatic", precision="double", interpreted=None):
     """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
+    What `generate=` of the model sets is given neither in the sweep nor in start.
 
     sweep     as in `solve`: `myriad.grid(...)` for all combinations of its axes, or a dict whose arrays go together.
               Besides arrays and numbers, values are `myriad.linspace(a, b, n)`, `myriad.logspace(a, b, n)`, of which
@@ -462,7 +463,8 @@ def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples
               if nothing is recorded, sampled or reduced
     reduce    reductions over all instances: `myriad.reduce.mean("x_end")` and others
     draws     instances for each point of the other axes, as for random values
-    seed      of random values, which depend on it, the component and the instance's number alone
+    seed      of random values, which depend on it, the component and the instance's number alone, and of those that
+              `generate=` of the model draws
     units     {component: unit} for results; notes: {key: text}, anything that tells this study from others, such as the
               version of data: a store that was made with other notes is refused
 

@@ -133,7 +133,7 @@ time = _built_in("time")  #: the time; in an action that of the event
 step = _built_in("step")  #: in hooks: the length of the step just taken, negative backwards
 next_step = _built_in("next_step")  #: in hooks: the length of the next trial step, which they may assign
 phase = _built_in("phase", integer)  #: in hooks: the number of the phase, from 0
-instance = _built_in("instance", integer)  #: in hooks: the number of the instance, from 0
+instance = _built_in("instance", integer)  #: in hooks and `generate`: the number of the instance, from 0
 t_begin = _built_in("t_begin")  #: in hooks: begin of the time domain, which they may assign
 t_end = _built_in("t_end")  #: in hooks: end of the time domain, which they may assign
 end_phase = make("symbol", value=("action", "end_phase"), type="condition")  #: assign a condition: true ends the phase

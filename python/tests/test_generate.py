@@ -202,6 +202,17 @@ def test_instances_that_are_not_finite_are_marked():
     assert generated(50, model).run(device="cpu").by_status == {"success": 40, "invalid_input": 10}
 
 
+def test_text_and_sympy_name_the_instance_and_draw():
+    sympy = pytest.importorskip("sympy")
+    by_text = {"x": "uniform(-10, 10)", "y": "normal(0, 5)", "z": "uniform(15, 35)", "rho": "28 + instance // 7 * 0.5",
+               "n": "instance % 3", "a": sympy.Symbol("instance") / 4}
+    written = lorenz(accessories={"a": None}, generate={n if key == "n" else key: value
+                                                        for key, value in by_text.items()})
+    ours, theirs = generated(50, written).run(device="cpu"), generated(50).run(device="cpu")
+    for name in kept:
+        np.testing.assert_array_equal(ours[name], theirs[name], name)
+
+
 @pytest.mark.parametrize("given, message", [
     (dict(generate={my.t_end: 1}), "generate assigns t_end.*give myriad.study the time domain"),
     (dict(generate={beta: 1}), "generate assigns beta.*what all instances share"),
@@ -253,6 +264,7 @@ def test_messages_of_studies():
     for sweep, more, message in (
             ({beta: 1, rho: 28, x: my.linspace(0, 1, 5)}, {}, "'x' is given to the study, and generate= of the model"),
             ({beta: 1, rho: 28}, dict(start={y: 1}, draws=3), "'y' is given to the study, and generate="),
+            (my.grid({rho: [28, 29], z: [1, 2]}, {beta: 1}), {}, "'z' is given to the study, and generate="),
             ({beta: 1, rho: 28}, {}, "nothing says how many: give draws="),
             ({rho: 28}, dict(draws=3), "value of 'beta' is missing: give it in the sweep$"),
             ({beta: 1}, dict(draws=3), "value of 'rho' is missing")):
