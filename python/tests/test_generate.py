@@ -253,6 +253,16 @@ def test_a_model_in_cpp_generates_too():
             device="cpu")
 
 
+def test_components_may_have_the_names_that_the_block_uses():
+    instance, drawn, u = my.parameter("instance"), my.accessory("uniform"), my.uniform()
+    model = my.model({x: -instance * x}, generate={x: u, drawn: 2 * u, instance: my.instance})
+    result = my.study(model, draws=5, time=(0, 1), keep=[x, instance, drawn], rtol=1e-11).run(device="cpu")
+    np.testing.assert_array_equal(result["parameter_instance_end"], np.arange(5))
+    np.testing.assert_allclose(result["x_end"], result["uniform_end"] / 2 * np.exp(-np.arange(5)), rtol=1e-6)
+    with pytest.raises(my.Error, match="'generate' has a meaning of its own in a C.. model"):
+        my.state("generate")
+
+
 def test_work_is_counted_where_it_is_kept():
     result = generated(20, keep=dict(end=[x], work=True)).run(device="cpu")
     np.testing.assert_array_equal(result["accepted_steps"], np.full(20, 10))

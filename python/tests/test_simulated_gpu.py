@@ -388,4 +388,7 @@ domains = lambda **more: my.study(own, my.grid({my.t_end: my.linspace(1, 2, 5)})
 assert np.allclose(domains().run(device="cuda")["x_end"], np.exp(-np.linspace(1, 2, 5)), atol=1e-6)
 assert "a time domain of its own" in message(lambda: domains(samples=3).run(device="cuda"))
 assert domains(samples=3).run(device="cpu").complete
+on_axis = lambda: my.study(my.model({x: -x}), my.grid({my.t_end: my.linspace(1, 2, 5)}), start={x: 1}, time=(0, None),
+                           samples=3)  # the host looks at the domains, and sets the instances
+assert np.allclose(on_axis().run(device="cuda")["x_sample"], domains(samples=3).run(device="cpu")["x_sample"])
 """)
