@@ -211,12 +211,14 @@ def measure(name, side, calls):
         return factor * (time.perf_counter() - begin), factor * (time.process_time() - busy), ends, steps
 
     cold, *_ = timed()
-    later = [timed() for _ in range(calls)]
-    *_, ends, steps = later[-1]
+    warm, busy = [], []
+    for _ in range(calls):  # each gives back the memory of the results before
+        seconds, cpu, ends, steps = timed()
+        warm.append(seconds)
+        busy.append(cpu)
     if name != "scipy":  # which integrates no others
         ends = ends[places(side)]
-    warm = [seconds for seconds, *_ in later]
-    return dict(cold=cold, warm=statistics.median(warm), least=min(warm), busy=min(cpu for _, cpu, *_ in later),
+    return dict(cold=cold, warm=statistics.median(warm), least=min(warm), busy=min(busy),
                 steps=steps, ends=ends.tolist())
 
 

@@ -78,10 +78,7 @@ int main(int argc, char** argv) {
          .instances_help = "Places in x, and as many in y: a grid of N x N instances",
          .phases_help = "Natural periods, 2 pi / omega, after which an instance ends at the latest",
          .has_transient = false,
-         .add_options =
-             [&](CLI::App& app) {
-                 app.add_flag("--to-the-end", to_the_end, "Integrate all once more without the criterion, and compare");
-             }},
+         .options = {{"--to-the-end", &to_the_end, "Integrate all once more without the criterion, and compare"}}},
         [&](const examples::sweep_options& chosen, const myriad::device& device) {
             const auto side = static_cast<std::uintmax_t>(chosen.instances);
             examples::csv_file file(chosen.output, 20 * side * side);

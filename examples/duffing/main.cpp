@@ -119,18 +119,14 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return examples::run_sweep(argc, argv,
-                               {.description = "Bifurcation diagram of the Duffing oscillator over its damping k",
-                                .full = {.instances = 46080, .transient = 1024, .phases = 32},
-                                .small = {.instances = 1000, .transient = 128, .phases = 16},
-                                .output = "results/duffing.nc",
-                                .output_help = "File to write: netCDF, or with the ending .csv a table",
-                                .add_options =
-                                    [](CLI::App& app) {
-                                        app.add_option("--folder", folder,
-                                                       "Keep results there while it runs, and go on with them if "
-                                                       "it is run again")
-                                            ->type_name("FOLDER");
-                                    }},
-                               run);
+    return examples::run_sweep(
+        argc, argv,
+        {.description = "Bifurcation diagram of the Duffing oscillator over its damping k",
+         .full = {.instances = 46080, .transient = 1024, .phases = 32},
+         .small = {.instances = 1000, .transient = 128, .phases = 16},
+         .output = "results/duffing.nc",
+         .output_help = "File to write: netCDF, or with the ending .csv a table",
+         .options = {{"--folder", &folder, "Keep results there while it runs, and go on with them if it is run again",
+                      "FOLDER"}}},
+        run);
 }

@@ -23,7 +23,11 @@ constexpr std::array<double, shell::flows> through{0.5, -0.5, 0, 0}, pulse{0, 0,
 
 int points = 24;
 std::string method = "tsitouras_5";
-myriad::shared_placement placement = myriad::shared_placement::automatic;
+const std::map<std::string, myriad::shared_placement> placements{{"automatic", myriad::shared_placement::automatic},
+                                                                 {"constant", myriad::shared_placement::constant_bank},
+                                                                 {"shared", myriad::shared_placement::shared_memory},
+                                                                 {"cache", myriad::shared_placement::cache}};
+std::string placement = "automatic";
 
 template <class Model>
 myriad::ensemble<Model> prepare(std::int64_t instances) {
@@ -60,7 +64,7 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
                                                      .absolute_tolerance = tolerance,
                                                      .phase_step = myriad::phase_step::carry_on,
                                                      .record = {.from_phase = chosen.transient, .states = states},
-                                                     .shared_placement = placement});
+                                                     .shared_placement = placements.at(placement)});
     // end of snippet
     file.comment(myriad::message("Myriad " MYRIAD_VERSION ", method ", method, ", relative and absolute tolerance ",
                                  tolerance, "; ", points, " Chebyshev points"));
@@ -71,41 +75,28 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    using myriad::shared_placement;
-    const std::map<std::string, shared_placement> places{{"automatic", shared_placement::automatic},
-                                                         {"constant", shared_placement::constant_bank},
-                                                         {"shared", shared_placement::shared_memory},
-                                                         {"cache", shared_placement::cache}};
-    const auto add_options = [&](CLI::App& app) {
-        app.add_option("--points", points, "Chebyshev points: 24 or 77")
-            ->check(CLI::IsMember({24, 77}).description(""))
-            ->type_name("N")
-            ->capture_default_str();
-        app.add_option("--method", method, "tsitouras_5, or for 24 points rodas_5p, a stiff one")
-            ->check(CLI::IsMember({"tsitouras_5", "rodas_5p"}).description(""))
-            ->type_name("NAME")
-            ->capture_default_str();
-        app.add_option("--shared-placement", placement,
-                       "Where a GPU keeps the matrix: automatic, constant, shared or cache")
-            ->transform(CLI::CheckedTransformer(places).description(""))
-            ->type_name("PLACE")
-            ->default_str("automatic");
-    };
-    return examples::run_sweep(argc, argv,
-                               {.description = "Heat conduction around a bubble over the diffusivity of the liquid",
-                                .full = {.instances = 16384, .transient = 32 * 16, .phases = 16},
-                                .small = {.instances = 64, .transient = 16 * 16, .phases = 16},
-                                .output = "results/heat_conduction.csv",
-                                .phases_help = "Phases to record after the transient ones, sixteen to a period",
-                                .add_options = add_options},
-                               [](const auto& chosen, const auto& device) {
-                                   using myriad::rodas_5p, myriad::tsitouras_5;
-                                   if (method == "tsitouras_5")
-                                       return points == 24 ? run<tsitouras_5, heat_24>(chosen, device)
-                                                           : run<tsitouras_5, heat_77>(chosen, device);
-                                   myriad::require(points == 24,
-                                                   "rodas_5p was compiled for 24 points only, as its Jacobians "
-                                                   "of 77 points take long: leave --points out");
-                                   return run<rodas_5p, heat_24>(chosen, device);
-                               });
+    using examples::own_option;
+    return examples::run_sweep(
+        argc, argv,
+        {.description = "Heat conduction around a bubble over the diffusivity of the liquid",
+         .full = {.instances = 16384, .transient = 32 * 16, .phases = 16},
+         .small = {.instances = 64, .transient = 16 * 16, .phases = 16},
+         .output = "results/heat_conduction.csv",
+         .phases_help = "Phases to record after the transient ones, sixteen to a period",
+         .options = {{"--points", &points, "Chebyshev points: 24 or 77", "N", own_option::names{"24", "77"}},
+                     {"--method", &method, "tsitouras_5, or for 24 points rodas_5p, a stiff one", "NAME",
+                      own_option::names{"tsitouras_5", "rodas_5p"}},
+                     {"--shared-placement", &placement,
+                      "Where a GPU keeps the matrix: automatic, constant, shared or cache", "PLACE",
+                      examples::names_of(placements)}}},
+        [](const auto& chosen, const auto& device) {
+            using myriad::rodas_5p, myriad::tsitouras_5;
+            if (method == "tsitouras_5")
+                return points == 24 ? run<tsitouras_5, heat_24>(chosen, device)
+                                    : run<tsitouras_5, heat_77>(chosen, device);
+            myriad::require(points == 24,
+                            "rodas_5p was compiled for 24 points only, as its Jacobians "
+                            "of 77 points take long: leave --points out");
+            return run<rodas_5p, heat_24>(chosen, device);
+        });
 }

@@ -73,20 +73,10 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
     return examples::conclude(chosen, report);
 }
 
-void add_options(CLI::App& app) {
-    const auto add = [&app](const char* name, std::vector<double>& values, const char* meaning) {
-        app.add_option(name, values, meaning)
-            ->check(CLI::Range(0.0, 10.0).description(""))
-            ->type_name("BAR")
-            ->capture_default_str();
-    };
-    add("--pressures-1", first_amplitudes, "Pressure amplitudes of the first wave in bar");
-    add("--pressures-2", second_amplitudes, "Pressure amplitudes of the second wave in bar");
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
+    const examples::own_option::range pressures{0.0, 10.0};
     return examples::run_sweep(argc, argv,
                                {.description = "A bubble under sound of two frequencies, over both",
                                 .full = {.instances = 128, .transient = 1024, .phases = 64},
@@ -94,6 +84,9 @@ int main(int argc, char** argv) {
                                 .output = "results/bubble_dual_frequency.csv",
                                 .instances_help = "Values of each frequency: all pairs, for each pair of pressures",
                                 .phases_help = "Maxima to record after the transient ones",
-                                .add_options = add_options},
+                                .options = {{"--pressures-1", &first_amplitudes,
+                                             "Pressure amplitudes of the first wave in bar", "BAR", pressures},
+                                            {"--pressures-2", &second_amplitudes,
+                                             "Pressure amplitudes of the second wave in bar", "BAR", pressures}}},
                                run);
 }

@@ -78,13 +78,6 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
     return examples::conclude(chosen, report);
 }
 
-void add_options(CLI::App& app) {
-    app.add_option("--pressure", amplitude, "Pressure amplitude of the wave in bar")
-        ->check(CLI::Range(1e-9, 10.0).description(""))
-        ->type_name("BAR")
-        ->capture_default_str();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -93,6 +86,7 @@ int main(int argc, char** argv) {
                                 .full = {.instances = 46080, .transient = 1024, .phases = 64},
                                 .small = {.instances = 200, .transient = 64, .phases = 16},
                                 .output = "results/bubble_response.csv",
-                                .add_options = add_options},
+                                .options = {{"--pressure", &amplitude, "Pressure amplitude of the wave in bar", "BAR",
+                                             examples::own_option::range{1e-9, 10.0}}}},
                                run);
 }

@@ -103,17 +103,13 @@ int main(int argc, char** argv) {
         write(file, sweep, seed, found);
         return examples::conclude(chosen, report);
     };
-    return examples::run_sweep(
-        argc, argv,
-        {.description = "Monte Carlo study of an epidemic whose parameters are uncertain",
-         .full = {.instances = 1 << 20},
-         .small = {.instances = 1 << 14},
-         .output = "results/monte_carlo.csv",
-         .instances_help = "Number of epidemics to draw",
-         .has_transient = false,
-         .add_options =
-             [&seed](CLI::App& app) {
-                 app.add_option("--seed", seed, "Key of the random numbers")->type_name("N")->capture_default_str();
-             }},
-        run);
+    return examples::run_sweep(argc, argv,
+                               {.description = "Monte Carlo study of an epidemic whose parameters are uncertain",
+                                .full = {.instances = 1 << 20},
+                                .small = {.instances = 1 << 14},
+                                .output = "results/monte_carlo.csv",
+                                .instances_help = "Number of epidemics to draw",
+                                .has_transient = false,
+                                .options = {{"--seed", &seed, "Key of the random numbers", "N"}}},
+                               run);
 }

@@ -62,27 +62,19 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const auto add_options = [](CLI::App& app) {
-        app.add_option("--devices", own.devices, "Devices to spread over, as cuda:0,cuda:1, or all: every GPU")
-            ->delimiter(',')
-            ->type_name("NAMES");
-        app.add_option("--solvers", own.solvers, "Solver objects on each device")
-            ->check(CLI::Range(std::int64_t{1}, std::int64_t{16}).description(""))
-            ->type_name("N")
-            ->capture_default_str();
-        app.add_option("--chunks", own.chunks, "Parts of the sweep")
-            ->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000}).description(""))
-            ->type_name("N")
-            ->capture_default_str();
-        app.add_flag("--check", own.check, "Integrate it in one call of solve too, and compare the bits");
-    };
-    return examples::run_sweep(argc, argv,
-                               {.description = "Solver objects that take turns over chunks of the Duffing sweep",
-                                .full = {.instances = 2'097'152, .phases = 192},
-                                .small = {.instances = 8000, .phases = 8},
-                                .output = "results/overlap.csv",
-                                .phases_help = "Phases to integrate, periods of the forcing",
-                                .has_transient = false,
-                                .add_options = add_options},
-                               run);
+    return examples::run_sweep(
+        argc, argv,
+        {.description = "Solver objects that take turns over chunks of the Duffing sweep",
+         .full = {.instances = 2'097'152, .phases = 192},
+         .small = {.instances = 8000, .phases = 8},
+         .output = "results/overlap.csv",
+         .phases_help = "Phases to integrate, periods of the forcing",
+         .has_transient = false,
+         .options = {{"--devices", &own.devices, "Devices to spread over, as cuda:0,cuda:1, or all: every GPU",
+                      "NAMES"},
+                     {"--solvers", &own.solvers, "Solver objects on each device", "N",
+                      examples::own_option::range{1, 16}},
+                     {"--chunks", &own.chunks, "Parts of the sweep", "N", examples::own_option::range{1, 100'000}},
+                     {"--check", &own.check, "Integrate it in one call of solve too, and compare the bits"}}},
+        run);
 }

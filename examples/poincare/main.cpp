@@ -50,10 +50,6 @@ int main(int argc, char** argv) {
                                 .small = {.instances = 1024, .transient = 200, .phases = 32},
                                 .output = "results/poincare.csv",
                                 .phases_help = "Returns to record after the transient ones",
-                                .add_options =
-                                    [](CLI::App& app) {
-                                        app.add_option("--first", c_first, "Smallest c")->capture_default_str();
-                                        app.add_option("--last", c_last, "Largest c")->capture_default_str();
-                                    }},
+                                .options = {{"--first", &c_first, "Smallest c"}, {"--last", &c_last, "Largest c"}}},
                                run);
 }

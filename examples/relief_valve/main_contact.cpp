@@ -54,10 +54,6 @@ int main(int argc, char** argv) {
          .full = {.instances = 30720, .transient = 512, .phases = 64},
          .small = {.instances = 512, .transient = 128, .phases = 64},
          .output = "results/relief_valve_contact.csv",
-         .add_options =
-             [](CLI::App& app) {
-                 app.add_option("--first", q_first, "Smallest q")->capture_default_str();
-                 app.add_option("--last", q_last, "Largest q")->capture_default_str();
-             }},
+         .options = {{"--first", &q_first, "Smallest q"}, {"--last", &q_last, "Largest q"}}},
         run);
 }

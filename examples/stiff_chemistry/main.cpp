@@ -87,21 +87,15 @@ int main(int argc, char** argv) {
         write(file, sweep, report, chosen);
         return examples::conclude(chosen, report);
     };
-    return examples::run_sweep(argc, argv,
-                               {.description = "Periods of the Oregonator over its parameters f and epsilon",
-                                .full = {.instances = 512 * 512, .transient = 63, .phases = 1},
-                                .small = {.instances = 32 * 32, .transient = 63, .phases = 1},
-                                .output = "results/stiff_chemistry.csv",
-                                .instances_help = "Number of instances, a square grid: rounded down to a square number",
-                                .phases_help = "Cycles after the transient ones, the last of which is written",
-                                .add_options =
-                                    [&](CLI::App& app) {
-                                        app.add_option(
-                                               "--schedule", schedule,
-                                               "Order of the instances: in_order, dynamic, by_cost or automatic")
-                                            ->check(CLI::IsMember(schedules))
-                                            ->type_name("NAME")
-                                            ->capture_default_str();
-                                    }},
-                               run);
+    return examples::run_sweep(
+        argc, argv,
+        {.description = "Periods of the Oregonator over its parameters f and epsilon",
+         .full = {.instances = 512 * 512, .transient = 63, .phases = 1},
+         .small = {.instances = 32 * 32, .transient = 63, .phases = 1},
+         .output = "results/stiff_chemistry.csv",
+         .instances_help = "Number of instances, a square grid: rounded down to a square number",
+         .phases_help = "Cycles after the transient ones, the last of which is written",
+         .options = {{"--schedule", &schedule, "Order of the instances: in_order, dynamic, by_cost or automatic",
+                      "NAME", examples::names_of(schedules)}}},
+        run);
 }

@@ -116,9 +116,8 @@ const component_array<std::int64_t>& ensemble_data<R>::counter(component_array<s
     return counted.components() > 0 ? counted : on_demand(nothing_counted, std::int64_t{0});
 }
 
-namespace {
-
-/// What decides which arrays a call needs.
+/// What decides which arrays a call needs. In no unnamed namespace, as lambdas of members capture it, which g++ warns
+/// about where files are compiled together.
 struct call_needs {
     counting count;
     step_sizes steps;
@@ -142,8 +141,6 @@ struct call_needs {
         return false;
     }
 };
-
-}  // namespace
 
 template <class R>
 void ensemble_data<R>::describe(instance_arrays<array_pointer, R>& pointers, counting count, step_sizes steps) {

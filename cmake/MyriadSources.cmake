@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: MIT
+# The compiled parts of the host side, which the libraries and the Python package's module consist of. Their files are
+# compiled together, several at a time, as most of the time of each is that of the headers.
+
+# myriad_add_host_sources(<target>): what depends on no model.
+function(myriad_add_host_sources target)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../src/host/*.cpp")
+    target_sources(${target} PRIVATE ${sources})
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 9)
+    # Fast where a project has no build type, too.
+    target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O3>)
+endfunction()
+
+# myriad_add_study_sources(<target>): studies and their results on disk. What works on every value is fully optimised, and
+# is an object library of its own, <target>_values; each of the two is compiled as one file.
+function(myriad_add_study_sources target)
+    cmake_path(SET folder NORMALIZE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../src/study")
+    file(GLOB sources CONFIGURE_DEPENDS "${folder}/*.cpp")
+    set(fast axes chunk_solver crc32c device_solver exact_sum reduction)
+    list(TRANSFORM fast REPLACE "(.+)" "${folder}/\\1.cpp")
+    list(REMOVE_ITEM sources ${fast})
+    add_library(${target}_values OBJECT ${fast})
+    target_compile_options(${target}_values PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O3>)
+    target_sources(${target} PRIVATE ${sources})
+    target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
+    set_target_properties(${target} ${target}_values PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+endfunction()
