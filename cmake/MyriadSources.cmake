@@ -11,8 +11,8 @@ function(myriad_add_host_sources target)
     target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 endfunction()
 
-# myriad_add_study_sources(<target>): studies and their results on disk. What works on every value is fully optimised, and
-# is an object library of its own, <target>_values; each of the two is compiled as one file.
+# myriad_add_study_sources(<target>): studies and their results on disk. What works on every value is fully optimised,
+# in an object library of its own, <target>_values; each of the two is compiled as one file.
 function(myriad_add_study_sources target)
     cmake_path(SET folder NORMALIZE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../src/study")
     file(GLOB sources CONFIGURE_DEPENDS "${folder}/*.cpp")

@@ -84,6 +84,7 @@ END
         tee "$output/python_tests.log" | tail -40 || status=1
     python3 benchmarks/python/van_der_pol.py --check --output "$output/python_van_der_pol.csv" 2>&1 |
         tee "$output/python_van_der_pol.log" || status=1
+    python3 benchmarks/python/generated_study.py --check 2>&1 | tee "$output/python_generated_study.txt" || status=1
     if python3 -c 'import scipy' 2>/dev/null; then
         python3 benchmarks/python/compare.py --side 1024 --programs "myriad gpu" cubie myriad \
             --output "$output/python_compare.csv" || status=1

@@ -36,6 +36,7 @@ class Components:
         self.accessories, self.integer_accessories = list(model.accessories), list(model.integer_accessories)
         self.tables = getattr(model, "shared_values", {})  # shared values that the model itself has
         self.defaults = getattr(model, "defaults", self.tables)  # of components that need not be given
+        self.generated = list(getattr(model, "generated", ()))  # components that the model sets in a study
         self.events = list(model.events)
         self.event_names = [e.name for e in self.events]
         self.names = (self.states, self.parameters, self.shared, self.shared_integers, self.accessories,

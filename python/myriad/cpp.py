@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A recorded model as the header that a C++ user would write: enumerations, rhs, events and hooks."""
 
+import copy
 import itertools
 import re
 
-from .expression import condition, integer, number_text, real, text, walk, write
+from .expression import condition, draws, integer, number_text, real, text, walk, write
 
 _columns = 116  # inside the struct
 _deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
@@ -43,11 +44,18 @@ def _is_plain(node):
                for n in walk([node]))
 
 
+def _is_long(node):
+    """Whether a whole number has 64 bits in C++, as that of the instance has."""
+    return any(n.op == "constant" and not -2**31 <= n.value < 2**31 or n.value == ("built-in", "instance")
+               for n in walk([node]))
+
+
 def generic_problem(roots):
     """The first node that cannot be computed for a whole pack, or None: packs of whole numbers have no products and do
     not mix with real ones."""
     for node in walk(roots):
-        products = node.type == integer and node.op in ("multiply", "min", "max", "abs")
+        products = node.type == integer and node.op in (
+            "multiply", "min", "max", "abs", "quotient", "remainder")
         if (products or any(_converts(node, a) and not _is_plain(a) for a in node.args)) and not _is_plain(node):
             return node
     return None
@@ -63,6 +71,15 @@ class Names:
         self.t = self._free("t", "time", "t_")
         self.R = self._free("R", "S", "Real", "R_")
         self.lane = self._free("lane", "instance", "lane_")
+        self.of_lane = f"std::remove_cvref_t<decltype({self.lane}.t)>"  # the type of its numbers
+        self.real_of_lane = f"myriad::real_of<{self.of_lane}>"
+
+    def in_generate(self):
+        """The names in `generate`, whose argument is no lane but an instance of a study."""
+        names = copy.copy(self)
+        names.lane = self._free("instance", "one", "instance_")
+        names.of_lane = names.real_of_lane = f"typename std::remove_cvref_t<decltype({names.lane})>::real"
+        return names
 
     def _free(self, *candidates):
         numbered = (f"{candidates[0]}_{i}" for i in itertools.count(1))
@@ -88,6 +105,8 @@ class Body:
                 uses[id(argument)] = uses.get(id(argument), 0) + 1
         for root in roots:
             uses[id(root)] = uses.get(id(root), 0) + 1
+        drawn = [node for node in order if node.op in draws]
+        in_order = all(uses[id(node)] == 1 and any(node is root for root in roots) for node in drawn)
         depth = {}
         for node in order:
             if id(node) in self.named:
@@ -100,7 +119,8 @@ class Body:
                 continue
             depth[id(node)] = 1 + max((depth.get(id(a), 0) for a in node.args), default=0)
             shared = uses[id(node)] > 1 and not (node.op == "negate" and not node.args[0].args)
-            if node.args and (shared or depth[id(node)] > _deepest):
+            early = node.op in draws and not in_order
+            if node.args and (shared or early or depth[id(node)] > _deepest):
                 name = self._name(_temporaries.get(node.op, "holds" if node.type == condition else node.op))
                 self.lines.append(f"const auto {name} = {self.text(node)};")
                 self.named[id(node)] = name
@@ -146,7 +166,7 @@ class Body:
         first, last = min(o.value[1] for o in same) // n, max(o.value[1] for o in same) // n
         vector, product, total = self._name("vector"), self._name("product"), self._name("total")
         if self.scalar:
-            kind = f"std::remove_cvref_t<decltype({self.names.lane}.t)>"
+            kind = self.names.of_lane
         self.lines.append(f"const myriad::vec<{kind}, {n}> {vector} = {{{', '.join(map(self.text, node.args))}}};")
         self.lines.append(f"myriad::vec<{kind}, {last - first + 1}> {product};")
         row = f"({first} + i)" if first else "i"
@@ -187,7 +207,7 @@ class Body:
         if node.op == "truth":
             return "true" if node.value else "false"
         if node.op == "constant":
-            return self._number(node.value)
+            return str(node.value) if node.type == integer else self._number(node.value)
         return None
 
     def _number(self, value):
@@ -205,12 +225,16 @@ class Body:
             table, first, *numbers = node.value
             return f"myriad::{function}(&{self.shared}[{table.name} + {first}], {', '.join(map(str, numbers))}, " \
                    f"{arguments[0]})"
+        if function in draws:
+            return f"{self.names.lane}.random.{function}({', '.join(arguments)})"
         values = list(arguments)
         numbers = node.args[1:] if function == "select" else node.args
         first = len(node.args) - len(numbers)
         if node.type != integer and (all(a.op == "constant" for a in numbers) or function in ("pow", "powr", "fma")):
             values[first:] = [f"{self.names.R}({v})" if a.op == "constant" and "(" not in v else v
                               for a, v in zip(numbers, values[first:])]
+        elif function in ("min", "max") and any(map(_is_long, numbers)):
+            values = [v if _is_long(a) else f"std::int64_t({v})" for a, v in zip(numbers, values)]
         elif node.type == integer and not self.scalar and all(map(_is_plain, numbers)):
             values[first] = f"myriad::integer_of<{self.names.R}>({values[first]})"
         return f"myriad::{function}({', '.join(values)})"
@@ -223,7 +247,7 @@ def _wrap(line, indent):
         return [first + line]
     words = []
     for word in line.split(" "):
-        if words and word in ("+", "-", "*", "/", "&&", "||", "<", "<=", ">", ">=", "==", "!=", "="):
+        if words and word in ("+", "-", "*", "/", "%", "&&", "||", "<", "<=", ">", ">=", "==", "!=", "="):
             words[-1] += " " + word
         else:
             words.append(word)
@@ -250,9 +274,9 @@ def work(roots):
 class Writer:
     """Writes one model."""
 
-    def __init__(self, model):
+    def __init__(self, model, names=None):
         self.model = model
-        self.names = Names(model)
+        self.names = names or Names(model)
 
     def header(self, name):
         model = self.model
@@ -285,6 +309,8 @@ class Writer:
             blocks.append(self.after_event())
         if model.finalise:
             blocks.append(self.hook("finalise", model.finalise))
+        if model.generate:
+            blocks.append(Writer(model, self.names.in_generate()).hook("generate", model.generate))
         for block in blocks:
             out += [""] + ["    " + line if line else line for line in block]
         return "\n".join(out + ["};", ""])
@@ -395,7 +421,7 @@ class Writer:
         """Lines of a scalar hook, with the name of its real type if they need it."""
         n = self.names
         if any(re.search(rf"\b{n.R}\b", line) for line in lines):
-            lines = [f"using {n.R} = myriad::real_of<std::remove_cvref_t<decltype({n.lane}.t)>>;"] + lines
+            lines = [f"using {n.R} = {n.real_of_lane};"] + lines
         return [wrapped for line in lines for wrapped in _wrap(line, 4)]
 
     def hook(self, name, assignments):

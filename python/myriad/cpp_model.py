@@ -18,10 +18,11 @@ def _names(several):
 class CppModel:
     """A model as a C++ struct, as in the C++ library's documentation: `text` defines the struct `struct`. The other
     arguments name its components in the order of its enumerations, as one string or a list; events may be a dict from
-    names to their `direction`, `tolerance` and `stop_after`."""
+    names to their `direction`, `tolerance` and `stop_after`. `generates` names what the struct's `generate` sets, if a
+    study is to call it."""
 
     def __init__(self, text, struct, states, parameters=(), shared=(), shared_integers=(), accessories=(),
-                 integer_accessories=(), events=()):
+                 integer_accessories=(), events=(), generates=()):
         if struct not in text:
             raise Error(f"the text of the model defines no struct {struct}: give the name of the model's struct")
         self._text, self.name = text, struct
@@ -29,6 +30,8 @@ class CppModel:
         self.shared, self.shared_integers = _names(shared), _names(shared_integers)
         self.accessories, self.integer_accessories = _names(accessories), _names(integer_accessories)
         options = events if hasattr(events, "items") else dict.fromkeys(_names(events), {})
+        self.generated = _names(generates)
+        self.generator = f"{struct}::generate" if self.generated else ""
         self.events = tuple(CppEvent(name, **chosen) for name, chosen in options.items())
 
     def cpp(self):

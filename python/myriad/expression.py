@@ -7,6 +7,7 @@ import math
 import numbers
 import operator
 import threading
+import uuid
 import weakref
 
 import numpy as np
@@ -15,7 +16,8 @@ from .errors import Error, at, refuse_masked, users_line
 
 __all__ = ["sqrt", "cbrt", "abs", "floor", "round", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinpi",
            "cospi", "sinh", "cosh", "tanh", "exp", "exp2", "log", "log2", "log10", "pow", "powr", "reciprocal",
-           "hypot", "copysign", "fma", "sincos", "sincospi", "minimum", "maximum", "where", "is_finite", "pi"]
+           "hypot", "copysign", "fma", "sincos", "sincospi", "minimum", "maximum", "where", "is_finite", "uniform",
+           "normal", "pi"]
 
 pi = math.pi
 
@@ -239,11 +241,25 @@ def _divide(a, b):
     return _arithmetic("divide", operator.truediv, a, b, always_real=True)
 
 
+def _divides_whole(a, b):
+    """Whether a // b and a % b are those of whole numbers: of the numbers of instances, phases and detections, and what
+    is counted from them, by a positive constant. They are exact, however large a is and in every precision."""
+    if not (a.type == integer and not _is_constant(a) and _is_whole(b) and b.value > 0):
+        return False
+    return all(node.value >= 0 if _is_whole(node) else node.value[0] in ("built-in", "event_count")
+               if node.op == "symbol" else node.op in ("add", "multiply", "min", "max", "quotient", "remainder")
+               for node in walk([a]))
+
+
 def _floor_divide(a, b):
-    return floor(_divide(a, b))
+    a, b = as_number(a), as_number(b)
+    return make("quotient", (a, b), type=integer) if _divides_whole(a, b) else floor(_divide(a, b))
 
 
 def _remainder(a, b):
+    a, b = as_number(a), as_number(b)
+    if _divides_whole(a, b):
+        return make("remainder", (a, b), type=integer)
     return a - _multiply(b, floor(_divide(a, b)))
 
 
@@ -534,6 +550,25 @@ def where(condition, a, b):
     return make("select", (chosen, to_real(a), to_real(b)))
 
 
+draws = ("uniform", "normal")
+
+
+def _draw(kind, a, b):
+    return make(kind, (to_real(as_number(a)), to_real(as_number(b))), value=uuid.uuid4().int)
+
+
+def uniform(low=0.0, high=1.0):
+    """A random number, evenly distributed between two bounds, for `generate` of a model. Each call is a draw of its
+    own."""
+    return _draw("uniform", low, high)
+
+
+def normal(mean=0.0, deviation=1.0):
+    """A random number, normally distributed with that standard deviation, for `generate` of a model. Each call is a
+    draw of its own."""
+    return _draw("normal", mean, deviation)
+
+
 def is_finite(x):
     """A condition: neither infinite nor NaN."""
     return make("is_finite", (to_real(as_number(x)),), type=condition)
@@ -609,13 +644,13 @@ def symbols_of(roots):
 _infix = {  # symbol, precedence: higher binds tighter
     "or": ("||", 1), "and": ("&&", 2), "equal": ("==", 3), "not_equal": ("!=", 3), "less": ("<", 4),
     "less_equal": ("<=", 4), "greater": (">", 4), "greater_equal": (">=", 4), "add": ("+", 5), "subtract": ("-", 5),
-    "multiply": ("*", 6), "divide": ("/", 6),
+    "multiply": ("*", 6), "divide": ("/", 6), "quotient": ("/", 6), "remainder": ("%", 6),
 }
 _prefix = {"negate": "-", "not": "!"}
 _atom, _unary_precedence = 9, 8
 
 
-def write(root, leaf, call, convert=None):
+def write(root, leaf, call, convert=None, infix=_infix):
     """An expression as text with as few parentheses as C++ and Python need. `leaf(node)` is the text of a node without
     arguments or one that has a name, else None; `call(node, arguments)` that of a function; `convert(node, argument)`
     is the type that an argument is converted to first, or None."""
@@ -641,8 +676,8 @@ def write(root, leaf, call, convert=None):
             to = convert and convert(node, argument)
             if to:
                 arguments[i] = (f"{to}({arguments[i][0]})", _atom)
-        if node.op in _infix:
-            symbol, precedence = _infix[node.op]
+        if node.op in infix:
+            symbol, precedence = infix[node.op]
             (left, left_precedence), (right, right_precedence) = arguments
             mixed = node.op == "or"  # && within || in parentheses, as compilers suggest
             if left_precedence < precedence or mixed and left_precedence == 2:
@@ -680,7 +715,8 @@ def text(node):
 
     if len(walk([node])) > 200:
         return f"({node.op} of {len(walk([node]))} operations)"
-    written = write(node, leaf, lambda n, arguments: f"{n.op.replace('select', 'where')}({', '.join(arguments)})")
+    written = write(node, leaf, lambda n, arguments: f"{n.op.replace('select', 'where')}({', '.join(arguments)})",
+                    infix={**_infix, "quotient": ("//", 6)})
     written = written.replace("&&", "and").replace("||", "or").replace("!(", "not (")
     return written if len(written) <= 100 else written[:97] + "..."
 
@@ -691,12 +727,13 @@ def text(node):
 
 _operations = {
     "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
-    "negate": operator.neg, "less": operator.lt, "less_equal": operator.le, "greater": operator.gt,
-    "greater_equal": operator.ge, "equal": operator.eq, "not_equal": operator.ne, "and": np.logical_and,
-    "or": np.logical_or, "not": np.logical_not, "select": np.where, "is_finite": np.isfinite, "abs": np.abs,
-    "min": np.fmin, "max": np.fmax, "pow": np.power, "powr": np.power, "atan2": np.arctan2, "hypot": np.hypot,
-    "copysign": np.copysign, "fma": lambda a, b, c: a * b + c, "sincos.sine": np.sin, "sincos.cosine": np.cos,
-    "sincospi.sine": _unary["sinpi"], "sincospi.cosine": _unary["cospi"], **_unary,
+    "quotient": operator.floordiv, "remainder": operator.mod, "negate": operator.neg, "less": operator.lt,
+    "less_equal": operator.le, "greater": operator.gt, "greater_equal": operator.ge, "equal": operator.eq,
+    "not_equal": operator.ne, "and": np.logical_and, "or": np.logical_or, "not": np.logical_not, "select": np.where,
+    "is_finite": np.isfinite, "abs": np.abs, "min": np.fmin, "max": np.fmax, "pow": np.power, "powr": np.power,
+    "atan2": np.arctan2, "hypot": np.hypot, "copysign": np.copysign, "fma": lambda a, b, c: a * b + c,
+    "sincos.sine": np.sin, "sincos.cosine": np.cos, "sincospi.sine": _unary["sinpi"],
+    "sincospi.cosine": _unary["cospi"], **_unary,
 }
 
 

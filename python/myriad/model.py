@@ -7,10 +7,11 @@ import inspect
 import numpy as np
 
 from . import symbols as sym
+from .axes import Axis
 from .cpp import Writer, generic_problem
 from .errors import Error, at, users_line
-from .expression import (Node, as_condition, as_number, evaluate, integer, is_sympy, real, symbols_of, text, to_real,
-                         vector, walk)
+from .expression import (Node, as_condition, as_number, draws, evaluate, integer, is_sympy, real, symbols_of, text,
+                         to_real, vector, walk)
 from .parse import from_sympy, parse, parse_equations, sympy_name
 from .table import element_name, tables_of
 
@@ -84,8 +85,8 @@ def event(function, *, name=None, direction="either", tolerance=None, stop_after
     return Event(function, name, direction, tolerance, int(stop_after), {} if do is None else do)
 
 
-def model(equations, *, events=(), accessories=None, initialise=None, after_step=None, finalise=None, states=None,
-          parameters=(), shared=(), name=None):
+def model(equations, *, events=(), accessories=None, initialise=None, after_step=None, finalise=None, generate=None,
+          states=None, parameters=(), shared=(), name=None):
     """Records a model.
 
     `equations` is a dictionary {state: its derivative}; or a function f(t, y, ...) that returns the derivatives, as for
@@ -97,8 +98,14 @@ def model(equations, *, events=(), accessories=None, initialise=None, after_step
     {peak: myriad.phase_maximum(x)}. `initialise`, `after_step` and `finalise` are assignments {target: value} at the
     start of a phase, after every step and at the end of a phase. Assignments of one hook or event take effect together:
     every value is computed from what was there before.
+
+    `generate` {target: value} sets states, parameters and accessories of the instances of a study, where they are
+    integrated, after its axes: from the instance's number `myriad.instance`, from what axes and the study have set, and
+    from random numbers, `myriad.uniform(low, high)` and `myriad.normal(mean, deviation)`, which depend on the study's
+    seed and the instance's number alone. `solve` has no use for it.
     """
-    return Model(equations, events, accessories, initialise, after_step, finalise, states, parameters, shared, name)
+    return Model(equations, events, accessories, initialise, after_step, finalise, generate, states, parameters, shared,
+                 name)
 
 
 class Model:
@@ -106,8 +113,8 @@ class Model:
     tables behind the other shared values; `shared_values` has what they are. `cpp()` is its header, `hash` identifies
     it."""
 
-    def __init__(self, equations, events, accessories, initialise, after_step, finalise, states, parameters, shared,
-                 name):
+    def __init__(self, equations, events, accessories, initialise, after_step, finalise, generate, states, parameters,
+                 shared, name):
         self.line = users_line()
         self._source = None
         self._declared = self._declare(states, parameters, shared, accessories)
@@ -121,6 +128,7 @@ class Model:
         self.initialise = start + self._assignments(initialise, "initialise", {t for t, _ in start})
         self.after_step = self._assignments(after_step, "after_step")
         self.finalise = self._assignments(finalise, "finalise")
+        self.generate = self._generate(generate)
         self._collect(targets)
         self.name = self._default_name(equations) if name is None else sym.check_name(name, "a model")
         self._check()
@@ -320,6 +328,12 @@ class Model:
         for key, value in (given or {}).items():
             target = self._target(key, what)
             kind, name = target.value
+            if what == "generate" and kind not in ("state", "parameter", "accessory", "integer_accessory"):
+                raise Error(f"generate assigns {name}{at(line)}: it sets states, parameters and accessories; give "
+                            "myriad.study the time domain and what all instances share")
+            if what == "generate" and isinstance(value, Axis):
+                raise Error(f"generate sets {name} to {value!r}{at(line)}, which is for the sweep of a study: write "
+                            "myriad.uniform(low, high) or myriad.normal(mean, deviation)")
             if kind in ("shared", "shared_integer", "event_count") or kind == "built-in" and name not in (
                     "next_step", "t_begin", "t_end"):
                 raise Error(f"{what} assigns {name}{at(line)}, which no hook may: states, parameters, accessories, "
@@ -340,6 +354,22 @@ class Model:
             made.append((target, value))
         return made
 
+    def _generate(self, given):
+        """The assignments of `generate`, checked. Texts may name the instance's number."""
+        names = self._names
+        self._names = {"instance": sym.instance, **names}
+        made = self._assignments(given, "generate")
+        self._names = names
+        for symbol in symbols_of([value for _, value in made]):
+            kind, name = symbol.value
+            if kind in ("event_count", "action") or kind == "built-in" and name != "instance":
+                raise Error(f"generate reads {name}{at(self.line)}, before there is any: it may read the instance's "
+                            "number myriad.instance, components that the study sets, and what all instances share")
+            if any(symbol is target for target, _ in made):
+                raise Error(f"generate reads {name}{at(self.line)}, which it sets itself: write the expression in its "
+                            "place, in a variable of Python's, so that random numbers in it are drawn once")
+        return made
+
     # What follows from it
 
     def _collect(self, targets):
@@ -351,6 +381,7 @@ class Model:
         found = targets + self._in_functions + self._accessory_targets
         for _, assignments in hooks:
             found += [t for t, _ in assignments] + symbols_of([e for _, e in assignments])
+        found += [t for t, _ in self.generate] + symbols_of([e for _, e in self.generate])
         declared = [s for s in self._declared.values() if s.value[0] in sym.component_kinds]
         components = {kind: [] for kind in sym.component_kinds}
         for symbol in dict.fromkeys(declared + found):
@@ -363,6 +394,11 @@ class Model:
                         f"or make it a parameter if it is constant")
         self.parameters, self.shared = components["parameter"], components["shared"]
         everything = walk(self._functions + [e for _, assignments in hooks for _, e in assignments])
+        drawn = next((n for n in everything if n.op in draws), None)
+        if drawn is not None:
+            raise Error(f"`{text(drawn)}`{at(drawn.line)} is drawn in an equation, event or hook{at(self.line)}: "
+                        "random numbers are for generate= alone; let it set a parameter")
+        everything += walk([e for _, e in self.generate])
         self.tables = tables_of(everything)
         self.shared_values = {element_name(t, i): float(v) for t in self.tables for i, v in enumerate(t.values.flat)}
         self.scalar_shared, self.shared = self.shared, self.shared + list(self.shared_values)
@@ -425,6 +461,16 @@ class Model:
                         "it another one, name='...'")
 
     # What it is used for
+
+    @property
+    def generated(self):
+        """The names of the components that `generate` sets."""
+        return [target.value[1] for target, _ in self.generate]
+
+    @property
+    def generator(self):
+        """What `generate` does, for people; empty if there is none."""
+        return "; ".join(f"{target.value[1]} = {text(value)}" for target, value in self.generate)
 
     def cpp(self, name=None):
         """The model as the text of a C++ header, `model.hpp`, which compiles as it is: `struct NAME { ... };`."""

@@ -157,25 +157,21 @@ def placement(model_shared_bytes, limit):
     return "shared_memory" if model_shared_bytes <= limit else "cache"
 
 
-def source_of(header, struct, method, real, place):
-    """The file that is compiled: the model's header and the request for its kernel."""
-    return (f"#include <myriad/python/device_program.cuh>\n\n{header}\n"
-            f"using myriad_method = {method};\nMYRIAD_DEVICE_PROGRAM({struct}, myriad_method, {real}, {place})\n")
+def source_of(header, struct, method, real, place, generates=False):
+    """The file that is compiled: the model's header and the request for its kernel, and for one that sets the instances
+    of studies if the model `generates` them."""
+    program = (f"#include <myriad/python/device_program.cuh>\n\n{header}\n"
+               f"using myriad_method = {method};\nMYRIAD_DEVICE_PROGRAM({struct}, myriad_method, {real}, {place})\n")
+    if generates:
+        program += f"#include <myriad/python/device_generate.cuh>\nMYRIAD_DEVICE_GENERATE({struct}, {real})\n"
+    return program
 
 
 _loaded = {}
 
 
-def kernel(header, struct, method, real, shared, device):
-    """The kernel of a model, which is C++ source with a struct of that name, for a method and a real type, both as C++
-    types, and a GPU by its number; `shared`: the numbers of real and integer shared parameters. Raises `Error` if
-    there is no NVRTC, or with its first message if it refuses the model."""
-    begin = time.perf_counter()
-    _, capability, shared_bytes = _core.gpu(device)
-    place = placement(shared[0] * (8 if real == "double" else 4) + shared[1] * 4, shared_bytes)
-    asked = (header, struct, method, real, place, capability, os.environ.get("MYRIAD_NVRTC"))
-    if asked in _loaded:
-        return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
+def _cached(source, capability, load):
+    """A program from the cache, or compiled into it, and what `load` makes of its file."""
     path = find()
     if path is None:
         library()  # says so
@@ -183,7 +179,6 @@ def kernel(header, struct, method, real, shared, device):
     if _major(path) > driver:
         raise Error(f"NVRTC of CUDA {_major(path)} compiles for newer drivers than this one, of CUDA {driver}: update "
                     f"the driver, or `pip install nvidia-cuda-nvrtc-cu{driver}`")
-    source = source_of(header, struct, method, real, place)
     key = cache.key_of({"source": source, "version": _core.version, "headers": _core.headers, "options": _options[:-1],
                         "capability": capability,
                         "nvrtc": f"{path.name} {path.stat().st_size}"})  # its version, without loading it
@@ -193,9 +188,32 @@ def kernel(header, struct, method, real, shared, device):
         made.write_bytes(library().compile(source, capability)[0])
         return made
 
-    obtained = cache.obtain(key, make, lambda made: _core.Library(made.read_bytes(), device))
+    return cache.obtain(key, make, load)
+
+
+def kernel(header, struct, method, real, shared, device, generates=False):
+    """The kernel of a model, which is C++ source with a struct of that name, for a method and a real type, both as C++
+    types, and a GPU by its number; `shared`: the numbers of real and integer shared parameters; `generates`: whether
+    the model sets the instances of studies. Raises `Error` if there is no NVRTC, or with its first message if it
+    refuses the model."""
+    begin = time.perf_counter()
+    _, capability, shared_bytes = _core.gpu(device)
+    place = placement(shared[0] * (8 if real == "double" else 4) + shared[1] * 4, shared_bytes)
+    asked = (header, struct, method, real, place, capability, os.environ.get("MYRIAD_NVRTC"))
+    if asked in _loaded:
+        return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
+    obtained = _cached(source_of(header, struct, method, real, place, generates), capability,
+                       lambda made: _core.Library(made.read_bytes(), device))
     _loaded[asked] = obtained.loaded
     origin = "cache" if obtained.hit else f"compiled by NVRTC {library().version}"
     if obtained.unusable is not None:
         origin += f" (the cache {obtained.unusable} cannot be used: MYRIAD_CACHE_DIR names another folder)"
     return Kernel(_loaded[asked], origin, time.perf_counter() - begin)
+
+
+@functools.lru_cache(maxsize=None)
+def load_study_kernels(device):
+    """Loads the kernels that set and reduce the instances of studies on a GPU by its number."""
+    _, capability, _ = _core.gpu(device)
+    _cached("#include <myriad/python/study_program.cuh>\n", capability,
+            lambda made: _core.load_study_kernels(made.read_bytes(), device))

@@ -102,13 +102,13 @@ def _sweep_values(sweep):
 
 def refuse_missing(components, given):
     """Refuses a call that leaves out what every instance needs."""
-    missing = [f"'{n}'" for n in components.states if n not in given]
-    if missing:
-        raise Error(f"the initial value of {', '.join(missing)} is missing: give it in start=")
-    missing = [f"'{n}'" for n in components.parameters + components.shared + components.shared_integers
-               if n not in given]
-    if missing:
-        raise Error(f"the value of {', '.join(missing)} is missing: give it in the sweep")
+    for what, names, where in (
+            ("initial value", components.states, "start="),
+            ("value", components.parameters + components.shared + components.shared_integers, "the sweep")):
+        missing = [n for n in names if n not in given]
+        if missing:
+            hint = ", as generate= sets instances of studies alone" if set(missing) & set(components.generated) else ""
+            raise Error(f"the {what} of {', '.join(map(repr, missing))} is missing: give it in {where}{hint}")
 
 
 def _gather(components, sweep, start, time, size):
@@ -410,7 +410,8 @@ def kernel_for(device, model, components, method, control, sampled, precision, i
         raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
     names = components.names
     return nvrtc.kernel(*model.source(), method_type(method, control, sampled), precision,
-                        (len(names[2]), len(names[3])), int(device.partition(":")[2])), names
+                        (len(names[2]), len(names[3])), int(device.partition(":")[2]),
+                        bool(components.generated)), names
 
 
 def choose_kernel(model, components, method, control, sampled, precision, interpreted):

@@ -12,7 +12,7 @@ import time as clock
 
 import numpy as np
 
-from . import _core
+from . import _core, nvrtc
 from .axes import Axis, Random
 from .components import Components, name_of, unknown
 from .errors import Error
@@ -84,10 +84,12 @@ class Study:
         try:
             made = self._core = _core.Study(
                 [list(n) for n in components.names], list(components.tables.values()),
-                "float64" if precision == "double" else "float32", getattr(model, "name", None) or "model",
+                getattr(model, "generator", ""), "float64" if precision == "double" else "float32",
+                getattr(model, "name", None) or "model",
                 method_type(method, control, samples is not None).replace("myriad::", ""))
             made.options(options)
-            self._set_instances(made, components, sweep, start, time)
+            self._set_instances(made, components, sweep, start, time, draws)
+            self._looks_at_domains = bool(samples is not None or others["phase_length"] or others["carry_on"])
             if draws is not None:
                 made.repeat(_whole(draws, "draws", 1 << 62), "draw")
             made.seed(_whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
@@ -119,7 +121,7 @@ class Study:
             return name
         raise unknown(name, list(self._components.place), "component of the model")
 
-    def _set_instances(self, made, components, sweep, start, time):
+    def _set_instances(self, made, components, sweep, start, time, draws):
         """Axes, random values and values for all instances."""
         try:
             begin, end = time
@@ -157,7 +159,14 @@ class Study:
         axes = [*on_grid, *([together] if together else [])]
         all_names = {name_of(k) for axis in axes for k, _ in axis if _time_name(k) is None}
         all_names |= {name_of(k) for k in constants if _time_name(k) is None}
-        refuse_missing(components, {**dict.fromkeys(components.defaults), **dict.fromkeys(all_names)})
+        for name in components.generated:
+            if name in all_names:
+                raise Error(f"'{name}' is given to the study, and generate= of the model sets it: give it once")
+        refuse_missing(components, dict.fromkeys([*components.defaults, *components.generated, *all_names]))
+        if components.generated and not axes and draws is None:
+            raise Error("the model generates its instances, and nothing says how many: give draws=")
+        varying = [k for axis in axes for k, _ in axis] + [k for k, v in constants.items() if isinstance(v, Random)]
+        self._own_domains = any(self._full_name(k) in ("t_begin", "t_end") for k in varying)
         for name, value in components.defaults.items():
             if name not in components.tables and name not in all_names:
                 made.set(self._full_name(name), value)
@@ -207,6 +216,12 @@ class Study:
         """Sets the devices of the next run, and gets their kernels."""
         for device in devices:
             if device not in self._kernels:
+                if device.startswith("cuda"):
+                    if self._components.generated and self._own_domains and self._looks_at_domains:
+                        raise Error("the model generates its instances, and each has a time domain of its own, which a "
+                                    "GPU cannot look at for samples=, phase_length= or carry_on=: use device=\"cpu\", "
+                                    "or give the same time= to all")
+                    nvrtc.load_study_kernels(int(device.partition(":")[2]))
                 self._kernels[device], names = self._kernel_for(device)
                 self._core.add_kernel(device, self._kernels[device].library, [list(n) for n in names])
         self._runs_interpreted = any(self._kernels[d].origin.startswith("interpreted") for d in devices)
@@ -431,6 +446,7 @@ def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples
           carry_on=False, carry_on_step=False, events=None, sub_samples=1, accumulation_limit=50,
           schedule="automatic", precision="double", interpreted=None):
     """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
+    What `generate=` of the model sets is given neither in the sweep nor in start.
 
     sweep     as in `solve`: `myriad.grid(...)` for all combinations of its axes, or a dict whose arrays go together.
               Besides arrays and numbers, values are `myriad.linspace(a, b, n)`, `myriad.logspace(a, b, n)`, of which
@@ -445,7 +461,8 @@ def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples
               if nothing is recorded, sampled or reduced
     reduce    reductions over all instances: `myriad.reduce.mean("x_end")` and others
     draws     instances for each point of the other axes, as for random values
-    seed      of random values, which depend on it, the component and the instance's number alone
+    seed      of random values, which depend on it, the component and the instance's number alone, and of those that
+              `generate=` of the model draws
     units     {component: unit} for results; notes: {key: text}, anything that tells this study from others, such as the
               version of data: a store that was made with other notes is refused
 

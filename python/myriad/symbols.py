@@ -27,7 +27,7 @@ typeid typename union unsigned using virtual void volatile wchar_t while xor xor
 """.split())
 # Members that the library looks for in a model by name, and macros of C's headers.
 _reserved = set("""state parameter shared shared_integer accessory integer_accessory event observed rhs jacobian events
-observe reductions initialise after_step after_event finalise writes_parameters writes_time_domain
+observe reductions initialise after_step after_event finalise generate writes_parameters writes_time_domain
 accessories_are_outputs scalar_only rare_events large_rhs pack_batches max_block_size
 myriad std linux unix errno assert NULL NAN INFINITY EOF BUFSIZ RAND_MAX HUGE_VAL OVERFLOW UNDERFLOW DOMAIN SING PLOSS
 TLOSS stdin stdout stderr major minor alloca offsetof issubnormal math_errhandling sched_priority""".split())
@@ -133,7 +133,7 @@ time = _built_in("time")  #: the time; in an action that of the event
 step = _built_in("step")  #: in hooks: the length of the step just taken, negative backwards
 next_step = _built_in("next_step")  #: in hooks: the length of the next trial step, which they may assign
 phase = _built_in("phase", integer)  #: in hooks: the number of the phase, from 0
-instance = _built_in("instance", integer)  #: in hooks: the number of the instance, from 0
+instance = _built_in("instance", integer)  #: in hooks and `generate`: the number of the instance, from 0
 t_begin = _built_in("t_begin")  #: in hooks: begin of the time domain, which they may assign
 t_end = _built_in("t_end")  #: in hooks: end of the time domain, which they may assign
 end_phase = make("symbol", value=("action", "end_phase"), type="condition")  #: assign a condition: true ends the phase

@@ -64,7 +64,8 @@ class Writer:
             for argument in dict.fromkeys(map(id, node.args)):
                 if uses[argument] == 0:
                     free.append(register[argument])
-            unread = [r for r in free if node.op != "dot" or r not in arguments]  # a product reads them several times
+            # a product, and a remainder, read their arguments after they have stored something
+            unread = [r for r in free if node.op not in ("dot", "remainder") or r not in arguments]
             if len(unread) < (2 if node.op == "dot" else 1):
                 raise _refuse("one of its functions needs more intermediate values than the interpreter has")
             to = register[id(node)] = unread[-1]
@@ -86,6 +87,12 @@ class Writer:
                 stride, rows = numbers if len(numbers) == 2 else (1, *numbers)
                 place = self.place[element_name(table, first)][1]
                 self._emit(node.op, to, rows, arguments[0], stride, float(place))
+            elif node.op in ("quotient", "remainder"):
+                self._emit("divide", to, *arguments)
+                self._emit("floor", to, to)
+                if node.op == "remainder":
+                    self._emit("multiply", to, to, arguments[1])
+                    self._emit("subtract", to, arguments[0], to)
             elif node.op in ("constant", "truth"):
                 self._emit("constant", to, value=float(node.value))
             else:
@@ -136,6 +143,7 @@ def library(model, components, method):
     writer.hook(model.initialise, "initialise")
     writer.hook(model.after_step, "after_step")
     writer.hook(model.finalise, "finalise")
+    writer.hook(model.generate, "generate")
     actions = [e.do for e in model.events] + [[]] * (_limits["events"] - len(model.events))
     for number, assignments in enumerate(actions):
         writer.hook(assignments, f"event {number}")

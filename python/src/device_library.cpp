@@ -24,6 +24,18 @@ device_facts told_by(const void* kernel) {
     return facts;
 }
 
+/// A program, loaded on the current device.
+void* loaded(const std::string& image) {
+    void* module = nullptr;
+    const cudaError_t status = load_module(&module, image.c_str());
+    require(status != cudaErrorUnsupportedPtxVersion && status != cudaErrorNoKernelImageForDevice,
+            "the driver, of CUDA ", driver_version() / 1000, '.', driver_version() % 1000 / 10,
+            ", cannot load what a newer NVRTC compiled: update the driver, or install nvidia-cuda-nvrtc of the "
+            "driver's version");
+    cuda::check(status, "loading the model's kernel");
+    return module;
+}
+
 }  // namespace
 
 gpu_facts facts_of_gpu(int device) {
@@ -47,14 +59,9 @@ const device_program::kernels& device_program::on(int device) {
     const auto known = loaded_.find(device);
     if (known != loaded_.end()) return known->second;
     const cuda::current_device here(device);
-    void* module = nullptr;
-    const cudaError_t status = load_module(&module, image_.c_str());
-    require(status != cudaErrorUnsupportedPtxVersion && status != cudaErrorNoKernelImageForDevice,
-            "the driver, of CUDA ", driver_version() / 1000, '.', driver_version() % 1000 / 10,
-            ", cannot load what a newer NVRTC compiled: update the driver, or install nvidia-cuda-nvrtc of the "
-            "driver's version");
-    cuda::check(status, "loading the model's kernel");
+    void* const module = loaded(image_);
     kernels found;
+    found.device = device;
     const auto find = [module](const void*& kernel, const char* name) {
         cuda::check(find_kernel(&kernel, module, name), name);
     };
@@ -69,7 +76,44 @@ const device_program::kernels& device_program::on(int device) {
     find(found.sort.count_all_costs, "count_all_costs");
     find(found.sort.sum_costs, "sum_costs");
     find(found.sort.place_by_cost, "place_by_cost");
+    if (find_kernel(&found.generate, module, "myriad_generate") != cudaSuccess) found.generate = nullptr;
     return loaded_.emplace(device, found).first->second;
+}
+
+namespace {
+
+/// The kernels of studies by device.
+struct kernels_of_studies {
+    std::mutex mutex;
+    std::map<int, cuda::study_kernels> loaded;
+};
+kernels_of_studies& of_studies() {
+    static kernels_of_studies* const all = new kernels_of_studies;  // never destroyed, as programs are
+    return *all;
+}
+
+}  // namespace
+
+void load_study_kernels(const std::string& image, int device) {
+    cuda::require_device({.device = device});
+    const std::lock_guard lock(of_studies().mutex);
+    if (of_studies().loaded.count(device) > 0) return;
+    const cuda::current_device here(device);
+    void* const module = loaded(image);
+    cuda::study_kernels found{};
+    for (const auto& [kernel, name] :
+         {std::pair{&found.fill_components, "fill_components"}, std::pair{&found.gather_values, "gather_values"},
+          std::pair{&found.reduce_values, "reduce_values"}})
+        cuda::check(find_kernel(kernel, module, name), name);
+    of_studies().loaded.emplace(device, found);
+}
+
+template <class R>
+cuda::study_kernels loaded_kernel<R>::study() const {
+    const std::lock_guard lock(of_studies().mutex);
+    cuda::study_kernels found = of_studies().loaded.at(all_->device);
+    found.generate_instances = all_->generate;
+    return found;
 }
 
 template <class R>

@@ -14,7 +14,7 @@
 
 #include <cuda_runtime.h>
 
-#include "myriad/cuda/chunk_engine.cuh"
+#include "myriad/cuda/study_engine.cuh"
 #include "myriad/host/backend/arrays.hpp"
 #include "myriad/host/model/model_shape.hpp"
 #include "myriad/host/options/options.hpp"
@@ -58,7 +58,9 @@ public:
     /// The kernels of a program on one device.
     struct kernels {
         device_facts facts{};
+        int device = 0;
         const void *integrate = nullptr, *sum = nullptr, *find_not_finite = nullptr;
+        const void* generate = nullptr;  ///< of a model that sets the instances of studies
         cuda::cost_kernels sort{};
     };
 
@@ -73,7 +75,11 @@ private:
     std::map<int, kernels> loaded_;
 };
 
-/// A program's kernel on a device, for `cuda::chunk_engine`.
+/// Loads the kernels that set and reduce the instances of any study, from a program as machine code or PTX, unless the
+/// device has them. Throws `error` if the driver refuses it.
+void load_study_kernels(const std::string& image, int device);
+
+/// A program's kernel on a device, for `cuda::study_engine`.
 template <class R>
 class loaded_kernel {
 public:
@@ -85,6 +91,8 @@ public:
     cuda::kernel_traits traits() const;
     const void* function(shared_placement) const { return all_->integrate; }
     cuda::cost_kernels sort() const { return all_->sort; }
+    /// Those that `load_study_kernels` has loaded.
+    cuda::study_kernels study() const;
     void set_shared(const detail::shared_parameters<R>& shared);
     void launch(shared_placement, const arguments& a, unsigned long long* queue, const cuda::launch_shape& how);
 
@@ -103,7 +111,7 @@ extern template class loaded_kernel<double>;
 extern template class loaded_kernel<float>;
 
 template <class R>
-using device_engine = cuda::chunk_engine<loaded_kernel<R>>;
+using device_engine = cuda::study_engine<loaded_kernel<R>>;
 
 /// Makes engines for a program on a GPU.
 template <class R>

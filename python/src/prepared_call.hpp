@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "device_library.hpp"
+#include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/ensemble/component_array.hpp"
 #include "myriad/host/memory/memory_need.hpp"
@@ -20,6 +21,10 @@ inline host::method_traits traits_of(const model_facts& kernel) {
 }
 inline host::step_sizes steps_of(const host::method_traits& method) {
     return method.adaptive ? host::step_sizes::kept : host::step_sizes::fixed;
+}
+/// Whether something can end a phase before t_end.
+inline bool may_end_early(const model_facts& kernel, const options& o) {
+    return kernel.writes_time_domain || kernel.hooks_may_stop || host::events_may_stop(o);
 }
 /// What a call takes for `size` instances, besides what they and their samples have already.
 template <class R>

@@ -175,7 +175,7 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     host::check_ended(data, o, data.size);
     host::check_scales(data, kernel.scales_tolerances);
     host::check_sample_times(data, o, data.size);
-    const bool endless = kernel.writes_time_domain || kernel.hooks_may_stop || host::events_may_stop(o);
+    const bool endless = may_end_early(kernel, o);
     const host::phases_left left = host::find_phases_left(data, o, data.size, endless);
     left.require_for(0, o.phases);
     host::data_check<R> check(data, o, data.size, endless);

@@ -38,6 +38,8 @@
 #include "myriad/study/store.hpp"
 #include "myriad/study/study.hpp"
 #include "run.hpp"
+#include "study_instances.hpp"
+#include "study_on_device.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -45,84 +47,7 @@ using namespace nb::literals;
 namespace myriad::python {
 namespace {
 
-using studies::component_kind;
 using studies::element;
-
-/// A model out of a library, and what the study does not set: the components that an interpreter has besides.
-struct study_kernel {
-    study_kernel(const library& with, component_names its_names)
-        : kernel(&with), names(std::move(its_names)), shape(with.facts(), names) {}
-
-    /// Options with values for the states and events that an interpreter has besides.
-    options fitted(options o) const {
-        for (per_component* const tolerances : {&o.relative_tolerance, &o.absolute_tolerance}) {
-            if (tolerances->size() == 1) continue;  // for all states
-            std::vector<double> all(static_cast<std::size_t>(shape.n_state), 1);
-            for (std::size_t c = 0; c < tolerances->size(); ++c) all.at(c) = (*tolerances)[c];
-            *tolerances = std::move(all);
-        }
-        o.events.resize(static_cast<std::size_t>(shape.n_event));
-        return o;
-    }
-
-    const library* kernel;
-    component_names names;
-    named_shape shape;
-};
-
-/// A model of a study, and the values of its tables, which are its last shared parameters.
-struct model_of_study {
-    component_names names;
-    std::vector<double> tables;
-};
-
-template <class R>
-class study_instances final : public studies::model_instances<R> {
-public:
-    study_instances(const model_of_study& model, const study_kernel& kernel, std::int64_t size)
-        : model_(model), kernel_(kernel), instances_(kernel.kernel->facts(), kernel.names, size) {}
-
-    host::ensemble_data<R>& data() override { return instances_.data; }
-    void restart() override {
-        instances_.samples.clear();
-        instances_.data.restart();
-    }
-    void generate(std::int64_t, std::uint64_t) override {
-        auto& d = instances_.data;
-        const auto clear = [](auto& array, const std::vector<std::string>& used) {
-            for (int c = static_cast<int>(used.size()); c < array.components(); ++c) array.fill_component(c, R(0));
-        };
-        clear(d.state, model_.names.states);
-        clear(d.parameter, model_.names.parameters);
-        clear(d.accessory, model_.names.accessories);
-        const std::size_t first = model_.names.shared.size() - model_.tables.size();
-        for (std::size_t i = 0; i < model_.tables.size(); ++i)
-            d.shared.data()[first + i] = static_cast<R>(model_.tables[i]);
-    }
-    report_of<R> solve(const device& where, const options& o) override {
-        made_ = python::solve<R>({{kernel_.kernel, where}}, instances_, kernel_.fitted(o), results_are::on_host);
-        return *made_;
-    }
-    const R* recorded(component_kind kind, int number) const override {
-        const auto& r = made_->records;
-        return r.values.component(kind == component_kind::state ? r.find(r.state, number, "state")
-                                                                : r.find(r.accessory, number, "accessory"));
-    }
-    const std::int32_t* recorded_integers(int number) const override {
-        const auto& r = made_->records;
-        return r.integers.component(r.find(r.integer_accessory, number, "integer accessory"));
-    }
-    const R* record_times() const override { return made_->records.values.component(made_->records.time); }
-    const R* sampled(int number) const override { return instances_.samples.component(number); }
-    const R* sample_times() const override { return instances_.samples.time.data(); }
-    const std::int32_t* samples_stored() const override { return instances_.samples.stored.data(); }
-
-private:
-    const model_of_study& model_;
-    const study_kernel& kernel_;
-    ensemble<R> instances_;
-    std::unique_ptr<report<R>> made_;
-};
 
 /// Those that a study sets and keeps: tables have values already.
 std::vector<studies::component> components_of(const model_of_study& model) {
@@ -177,7 +102,24 @@ public:
         });
         return made;
     }
-    std::string generator() const override { return {}; }
+    std::unique_ptr<studies::chunk_solver> make_device_solver(const studies::study_plan& plan,
+                                                              const device& where) const override {
+        if (where.which() == device::kind::cpu) return nullptr;
+        const study_kernel& kernel = kernel_for(where);
+        const model_facts& facts = kernel.kernel->facts();
+        if (!studies::can_be_on_device(plan.asked, may_end_early(facts, kernel.fitted(plan.asked.options))))
+            return nullptr;
+        std::unique_ptr<studies::chunk_solver> made;
+        with_real([&]<class R>(R) {
+            made = std::make_unique<studies::device_solver_of<R>>(
+                plan, generates_itself(), [this, &kernel, &plan, where](std::int64_t few) {
+                    return std::make_unique<study_on_device<R>>(model_, kernel, where, plan, few);
+                });
+        });
+        return made;
+    }
+    std::string generator() const override { return model_.generator; }
+    bool generates_itself() const override { return !model_.generator.empty(); }
 
 private:
     using place = std::pair<device::kind, int>;
@@ -480,6 +422,10 @@ void bind_study(nb::module_& m) {
         return made;
     });
 
+    m.def("load_study_kernels", [](const nb::bytes& image, int device) {
+        load_study_kernels({image.c_str(), image.size()}, device);
+    });
+
     using run = studies::handed_out_run;
     nb::class_<run>(m, "HandedOut")
         .def_prop_ro("chunk", [](const run& r) { return r.content().chunk; })
@@ -494,12 +440,12 @@ void bind_study(nb::module_& m) {
 
     nb::class_<python_study>(m, "Study")
         .def("__init__",
-             [](python_study* self, const names_of_kinds& names, std::vector<double> tables, const std::string& real,
-                std::string name, std::string method) {
-                 new (self) python_study(
-                     std::make_shared<study_model>(model_of_study{names_from(names), std::move(tables)},
-                                                   real == studies::name_of(element::f64) ? element::f64 : element::f32,
-                                                   std::move(name), std::move(method)));
+             [](python_study* self, const names_of_kinds& names, std::vector<double> tables, std::string generator,
+                const std::string& real, std::string name, std::string method) {
+                 new (self) python_study(std::make_shared<study_model>(
+                     model_of_study{names_from(names), std::move(tables), std::move(generator)},
+                     real == studies::name_of(element::f64) ? element::f64 : element::f32, std::move(name),
+                     std::move(method)));
              })
         .def(
             "add_kernel",
@@ -521,8 +467,12 @@ void bind_study(nb::module_& m) {
              [](python_study& s, const std::string& key, const std::string& value) { s.study.note(key, value); })
         .def("reduce", [](python_study& s, const ensemble_reduction& r) { s.study.reduce(r); })
         .def("options", [](python_study& s, const options& o) { s.study.options = o; })
-        .def("keep", [](python_study& s, const std::vector<std::string>& end, bool records, bool samples, bool random,
-                        bool status, bool work) { s.study.keep = {end, records, samples, random, status, work}; })
+        .def("keep",
+             [](python_study& s, const std::vector<std::string>& end, bool records, bool samples, bool random,
+                bool status, bool work) {
+                 s.study.keep = {end, records, samples, random, status, work};
+                 s.study.options.counting = work ? counting::on : counting::off;
+             })
         .def_prop_ro("size", [](const python_study& s) { return s.study.size(); })
         .def("set_run", &python_study::set_run)
         .def("set_store", &python_study::set_store)

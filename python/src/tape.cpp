@@ -55,9 +55,15 @@ interpreted::interpreted(const tape_functions& functions, std::vector<tape_step>
         require(range.first <= range.second && range.second <= number_of_steps, "a tape's function is out of range");
         return tape_function{steps_.data() + range.first, steps_.data() + range.second};
     };
-    require(functions.size() == 5 + tape_events, "a tape has ", 5 + tape_events, " functions");
-    tape_ = {part(functions[0]), part(functions[1]), part(functions[2]), part(functions[3]), part(functions[4]), {}};
-    for (std::size_t j = 0; j < tape_events; ++j) tape_.after_event[j] = part(functions[5 + j]);
+    require(functions.size() == 6 + tape_events, "a tape has ", 6 + tape_events, " functions");
+    tape_ = {part(functions[0]),
+             part(functions[1]),
+             part(functions[2]),
+             part(functions[3]),
+             part(functions[4]),
+             part(functions[5]),
+             {}};
+    for (std::size_t j = 0; j < tape_events; ++j) tape_.after_event[j] = part(functions[6 + j]);
 }
 
 void start_tape_team(openmp::team* all) {

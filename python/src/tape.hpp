@@ -18,6 +18,8 @@
     X(asin)                  \
     X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(exp) X(exp2) X(log) X(log2) X(log10) X(reciprocal) X(sinpi) X(cospi)
 #define MYRIAD_TAPE_BINARY(X) X(min) X(max) X(pow) X(atan2) X(hypot) X(copysign)
+// Draws of random numbers, of `generate` alone: uniform between two numbers, normal with mean and standard deviation.
+#define MYRIAD_TAPE_DRAW(X) X(uniform) X(normal)
 #define MYRIAD_TAPE_INFIX(X) X(add, +) X(subtract, -) X(multiply, *) X(divide, /)
 #define MYRIAD_TAPE_COMPARISON(X) \
     X(less, <) X(less_equal, <=) X(greater, >) X(greater_equal, >=) X(equal, ==) X(not_equal, !=)
@@ -50,7 +52,7 @@ enum class tape_code : std::uint8_t {
     powr,
 #define MYRIAD_TAPE_NAME(name, ...) name,
     MYRIAD_TAPE_UNARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_BINARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_INFIX(MYRIAD_TAPE_NAME)
-        MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_NAME)
+        MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_NAME) MYRIAD_TAPE_DRAW(MYRIAD_TAPE_NAME)
 #undef MYRIAD_TAPE_NAME
 #define MYRIAD_TAPE_NAME(name) load_##name,
             MYRIAD_TAPE_LOAD(MYRIAD_TAPE_NAME)
@@ -75,7 +77,7 @@ inline constexpr const char* tape_names[] = {
     "powr",
 #define MYRIAD_TAPE_NAME(name, ...) #name,
     MYRIAD_TAPE_UNARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_BINARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_INFIX(MYRIAD_TAPE_NAME)
-        MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_NAME)
+        MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_NAME) MYRIAD_TAPE_DRAW(MYRIAD_TAPE_NAME)
 #undef MYRIAD_TAPE_NAME
 #define MYRIAD_TAPE_NAME(name) "load_" #name,
             MYRIAD_TAPE_LOAD(MYRIAD_TAPE_NAME)
@@ -106,7 +108,7 @@ inline constexpr int tape_batches = 2;  ///< SIMD registers per pack
 
 /// A model.
 struct tape {
-    tape_function rhs, events, initialise, after_step, finalise, after_event[tape_events];
+    tape_function rhs, events, initialise, after_step, finalise, generate, after_event[tape_events];
 };
 
 /// The tape that the calling thread runs.

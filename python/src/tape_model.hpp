@@ -56,6 +56,13 @@ struct hook_source {
     tape_wishes<R>& wishes;
 };
 
+/// The argument of `generate`: an instance of a study.
+template <class Instance>
+struct generate_source {
+    static constexpr bool in_hook = false;
+    Instance& p;
+};
+
 /// Runs a function. One copy for each kind of arguments, since kernels call it at every stage.
 template <class R, class Source>
 [[gnu::noinline]] void run_tape(const tape_function& f, const Source& s) {
@@ -128,6 +135,8 @@ template <class R, class Source>
                     apply_function(code, r[a], r[b], r[to]);
                 } else if constexpr (Source::in_hook) {
                     run_in_hook<R>(*step, s, r);
+                } else if constexpr (requires { s.p.random; }) {
+                    run_in_generate(*step, s.p, r);
                 } else if (code == tape_code::load_state) {
                     r[to] = s.y[a];
                 } else if (code == tape_code::load_time) {
@@ -198,6 +207,41 @@ inline void run_in_hook(const tape_step& step, const Source& s, R* r) {
     }
 }
 
+/// The operations that only `generate` has.
+template <class R, class Instance>
+inline void run_in_generate(const tape_step& step, Instance& instance, R* r) {
+    R& x = r[step.to];
+    const int c = step.a;
+    switch (step.code) {
+        case tape_code::load_state:
+            x = instance.y[c];
+            break;
+        case tape_code::load_instance:
+            x = static_cast<R>(instance.index);
+            break;
+        case tape_code::uniform:
+            x = instance.random.uniform(r[step.a], r[step.b]);
+            break;
+        case tape_code::normal:
+            x = instance.random.normal(r[step.a], r[step.b]);
+            break;
+        case tape_code::store_state:
+            instance.y[c] = x;
+            break;
+        case tape_code::store_parameter:
+            instance.parameter[c] = x;
+            break;
+        case tape_code::store_accessory:
+            instance.accessory[c] = x;
+            break;
+        case tape_code::store_integer_accessory:
+            instance.integer_accessory[c] = static_cast<std::int32_t>(x);
+            break;
+        default:
+            break;
+    }
+}
+
 struct tape_model {
     static constexpr bool writes_parameters = true;
     static constexpr bool rare_events = true;
@@ -242,6 +286,10 @@ struct tape_model {
         return hook(current_tape->after_event[event], lane);
     }
     MYRIAD_FUNCTION static void finalise(auto& lane) { hook(current_tape->finalise, lane); }
+    MYRIAD_FUNCTION static void generate(auto& instance) {
+        using source = generate_source<std::remove_reference_t<decltype(instance)>>;
+        run_tape<typename std::remove_cvref_t<decltype(instance)>::real>(current_tape->generate, source{instance});
+    }
 
 private:
     template <class R>

@@ -226,6 +226,24 @@ def test_a_study_uses_the_cpu_and_all_gpus_together():
     assert result.complete and np.isclose(result["x"], cpu["x"], rtol=1e-5, atol=1e-5).mean() > 0.998
 
 
+def test_generated_instances_have_the_bits_of_those_that_the_host_lays_out():
+    x, v, k, x_0, v_0 = *my.states("x v"), my.parameter("k"), my.accessory("x_0"), my.accessory("v_0")
+    equations = {x: v, v: x - x**3 - k * v}
+    blocks = dict(generate={x: my.uniform(-1, 1), v: my.normal(0, 0.1), k: my.instance % 100 * 0.001})
+    call = dict(time=(0, 6), rtol=1e-9, keep=[x, v, k])
+    begin = my.study(my.model(equations, **blocks, initialise={x_0: x, v_0: v}), draws=5000, time=(0, 1e-3),
+                     keep=[x_0, v_0, k]).run(device="cuda")
+    assert np.array_equal(begin["k_end"], np.arange(5000) % 100 * 0.001)
+    listed = my.study(my.model(equations), {k: begin["k_end"]}, start={x: begin["x_0_end"], v: begin["v_0_end"]},
+                      **call).run(device="cuda")
+    mean = [my.reduce.mean("x_end"), my.reduce.histogram("x_end", my.linspace(-2, 2, 9))]
+    for devices, chunk in (("cuda", None), (all_gpus(), 170)):
+        made = my.study(my.model(equations, **blocks), draws=5000, reduce=mean, **call).run(device=devices, chunk=chunk)
+        assert made.complete and all(np.array_equal(made[n], listed[n]) for n in ("x_end", "v_end", "k_end"))
+        assert np.array_equal(made["x_end_histogram"], np.histogram(made["x_end"], np.linspace(-2, 2, 9))[0])
+        assert np.isclose(made["x_end_mean"], made["x_end"].mean(), rtol=1e-12)
+
+
 def test_bad_inputs_are_refused_on_the_host_and_on_the_gpu():
     bad = np.linspace(1, 2, 5000)
     bad[70] = np.nan

@@ -130,6 +130,28 @@ def test_all_methods_hooks_and_events_compile(request):
     assert all(0 < registers < 256 for registers, _ in found)
 
 
+def generating():
+    x, v, k = *my.states("x v"), my.parameter("k")
+    return my.model({x: v, v: -k * x}, generate={x: my.uniform(-1, 1), v: my.normal(), k: my.instance % 7 * 0.1})
+
+
+@pytest.mark.parametrize("precision", ["double", "float"])
+def test_the_kernel_that_generates_instances_is_compiled_for_models_that_do(precision):
+    header, struct = generating().source()
+    asked = (header, struct, method_type("cash_karp", (), False), precision, "constant_bank")
+    for generates in (True, False):
+        image, said = nvrtc.library().compile(nvrtc.source_of(*asked, generates), 90)
+        assert "warning" not in said, said
+        assert (b"\0myriad_generate\0" in image) == generates and b"\0fill_components\0" not in image
+
+
+def test_the_kernels_of_studies_compile_for_all_gpus():
+    for architecture in architectures:
+        image, said = nvrtc.library().compile("#include <myriad/python/study_program.cuh>\n", architecture)
+        assert "warning" not in said, said
+        assert all(f"\0{name}\0".encode() in image for name in ("fill_components", "gather_values", "reduce_values"))
+
+
 def test_registers_and_stack_are_those_that_ptxas_tells():
     text = """extern "C" __global__ void myriad_integrate(double* a, int n) {
         double stored[100];

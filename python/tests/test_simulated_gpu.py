@@ -38,6 +38,11 @@ class OnGpu:  # an array of another library
         self.__cuda_array_interface__ = dict(shape=self.values.shape, typestr=self.values.dtype.str, version=3,
                                              data=(self.values.ctypes.data, False), strides=strides)
 
+def uploaded():  # bytes that were copied to devices
+    bytes_of = ctypes.CDLL("libcuda.so.1").simulated_uploaded
+    bytes_of.restype = ctypes.c_ulonglong
+    return bytes_of()
+
 def study(size, **more):
     return my.study(model, my.grid({k: my.linspace(0.2, 0.3, size)}, B=0.3),
                     **{**dict(start={x: -0.5, v: -0.1}, time=(0, 6), rtol=1e-9, keep=[x, peak, n]), **more})
@@ -292,3 +297,98 @@ one, two = call("cuda"), call(["cuda:0", "cuda:1"])  # in four parts
 for name in ("x", "v", "peak", "n"):
     assert np.array_equal(one[name], two[name]), name
 """, MYRIAD_SIMULATED_GPUS=2)
+
+
+GENERATED = """
+s, e = my.accessory("s"), my.shared_integer("e")
+drawn = my.model({x: v, v: x - x**3 - k * v + B * my.cos(t)}, accessories={peak: x},
+                 events=[my.event(v, direction="falling", do={peak: my.maximum(peak, x), n: n + 1})],
+                 generate={x: my.uniform(-1, 1), v: my.normal(0, 0.1), k: 0.2 + my.instance % e * 0.001 + 0 * B,
+                           s: my.instance / 2, n: my.instance % 3})
+kept = dict(keep=[x, v, k, peak, n, s])
+names = ["x_end", "v_end", "k_end", "peak_end", "n_end", "s_end", "status"]
+
+def generated(size, **more):
+    return my.study(drawn, {B: 0.3, e: 100}, draws=size, **{**dict(time=(0, 6), rtol=1e-9), **kept, **more})
+"""
+
+
+def test_generated_instances_are_the_cpus_and_nothing_is_uploaded(run):
+    run(GENERATED + """
+for more in ({}, dict(seed=5, phases=2, record=dict(states=[x], accessories=[peak, n], time=True)),
+             dict(samples=4, precision="float", rtol=1e-5)):
+    cpu, gpu = (generated(300, **more).run(device=d) for d in ("cpu", "cuda"))
+    assert gpu.complete and gpu.by_status == {"success": 300}
+    for name in gpu.names:
+        close = 0.1 if "precision" in more and name not in ("k_end", "s_end") else 1e-6
+        assert np.allclose(cpu[name], gpu[name], atol=close, equal_nan=True), (name, more)
+    for name in ("k_end", "s_end") if "precision" not in more else ():
+        assert np.array_equal(cpu[name], gpu[name]), name
+    parts = generated(300, **more).run(device=["cuda:0", "cuda:1"], chunk=17)
+    assert parts.complete and not parts.warnings and same(parts, gpu, gpu.names)
+size = 40_000
+for made in (generated, study):  # a grid's axes too are evaluated there
+    before = uploaded()
+    made(size, time=(0, 0.1), keep=[], reduce=[my.reduce.mean("x_end")]).run(device="cuda")
+    assert uploaded() - before < size, uploaded() - before  # less than a byte for each instance
+before = uploaded()
+solve("cuda", size, time=(0, 0.1))
+assert uploaded() - before >= 8 * size
+""", MYRIAD_SIMULATED_GPUS=2)
+
+
+def test_generated_instances_have_the_bits_of_those_that_the_host_lays_out_on_a_gpu(run):
+    run(GENERATED + """
+first, second = my.accessory("first"), my.accessory("second")
+begin = my.study(my.model({x: v, v: x - x**3 - k * v + B * my.cos(t)}, generate=dict(drawn.generate),
+                          initialise={first: x, second: v}),
+                 {B: 0.3, e: 100}, draws=200, time=(0, 1e-3), keep=[first, second, k, s, n]).run(device="cuda")
+listed = my.study(my.model({x: v, v: x - x**3 - k * v + B * my.cos(t)}, accessories={peak: x, s: s},
+                           events=[my.event(v, direction="falling", do={peak: my.maximum(peak, x), n: n + 1})]),
+                  {B: 0.3, k: begin["k_end"], x: begin["first_end"], v: begin["second_end"]},
+                  start={s: begin["s_end"], n: begin["n_end"].astype(float)}, time=(0, 6), rtol=1e-9, **kept)
+assert same(listed.run(device="cuda"), generated(200).run(device="cuda"), names)
+""")
+
+
+def test_reductions_of_a_study_are_those_of_the_cpu(run):
+    run(GENERATED + """
+reductions = lambda: [my.reduce.mean("x_end"), my.reduce.minimum("x_end"), my.reduce.maximum("x"),
+                      my.reduce.histogram("x_end", my.linspace(-2, 2, 11)), my.reduce.mean("x")]
+made = lambda **more: generated(700, phases=3, record=[x], reduce=reductions(), **more)
+for device in ("cuda", ["cuda", "cuda:1"]):
+    result = made().run(device=device, chunk=64)
+    assert np.array_equal(result["x_end_histogram"], np.histogram(result["x_end"], np.linspace(-2, 2, 11))[0])
+    assert result["x_end_minimum"] == result["x_end"].min()
+    assert np.array_equal(result["x_maximum"], result["x"].max(axis=0))
+    assert np.allclose(result["x_end_mean"], result["x_end"].mean(), rtol=1e-14)
+    assert np.allclose(result["x_mean"], result["x"].mean(axis=0), rtol=1e-12)
+sums = study(50, reduce=[my.reduce.total("total", ["x_end"], 1, lambda c: c["x_end"].sum())]).run(device="cuda")
+assert np.isclose(sums["total"], sums["x_end"].sum())
+""", MYRIAD_SIMULATED_GPUS=2)
+
+
+def test_a_generated_study_on_a_gpu_goes_on_and_marks_what_is_not_finite(run):
+    run(GENERATED + """
+import tempfile
+def stop(done, total):
+    if done >= 100:
+        raise KeyboardInterrupt
+folder = tempfile.mkdtemp() + "/store"
+try:
+    generated(2000).run(folder, device="cuda", chunk=50, progress=stop)
+except my.Interrupted:
+    pass
+result = generated(2000).run(folder, device="cuda", chunk=50)
+assert result.complete and same(result, generated(2000).run(device="cuda"), names)
+bad = my.model({x: -x}, generate={x: my.where(my.instance % 5 == 0, 1.0, 0.0) / (my.instance % 5)})
+assert my.study(bad, draws=50, time=(0, 1)).run(device="cuda").by_status == {"success": 40, "invalid_input": 10}
+own = my.model({x: -x}, generate={x: 1})
+domains = lambda **more: my.study(own, my.grid({my.t_end: my.linspace(1, 2, 5)}), time=(0, None), **more)
+assert np.allclose(domains().run(device="cuda")["x_end"], np.exp(-np.linspace(1, 2, 5)), atol=1e-6)
+assert "a time domain of its own" in message(lambda: domains(samples=3).run(device="cuda"))
+assert domains(samples=3).run(device="cpu").complete
+on_axis = lambda: my.study(my.model({x: -x}), my.grid({my.t_end: my.linspace(1, 2, 5)}), start={x: 1}, time=(0, None),
+                           samples=3)  # the host looks at the domains, and sets the instances
+assert np.allclose(on_axis().run(device="cuda")["x_sample"], domains(samples=3).run(device="cpu")["x_sample"])
+""")

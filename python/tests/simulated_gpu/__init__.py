@@ -16,6 +16,15 @@ def build_driver(folder):
                     str(folder / "libcuda.so.1"), str(_here / "driver.cpp"), "-ldl"], check=True)
 
 
+# The kernels that a program has if it includes a header.
+_kernels = {
+    "device_program.cuh": ("myriad_integrate", "myriad_tell_facts", "myriad_sum", "myriad_find_not_finite",
+                           "count_all_costs", "sum_costs", "place_by_cost"),
+    "device_generate.cuh": ("myriad_generate",),
+    "study_program.cuh": ("fill_components", "gather_values", "reduce_values"),
+}
+
+
 class Compiler:
     """In the place of `myriad.nvrtc.library()`."""
 
@@ -24,7 +33,9 @@ class Compiler:
     def compile(self, source, capability, options=()):
         """A program of the simulated driver, and what the compiler says."""
         from myriad import cache, nvrtc
-        source = f'#include "{_here}/device.hpp"\n{source}\nSIMULATED_PROGRAM\n'
+        kernels = [name for header, names in _kernels.items() if header in source for name in names]
+        source = "\n".join([f'#include "{_here}/device.hpp"', source, "SIMULATED_PROGRAM",
+                            *(f"SIMULATED_KERNEL({name})" for name in kernels), ""])
         made = cache.directory() / f"simulated-{os.getpid()}.so"
         made.parent.mkdir(parents=True, exist_ok=True)
         done = subprocess.run(["g++", "-std=c++20", "-O1", "-shared", "-fPIC", "-ffp-contract=off", "-w",

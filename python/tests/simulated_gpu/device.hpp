@@ -18,7 +18,7 @@
 namespace simulated {
 
 struct index {
-    unsigned x;
+    unsigned x, y;
 };
 /// What the driver sets for each thread, and its turn to another thread of the block.
 struct place {
@@ -57,6 +57,9 @@ inline unsigned atomicAdd(unsigned* to, unsigned value) { return simulated::add(
 inline unsigned long long atomicAdd(unsigned long long* to, unsigned long long value) {
     return simulated::add(to, value);
 }
+inline unsigned long long atomicMax(unsigned long long* to, unsigned long long value) {
+    return std::exchange(*to, value > *to ? value : *to);
+}
 inline unsigned long long atomicMin(unsigned long long* to, unsigned long long value) {
     return std::exchange(*to, value < *to ? value : *to);
 }
@@ -76,17 +79,11 @@ inline unsigned long long __shfl_down_sync(unsigned, unsigned long long value, i
 #define __shared__
 namespace myriad::detail::inline MYRIAD_TARGET {
 double staged[32'768];
+unsigned long long reduced_in_block[32'768];
 }
 
 #define SIMULATED_KERNEL(name) \
     extern "C" void run_##name(void** arguments) { simulated::call(&name, arguments); }
-#define SIMULATED_PROGRAM                                                                 \
-    using namespace myriad::detail;                                                       \
-    extern "C" void set_place(const simulated::place* where) { simulated::now = *where; } \
-    SIMULATED_KERNEL(myriad_integrate)                                                    \
-    SIMULATED_KERNEL(myriad_tell_facts)                                                   \
-    SIMULATED_KERNEL(myriad_sum)                                                          \
-    SIMULATED_KERNEL(myriad_find_not_finite)                                              \
-    SIMULATED_KERNEL(count_all_costs)                                                     \
-    SIMULATED_KERNEL(sum_costs)                                                           \
-    SIMULATED_KERNEL(place_by_cost)
+#define SIMULATED_PROGRAM           \
+    using namespace myriad::detail; \
+    extern "C" void set_place(const simulated::place* where) { simulated::now = *where; }

@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
+#include <map>
 #include <mutex>
 #include <set>
 #include <string>
@@ -41,10 +43,20 @@ int state() {
     return current == devices() - 1 && launches_left <= 0 ? launch_failed : success;
 }
 std::mutex mutex;
-std::set<void*> on_device, pinned;
+std::map<std::uintptr_t, std::size_t> on_device;  // addresses and bytes
+std::set<void*> pinned;
+std::atomic<unsigned long long> uploaded{0};  // bytes copied to devices
+bool is_on_device(std::uintptr_t address) {
+    const std::lock_guard lock(mutex);
+    const auto after = on_device.upper_bound(address);
+    return after != on_device.begin() && address - std::prev(after)->first < std::prev(after)->second;
+}
 
+struct index {
+    unsigned x, y;
+};
 struct place {
-    unsigned block, thread, blocks, threads;
+    index block, thread, blocks, threads;
     void (*yield)();
     unsigned long long* exchanged;
 };
@@ -56,7 +68,7 @@ struct kernel {
 /// The threads of a block, each of which runs until it waits for the others.
 class block_of_threads {
 public:
-    static void run(const kernel& code, unsigned block, unsigned blocks, unsigned threads, void** arguments) {
+    static void run(const kernel& code, index block, index blocks, unsigned threads, void** arguments) {
         block_of_threads all(code, block, blocks, threads, arguments);
         one = &all;
         for (unsigned t = 0; t < threads; ++t) all.start(t);
@@ -73,17 +85,17 @@ public:
 private:
     static constexpr std::size_t stack_bytes = std::size_t{256} << 10;
 
-    block_of_threads(const kernel& code, unsigned block, unsigned blocks, unsigned threads, void** arguments)
+    block_of_threads(const kernel& code, index block, index blocks, unsigned threads, void** arguments)
         : code_(code), arguments_(arguments), contexts_(threads), ended_(threads), exchanged_(threads + 32),
           stacks_(static_cast<std::byte*>(
               mmap(nullptr, threads * stack_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0))),
-          place_{block, 0, blocks, threads, &yield, exchanged_.data()} {}
+          place_{block, {}, blocks, {threads, 1}, &yield, exchanged_.data()} {}
     ~block_of_threads() { munmap(stacks_, contexts_.size() * stack_bytes); }
 
-    static void yield() { swapcontext(&one->contexts_[one->place_.thread], &one->main_); }
+    static void yield() { swapcontext(&one->contexts_[one->place_.thread.x], &one->main_); }
     static void begin() {
         one->code_.run(one->arguments_);
-        one->ended_[one->place_.thread] = true;
+        one->ended_[one->place_.thread.x] = true;
     }
     void start(unsigned thread) {
         ucontext_t& c = contexts_[thread];
@@ -94,7 +106,7 @@ private:
         makecontext(&c, &begin, 0);
     }
     void go_on(unsigned thread) {
-        place_.thread = thread;
+        place_.thread.x = thread;
         code_.set_place(&place_);
         swapcontext(&main_, &contexts_[thread]);
     }
@@ -116,6 +128,9 @@ private:
 #define DRIVER extern "C" __attribute__((visibility("default"))) int
 #define NEEDS_CONTEXT \
     if (state() != success) return state()
+
+/// Bytes that were copied to devices, for tests.
+extern "C" __attribute__((visibility("default"))) unsigned long long simulated_uploaded() { return uploaded; }
 
 DRIVER cuInit(unsigned) { return devices() > 0 ? success : no_device; }
 DRIVER cuDriverGetVersion(int* version) {
@@ -190,16 +205,15 @@ DRIVER cuMemAlloc_v2(std::uintptr_t* memory, std::size_t bytes) {
     void* const p = std::aligned_alloc(512, (bytes + 511) / 512 * 512);
     std::memset(p, 0xa5, bytes);
     const std::lock_guard lock(mutex);
-    on_device.insert(p);
     *memory = reinterpret_cast<std::uintptr_t>(p);
+    on_device[*memory] = bytes;
     return success;
 }
 DRIVER cuMemFree_v2(std::uintptr_t memory) {
     NEEDS_CONTEXT;
-    void* const p = reinterpret_cast<void*>(memory);
     const std::lock_guard lock(mutex);
-    if (on_device.erase(p) == 0) return invalid_value;
-    std::free(p);
+    if (on_device.erase(memory) == 0) return invalid_value;
+    std::free(reinterpret_cast<void*>(memory));
     return success;
 }
 DRIVER cuMemGetInfo_v2(std::size_t* free, std::size_t* total) {
@@ -226,6 +240,7 @@ DRIVER cuMemHostUnregister(void*) { return success; }
 DRIVER cuPointerGetAttribute(void*, int, std::uintptr_t) { return invalid_value; }  // pageable memory
 DRIVER cuMemcpyAsync(std::uintptr_t to, std::uintptr_t from, std::size_t bytes, void*) {
     NEEDS_CONTEXT;
+    if (is_on_device(to)) uploaded += bytes;
     std::memcpy(reinterpret_cast<void*>(to), reinterpret_cast<const void*>(from), bytes);
     return success;
 }
@@ -265,14 +280,15 @@ DRIVER cuOccupancyMaxActiveBlocksPerMultiprocessor(int* blocks, const void*, int
     *blocks = 256 / threads;
     return success;
 }
-DRIVER cuLaunchKernel(const void* function, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned, unsigned,
-                      unsigned, void*, void** arguments, void**) {
+DRIVER cuLaunchKernel(const void* function, unsigned blocks, unsigned rows, unsigned, unsigned threads, unsigned,
+                      unsigned, unsigned, void*, void** arguments, void**) {
     NEEDS_CONTEXT;
     if (current == devices() - 1) --launches_left;
     static std::mutex one_at_a_time;
     const std::lock_guard lock(one_at_a_time);
-    for (unsigned b = 0; b < blocks; ++b)
-        block_of_threads::run(*static_cast<const kernel*>(function), b, blocks, threads, arguments);
+    for (unsigned row = 0; row < rows; ++row)
+        for (unsigned b = 0; b < blocks; ++b)
+            block_of_threads::run(*static_cast<const kernel*>(function), {b, row}, {blocks, rows}, threads, arguments);
     return success;
 }
 DRIVER cuModuleLoadData(void** module, const void* image) {

@@ -8,8 +8,11 @@
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/cost_order.cuh"
 #include "myriad/cuda/cost_order_kernels.cuh"
+#include "myriad/cuda/generate_kernel.cuh"
 #include "myriad/cuda/kernel.cuh"
 #include "myriad/cuda/launch.cuh"
+#include "myriad/cuda/study_kernels.cuh"
+#include "myriad/cuda/study_work.cuh"
 
 namespace myriad::cuda {
 
@@ -36,6 +39,13 @@ public:
     static cost_kernels sort() {
         return {reinterpret_cast<const void*>(&count_all_costs), reinterpret_cast<const void*>(&sum_costs),
                 reinterpret_cast<const void*>(&place_by_cost)};
+    }
+
+    static study_kernels study() {
+        const void* generate = nullptr;
+        if constexpr (generates<Model, R>) generate = reinterpret_cast<const void*>(&generate_instances<Model, R>);
+        return {reinterpret_cast<const void*>(&fill_components<>), reinterpret_cast<const void*>(&gather_values<>),
+                reinterpret_cast<const void*>(&reduce_values<>), generate};
     }
 
     /// Stores the shared parameters for launches from the constant bank; `shared` is on the host.

@@ -53,6 +53,7 @@ public:
     const kernel_facts& facts() const { return facts_; }
     const kernel_traits& traits() const { return traits_; }
     cost_kernels sort() const { return kernel_.sort(); }
+    auto study() const { return kernel_.study(); }
     /// Number of threads that gives every warp scheduler of the GPU one warp.
     std::int64_t least_threads() const { return std::int64_t{128} * multiprocessors_; }
     void note(schedule how) { facts_.schedule = how; }

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "myriad/cuda/compiled_kernel.cuh"
 #include "myriad/cuda/devices.cuh"
 #include "myriad/cuda/study_engine.cuh"
 #include "myriad/host/backend/backend.hpp"
@@ -14,7 +15,7 @@ namespace myriad::cuda {
 template <class Model, class Method, class R, class Counts>
 std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options) {
     require_device(options);
-    return std::make_unique<study_engine<Model, Method, R>>(options);
+    return std::make_unique<study_engine<compiled_kernel<Model, Method, R>, engine<Model, R>>>(options);
 }
 
 }  // namespace myriad::cuda

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The engine of a compiled model, which also sets and reduces the instances of studies on the GPU.
+// The engine that also sets and reduces the instances of studies on the GPU.
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "myriad/cuda/chunk_engine.cuh"
-#include "myriad/cuda/compiled_kernel.cuh"
 #include "myriad/cuda/study_work.cuh"
 #include "myriad/host/backend/backend.hpp"
 
 namespace myriad::cuda {
 
-template <class Model, class Method, class R>
-class study_engine final : public chunk_engine<compiled_kernel<Model, Method, R>, engine<Model, R>> {
-    using base = chunk_engine<compiled_kernel<Model, Method, R>, engine<Model, R>>;
-    using base::count_, base::device_, base::first_, base::stream_, base::walk;
+/// Kernels and interface are those of `chunk_engine`; the kernels have a member `study` too.
+template <class Kernel, class Interface = study_engine_for<typename Kernel::arguments>>
+class study_engine final : public chunk_engine<Kernel, Interface> {
+    using base = chunk_engine<Kernel, Interface>;
+    using base::count_, base::device_, base::first_, base::launcher_, base::stream_, base::walk;
     using typename base::arguments;
 
 public:
@@ -41,14 +41,16 @@ public:
         walk(now, [](auto*& array, auto* on_device, std::int64_t, array_access, array_kind) { array = on_device; });
         const instance_range range{count, host.first_index + first};
         const auto find = [&](const void* array) { return place_of(host, array); };
-        study_.fill(how, find, range, now.ended, now.status, stream_.get());
+        const study_kernels by = launcher_.study();
+        study_.fill(by, how, find, range, now.ended, now.status, stream_.get());
         if (how->calls_model)
-            study_.template generate<Model, R>(now, range, base::shared_on_device_, how->seed, stream_.get());
+            study_.generate(by, static_cast<const instance_arrays<array_pointer, typename Kernel::real>&>(now), range,
+                            base::shared_on_device_, how->seed, stream_.get());
     }
     void fetch(const arguments& host, const device_values& what, std::byte* to) override {
         const current_device here(device_);
         const value_array all = on_device(host, what);
-        const auto* const from = static_cast<const std::byte*>(study_.gathered(all, stream_.get()));
+        const auto* const from = static_cast<const std::byte*>(study_.gathered(launcher_.study(), all, stream_.get()));
         base::copy_to_host(to, from, cuda::bytes_of(what.type) * static_cast<std::size_t>(all.size * all.inner));
     }
     std::vector<std::int64_t> reduce(const arguments& host, const device_values& what,
@@ -56,7 +58,7 @@ public:
         const current_device here(device_);
         base::finish_download();
         const auto* const statuses = static_cast<const status*>(place_of(host, host.status).values);
-        return study_.reduce(on_device(host, what), statuses, how, stream_.get());
+        return study_.reduce(launcher_.study(), on_device(host, what), statuses, how, stream_.get());
     }
     void fetch_first(const arguments& host, std::int64_t count) override {
         const current_device here(device_);
@@ -91,7 +93,7 @@ private:
     }
     value_array on_device(const arguments& host, const device_values& what) {
         const instance_range range{count_, host.first_index + first_};
-        if (what.rule != nullptr) return study_.values_of(what, range, stream_.get());
+        if (what.rule != nullptr) return study_.values_of(launcher_.study(), what, range, stream_.get());
         value_array all{nullptr, what.type, count_, what.inner};
         if (what.array == nullptr) return all;
         const study_work::place there = place_of(host, what.array);

@@ -4,43 +4,23 @@
 
 #include <cstdint>
 
-#include "myriad/cuda/check.cuh"
+#include "myriad/cuda/generate_kernel.cuh"
+#include "myriad/cuda/study_arguments.hpp"
 #include "myriad/kernel/study/axis_rule.hpp"
-#include "myriad/kernel/study/generator.hpp"
 #include "myriad/kernel/study/reduced_values.hpp"
+
+// Templates, so that every file that includes this may have them, or, compiled at run time, found by their names.
+#if defined(__CUDACC_RTC__)
+#define MYRIAD_STUDY_KERNEL extern "C" __global__
+#else
+#define MYRIAD_STUDY_KERNEL \
+    template <class = void> \
+    __global__
+#endif
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// A component of all instances of a chunk, on the device.
-struct filled_component {
-    axis_rule rule;
-    void* to;
-    value_type type;  // f64, f32 or i32
-    bool must_be_finite, must_not_be_nan;
-};
-/// The components that one launch sets.
-struct fill_arguments {
-    static constexpr int most = 32;
-    filled_component components[most];
-    int count;
-    std::uint64_t seed;
-    std::int64_t first, size;  // the number of the first instance in the study, instances
-    std::uint8_t* ended;       // of those that are marked; null: none is
-    status* how;
-};
-
-__device__ __forceinline__ void mark_invalid(std::uint8_t* ended, status* how, std::int64_t i) {
-    ended[i] = 1;
-    how[i] = status::invalid_input;
-}
-__device__ __forceinline__ std::int64_t thread_number() {
-    return static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
-}
-__device__ __forceinline__ std::int64_t all_threads() { return static_cast<std::int64_t>(gridDim.x) * blockDim.x; }
-
-// Templates, so that every file that includes this may have them.
-template <class = void>
-__global__ void fill_components(const __grid_constant__ fill_arguments all) {
+MYRIAD_STUDY_KERNEL void fill_components(const __grid_constant__ fill_arguments all) {
     for (std::int64_t i = thread_number(); i < all.size; i += all_threads()) {
         bool valid = true;
         for (int c = 0; c < all.count; ++c) {
@@ -62,36 +42,22 @@ __global__ void fill_components(const __grid_constant__ fill_arguments all) {
     }
 }
 
-template <class Model, class R>
-__global__ void generate_instances(const instance_arrays<array_pointer, R> arrays, const instance_range range,
-                                   const shared_parameters<R> shared, const std::uint64_t seed) {
-    for (std::int64_t i = thread_number(); i < range.size; i += all_threads())
-        if (!detail::generate_instance<Model, R>(arrays, range, shared, seed, i))
-            mark_invalid(arrays.ended, arrays.status, i);
-}
-
-/// From one component after the other to one instance after the other; what has no value gets `fill`, if it is of 4
-/// bytes.
 template <class T>
-__global__ void gather_values(const value_array all, const std::int32_t fill, T* to) {
+__device__ __forceinline__ void gather(const value_array& all, T fill, void* gathered) {
     const auto* const from = static_cast<const T*>(all.values);
+    auto* const to = static_cast<T*>(gathered);
     for (std::int64_t i = thread_number(); i < all.size; i += all_threads()) {
         const std::int64_t there = all.phases != nullptr ? all.phases[i] - all.from_phase : all.inner;
-        for (std::int64_t j = 0; j < all.inner; ++j)
-            to[i * all.inner + j] = j < there ? from[j * all.size + i] : static_cast<T>(fill);
+        for (std::int64_t j = 0; j < all.inner; ++j) to[i * all.inner + j] = j < there ? from[j * all.size + i] : fill;
     }
 }
-
-/// A reduction, and where its result goes: integers that are zero before.
-struct reduce_arguments {
-    value_array all;
-    const status* how;  // of each instance
-    reduction_kind kind;
-    const double* edges;
-    std::int64_t bins;
-    bool in_shared_memory;  // the counts of a histogram
-    unsigned long long* to;
-};
+/// From one component after the other to one instance after the other, values of so many bytes; what has no value gets
+/// `fill`, if it is of 4 bytes.
+MYRIAD_STUDY_KERNEL void gather_values(const value_array all, const std::int32_t fill, const int bytes, void* to) {
+    if (bytes == 8) return detail::gather<std::int64_t>(all, fill, to);
+    if (bytes == 4) return detail::gather<std::int32_t>(all, fill, to);
+    detail::gather<std::int8_t>(all, static_cast<std::int8_t>(fill), to);
+}
 
 /// The exact sum of a thread's numbers, whose digits are mostly the same few.
 class thread_sum {
@@ -123,8 +89,7 @@ private:
 
 extern __shared__ unsigned long long reduced_in_block[];
 
-template <class = void>
-__global__ void reduce_values(const __grid_constant__ reduce_arguments a) {
+MYRIAD_STUDY_KERNEL void reduce_values(const __grid_constant__ reduce_arguments a) {
     const bool is_histogram = a.kind == reduction_kind::histogram;
     const auto skipped = [&](std::int64_t i) { return is_failure(a.how[i]); };
     if (is_histogram) {

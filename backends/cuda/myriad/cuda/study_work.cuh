@@ -7,13 +7,13 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <tuple>
 #include <type_traits>
 #include <vector>
 
 #include "myriad/cuda/resources.cuh"
-#include "myriad/cuda/study_kernels.cuh"
+#include "myriad/cuda/study_arguments.hpp"
 #include "myriad/host/backend/backend.hpp"
+#include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::cuda {
 
@@ -29,6 +29,11 @@ value_type value_type_of(const T*) {
                                              : value_type::u8;
 }
 
+/// The kernels of cuda/study_kernels.cuh; `generate_instances` is null for a model that sets none.
+struct study_kernels {
+    const void *fill_components, *gather_values, *reduce_values, *generate_instances;
+};
+
 class study_work {
 public:
     /// An array of the chunk: its place on the device, and the type of its values.
@@ -39,8 +44,8 @@ public:
 
     /// Sets the components; `find` gives the place of a host's array.
     template <class Find>
-    void fill(const std::shared_ptr<const generation>& how, Find&& find, const instance_range& range,
-              std::uint8_t* ended, status* statuses, cudaStream_t stream) {
+    void fill(const study_kernels& by, const std::shared_ptr<const generation>& how, Find&& find,
+              const instance_range& range, std::uint8_t* ended, status* statuses, cudaStream_t stream) {
         upload_tables(how, stream);
         fill_arguments all{};
         all.seed = how->seed;
@@ -57,20 +62,20 @@ public:
                                                bytes_of(to.type) * static_cast<std::size_t>(is.component * range.size),
                                            to.type, is.must_be == valid::finite, is.must_be == valid::not_nan};
             if (all.count < fill_arguments::most && c + 1 < how->components.size()) continue;
-            launch(&fill_components<>, blocks_for(range.size), 0, stream, all);
+            launch(by.fill_components, blocks_for(range.size), 0, stream, all);
             all.count = 0;
         }
     }
     /// Calls the model's `generate`; the pointers are those on the device.
-    template <class Model, class R>
-    void generate(const instance_arrays<array_pointer, R>& arrays, const instance_range& range,
+    template <class R>
+    void generate(const study_kernels& by, const instance_arrays<array_pointer, R>& arrays, const instance_range& range,
                   const shared_parameters<R>& shared, std::uint64_t seed, cudaStream_t stream) {
-        if constexpr (generates<Model, R>) {
-            launch(&generate_instances<Model, R>, blocks_for(range.size), 0, stream, arrays, range, shared, seed);
-        }
+        require(by.generate_instances != nullptr, "the model's kernel has no generate to set instances");
+        launch(by.generate_instances, blocks_for(range.size), 0, stream, arrays, range, shared, seed);
     }
     /// The values of a rule in all instances of a chunk, in memory of this object.
-    value_array values_of(const device_values& what, const instance_range& range, cudaStream_t stream) {
+    value_array values_of(const study_kernels& by, const device_values& what, const instance_range& range,
+                          cudaStream_t stream) {
         drawn_.reserve(bytes_of(what.type) * static_cast<std::size_t>(range.size));
         fill_arguments one{};
         one.count = 1;
@@ -78,34 +83,22 @@ public:
         one.first = range.first_index;
         one.size = range.size;
         one.components[0] = {*what.rule, drawn_.data(), what.type, false, false};
-        launch(&fill_components<>, blocks_for(range.size), 0, stream, one);
+        launch(by.fill_components, blocks_for(range.size), 0, stream, one);
         return {drawn_.data(), what.type, range.size, 1};
     }
     /// The values, one instance after the other, somewhere on the device.
-    const void* gathered(const value_array& all, cudaStream_t stream) {
+    const void* gathered(const study_kernels& by, const value_array& all, cudaStream_t stream) {
         if (all.inner == 1 && all.phases == nullptr) return all.values;
         const std::size_t bytes = bytes_of(all.type);
         gathered_.reserve(bytes * static_cast<std::size_t>(all.size * all.inner));
-        const dim3 blocks = blocks_for(all.size);
         constexpr std::int32_t missing = std::numeric_limits<std::int32_t>::min() + 1;
-        switch (bytes) {
-            case 8:
-                launch(&gather_values<std::int64_t>, blocks, 0, stream, all, missing,
-                       static_cast<std::int64_t*>(gathered_.data()));
-                break;
-            case 4:
-                launch(&gather_values<std::int32_t>, blocks, 0, stream, all, missing,
-                       static_cast<std::int32_t*>(gathered_.data()));
-                break;
-            default:
-                launch(&gather_values<std::int8_t>, blocks, 0, stream, all, missing,
-                       static_cast<std::int8_t*>(gathered_.data()));
-        }
+        launch(by.gather_values, blocks_for(all.size), 0, stream, all, missing, static_cast<int>(bytes),
+               gathered_.data());
         return gathered_.data();
     }
     /// Waits for the result.
-    std::vector<std::int64_t> reduce(const value_array& all, const status* how, const device_reduction& what,
-                                     cudaStream_t stream) {
+    std::vector<std::int64_t> reduce(const study_kernels& by, const value_array& all, const status* how,
+                                     const device_reduction& what, cudaStream_t stream) {
         std::vector<std::int64_t> words(static_cast<std::size_t>(what.words(all.inner)));
         const std::size_t bytes = words.size() * sizeof(std::int64_t);
         words_.reserve(bytes);
@@ -128,7 +121,7 @@ public:
             blocks.y = static_cast<unsigned>(std::min(all.inner, most));
             if (all.inner > 1) blocks.x = std::min(blocks.x, 256u);
         }
-        launch(&reduce_values<>, blocks, shared, stream, a);
+        launch(by.reduce_values, blocks, shared, stream, a);
         MYRIAD_CUDA(cudaMemcpyAsync(words.data(), words_.data(), bytes, cudaMemcpyDeviceToHost, stream));
         check(cudaStreamSynchronize(stream), "a reduction on the GPU");
         return words;
@@ -150,18 +143,12 @@ private:
         constexpr std::int64_t most = 4096;
         return dim3(static_cast<unsigned>(std::clamp((size + threads - 1) / threads, std::int64_t{1}, most)));
     }
-    template <class... Parameters, class... Arguments>
-    static void launch(void (*kernel)(Parameters...), dim3 blocks, std::size_t shared, cudaStream_t stream,
+    template <class... Arguments>
+    static void launch(const void* kernel, dim3 blocks, std::size_t shared, cudaStream_t stream,
                        const Arguments&... arguments) {
-        std::tuple<std::remove_const_t<Parameters>...> values(arguments...);
-        std::apply(
-            [&](auto&... value) {
-                void* all[] = {&value...};
-                check(
-                    cudaLaunchKernel(reinterpret_cast<const void*>(kernel), blocks, dim3(threads), all, shared, stream),
-                    "the launch of a kernel for a study");
-            },
-            values);
+        void* all[] = {const_cast<Arguments*>(&arguments)...};
+        check(cudaLaunchKernel(kernel, blocks, dim3(threads), all, shared, stream),
+              "the launch of a kernel for a study");
     }
 
     void upload_tables(const std::shared_ptr<const generation>& how, cudaStream_t stream) {

@@ -137,23 +137,27 @@ public:
                           void* context = nullptr) = 0;
 };
 
-/// An engine for a compiled model. It can also set and reduce instances on the device, instead of an upload and a
-/// download: the host's arguments then have arrays of fewer instances, which only say which arrays there are; `first`
-/// is the number of the first instance from that of the arguments on. All but `generate` wait for the work before.
-template <class Model, class R>
-class engine : public engine_for<kernel_arguments<Model, R>> {
+/// An engine that can also set and reduce instances on the device, instead of an upload and a download: the host's
+/// arguments then have arrays of fewer instances, which only say which arrays there are; `first` is the number of the
+/// first instance from that of the arguments on. All but `generate` wait for the work before.
+template <class Arguments>
+class study_engine_for : public engine_for<Arguments> {
 public:
     /// Sets a chunk of instances without a past.
-    virtual void generate(const kernel_arguments<Model, R>& host, std::shared_ptr<const generation> how,
-                          std::int64_t first, std::int64_t count) = 0;
+    virtual void generate(const Arguments& host, std::shared_ptr<const generation> how, std::int64_t first,
+                          std::int64_t count) = 0;
     /// Copies values of all instances of the chunk, the instance outermost.
-    virtual void fetch(const kernel_arguments<Model, R>& host, const device_values& what, std::byte* to) = 0;
+    virtual void fetch(const Arguments& host, const device_values& what, std::byte* to) = 0;
     /// The result of a reduction.
-    virtual std::vector<std::int64_t> reduce(const kernel_arguments<Model, R>& host, const device_values& what,
+    virtual std::vector<std::int64_t> reduce(const Arguments& host, const device_values& what,
                                              const device_reduction& how) = 0;
     /// Copies all arrays of the first `count` instances of the chunk to those of the host.
-    virtual void fetch_first(const kernel_arguments<Model, R>& host, std::int64_t count) = 0;
+    virtual void fetch_first(const Arguments& host, std::int64_t count) = 0;
 };
+
+/// The engine for a compiled model.
+template <class Model, class R>
+class engine : public study_engine_for<kernel_arguments<Model, R>> {};
 
 /// The engine for a model, method and real type. Throws `error` if the device does not exist or cannot run the kernel.
 template <class Model, class Method, class R, class Counts = component_counts<Model>>

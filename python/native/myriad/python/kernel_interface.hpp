@@ -21,6 +21,9 @@ struct kernel_library {
     /// Integrates; `arguments` are `any_arguments` of the real type. At most `most_threads` threads.
     void (*run)(const void* arguments, const detail::run_options* options, int most_threads, team_starter start,
                 detail::run_statistics* result);
+    /// Calls the model's `generate` for instances [begin, end) of a study; null for a model that has none. Of the
+    /// `any_arguments` it takes the range, the arrays and the shared parameters.
+    void (*generate)(const void* arguments, std::uint64_t seed, std::int64_t begin, std::int64_t end);
 };
 
 /// The one function that a library exports, under this name.

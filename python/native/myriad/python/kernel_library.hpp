@@ -8,6 +8,7 @@
 #include "myriad/python/kernel_interface.hpp"
 // after the interface, which needs no packs
 #include "myriad/kernel/stepper/method_check.hpp"
+#include "myriad/kernel/study/generator.hpp"
 #include "myriad/methods.hpp"
 #include "myriad/model.hpp"
 #include "myriad/model/random.hpp"
@@ -65,11 +66,27 @@ void run_library(const void* arguments, const run_options* options, int most_thr
         a, *options, most_threads, [start](openmp::team& all) { start(&all); });
 }
 
+template <class Model, class R>
+void generate_in_library(const void* arguments, std::uint64_t seed, std::int64_t begin, std::int64_t end) {
+    const auto& a = *static_cast<const python::any_arguments<R>*>(arguments);
+    for (std::int64_t i = begin; i < end; ++i) detail::generate_instance<Model, R>(a, a, a.shared, seed, i);
+}
+/// Null for a model without `generate`.
+template <class Model, class R>
+constexpr auto generator_in_library() {
+    if constexpr (generates<Model, R>) {
+        return &generate_in_library<Model, R>;
+    } else {
+        return nullptr;
+    }
+}
+
 template <class Model, class Method, class R>
 inline constexpr python::kernel_library library_of{
     .model = facts_of<Model, Method, R>,
     .instruction_set = static_cast<std::int32_t>(openmp::instruction_set::MYRIAD_INSTRUCTION_SET),
     .run = &run_library<Model, Method, R>,
+    .generate = generator_in_library<Model, R>(),
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
