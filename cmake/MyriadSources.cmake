@@ -11,15 +11,17 @@ function(myriad_add_host_sources target)
     target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 endfunction()
 
-# myriad_add_study_sources(<target>): studies and their results on disk. Only what works on every value is fully
-# optimised.
+# myriad_add_study_sources(<target>): studies and their results on disk. What works on every value is fully optimised,
+# in an object library of its own, <target>_values; each of the two is compiled as one file.
 function(myriad_add_study_sources target)
-    set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../src/study")
+    cmake_path(SET folder NORMALIZE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../src/study")
     file(GLOB sources CONFIGURE_DEPENDS "${folder}/*.cpp")
-    target_sources(${target} PRIVATE ${sources})
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 7)
-    target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
     set(fast axes chunk_solver crc32c device_solver exact_sum reduction)
     list(TRANSFORM fast REPLACE "(.+)" "${folder}/\\1.cpp")
-    set_source_files_properties(${fast} PROPERTIES COMPILE_OPTIONS "$<$<NOT:$<CONFIG:Debug>>:-O3>")
+    list(REMOVE_ITEM sources ${fast})
+    add_library(${target}_values OBJECT ${fast})
+    target_compile_options(${target}_values PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O3>)
+    target_sources(${target} PRIVATE ${sources})
+    target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
+    set_target_properties(${target} ${target}_values PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
 endfunction()

@@ -10,14 +10,6 @@ from .errors import Error
 __all__ = ["linspace", "logspace", "random_uniform", "random_normal"]
 
 
-def core_of_studies():
-    """The core, if it was built with studies."""
-    if not hasattr(_core, "Study"):
-        raise Error("this build of myriad has no studies: install the headers of nlohmann/json (Debian package "
-                    "nlohmann-json3-dev) and build the package again")
-    return _core
-
-
 class Axis:
     """Values by the function that makes them."""
 
@@ -30,7 +22,7 @@ class Axis:
     def core(self):
         """The axis for the core."""
         try:
-            return getattr(core_of_studies(), self.kind)(*self.arguments)
+            return getattr(_core, self.kind)(*self.arguments)
         except TypeError:
             raise Error(f"{self!r} is no axis: give two real numbers and, unless they are random, a whole number of "
                         "values") from None

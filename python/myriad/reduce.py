@@ -6,7 +6,8 @@ left out, but by `total`. Results do not depend on how the instances are divided
 
 import numpy as np
 
-from .axes import Axis, core_of_studies
+from . import _core
+from .axes import Axis
 from .errors import Error
 
 __all__ = ["histogram", "minimum", "maximum", "mean", "total"]
@@ -21,7 +22,7 @@ class Reduction:
     def core(self):
         """The reduction for the core."""
         arguments = [a.core() if isinstance(a, Axis) else a for a in self.arguments]
-        return getattr(core_of_studies(), self.kind)(*arguments)
+        return getattr(_core, self.kind)(*arguments)
 
     def __repr__(self):
         return f"{self.kind}({', '.join(map(repr, self.arguments))})"
@@ -37,7 +38,7 @@ class _Values(Axis):
     """Values as they are given."""
 
     def core(self):
-        return core_of_studies().values(list(self.arguments))
+        return _core.values(list(self.arguments))
 
 
 def histogram(variable, edges):

@@ -12,8 +12,8 @@ import time as clock
 
 import numpy as np
 
-from . import nvrtc
-from .axes import Axis, Random, core_of_studies
+from . import _core, nvrtc
+from .axes import Axis, Random
 from .components import Components, name_of, unknown
 from .errors import Error
 from .expression import Node
@@ -61,7 +61,6 @@ class Study:
 
     def _build(self, model, sweep, *, start, time, keep, reduce, draws, seed, title, units, notes, method, control,
                rtol, atol, events, samples, record, precision, interpreted, **others):
-        core = core_of_studies()
         if not hasattr(model, "source"):
             raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...)")
         if precision not in ("double", "float"):
@@ -83,7 +82,7 @@ class Study:
         self._kernel_for = lambda device: kernel_for(device, model, components, method, control, samples is not None,
                                                      precision, self._interpreted)
         try:
-            made = self._core = core.Study(
+            made = self._core = _core.Study(
                 [list(n) for n in components.names], list(components.tables.values()),
                 getattr(model, "generator", ""), "float64" if precision == "double" else "float32",
                 getattr(model, "name", None) or "model",
@@ -171,10 +170,9 @@ class Study:
         for name, value in components.defaults.items():
             if name not in components.tables and name not in all_names:
                 made.set(self._full_name(name), value)
-        core = core_of_studies()
         for axis in axes:
             pairs = [(self._full_name(k), v.core() if isinstance(v, Axis) else
-                      core.values(np.asarray(v, float).tolist())) for k, v in axis]
+                      _core.values(np.asarray(v, float).tolist())) for k, v in axis]
             for name, _ in pairs:
                 if name.startswith("shared"):
                     raise Error(f"'{name.partition('.')[2]}' is shared by all instances and has several values: give "

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .axes import core_of_studies
+from . import _core
 from .components import name_of, unknown
 from .errors import Error
 from .parts import blocks, read_part
@@ -244,9 +244,9 @@ def _netcdf_package():
 def open_study(folder):
     """The results of a study in its store, also while it runs. Raises `Error` if there is none."""
     folder = os.path.abspath(os.fspath(folder))
-    return StudyResult(core_of_studies().open_store(folder), folder)
+    return StudyResult(_core.open_store(folder), folder)
 
 
 def verify(folder):
     """Reads all that is stored in a folder and compares checksums; returns what is damaged as a list of `Damage`."""
-    return [Damage(*d) for d in core_of_studies().verify_store(os.path.abspath(os.fspath(folder)))]
+    return [Damage(*d) for d in _core.verify_store(os.path.abspath(os.fspath(folder)))]

@@ -26,9 +26,7 @@
 #include "myriad/version.hpp"
 #include "resident.hpp"
 #include "run.hpp"
-#if defined(MYRIAD_WITH_STUDY)
 #include "study.hpp"
-#endif
 #include "threads.hpp"
 
 namespace nb = nanobind;
@@ -427,7 +425,5 @@ NB_MODULE(_core, m) {
     bind_options(m);
     bind_precision<double>(m, "Ensemble64", "Report64");
     bind_precision<float>(m, "Ensemble32", "Report32");
-#if defined(MYRIAD_WITH_STUDY)
     bind_study(m);
-#endif
 }

@@ -17,8 +17,6 @@ import pytest
 
 import myriad as my
 
-pytestmark = pytest.mark.skipif(not hasattr(my._core, "Study"), reason="built without studies")
-
 x, v = my.states("x v")
 k = my.parameter("k")
 deaths = pathlib.Path(os.environ.get("MYRIAD_CACHE_DIR", "."))

@@ -9,8 +9,6 @@ import pytest
 
 import myriad as my
 
-pytestmark = pytest.mark.skipif(not hasattr(my._core, "Study"), reason="built without studies")
-
 x, y, z = my.states("x y z")
 rho, beta = my.parameter("rho"), my.shared("beta")
 n, a, y_0 = my.integer_accessory("n"), my.accessory("a"), my.accessory("y_0")

@@ -15,8 +15,6 @@ import pytest
 
 import myriad as my
 
-pytestmark = pytest.mark.skipif(not hasattr(my._core, "Study"), reason="built without studies")
-
 x, v = my.states("x v")
 k, B = my.parameter("k"), my.shared("B")
 

@@ -5,17 +5,18 @@
 #include <limits>
 #include <vector>
 
-#include <myriad/host/core/error.hpp>
 #include <myriad/model/random.hpp>
 #include <myriad/study/axes.hpp>
 
 #include "tests/catch.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace {
 
 using namespace myriad;
 using enum studies::component_kind;
 using Catch::Matchers::Contains;
+using tests::message_of;
 
 studies::component_names names() {
     return {"swing",
@@ -40,15 +41,6 @@ std::vector<double> all_of(const axis_values& v) {
     std::vector<double> all;
     for (std::int64_t i = 0; i < v.size(); ++i) all.push_back(v[i]);
     return all;
-}
-template <class Function>
-std::string message_of(Function&& function) {
-    try {
-        function();
-    } catch (const error& e) {
-        return e.what();
-    }
-    return "nothing was thrown";
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 // simulated one, with the bits of those that the host sets and reduces.
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include <myriad/study.hpp>
 
 #include "tests/catch.hpp"
+#include "tests/study/content.hpp"
 #include "tests/study/models.hpp"
 #include "tests/support/device.hpp"
 
@@ -20,30 +20,11 @@ namespace {
 using namespace myriad;
 using duffing_study = study<studied::duffing, dense<tsitouras_5>>;
 using lorenz_study = study<studied::lorenz, runge_kutta_4, float>;
+using tests::content;
+using tests::content_of;
+using tests::difference;
 using wave_study = study<studied::wave, cash_karp>;
 
-/// All results as bytes, by name.
-using content = std::map<std::string, std::vector<std::byte>>;
-content content_of(const study_result& r) {
-    REQUIRE(r.complete);
-    content all;
-    for (const studies::variable& v : r.content().variables) {
-        if (v.extent == studies::along::chunks) continue;
-        const std::int64_t items = v.extent == studies::along::nothing ? 1 : r.content().instances();
-        auto& bytes = all[v.name];
-        bytes.resize(static_cast<std::size_t>(items * v.values_per_item()) * studies::size_of(v.type));
-        r.results().read(v.name, 0, items, bytes.data());
-    }
-    return all;
-}
-void check_equal(const content& a, const content& b) {
-    CHECK(a.size() == b.size());
-    for (const auto& [name, bytes] : a) {
-        INFO(name);
-        REQUIRE(b.contains(name));
-        CHECK((bytes == b.at(name)));
-    }
-}
 /// A generator on the host, so that the host sets and reduces all instances.
 template <class Study>
 void set_on_host(Study& s) {
@@ -59,11 +40,12 @@ content check_where(Describe&& describe) {
         prepare(s);
         const study_result r = s.run();
         CHECK(r.warnings.empty());
+        REQUIRE(r.complete);
         return content_of(r);
     };
     const content on_device = run([](Study&) {});
-    check_equal(on_device, run([](Study& s) { set_on_host(s); }));
-    check_equal(on_device, run([](Study& s) { s.chunk = 13; }));
+    CHECK(difference(on_device, run([](Study& s) { set_on_host(s); })) == "");
+    CHECK(difference(on_device, run([](Study& s) { s.chunk = 13; })) == "");
     return on_device;
 }
 void reduce_all(any_study& s, const std::string& name, const axis_values& edges) {
@@ -162,13 +144,16 @@ TEST_CASE("A model sets instances by its own function, the same on every device"
         reduce_all(s, "t", linspace(0, 10, 33));
         s.devices = {tests::test_device()};
         prepare(s);
-        return content_of(s.run());
+        const study_result r = s.run();
+        REQUIRE(r.complete);
+        return content_of(r);
     };
     const content on_device = run([](wave_study& s) { s.generate("by itself"); });
-    check_equal(on_device, run([](wave_study& s) {
-                    s.generate("by itself");
-                    s.chunk = 17;
-                }));
+    const content in_chunks = run([](wave_study& s) {
+        s.generate("by itself");
+        s.chunk = 17;
+    });
+    CHECK(difference(on_device, in_chunks) == "");
     const content by_host = run([](wave_study& s) {
         s.generate("by the host", [](std::int64_t first, ensemble<studied::wave>& all) {
             for (std::int64_t i = 0; i < all.size(); ++i) {
@@ -182,7 +167,7 @@ TEST_CASE("A model sets instances by its own function, the same on every device"
             }
         });
     });
-    check_equal(on_device, by_host);
+    CHECK(difference(on_device, by_host) == "");
     if (tests::tests_cpu()) return;
     const content on_cpu = run([](wave_study& s) {
         s.generate("by itself");

@@ -90,6 +90,11 @@ TEST_CASE("the entries of a description become attributes with dots in their nam
     CHECK(attributes == expected);
 }
 
+TEST_CASE("a seed beyond the largest signed integer is no negative number among the attributes") {
+    const std::vector<attribute> expected{{"seed", "18446744073709551615"}};
+    CHECK(attributes_of(R"({"seed": 18446744073709551615})") == expected);
+}
+
 TEST_CASE("the record of a chunk comes back, and that of another chunk does not") {
     const layout content = tests::synthetic_layout();
     const stored_chunk stored{{"a \"device\"", std::nan(""), {{"ok", 3}, {"failed", 1}}},

@@ -6,15 +6,16 @@
 #include <random>
 #include <vector>
 
-#include <myriad/host/core/error.hpp>
 #include <myriad/study/reduction.hpp>
 
 #include "tests/catch.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace {
 
 using namespace myriad;
 using Catch::Matchers::Contains;
+using tests::message_of;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -121,14 +122,6 @@ TEST_CASE("Reductions have the same bits whatever the chunks are", "[reduction]"
     CHECK(data.reduce(user, 10)[0][1] == 1000);
 }
 TEST_CASE("Mistakes with reductions are refused with what is wrong", "[reduction]") {
-    const auto message_of = [](auto&& function) -> std::string {
-        try {
-            function();
-        } catch (const error& e) {
-            return e.what();
-        }
-        return "nothing was thrown";
-    };
     CHECK_THAT(message_of([] { (void)histogram_of("x", values({1, 1})); }), Contains("do not increase"));
     CHECK_THAT(message_of([] { (void)histogram_of("x", values({1})); }), Contains("two or more edges"));
     CHECK_THAT(message_of([] { (void)sum_of("", {}, 1, [](auto&, auto) {}); }), Contains("a name"));

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include <myriad/host/core/error.hpp>
 #include <myriad/study/study_plan.hpp>
 
 #include "tests/catch.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace {
 
@@ -34,12 +34,7 @@ std::vector<std::string> names_of(const layout& content) {
     return names;
 }
 std::string message_of(const study_request& asked) {
-    try {
-        plan_study(asked);
-    } catch (const error& e) {
-        return e.what();
-    }
-    return "nothing was thrown";
+    return tests::message_of([&] { plan_study(asked); });
 }
 
 }  // namespace

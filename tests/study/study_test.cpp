@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
-#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -20,13 +19,19 @@
 #include <unistd.h>
 
 #include "tests/catch.hpp"
+#include "tests/study/content.hpp"
 #include "tests/study/models.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace {
 
 using namespace myriad;
 using studied::duffing;
 using studied::lorenz;
+using tests::content;
+using tests::content_of;
+using tests::difference;
+using tests::message_of;
 using method = dense<tsitouras_5>;
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
@@ -70,42 +75,10 @@ void describe(study<duffing, method>& s) {
     s.devices = {device::cpu(1)};
 }
 
-/// The names of variables that differ.
-using content = std::map<std::string, std::vector<std::byte>>;
-std::string difference(const content& a, const content& b) {
-    if (a.size() != b.size()) return message(a.size(), " and ", b.size(), " variables");
-    std::string names;
-    for (const auto& [name, bytes] : a)
-        if (const auto other = b.find(name); other == b.end() || other->second != bytes) names += name + ' ';
-    return names;
-}
-
-/// All variables of results, as bytes.
-content content_of(const study_result& r) {
-    content all;
-    const studies::layout& layout = r.content();
-    for (const studies::variable& v : layout.variables) {
-        if (v.extent == studies::along::chunks) continue;
-        const std::int64_t items = v.extent == studies::along::nothing ? 1 : layout.instances();
-        auto& bytes = all[v.name];
-        bytes.resize(static_cast<std::size_t>(items * v.values_per_item()) * studies::size_of(v.type));
-        r.results().read(v.name, 0, items, bytes.data());
-    }
-    return all;
-}
 std::vector<device> cpus(std::initializer_list<int> threads) {
     std::vector<device> all;
     for (const int t : threads) all.push_back(device::cpu(t));
     return all;
-}
-template <class Function>
-std::string message_of(Function&& function) {
-    try {
-        function();
-    } catch (const error& e) {
-        return e.what();
-    }
-    return "nothing was thrown";
 }
 
 }  // namespace

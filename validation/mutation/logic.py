@@ -20,12 +20,12 @@ import time
 
 # name: (header, text, replacement, the problem that shows it). The text must occur exactly once.
 MUTATIONS = {
-    "swapped_direction": ("kernel/event/locator.hpp",
-                          "sides.args.falling)) | (~above & masks::from_bits(sides.args.rising))",
-                          "sides.args.rising)) | (~above & masks::from_bits(sides.args.falling))",
+    "swapped_direction": ("kernel/event/side_follower.hpp",
+                          "args.falling)) | (~above & masks::from_bits(args.rising))",
+                          "args.rising)) | (~above & masks::from_bits(args.falling))",
                           "bouncing_ball"),
-    "unseen_direction": ("kernel/event/locator.hpp", "(above & masks::from_bits(sides.args.falling))",
-                         "(above & masks::from_bits(sides.args.rising))", "bouncing_ball"),
+    "unseen_direction": ("kernel/event/side_follower.hpp", "(above & masks::from_bits(args.falling))",
+                         "(above & masks::from_bits(args.rising))", "bouncing_ball"),
     "lost_action": ("kernel/integrator/hook_driver.hpp",
                     "run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_event(j, lane); });",
                     "static_cast<void>(j);", "bouncing_ball"),

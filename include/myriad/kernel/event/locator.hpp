@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Detects and locates events: whether an event function crossed zero in a trial step, and whether a redone step ends at
-// the crossing. No trial is committed beyond a crossing.
+// Locates events: whether the trial of a lane crossed, and the step redone until it ends at the crossing. No trial is
+// committed beyond a crossing.
 //
-// Every step checks the functions' signs, in all lanes at once. The rest runs one lane at a time, only where something
-// happens, from recomputed values, so that it costs ordinary steps neither time nor registers.
+// It works on one lane at a time, only where something happens, from recomputed values, so that it costs ordinary steps
+// neither time nor registers.
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/earliest_crossing.hpp"
+#include "myriad/kernel/event/event_sight.hpp"
 #include "myriad/kernel/event/side_follower.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -16,34 +17,25 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// or still those at its start.
 enum class trial_outcome { is_redone, stands, stands_before_sides };
 
-/// The event functions at the end of a trial, compared with the sides they were on.
-template <class S, int events>
-struct event_sight {
-    vec<S, events> g1;
-    mask_set<mask_of<S>, events> beyond;   // its tolerance, on either side
-    mask_set<mask_of<S>, events> crossed;  // and on the other side than it was
-    mask_of<S> busy;                       // an accepted trial has to be looked at more closely
+/// The ends of a trial, in all lanes.
+template <class Model, class S>
+struct trial_ends {
+    S t1;
+    vec<S, n_state<Model>> y, slope_start, slope_end;  // slope_end only for methods that compute it
+    vec<S, n_event<Model>> g;
 };
-template <class S>
-struct event_sight<S, 0> {};
 
 template <class Model, class Method, class S>
 struct event_locator {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
-    using follower = side_follower<Model, Method, S>;
-    using values = vec<S, m>;  // of the event functions in all lanes
-    using reals = vec<R, m>;   // in one lane
-    using masks = mask_set<mask, m>;
+    using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using ends_of_step = step_ends<Model, R>;
-    using trial_type = trial_step<Method, S, n>;
     using fired = fired_events<Model, S>;
-    using sight = event_sight<S, m>;
 
-    follower sides;
+    side_follower<Model, Method, S> sides;
 
     /// Sets the length of the next trial in lanes that redo their step.
     MYRIAD_FUNCTION void propose_step() {
@@ -66,87 +58,9 @@ struct event_locator {
         return lanes;
     }
 
-    /// What the event functions g1 at the end of a trial show of it, whether it will be accepted or not.
-    MYRIAD_FUNCTION sight watch(const values& g1) const {
-        const auto& args = sides.args;
-        const auto& e = sides.e;
-        sight seen{g1, {}, {}, mask(false)};
-        masks below;
-        below.clear();
-        seen.beyond.clear();
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            below.set_negative(j, g1[j]);
-            seen.beyond.set(j, abs(g1[j]) > S(args.event[j].tolerance));
-        }
-        // A function has crossed if it was above zero and is below, or was below and is above.
-        seen.crossed = seen.beyond & ~(e.above ^ below);
-        seen.busy =
-            e.flags[e.in_question] | (seen.crossed & asked()).any_of() | (sides.s.final_step & !seen.beyond.all_of());
-        return seen;
-    }
-
-    /// Checks an accepted trial that ends at t1. Lanes that crossed, or stopped short of their target, are set up for a
-    /// redone step and removed from `accepted`. `events` then holds those that fired: at the end of the trial or, in
-    /// lanes removed from `accepted`, at its start.
-    MYRIAD_FUNCTION void look(const trial_type& trial, const S& t1, const sight& seen, mask& accepted, fired& events) {
-        auto& e = sides.e;
-        if constexpr (is_pack<S>) {
-            events.which.clear();  // a pack's values lie in memory
-            events.changed = mask(false);
-        } else {
-            events.clear();
-        }
-        const mask busy = sides.s.running() & seen.busy;
-        mask follow = accepted & !busy;
-        if (MYRIAD_UNLIKELY(any(busy))) {
-            const trial_ends ends = ends_of(trial, t1, seen.g1);
-            if constexpr (is_pack<S>) {
-                // Copies, so that only these need an address and the caller's variables stay in registers.
-                mask still_accepted = accepted;
-                look_out_of_line(busy, ends, seen, still_accepted, events);
-                accepted = still_accepted;
-            } else {
-                if (accepted) {
-                    const trial_outcome outcome = look_closer(0, ends, seen, events);
-                    accepted = outcome != trial_outcome::is_redone;
-                    follow = outcome == trial_outcome::stands_before_sides;
-                } else {
-                    give_up(0);
-                }
-            }
-        }
-        e.above = e.above ^ seen.crossed.in(follow);
-        e.left = e.left | seen.beyond.in(follow);
-    }
-
-private:
-    /// The ends of a trial, in all lanes.
-    struct trial_ends {
-        S t1;
-        vec<S, n> y, slope_start, slope_end;  // slope_end only for methods that compute it
-        values g;
-    };
-    MYRIAD_FUNCTION trial_ends ends_of(const trial_type& trial, const S& t1, const values& g1) const {
-        trial_ends ends{t1, trial.y, trial.k[0], {}, g1};
-        if constexpr (Method::first_same_as_last) ends.slope_end = trial.slope_end();
-        return ends;
-    }
-    __attribute__((noinline)) void look_out_of_line(const mask& busy, const trial_ends& ends, const sight& seen,
-                                                    mask& accepted, fired& events) {
-        for_each_lane(busy, [&](int i) MYRIAD_LAMBDA {
-            if (!get_lane(accepted, i)) return give_up(i);
-            if (look_closer(i, ends, seen, events) == trial_outcome::is_redone) set_lane(accepted, i, false);
-        });
-    }
-    /// A redone step that failed its error test is not redone: the controller sets the length of the next.
-    MYRIAD_FUNCTION void give_up(int i) {
-        sides.memory_of(i).locating = false;
-        sides.note(i);
-    }
-
     /// Checks the trial of one lane in which an event may have fired.
-    MYRIAD_FUNCTION trial_outcome look_closer(int i, const trial_ends& ends, const sight& seen, fired& events) {
+    MYRIAD_FUNCTION trial_outcome look_closer(int i, const trial_ends<Model, S>& ends, const event_sight<S, m>& seen,
+                                              fired& events) {
         const auto& args = sides.args;
         auto& s = sides.s;
         auto& e = sides.e;
@@ -170,7 +84,7 @@ private:
         if (sides_are_known) {
             if constexpr (!is_pack<S>) {
                 step.g1 = ends.g;
-                crossed = seen.crossed & asked();
+                crossed = seen.crossed & sides.asked();
                 within = !seen.beyond.all_of();
             }
             MYRIAD_UNROLL
@@ -226,11 +140,23 @@ private:
         return trial_outcome::stands;
     }
 
-    /// The crossings that are events, from where the functions are.
-    MYRIAD_FUNCTION masks asked() const {
-        const auto& above = sides.e.above;
-        return (above & masks::from_bits(sides.args.falling)) | (~above & masks::from_bits(sides.args.rising));
+    /// A redone step that failed its error test is not redone: the controller sets the length of the next.
+    MYRIAD_FUNCTION void give_up(int i) {
+        sides.memory_of(i).locating = false;
+        sides.note(i);
     }
+
+    /// Looks closer at all of these lanes whose trial is accepted, and gives up in the others. Lanes whose step is
+    /// redone are removed from `accepted`.
+    __attribute__((noinline)) void look_out_of_line(const mask& busy, const trial_ends<Model, S>& ends,
+                                                    const event_sight<S, m>& seen, mask& accepted, fired& events) {
+        for_each_lane(busy, [&](int i) MYRIAD_LAMBDA {
+            if (!get_lane(accepted, i)) return give_up(i);
+            if (look_closer(i, ends, seen, events) == trial_outcome::is_redone) set_lane(accepted, i, false);
+        });
+    }
+
+private:
     /// The event to which the step was redone is reached.
     MYRIAD_FUNCTION void end_location(int i) {
         sides.memory_of(i).locating = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tracks the side of zero that each event function is on through steps, hooks and phases. It works on one lane, or is
-// rarely called; the check in every step is `event_locator::look`.
+// rarely called; the check in every step is `event_detector::watch`.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +31,7 @@ struct side_follower {
     static constexpr int m = n_event<Model>;
     using values = vec<S, m>;  // of the event functions in all lanes
     using reals = vec<R, m>;   // in one lane
+    using masks = mask_set<mask, m>;
     using flags = mask_set<bool, m>;
     using state = vec<R, n>;
     using fired = fired_events<Model, S>;
@@ -138,6 +139,11 @@ struct side_follower {
     MYRIAD_FUNCTION void note(int i) {
         const auto& own = memory_of(i);
         e.flags.set(e.in_question, i, own.locating || (own.open | own.on_jump).any_of() || args.sub_samples > 1);
+    }
+    /// The crossings that are events, from where the functions are.
+    MYRIAD_FUNCTION masks asked() const {
+        const masks& above = e.above;
+        return (above & masks::from_bits(args.falling)) | (~above & masks::from_bits(args.rising));
     }
     /// Whether event j fires when its function crosses from the given side.
     MYRIAD_FUNCTION bool is_asked(int j, R side) const {

@@ -8,7 +8,7 @@
 
 #include "myriad/kernel/controller/initial_step.hpp"
 #include "myriad/kernel/controller/stepping.hpp"
-#include "myriad/kernel/event/locator.hpp"
+#include "myriad/kernel/event/detector.hpp"
 #include "myriad/kernel/integrator/company.hpp"
 #include "myriad/kernel/integrator/free_run.hpp"
 #include "myriad/kernel/integrator/hook_driver.hpp"
@@ -31,6 +31,7 @@ struct integrator {
     using watch_type = phase_watch<Model, Method, S>;
     using trial_type = trial_step<Method, S, n>;
     using stepping_type = stepping<Model, Method, S>;
+    using event_detector_type = event_detector<Model, Method, S>;
     using event_locator_type = event_locator<Model, Method, S>;
     using sight_type = event_sight<S, m>;
 
@@ -57,7 +58,7 @@ struct integrator {
             take_step(trial);
             sight_type seen;
             if constexpr (has_events<Model>) {
-                seen = locator.watch(detail::evaluate_events<Model>(end_time(), trial.y, s.data));
+                seen = event_detector_type{locator}.watch(detail::evaluate_events<Model>(end_time(), trial.y, s.data));
                 if (waits(seen)) continue;
             }
             ++s.iteration;
@@ -156,7 +157,7 @@ struct integrator {
             for (int j = 0; j < m; ++j) defined = defined & (seen.g1[j] == seen.g1[j]);
             mask accepted = steps.judge(trial, t1, defined,
                                         [&](const mask& lanes) MYRIAD_LAMBDA { return locator.may_stick(lanes); });
-            locator.look(trial, t1, seen, accepted, events);
+            event_detector_type{locator}.look(trial, t1, seen, accepted, events);
             return accepted;
         }
     }

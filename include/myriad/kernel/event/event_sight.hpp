@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// What the detector saw of the event functions at the end of a trial step.
+#pragma once
+
+#include "myriad/kernel/core/vec.hpp"
+#include "myriad/kernel/scalar/mask_set.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// The event functions at the end of a trial, compared with the sides they were on.
+template <class S, int events>
+struct event_sight {
+    vec<S, events> g1;
+    mask_set<mask_of<S>, events> beyond;   // its tolerance, on either side
+    mask_set<mask_of<S>, events> crossed;  // and on the other side than it was
+    mask_of<S> busy;                       // an accepted trial has to be looked at more closely
+};
+template <class S>
+struct event_sight<S, 0> {};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
