@@ -12,7 +12,7 @@ function(myriad_add_host_sources target)
 endfunction()
 
 # myriad_add_study_sources(<target>): studies and their results on disk. What works on every value is fully optimised,
-# in an object library of its own, <target>_values; each of the two is compiled as one file.
+# in an object library of its own, <target>_values, as one file; the rest as two.
 function(myriad_add_study_sources target)
     cmake_path(SET folder NORMALIZE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../src/study")
     file(GLOB sources CONFIGURE_DEPENDS "${folder}/*.cpp")
@@ -24,4 +24,11 @@ function(myriad_add_study_sources target)
     target_sources(${target} PRIVATE ${sources})
     target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
     set_target_properties(${target} ${target}_values PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+    # The library of JSON takes as long as all the rest.
+    set(with_json layout metadata study_plan)
+    list(TRANSFORM with_json REPLACE "(.+)" "${folder}/\\1.cpp")
+    list(REMOVE_ITEM sources ${with_json})
+    set_source_files_properties(${with_json} PROPERTIES UNITY_GROUP with_json)
+    set_source_files_properties(${sources} PROPERTIES UNITY_GROUP other)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
 endfunction()

@@ -20,7 +20,7 @@ DIR/PROGRAM.log. The last lines are a table of their times by the clock. Exit st
   --small              sizes that take seconds on two cores; the full ones are for a GPU
   --only PROGRAM,...   only these
   --deps DIR           for a GPU: folder with the headers of what is not installed, DIR/xsimd and DIR/CLI
-                       (default: .deps)
+                       (default: .deps), and DIR/json with nlohmann/json for the program duffing
   --output DIR         (default: results/case_studies)
   --jobs N             processes at a time (default: number of cores)
 END_OF_USAGE
@@ -71,7 +71,8 @@ if [[ $device == cuda* ]]; then
     mapfile -t of_dependencies < <(dependency_options "$deps")
     options+=(-DMYRIAD_CUDA_COMPILE_CHECK=OFF -DMYRIAD_SKIP_MISSING=ON "${of_dependencies[@]}")
 else
-    require_packages g++ cmake ninja-build libeigen3-dev libxsimd-dev libcli11-dev python3-matplotlib
+    require_packages g++ cmake ninja-build libeigen3-dev libxsimd-dev libcli11-dev nlohmann-json3-dev \
+        python3-matplotlib
     preset=release
 fi
 
@@ -79,6 +80,12 @@ fi
 build=build/case-studies-$preset
 say "Building in $build"
 quietly "$output/configure.log" cmake --preset "$preset" -B "$build" "${options[@]}"
+while read -r left_out; do
+    say "Left out: $left_out, which needs nlohmann-json3-dev"
+    for i in "${!programs[@]}"; do
+        if [[ ${programs[i]} == "$left_out" ]]; then unset "programs[i]"; fi
+    done
+done < <(sed -n 's/^Left out: example \([a-z_]*\),.*/\1/p' "$output/configure.log")
 quietly "$output/build.log" cmake --build "$build" --parallel "$jobs" --target "${programs[@]}"
 
 plot=()

@@ -11,7 +11,8 @@ usage() {
 Usage: scripts/gpu.sh [--tests] [--sanitize] [--bench] [--profile] [--methods] [--python] [--deps DIR] [--output DIR]
                       [--jobs N] [--help]
 
-Needs nvcc, cmake, ninja, g++, Eigen, Catch2, Boost and a GPU. Nothing is installed and nothing fetched.
+Needs nvcc, cmake, ninja, g++, Eigen, Catch2, Boost and a GPU, and for studies nlohmann's JSON. Nothing is installed and
+nothing fetched.
 Without --tests, --sanitize, --bench, --profile, --methods or --python: the first three, in this order.
 
   --tests        the test programs on the GPU, then those of the solver on the CPU too
@@ -24,8 +25,8 @@ Without --tests, --sanitize, --bench, --profile, --methods or --python: the firs
                  pip download --only-binary :all: --dest DIR/wheels scikit-build-core nanobind pytest
                  With scipy too, the validation has its references, and errors are compared with other packages'.
                  A wheel of myriad there is taken as it is, which needs neither Python's headers nor CMake.
-  --deps DIR     folder with the headers of what is not installed: DIR/xsimd, DIR/CLI (default: .deps, if it is
-                 there)
+  --deps DIR     folder with the headers of what is not installed: DIR/xsimd, DIR/CLI, DIR/json (default: .deps,
+                 if it is there)
   --output DIR   where logs and CSV files go (default: results/gpu)
   --jobs N       processes at a time (default: number of cores)
 END
@@ -72,8 +73,10 @@ test_python() {
         python3 - "$PWD/$deps" >"$output/python_build.log" 2>&1 <<'END' ||
 import os, sys
 from scikit_build_core.build import build_wheel
-xsimd = {"cmake.define.MYRIAD_XSIMD_INCLUDE_DIR": sys.argv[1]} if os.path.isdir(sys.argv[1] + "/xsimd") else {}
-print(build_wheel("build/python-gpu-wheel", xsimd))
+folders = {"XSIMD": (sys.argv[1], "xsimd"), "JSON": (sys.argv[1] + "/json/include", "nlohmann")}
+print(build_wheel("build/python-gpu-wheel", {f"cmake.define.MYRIAD_{name}_INCLUDE_DIR": folder
+                                             for name, (folder, headers) in folders.items()
+                                             if os.path.isdir(f"{folder}/{headers}")}))
 END
             { tail -20 "$output/python_build.log"; return 1; }
         python3 -m zipfile -e build/python-gpu-wheel/*.whl "$packages"
@@ -105,11 +108,17 @@ fi
 
 mapfile -t options < <(dependency_options "$deps")
 options+=(-DMYRIAD_BUILD_VALIDATION=OFF -DMYRIAD_CUDA_COMPILE_CHECK=OFF)
+study=true
+if [[ ! -d $deps/json ]] && ! has_package nlohmann-json3-dev; then
+    study=false
+    options+=(-DMYRIAD_BUILD_STUDY=OFF)
+fi
 say "Building in build/cuda"
 cmake --preset cuda "${options[@]}" >"$output/configure.log" 2>&1 || { tail -30 "$output/configure.log"; exit 1; }
 targets=()
 if wants tests || wants sanitize; then targets+=(check_gpu); fi
-if wants bench; then targets+=(gpu_ensembles end_to_end several_gpus large_study); fi
+if wants bench; then targets+=(gpu_ensembles end_to_end several_gpus); fi
+if wants bench && $study; then targets+=(large_study); fi
 if wants profile; then targets+=(gpu_ensembles); fi
 if wants methods; then targets+=(methods); fi
 cmake --build --preset cuda --parallel "$jobs" --target "${targets[@]}" -- -k 0 >"$output/build.log" 2>&1 || {
@@ -160,8 +169,10 @@ if wants bench; then
     if (($(nvidia-smi -L | grep -c '^GPU ') > 1)); then
         build/cuda/benchmarks/several_gpus/several_gpus | tee "$output/several_gpus.csv" || failed+=(several_gpus)
     fi
-    build/cuda/benchmarks/large_study/large_study --device cuda --keep "$output" |
-        tee "$output/large_study.txt" || failed+=(large_study)
+    if $study; then
+        build/cuda/benchmarks/large_study/large_study --device cuda --keep "$output" |
+            tee "$output/large_study.txt" || failed+=(large_study)
+    fi
     cuobjdump --dump-resource-usage build/cuda/benchmarks/gpu_ensembles/gpu_ensembles 2>/dev/null | c++filt |
         sed -nE '
             /Function/ { s/.*Function (void )?//; s/(, )?\(.*//; h }

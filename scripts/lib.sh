@@ -66,6 +66,7 @@ has_package() {
         libopenmpi-dev) has_command mpicxx ;;
         openmpi-bin) has_command mpirun ;;
         libtomlplusplus-dev) has_header toml++/toml.h ;;
+        nlohmann-json3-dev) has_header nlohmann/json.hpp ;;
         libboost-dev) has_header boost/numeric/odeint.hpp ;;
         libsundials-dev) has_header cvode/cvode.h ;;
         catch2) has_header catch2/catch.hpp || has_header catch2/catch_test_macros.hpp ;;
@@ -154,11 +155,12 @@ then run this again."
 # Steps
 # ----------------------------------------------------------------------------------------------------------------------
 
-# dependency_options DIR: CMake's options for the dependencies in DIR, one per line: DIR/xsimd, DIR/CLI,
+# dependency_options DIR: CMake's options for the dependencies in DIR, one per line: DIR/xsimd, DIR/CLI, DIR/json,
 # DIR/sundials.
 dependency_options() {
     if [[ -d $1/xsimd ]]; then printf -- '-DMYRIAD_XSIMD_INCLUDE_DIR=%s\n' "$PWD/$1"; fi
     if [[ -d $1/CLI ]]; then printf -- '-DMYRIAD_CLI11_INCLUDE_DIR=%s\n' "$PWD/$1"; fi
+    if [[ -d $1/json ]]; then printf -- '-DCMAKE_PREFIX_PATH=%s\n' "$PWD/$1/json"; fi
     if [[ -d $1/sundials ]]; then printf -- '-DSUNDIALS_ROOT=%s\n' "$PWD/$1/sundials"; fi
 }
 

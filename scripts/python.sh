@@ -35,7 +35,7 @@ while (($#)); do
     shift
 done
 
-require_packages g++ cmake ninja-build python3 python3-dev python3-venv libxsimd-dev
+require_packages g++ cmake ninja-build python3 python3-dev python3-venv libxsimd-dev nlohmann-json3-dev
 rm -rf "$wheels" "$environment"
 mkdir -p "$wheels"
 pip=("$environment/bin/python" -m pip --quiet --disable-pip-version-check --retries 1 --timeout 20)

@@ -25,7 +25,7 @@ done
 
 started=$SECONDS
 require_packages g++ cmake ninja-build libeigen3-dev libxsimd-dev libcli11-dev libnetcdf-dev \
-    python3-matplotlib python3-netcdf4
+    nlohmann-json3-dev python3-matplotlib python3-netcdf4
 
 say "Building the example in build/release"
 # The other parts need further packages; 'cmake --preset release' switches them on again.

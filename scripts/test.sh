@@ -69,7 +69,7 @@ while (($#)); do
 done
 wants() { [[ " ${steps[*]} " == *" $1 "* ]]; }
 
-packages=(g++ cmake ninja-build python3 libeigen3-dev libxsimd-dev catch2 libnetcdf-dev)
+packages=(g++ cmake ninja-build python3 libeigen3-dev libxsimd-dev catch2 libnetcdf-dev nlohmann-json3-dev)
 if wants ci || wants cuda || wants clang; then
     packages+=(libboost-dev libcli11-dev libopenmpi-dev libsundials-dev libtomlplusplus-dev openmpi-bin
         python3-matplotlib python3-scipy python3-netcdf4 python3-xarray)

@@ -8,29 +8,30 @@
 #include <numeric>
 #include <type_traits>
 
+#include <nlohmann/json.hpp>
+
 #include "myriad/host/core/error.hpp"
-#include "myriad/study/json_value.hpp"
 #include "myriad/version.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
 namespace {
 
-using list = json_value::list;
-using object = json_value::object;
+// With keys in the order in which they are written, for those who read it.
+using json = nlohmann::ordered_json;
 
 constexpr std::int64_t coordinate_chunk = std::int64_t{1} << 20;  // 8 MB
 constexpr int store_format = 1;
 
 // JSON has no NaN and no infinity: as Zarr writes them.
-json_value number(double value) {
+json number(double value) {
     if (std::isnan(value)) return "NaN";
     if (std::isinf(value)) return value > 0 ? "Infinity" : "-Infinity";
     return value;
 }
 
-json_value fill_value(element type) {
-    return with_type(type, [type]<class T>(T value) -> json_value {
+json fill_value(element type) {
+    return with_type(type, [type]<class T>(T value) -> json {
         if constexpr (std::is_floating_point_v<T>) {
             return "NaN";
         } else {
@@ -40,16 +41,16 @@ json_value fill_value(element type) {
     });
 }
 
-json_value as_json(const std::vector<attribute>& attributes) {
-    json_value all = object{};
+json as_json(const std::vector<attribute>& attributes) {
+    json all = json::object();
     for (const attribute& a : attributes)
         all[a.name] = std::visit(
-            [](const auto& value) -> json_value {
+            [](const auto& value) -> json {
                 using T = std::remove_cvref_t<decltype(value)>;
                 if constexpr (std::is_same_v<T, double>) {
                     return number(value);
                 } else if constexpr (std::is_same_v<T, std::vector<double>>) {
-                    list values;
+                    json values = json::array();
                     for (const double v : value) values.push_back(number(v));
                     return values;
                 } else {
@@ -61,60 +62,58 @@ json_value as_json(const std::vector<attribute>& attributes) {
 }
 
 // A number that may be written as text.
-bool is_number(const json_value& value) {
+bool is_number(const json& value) {
     return value.is_number() || value == "NaN" || value == "Infinity" || value == "-Infinity";
 }
-double as_double(const json_value& value) {
-    if (value.is_number()) return value.number();
+double as_double(const json& value) {
+    if (value.is_number()) return value.get<double>();
     return value == "NaN" ? std::nan("") : value == "Infinity" ? HUGE_VAL : -HUGE_VAL;
 }
 
-std::vector<attribute> attributes_from(const json_value& all) {
+std::vector<attribute> attributes_from(const json& all) {
     std::vector<attribute> attributes;
-    for (const auto& [name, value] : all.members()) {
-        const auto is_list_of = [&list = value](auto condition) {
-            return list.is_list() && std::all_of(list.items().begin(), list.items().end(), condition);
+    for (const auto& [name, value] : all.items()) {
+        const auto every = [&items = value](auto condition) {
+            return std::all_of(items.begin(), items.end(), condition);
         };
-        if (value.is_integer()) {
-            attributes.push_back({name, value.integer()});
-        } else if (value.is_large()) {
-            attributes.push_back({name, value.text_of()});
+        if (value.is_number_unsigned() && !std::in_range<std::int64_t>(value.get<std::uint64_t>())) {
+            attributes.push_back({name, value.dump()});
+        } else if (value.is_number_integer()) {
+            attributes.push_back({name, value.get<std::int64_t>()});
         } else if (is_number(value)) {
             attributes.push_back({name, as_double(value)});
         } else if (value.is_string()) {
-            attributes.push_back({name, value.string()});
-        } else if (is_list_of([](const json_value& v) { return v.is_integer(); })) {
-            std::vector<std::int64_t> values;
-            for (const json_value& v : value.items()) values.push_back(v.integer());
-            attributes.push_back({name, values});
-        } else if (is_list_of(is_number)) {
+            attributes.push_back({name, value.get<std::string>()});
+        } else if (value.is_array() && every([](const json& v) { return v.is_number_integer(); })) {
+            attributes.push_back({name, value.get<std::vector<std::int64_t>>()});
+        } else if (value.is_array() && every(is_number)) {
             std::vector<double> values;
-            for (const json_value& v : value.items()) values.push_back(as_double(v));
+            for (const json& v : value) values.push_back(as_double(v));
             attributes.push_back({name, values});
         } else {
-            attributes.push_back({name, value.text_of()});
+            attributes.push_back({name, value.dump()});
         }
     }
     return attributes;
 }
 
-json_value as_json(const std::vector<dimension>& dimensions) {
-    list all;
-    for (const dimension& d : dimensions) all.push_back(list{d.name, d.length});
+json as_json(const std::vector<dimension>& dimensions) {
+    json all = json::array();
+    for (const dimension& d : dimensions) all.push_back({d.name, d.length});
     return all;
 }
 
-std::vector<dimension> dimensions_from(const json_value& all) {
+std::vector<dimension> dimensions_from(const json& all) {
     std::vector<dimension> dimensions;
-    for (const json_value& d : all.items()) dimensions.push_back({d.at(0).string(), d.at(1).integer()});
+    for (const json& d : all) dimensions.push_back({d.at(0).get<std::string>(), d.at(1).get<std::int64_t>()});
     return dimensions;
 }
 
 template <class E, std::size_t n>
-E named(const json_value& name, const std::pair<E, const char*> (&names)[n]) {
+E named(const json& name, const std::pair<E, const char*> (&names)[n]) {
     for (const auto& [value, known] : names)
         if (name == known) return value;
-    host::refuse({"unknown entry ", name.text_of()});
+    host::refuse({"unknown entry ", name.dump()});
 }
 template <class E, std::size_t n>
 const char* name_in(E value, const std::pair<E, const char*> (&names)[n]) {
@@ -131,47 +130,47 @@ constexpr std::pair<element, const char*> element_names[] = {{element::f64, "flo
                                                              {element::i32, "int32"},
                                                              {element::u8, "uint8"}};
 
-// What Zarr calls a name with a configuration.
-json_value configured(const char* name, const char* key, json_value value) {
-    return object{{"name", name}, {"configuration", object{{key, std::move(value)}}}};
-}
-
-json_value array_metadata(const array_shape& shape, const std::vector<attribute>& attributes) {
-    list lengths, parts, names;
+json array_metadata(const array_shape& shape, const std::vector<attribute>& attributes) {
+    json lengths = json::array(), parts = json::array(), names = json::array();
     for (const dimension& d : shape.dimensions) {
         parts.push_back(lengths.empty() ? shape.chunk : d.length);
         lengths.push_back(d.length);
         names.push_back(d.name);
     }
-    return object{{"zarr_format", 3},
-                  {"node_type", "array"},
-                  {"shape", lengths},
-                  {"data_type", name_of(shape.type)},
-                  {"chunk_grid", configured("regular", "chunk_shape", parts)},
-                  {"chunk_key_encoding", configured("default", "separator", ".")},
-                  {"fill_value", fill_value(shape.type)},
-                  {"codecs", list{configured("bytes", "endian", "little"), object{{"name", "crc32c"}}}},
-                  {"attributes", as_json(attributes)},
-                  {"dimension_names", names}};
+    return {{"zarr_format", 3},
+            {"node_type", "array"},
+            {"shape", lengths},
+            {"data_type", name_of(shape.type)},
+            {"chunk_grid", {{"name", "regular"}, {"configuration", {{"chunk_shape", parts}}}}},
+            {"chunk_key_encoding", {{"name", "default"}, {"configuration", {{"separator", "."}}}}},
+            {"fill_value", fill_value(shape.type)},
+            {"codecs", {{{"name", "bytes"}, {"configuration", {{"endian", "little"}}}}, {{"name", "crc32c"}}}},
+            {"attributes", as_json(attributes)},
+            {"dimension_names", names}};
 }
 
-// Adds what differs to a list, by the path of keys.
-void compare(const std::string& path, const json_value& stored, const json_value& here,
-             std::vector<std::string>& found) {
+bool all_objects(const json& list) {
+    return list.is_array() && std::all_of(list.begin(), list.end(), [](const json& v) { return v.is_object(); });
+}
+
+// Adds what differs to a list, by the path of keys. The order of keys is no difference.
+void compare(const std::string& path, const json& stored, const json& here, std::vector<std::string>& found) {
     if (stored == here) return;
     if (stored.is_object() && here.is_object()) {
         const std::string prefix = path.empty() ? "" : path + '.';
-        const json_value nothing;
-        for (const auto& [key, value] : stored.members()) {
-            const json_value* const other = here.find(key);
-            compare(prefix + key, value, other != nullptr ? *other : nothing, found);
-        }
-        for (const auto& [key, value] : here.members())
-            if (stored.find(key) == nullptr) compare(prefix + key, nothing, value, found);
+        for (const auto& [key, value] : stored.items())
+            compare(prefix + key, value, here.contains(key) ? here.at(key) : json(), found);
+        for (const auto& [key, value] : here.items())
+            if (!stored.contains(key)) compare(prefix + key, json(), value, found);
         return;
     }
-    const auto shown = [](const json_value& value) {
-        std::string text = value.is_null() ? "nothing" : value.text_of();
+    if (all_objects(stored) && all_objects(here) && stored.size() == here.size()) {
+        for (std::size_t i = 0; i < stored.size(); ++i)
+            compare(path + '[' + std::to_string(i) + ']', stored[i], here[i], found);
+        return;
+    }
+    const auto shown = [](const json& value) {
+        std::string text = value.is_null() ? "nothing" : value.dump();
         if (text.size() > 100) text = text.substr(0, 97) + "...";
         return text;
     };
@@ -179,41 +178,28 @@ void compare(const std::string& path, const json_value& stored, const json_value
 }
 
 // What must agree of a layout, by name and not by place.
-json_value comparable(const layout& content) {
-    json_value axes = object{}, variables = object{}, coordinates = object{};
+json comparable(const layout& content) {
+    json all = json::parse(content.description);
+    json axes = json::object(), variables = json::object(), coordinates = json::object();
     for (const dimension& d : content.axes) axes[d.name] = d.length;
     for (const variable& v : content.variables)
-        variables[v.name] = object{{"type", name_of(v.type)},
-                                   {"inner", as_json(v.inner)},
-                                   {"along", name_in(v.extent, extent_names)},
-                                   {"role", name_in(v.role, role_names)}};
+        variables[v.name] = {{"type", name_of(v.type)},
+                             {"inner", as_json(v.inner)},
+                             {"along", name_in(v.extent, extent_names)},
+                             {"role", name_in(v.role, role_names)}};
     for (const coordinate& c : content.coordinates) coordinates[c.name] = c.dimension;
-    return object{{"description", json_value::parse(content.description)},
-                  {"grid", axes},
-                  {"order of the grid", content.axes.size() > 1 ? as_json(content.axes) : json_value()},
-                  {"variables", variables},
-                  {"coordinates", coordinates}};
+    return {{"description", all},
+            {"grid", axes},
+            {"order of the grid", axes.size() > 1 ? as_json(content.axes) : json()},
+            {"variables", variables},
+            {"coordinates", coordinates}};
 }
 
-// What Myriad has written for itself in the metadata of a group.
-json_value own_part(std::string_view group, const std::string& path) {
-    json_value read;
-    try {
-        read = json_value::parse(group);
-    } catch (const json_error&) {
-        host::refuse({path, " is no JSON, so it is damaged: restore it, or give another folder"});
-    }
-    const json_value* const attributes = read.is_object() ? read.find("attributes") : nullptr;
-    const json_value* const own = attributes != nullptr ? attributes->find("myriad") : nullptr;
-    require(own != nullptr, path, " is not from a study of Myriad: give another folder");
-    return *own;
-}
-
-void flatten(const std::string& name, const json_value& value, json_value& flat) {
+void flatten(const std::string& name, const json& value, json& flat) {
     if (value.is_object()) {
-        for (const auto& [key, inner] : value.members()) flatten(name.empty() ? key : name + '.' + key, inner, flat);
-    } else if (value.is_bool()) {
-        flat[name] = value.boolean() ? "true" : "false";
+        for (const auto& [key, inner] : value.items()) flatten(name.empty() ? key : name + '.' + key, inner, flat);
+    } else if (value.is_boolean()) {
+        flat[name] = value.get<bool>() ? "true" : "false";
     } else if (!value.is_null()) {
         flat[name] = value;
     }
@@ -221,13 +207,7 @@ void flatten(const std::string& name, const json_value& value, json_value& flat)
 
 }  // namespace
 
-bool is_json_object(std::string_view text) {
-    try {
-        return json_value::parse(text).is_object();
-    } catch (const json_error&) {
-        return false;
-    }
-}
+bool is_json_object(std::string_view text) { return json::parse(text, nullptr, false).is_object(); }
 
 std::string hexadecimal(std::uint32_t value) {
     char text[9];
@@ -281,68 +261,70 @@ array_shape shape_of(const layout& content, const coordinate& c) {
 }
 
 std::string array_json(const array_shape& shape, const std::vector<attribute>& attributes) {
-    return array_metadata(shape, attributes).text_of(1) + '\n';
+    return array_metadata(shape, attributes).dump(1) + '\n';
 }
 
 std::string group_json(const layout& content) {
-    json_value arrays = object{};
-    list variables, coordinates;
+    json arrays = json::object(), variables = json::array(), coordinates = json::array();
     for (const coordinate& c : content.coordinates) {
         arrays[c.name] = array_metadata(shape_of(content, c), c.attributes);
-        coordinates.push_back(
-            object{{"name", c.name}, {"dimension", c.dimension}, {"attributes", as_json(c.attributes)}});
+        coordinates.push_back({{"name", c.name}, {"dimension", c.dimension}, {"attributes", as_json(c.attributes)}});
     }
     for (const variable& v : content.variables) {
         arrays[v.name] = array_metadata(shape_of(content, v), v.attributes);
-        variables.push_back(object{{"name", v.name},
-                                   {"type", name_of(v.type)},
-                                   {"inner", as_json(v.inner)},
-                                   {"along", name_in(v.extent, extent_names)},
-                                   {"role", name_in(v.role, role_names)},
-                                   {"attributes", as_json(v.attributes)}});
+        variables.push_back({{"name", v.name},
+                             {"type", name_of(v.type)},
+                             {"inner", as_json(v.inner)},
+                             {"along", name_in(v.extent, extent_names)},
+                             {"role", name_in(v.role, role_names)},
+                             {"attributes", as_json(v.attributes)}});
     }
-    const json_value own = object{{"format", store_format},
-                                  {"version", MYRIAD_VERSION},
-                                  {"axes", as_json(content.axes)},
-                                  {"chunk", content.chunk},
-                                  {"variables", variables},
-                                  {"coordinates", coordinates},
-                                  {"description", json_value::parse(content.description)}};
-    const json_value group =
-        object{{"zarr_format", 3},
-               {"node_type", "group"},
-               {"attributes", object{{"myriad", own}}},
-               {"consolidated_metadata", object{{"kind", "inline"}, {"must_understand", false}, {"metadata", arrays}}}};
-    return group.text_of(1) + '\n';
+    const json own = {{"format", store_format},
+                      {"version", MYRIAD_VERSION},
+                      {"axes", as_json(content.axes)},
+                      {"chunk", content.chunk},
+                      {"variables", variables},
+                      {"coordinates", coordinates},
+                      {"description", json::parse(content.description)}};
+    const json group = {
+        {"zarr_format", 3},
+        {"node_type", "group"},
+        {"attributes", {{"myriad", own}}},
+        {"consolidated_metadata", {{"kind", "inline"}, {"must_understand", false}, {"metadata", arrays}}}};
+    return group.dump(1) + '\n';
 }
 
 layout layout_of(std::string_view group, const std::string& path) {
+    const json read = json::parse(group, nullptr, false);
+    require(!read.is_discarded(), path, " is no JSON, so it is damaged: restore it, or give another folder");
+    require(read.is_object() && read.contains("attributes") && read.at("attributes").contains("myriad"), path,
+            " is not from a study of Myriad: give another folder");
     layout content;
     try {
-        const json_value own = own_part(group, path);
-        require(own.at("format") == store_format, path, " has format ", own.at("format").text_of(),
+        const json& own = read.at("attributes").at("myriad");
+        require(own.at("format") == store_format, path, " has format ", own.at("format").dump(),
                 ", and this version of Myriad knows ", store_format, ": use the version that wrote it, ",
-                own.at("version").text_of());
+                own.at("version").dump());
         content.axes = dimensions_from(own.at("axes"));
-        content.chunk = own.at("chunk").integer();
-        content.description = own.at("description").text_of();
-        for (const json_value& v : own.at("variables").items())
-            content.variables.push_back({v.at("name").string(), named(v.at("type"), element_names),
+        content.chunk = own.at("chunk").get<std::int64_t>();
+        content.description = own.at("description").dump();
+        for (const json& v : own.at("variables"))
+            content.variables.push_back({v.at("name").get<std::string>(), named(v.at("type"), element_names),
                                          dimensions_from(v.at("inner")), attributes_from(v.at("attributes")),
                                          named(v.at("along"), extent_names), named(v.at("role"), role_names)});
-        for (const json_value& c : own.at("coordinates").items())
-            content.coordinates.push_back({c.at("name").string(), c.at("dimension").string(),
+        for (const json& c : own.at("coordinates"))
+            content.coordinates.push_back({c.at("name").get<std::string>(), c.at("dimension").get<std::string>(),
                                            [](std::int64_t, std::span<double>) {},
                                            attributes_from(c.at("attributes"))});
         content.check();
-    } catch (const json_error& failure) {
+    } catch (const nlohmann::json::exception& failure) {
         host::refuse({path, " is damaged (", failure.what(), "): restore the file, or give another folder"});
     }
     return content;
 }
 
 std::vector<std::string> differences(const layout& stored, const layout& here) {
-    const json_value a = comparable(stored), b = comparable(here);
+    const json a = comparable(stored), b = comparable(here);
     std::vector<std::string> found;
     compare("", a.at("description"), b.at("description"), found);
     for (const char* const part : {"grid", "order of the grid", "variables", "coordinates"}) {
@@ -354,40 +336,40 @@ std::vector<std::string> differences(const layout& stored, const layout& here) {
 }
 
 std::vector<attribute> attributes_of(std::string_view description) {
-    json_value flat = object{};
-    flatten("", json_value::parse(description), flat);
+    json flat = json::object();
+    flatten("", json::parse(description), flat);
     return attributes_from(flat);
 }
 
 std::string record_json(const layout& content, std::int64_t chunk, const stored_chunk& stored) {
-    json_value files = object{}, statuses = object{};
+    json files = json::object(), statuses = json::object();
     std::size_t next = 0;
     for (const variable& v : content.variables)
         if (v.extent != along::nothing) files[v.name] = hexadecimal(stored.checksums.at(next++));
     for (const auto& [name, count] : stored.record.statuses) statuses[name] = count;
-    const json_value all = object{{"chunk", chunk},
-                                  {"instances", range_of(content, chunk).count},
-                                  {"device", stored.record.device},
-                                  {"seconds", number(stored.record.seconds)},
-                                  {"statuses", statuses},
-                                  {"crc32c", files}};
-    return all.text_of(1) + '\n';
+    const json all = {{"chunk", chunk},
+                      {"instances", range_of(content, chunk).count},
+                      {"device", stored.record.device},
+                      {"seconds", number(stored.record.seconds)},
+                      {"statuses", statuses},
+                      {"crc32c", files}};
+    return all.dump(1) + '\n';
 }
 
 stored_chunk record_of(std::string_view text, const layout& content, std::int64_t chunk) {
     stored_chunk stored;
     try {
-        const json_value read = json_value::parse(text);
+        const json read = json::parse(text);
         require(read.at("chunk") == chunk, "it is that of another chunk");
-        stored.record.device = read.at("device").string();
+        stored.record.device = read.at("device").get<std::string>();
         stored.record.seconds = as_double(read.at("seconds"));
-        for (const auto& [name, count] : read.at("statuses").members())
-            stored.record.statuses.emplace_back(name, count.integer());
+        for (const auto& [name, count] : read.at("statuses").items())
+            stored.record.statuses.emplace_back(name, count.get<std::int64_t>());
         for (const variable& v : content.variables)
             if (v.extent != along::nothing)
-                stored.checksums.push_back(
-                    static_cast<std::uint32_t>(std::stoul(read.at("crc32c").at(v.name).string(), nullptr, 16)));
-    } catch (const json_error& failure) {
+                stored.checksums.push_back(static_cast<std::uint32_t>(
+                    std::stoul(read.at("crc32c").at(v.name).get<std::string>(), nullptr, 16)));
+    } catch (const nlohmann::json::exception& failure) {
         host::refuse({"the record of chunk ", chunk, " is damaged: ", failure.what()});
     } catch (const std::logic_error&) {
         host::refuse({"the record of chunk ", chunk, " is damaged: a checksum is no number"});

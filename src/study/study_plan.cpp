@@ -7,14 +7,16 @@
 #include <cstring>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/kernel/core/abi.hpp"
-#include "myriad/study/json_value.hpp"
 #include "myriad/version.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
+using json = nlohmann::ordered_json;
 using enum component_kind;
 
 std::string partial_name(const ensemble_reduction& r) { return r.definition().name + "_partial"; }
@@ -51,25 +53,22 @@ std::int64_t study_plan::bytes_needed_on_host() const {
 
 namespace {
 
-using list = json_value::list;
-using object = json_value::object;
-
 // ---------------------------------------------------------------------------------------------------------------------
 // The description
 // ---------------------------------------------------------------------------------------------------------------------
 
 /// JSON has no NaN, which stands for a default, and no infinity.
-json_value number_or_word(double value) {
+json number_or_word(double value) {
     if (std::isnan(value)) return "default";
     if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
     return value;
 }
-json_value numbers(const std::vector<double>& all) {
+json numbers(const std::vector<double>& all) {
     constexpr std::size_t most = 1000;
+    json list = json::array();
     if (all.size() <= most) {
-        list values;
-        for (const double value : all) values.push_back(number_or_word(value));
-        return values;
+        for (const double value : all) list.push_back(number_or_word(value));
+        return list;
     }
     std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a of their bytes
     for (const double value : all) {
@@ -79,13 +78,13 @@ json_value numbers(const std::vector<double>& all) {
     }
     return message(all.size(), " values from ", all.front(), " to ", all.back(), ", hash ", hash);
 }
-json_value numbers(const per_component& all) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < all.size(); ++i) values.push_back(all[i]);
-    return numbers(values);
+json numbers(const per_component& all) {
+    std::vector<double> list;
+    for (std::size_t i = 0; i < all.size(); ++i) list.push_back(all[i]);
+    return numbers(list);
 }
 
-json_value describe(const axis_values& v) {
+json describe(const axis_values& v) {
     if (v.which() == axis_values::kind::list) return numbers(v.listed());
     constexpr const char* names[] = {"linspace", "logspace", "values", "random_uniform", "random_normal"};
     std::string text = names[static_cast<int>(v.which())];
@@ -94,112 +93,97 @@ json_value describe(const axis_values& v) {
     return text + ')';
 }
 
-json_value describe(const axes& all) {
-    list dimensions;
-    json_value fixed = object{}, random = object{};
+json describe(const axes& all) {
+    json made{{"dimensions", json::array()}, {"values", json::object()}, {"random", json::object()}};
     for (std::size_t d = 0; d < all.dimensions().size(); ++d) {
-        json_value along = object{{"name", all.dimensions()[d].name}, {"length", all.dimensions()[d].length}};
-        json_value components = object{};
+        json along{{"name", all.dimensions()[d].name}, {"length", all.dimensions()[d].length}};
         for (const axes::entry& e : all.entries())
-            if (e.dimension == static_cast<int>(d)) components[e.what.full_name()] = describe(e.values);
-        if (!components.members().empty()) along["components"] = components;
-        dimensions.push_back(along);
+            if (e.dimension == static_cast<int>(d)) along["components"][e.what.full_name()] = describe(e.values);
+        made["dimensions"].push_back(along);
     }
     for (const axes::entry& e : all.entries()) {
         if (e.dimension) continue;
         if (e.values.random()) {
-            random[e.what.full_name()] = describe(e.values);
+            made["random"][e.what.full_name()] = describe(e.values);
         } else {
-            fixed[e.what.full_name()] = number_or_word(e.values[0]);
+            made["values"][e.what.full_name()] = number_or_word(e.values[0]);
         }
     }
-    json_value made = object{{"dimensions", dimensions}, {"values", fixed}, {"random", random}};
-    if (!random.members().empty()) made["seed"] = all.seed();
+    if (!made["random"].empty()) made["seed"] = all.seed();
     return made;
 }
 
-json_value names_of(const component_names& names, component_kind kind, const component_list& chosen) {
-    list made;
-    for (const int c : chosen) made.push_back(names.find(message(name_of(kind), '.', c), {kind}).full_name());
+json names_of(const component_names& names, component_kind kind, const component_list& list) {
+    json made = json::array();
+    for (const int c : list) made.push_back(names.find(message(name_of(kind), '.', c), {kind}).full_name());
     return made;
 }
 
-json_value describe(const options& o, const component_names& names) {
-    list events;
+json describe(const options& o, const component_names& names) {
+    json events = json::array();
     for (const event_options& e : o.events)
-        events.push_back(object{{"direction", static_cast<int>(e.direction)},
-                                {"tolerance", number_or_word(e.tolerance)},
-                                {"stop_after", e.stop_after}});
-    json_value made = object{{"phases", o.phases},
-                             {"relative_tolerance", numbers(o.relative_tolerance)},
-                             {"absolute_tolerance", numbers(o.absolute_tolerance)},
-                             {"step", number_or_word(o.step)},
-                             {"minimum_step", number_or_word(o.minimum_step)},
-                             {"maximum_step", number_or_word(o.maximum_step)},
-                             {"growth_limit", number_or_word(o.growth_limit)},
-                             {"shrink_limit", number_or_word(o.shrink_limit)},
-                             {"max_steps", o.max_steps},
-                             {"phase_time", o.phase_time == phase_time::restart ? "restart" : "carry_on"},
-                             {"phase_length", number_or_word(o.phase_length)},
-                             {"phase_step", o.phase_step == phase_step::restart ? "restart" : "carry_on"},
-                             {"events", events},
-                             {"sub_samples", o.sub_samples},
-                             {"accumulation_limit", o.accumulation_limit}};
+        events.push_back({{"direction", static_cast<int>(e.direction)},
+                          {"tolerance", number_or_word(e.tolerance)},
+                          {"stop_after", e.stop_after}});
+    json made{{"phases", o.phases},
+              {"relative_tolerance", numbers(o.relative_tolerance)},
+              {"absolute_tolerance", numbers(o.absolute_tolerance)},
+              {"step", number_or_word(o.step)},
+              {"minimum_step", number_or_word(o.minimum_step)},
+              {"maximum_step", number_or_word(o.maximum_step)},
+              {"growth_limit", number_or_word(o.growth_limit)},
+              {"shrink_limit", number_or_word(o.shrink_limit)},
+              {"max_steps", o.max_steps},
+              {"phase_time", o.phase_time == phase_time::restart ? "restart" : "carry_on"},
+              {"phase_length", number_or_word(o.phase_length)},
+              {"phase_step", o.phase_step == phase_step::restart ? "restart" : "carry_on"},
+              {"events", events},
+              {"sub_samples", o.sub_samples},
+              {"accumulation_limit", o.accumulation_limit}};
     if (!o.record.empty()) {
-        made["record"] =
-            object{{"from_phase", o.record.from_phase},
-                   {"states", names_of(names, state, o.record.states)},
-                   {"accessories", names_of(names, accessory, o.record.accessories)},
-                   {"integer_accessories", names_of(names, integer_accessory, o.record.integer_accessories)},
-                   {"time", o.record.time}};
+        made["record"] = {{"from_phase", o.record.from_phase},
+                          {"states", names_of(names, state, o.record.states)},
+                          {"accessories", names_of(names, accessory, o.record.accessories)},
+                          {"integer_accessories", names_of(names, integer_accessory, o.record.integer_accessories)},
+                          {"time", o.record.time}};
     }
     if (!o.samples.empty()) {
-        made["samples"] = object{{"states", names_of(names, state, o.samples.states)},
-                                 {"capacity", o.samples.capacity},
-                                 {"evenly", o.samples.evenly},
-                                 {"times", numbers(o.samples.times)},
-                                 {"every", o.samples.every},
-                                 {"minimum_spacing", number_or_word(o.samples.minimum_spacing)},
-                                 {"from_phase", o.samples.from_phase}};
+        made["samples"] = {{"states", names_of(names, state, o.samples.states)},
+                           {"capacity", o.samples.capacity},
+                           {"evenly", o.samples.evenly},
+                           {"times", numbers(o.samples.times)},
+                           {"every", o.samples.every},
+                           {"minimum_spacing", number_or_word(o.samples.minimum_spacing)},
+                           {"from_phase", o.samples.from_phase}};
     }
-    return made;
-}
-
-template <class T>
-json_value as_object(const std::map<std::string, T>& all) {
-    object made;
-    for (const auto& [key, value] : all) made.push_back({key, value});
     return made;
 }
 
 std::string describe(const study_request& asked, const study_plan& plan) {
     const component_names& names = asked.axes.names();
-    std::map<std::string, int> counts;
+    std::map<std::string, int> components;
     for (const component& c : names.all())
-        if (c.kind != t_begin && c.kind != t_end) ++counts[name_of(c.kind)];
-    list kept;
-    json_value reductions = object{};
+        if (c.kind != t_begin && c.kind != t_end) ++components[name_of(c.kind)];
+    json kept = json::array(), reductions = json::object();
     for (const quantity& q : plan.quantities)
         if (q.stored) kept.push_back(q.as.name);
-    for (const ensemble_reduction& r : asked.reductions) {
-        const reduction_definition& d = r.definition();
-        reductions[d.name] = object{{"of", d.inputs}, {"what", d.description}};
-    }
-    json_value made = object{{"model", names.model()},
-                             {"components", as_object(counts)},
-                             {"method", asked.method},
-                             {"real", name_of(asked.real)},
-                             {"version", MYRIAD_VERSION},
-                             {"axes", describe(asked.axes)},
-                             {"options", describe(asked.options, names)},
-                             {"kept", kept}};
+    for (const ensemble_reduction& r : asked.reductions)
+        reductions[r.definition().name] = {{"of", r.definition().inputs}, {"what", r.definition().description}};
+    json made{{"model", names.model()},
+              {"components", components},
+              {"method", asked.method},
+              {"real", name_of(asked.real)},
+              {"version", MYRIAD_VERSION},
+              {"axes", describe(asked.axes)},
+              {"options", describe(asked.options, names)},
+              {"kept", kept}};
     if (!asked.title.empty()) made["title"] = asked.title;
-    if (!reductions.members().empty()) made["reductions"] = reductions;
+    if (!reductions.empty()) made["reductions"] = reductions;
     if (!asked.generator.empty()) made["generator"] = asked.generator;
     if (asked.generates_itself) made["axes"]["seed"] = asked.axes.seed();
-    if (!asked.notes.empty()) made["notes"] = as_object(asked.notes);
-    if (!asked.units.empty()) made["units"] = as_object(asked.units);
-    return made.sorted().text_of(2);
+    if (!asked.notes.empty()) made["notes"] = asked.notes;
+    if (!asked.units.empty()) made["units"] = asked.units;
+    return made.dump(2);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -234,8 +218,8 @@ private:
     void check_texts() const {
         const auto check = [](const std::string& what, const std::string& text) {
             try {
-                (void)json_value(text).text_of();
-            } catch (const json_error&) {
+                (void)json(text).dump();
+            } catch (const json::exception&) {
                 throw error(message(what, " is no text in UTF-8: give it in that encoding"));
             }
         };
