@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The compiled parts of the host side, which the libraries and the Python package's module consist of. Their files are
-# compiled together, several at a time, as most of the time of each is that of the headers.
+# The compiled parts of the host side, which are in the libraries and in the Python package's module. Their files are
+# compiled together, several at a time, since a file alone takes most of its time for headers.
 
 # myriad_add_host_sources(<target>): what depends on no model.
 function(myriad_add_host_sources target)
@@ -25,7 +25,7 @@ function(myriad_add_study_sources target)
     target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
     set_target_properties(${target} ${target}_values PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
     # The library of JSON takes as long as all the rest.
-    set(with_json layout metadata study_plan)
+    set(with_json metadata study_plan)
     list(TRANSFORM with_json REPLACE "(.+)" "${folder}/\\1.cpp")
     list(REMOVE_ITEM sources ${with_json})
     set_source_files_properties(${with_json} PROPERTIES UNITY_GROUP with_json)

@@ -45,11 +45,12 @@ template <class Value>
 void add(CLI::App& app, const own_option& offered, Value& variable) {
     CLI::Option* const option = app.add_option(offered.name, variable, offered.meaning);
     if (!offered.type_name.empty()) option->type_name(offered.type_name);
-    if constexpr (is_list<Value>) option->delimiter(',');
-    if constexpr (!is_list<Value>)
+    if constexpr (is_list<Value>) {
+        option->delimiter(',');
+        if (!variable.empty()) option->capture_default_str();
+    } else {
         option->capture_default_str();
-    else if (!variable.empty())
-        option->capture_default_str();
+    }
     if (const auto* range = std::get_if<own_option::range>(&offered.allowed)) {
         using bound = std::conditional_t<std::is_integral_v<Value>, std::int64_t, double>;
         const CLI::Range within(static_cast<bound>(range->front()), static_cast<bound>(range->back()));

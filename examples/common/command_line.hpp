@@ -32,8 +32,7 @@ struct sweep_options : sweep_size {
     bool quiet = false;
 };
 
-/// A further option of one program. What the variable holds before is the standard value; lists are separated by
-/// commas.
+/// A further option of one program. Its default is what the variable holds; elements of a list are separated by commas.
 struct own_option {
     using range = std::array<double, 2>;  // least and most
     using names = std::vector<std::string>;

@@ -105,6 +105,7 @@ class Body:
                 uses[id(argument)] = uses.get(id(argument), 0) + 1
         for root in roots:
             uses[id(root)] = uses.get(id(root), 0) + 1
+        # C++ evaluates operands in any order: draws within expressions are statements of their own, in one order
         drawn = [node for node in order if node.op in draws]
         in_order = all(uses[id(node)] == 1 and any(node is root for root in roots) for node in drawn)
         depth = {}

@@ -554,6 +554,7 @@ draws = ("uniform", "normal")
 
 
 def _draw(kind, a, b):
+    """A draw, with a number of its own: two equal calls are two draws."""
     return make(kind, (to_real(as_number(a)), to_real(as_number(b))), value=uuid.uuid4().int)
 
 

@@ -469,7 +469,7 @@ class Model:
 
     @property
     def generator(self):
-        """What `generate` does, for people; empty if there is none."""
+        """What `generate` does, as text for the description of a study; empty if there is none."""
         return "; ".join(f"{target.value[1]} = {text(value)}" for target, value in self.generate)
 
     def cpp(self, name=None):

@@ -171,7 +171,7 @@ _loaded = {}
 
 
 def _cached(source, capability, load):
-    """A program from the cache, or compiled into it, and what `load` makes of its file."""
+    """Takes a program from the cache, or compiles it into the cache, and loads it: `load` gets its file."""
     path = find()
     if path is None:
         library()  # says so

@@ -461,8 +461,8 @@ def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples
               if nothing is recorded, sampled or reduced
     reduce    reductions over all instances: `myriad.reduce.mean("x_end")` and others
     draws     instances for each point of the other axes, as for random values
-    seed      of random values, which depend on it, the component and the instance's number alone, and of those that
-              `generate=` of the model draws
+    seed      of random values: those along axes depend on it, the component and the instance's number alone, and those
+              that `generate=` of the model draws on it, the draw and the instance's number
     units     {component: unit} for results; notes: {key: text}, anything that tells this study from others, such as the
               version of data: a store that was made with other notes is refused
 

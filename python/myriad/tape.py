@@ -64,7 +64,7 @@ class Writer:
             for argument in dict.fromkeys(map(id, node.args)):
                 if uses[argument] == 0:
                     free.append(register[argument])
-            # a product, and a remainder, read their arguments after they have stored something
+            # products and remainders read their arguments after they have stored something
             unread = [r for r in free if node.op not in ("dot", "remainder") or r not in arguments]
             if len(unread) < (2 if node.op == "dot" else 1):
                 raise _refuse("one of its functions needs more intermediate values than the interpreter has")

@@ -12,8 +12,7 @@
 
 namespace myriad::python {
 
-/// First and last step of each function: rhs, events, initialise, after_step, finalise, generate,
-/// after each event.
+/// First and last step of each function: rhs, events, initialise, after_step, finalise, generate, after each event.
 using tape_functions = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// A tape with its memory. Throws `error` if it is not a valid one.

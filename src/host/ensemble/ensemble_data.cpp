@@ -116,8 +116,8 @@ const component_array<std::int64_t>& ensemble_data<R>::counter(component_array<s
     return counted.components() > 0 ? counted : on_demand(nothing_counted, std::int64_t{0});
 }
 
-/// What decides which arrays a call needs. In no unnamed namespace, as lambdas of members capture it, which g++ warns
-/// about where files are compiled together.
+/// What decides which arrays a call needs. Not in an unnamed namespace: lambdas of members capture it, about which g++
+/// warns where files are compiled together.
 struct call_needs {
     counting count;
     step_sizes steps;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The arguments of the kernels of studies, for host code and for what compiles kernels.
+// The arguments of the kernels of studies, for these and for host code that launches them.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@
 
 namespace myriad::cuda {
 
-/// Kernels and interface are those of `chunk_engine`; the kernels have a member `study` too.
+/// A `chunk_engine` whose `Kernel` also has a member `study`: the kernels of studies.
 template <class Kernel, class Interface = study_engine_for<typename Kernel::arguments>>
 class study_engine final : public chunk_engine<Kernel, Interface> {
     using base = chunk_engine<Kernel, Interface>;
