@@ -283,3 +283,40 @@ def test_messages_of_studies():
         my.solve(model, {beta: 1, rho: 28}, time=(0, 1))
     run = my.solve(model, {beta: 1, rho: 28}, start={x: 1, y: 1, z: 1}, time=(0, 1), device="cpu")
     assert run.report.by_status == {"success": 1}
+
+
+def test_tangents_leave_no_instance_ungenerated():
+    model = my.with_tangents(lorenz(accessories={n: n, a: a}, generate=everything), 1)
+    with_tangents, without = generated(50, model).run(device="cpu"), generated(50).run(device="cpu")
+    for name in ("rho_end", "n_end", "a_end"):
+        np.testing.assert_array_equal(with_tangents[name], without[name], name)
+    np.testing.assert_allclose(with_tangents["x_end"], without["x_end"], rtol=1e-12)
+
+
+@pytest.mark.parametrize("draws, values, message", [
+    (2**31 + 1, {n: my.instance}, "n values from 0 to 2147483648 in a study of 2147483649.*32 bits: use an acc"),
+    (2**31 + 2, {n: -my.instance}, "n values from -2147483649 to 0"),
+    (2**32 + 1, {n: my.instance // 2}, "n values from 0 to 2147483648"),
+    (2**27, {a: my.instance**2 % 1000}, "computes `instance . instance`.*from 0 to 18014398241046529.*exact up to"),
+    (9, {a: (my.instance * 6364136223846793005 + 1) % 1000}, "computes `6364136223846793005`.*begin with a real"),
+    (9, {a: my.shared_integer("k") * my.shared_integer("k")}, "computes `k . k`.*from 2500000000 to 2500000000"),
+])
+def test_whole_numbers_of_large_studies_are_not_cut_silently(draws, values, message):
+    given = {"k": 50_000} if "k . k" in message else {}
+    with pytest.raises(my.Error, match=message):
+        my.study(my.model({x: -x}, generate={x: 1, **values}), given, draws=draws, time=(0, 1))
+
+
+@pytest.mark.parametrize("draws, value", [
+    (2**31, my.instance), (2**40, my.instance % 7), (2**40, my.minimum(my.instance, 5) * my.maximum(3, -my.instance)),
+    (2**26, my.instance * my.instance % 10), (2**32, abs(my.instance // 2 - 5)),
+    (2**31, my.where(my.instance > 3, my.instance, -my.instance)),
+])
+def test_whole_numbers_that_fit_are_taken(draws, value):
+    my.study(my.model({x: -x}, generate={x: 1, n: value}), draws=draws, time=(0, 1))
+
+
+@pytest.mark.parametrize("what", ["generate", "initialise", "after_step", "finalise", "accessories"])
+def test_assignments_in_a_list_are_refused_with_a_message(what):
+    with pytest.raises(my.Error, match=f"{what} is a list.*give a dict, as in"):
+        my.model({x: -x}, **{what: [n]})
