@@ -44,6 +44,6 @@ def _range(node, known, instances, shared):
         "add": (a + c, b + d), "subtract": (a - d, b - c), "negate": (-b, -a), "min": (min(a, c), min(b, d)),
         "max": (max(a, c), max(b, d)), "multiply": (min(products), max(products)), "select": (min(a, c), max(b, d)),
         "abs": (max(0, a, -b), max(-a, b)),
-        "quotient": (a // c, b // c) if c else (0, 0), "remainder": (0, min(b, d - 1)),
+        "quotient": (a // c, b // c) if c else (0, 0), "remainder": (0, min(b, d - 1)) if a >= 0 else (1 - d, d - 1),
     }[node.op]
     return low, high, any(is_long for _, _, is_long in of)

@@ -128,6 +128,18 @@ def test_whole_numbers_are_those_of_python(interpreted):
             np.testing.assert_array_equal(result[f"a{c}_end"], expected[first + c], str(values[first + c]))
 
 
+def test_places_counted_from_behind_are_exact_in_single_precision():
+    i, first = my.instance, 100_000_001
+    values = [(i - first) % 3, (first - i) % 7, -(i + first) // 10 + 10_000_000, (5 * (i - first) - 2) // 4 + 2**27]
+    symbols = [my.accessory(f"a{c}") for c in range(4)]
+    model = my.model({x: -x}, generate={x: 1, **dict(zip(symbols, values))})
+    result = my.study(model, draws=12, time=(0, 0.1), precision="float", keep=symbols).run(device="cpu")
+    n = np.arange(12)
+    expected = [(n - first) % 3, (first - n) % 7, -(n + first) // 10 + 10_000_000, (5 * (n - first) - 2) // 4 + 2**27]
+    for c, symbol in enumerate(symbols):
+        np.testing.assert_array_equal(result[f"a{c}_end"], expected[c], str(values[c]))
+
+
 def test_places_of_a_grid_are_exact_in_single_precision():
     last = my.accessory("last")
     model = my.model({x: -x}, generate={x: 1, last: (my.instance + 5_000_000_001) % 10})
