@@ -128,6 +128,24 @@ def test_whole_numbers_are_those_of_python(interpreted):
             np.testing.assert_array_equal(result[f"a{c}_end"], expected[first + c], str(values[first + c]))
 
 
+@pytest.mark.parametrize("more", [{}, dict(interpreted=True), dict(precision="float")])
+def test_real_numbers_beside_that_of_the_instance_are_not_cut(more):
+    i, drawn = my.instance, my.uniform(0, 1)
+    curve = my.interpolate(i, [0.5, 1.5, 2.5], [1, 3, 9])
+    values = [my.minimum(i, 2.5), my.maximum(0.25 * i, -0.5 - i), my.minimum(drawn, i + 1), drawn, curve]
+    symbols = [my.accessory(f"a{c}") for c in range(5)]
+    model = my.model({x: -x}, generate={x: 1, **dict(zip(symbols, values))},
+                     initialise={y_0: my.minimum(my.instance, 2.5)})
+    result = my.study(model, draws=9, time=(0, 0.1), keep=[*symbols, y_0], **more).run(device="cpu")
+    n = np.arange(9)
+    limited, quarter, least, uniform, line = (result[f"a{c}_end"] for c in range(5))
+    np.testing.assert_array_equal(limited, np.minimum(n, 2.5))
+    np.testing.assert_array_equal(quarter, 0.25 * n)
+    np.testing.assert_array_equal(least, uniform)
+    np.testing.assert_allclose(line, np.interp(n, [0.5, 1.5, 2.5], [1, 3, 9]), rtol=1e-6)
+    np.testing.assert_array_equal(result["y_0_end"], np.minimum(n, 2.5))
+
+
 def test_places_counted_from_behind_are_exact_in_single_precision():
     i, first = my.instance, 100_000_001
     values = [(i - first) % 3, (first - i) % 7, -(i + first) // 10 + 10_000_000, (5 * (i - first) - 2) // 4 + 2**27]
