@@ -121,7 +121,8 @@ class Study:
             return f"{self._components.place[name][0]}.{name}"
         if name in ("t_begin", "t_end"):
             return name
-        raise unknown(name, list(self._components.place), "component of the model")
+        known = [n for n in self._components.place if n not in self._components.tables]
+        raise unknown(name, known, "component of the model")
 
     def _set_instances(self, made, components, sweep, start, time, draws):
         """Axes, random values and values for all instances."""
