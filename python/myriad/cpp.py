@@ -234,7 +234,7 @@ class Body:
         if node.type != integer and (all(a.op == "constant" for a in numbers) or function in ("pow", "powr", "fma")):
             values[first:] = [f"{self.names.R}({v})" if a.op == "constant" and "(" not in v else v
                               for a, v in zip(numbers, values[first:])]
-        elif function in ("min", "max") and any(map(_is_long, numbers)):
+        elif node.type == integer and function in ("min", "max") and any(map(_is_long, numbers)):
             values = [v if _is_long(a) else f"std::int64_t({v})" for a, v in zip(numbers, values)]
         elif node.type == integer and not self.scalar and all(map(_is_plain, numbers)):
             values[first] = f"myriad::integer_of<{self.names.R}>({values[first]})"

@@ -241,25 +241,45 @@ def _divide(a, b):
     return _arithmetic("divide", operator.truediv, a, b, always_real=True)
 
 
-def _divides_whole(a, b):
-    """Whether a // b and a % b are those of whole numbers: of the numbers of instances, phases and detections, and what
-    is counted from them, by a positive constant. They are exact, however large a is and in every precision."""
-    if not (a.type == integer and not _is_constant(a) and _is_whole(b) and b.value > 0):
-        return False
-    return all(node.value >= 0 if _is_whole(node) else node.value[0] in ("built-in", "event_count")
-               if node.op == "symbol" else node.op in ("add", "multiply", "min", "max", "quotient", "remainder")
-               for node in walk([a]))
+_whole_operations = ("add", "subtract", "multiply", "negate", "min", "max", "quotient", "remainder")
+
+
+def _is_counted(a):
+    """Whether a whole number is computed from those of instances, phases and detections alone."""
+    return a.type == integer and not _is_constant(a) and all(
+        _is_whole(n) or (n.value[0] in ("built-in", "event_count") if n.op == "symbol" else n.op in _whole_operations)
+        for n in walk([a]))
+
+
+def _may_be_negative(a):
+    return any(n.op in ("subtract", "negate") or _is_whole(n) and n.value < 0 for n in walk([a]))
+
+
+def _whole_remainder(a, b):
+    """a % b where both are whole numbers, b is a positive constant, and all are counted: exact, however large a is and
+    in every precision. None elsewhere. C++ rounds quotients towards zero."""
+    if not (_is_counted(a) and _is_whole(b) and b.value > 0):
+        return None
+    made = make("remainder", (a, b), type=integer)
+    if not _may_be_negative(a):
+        return made
+    reads_instance = any(n.value == ("built-in", "instance") for n in walk([a]))
+    return make("remainder", (_add(made, b), b), type=integer) if reads_instance else None
 
 
 def _floor_divide(a, b):
     a, b = as_number(a), as_number(b)
-    return make("quotient", (a, b), type=integer) if _divides_whole(a, b) else floor(_divide(a, b))
+    remainder = _whole_remainder(a, b)
+    if remainder is None:
+        return floor(_divide(a, b))
+    return make("quotient", (_subtract(a, remainder) if _may_be_negative(a) else a, b), type=integer)
 
 
 def _remainder(a, b):
     a, b = as_number(a), as_number(b)
-    if _divides_whole(a, b):
-        return make("remainder", (a, b), type=integer)
+    remainder = _whole_remainder(a, b)
+    if remainder is not None:
+        return remainder
     return a - _multiply(b, floor(_divide(a, b)))
 
 

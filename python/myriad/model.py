@@ -292,7 +292,7 @@ class Model:
         self.reductions, self.observed, start = [], [], []
         quantities = {}
         self._accessory_targets = []
-        for key, value in (accessories or {}).items():
+        for key, value in self._items(accessories, "accessories", self.line):
             target = self._target(key, "accessories")
             if target.value[0] not in ("accessory", "integer_accessory"):
                 raise Error(f"{target.value[1]} is no accessory but {sym.a(target.value[0])}"
@@ -322,10 +322,16 @@ class Model:
                             f"with myriad.phase_{extremum} of the same quantity")
         return start
 
+    @staticmethod
+    def _items(given, what, line):
+        if given is not None and not hasattr(given, "items"):
+            raise Error(f"{what} is a {type(given).__name__}{at(line)}: give a dict, as in {{target: value}}")
+        return (given or {}).items()
+
     def _assignments(self, given, what, taken=(), line=None):
         """[(target, value)] of a hook or action, checked."""
         made, line = [], line or self.line
-        for key, value in (given or {}).items():
+        for key, value in self._items(given, what, line):
             target = self._target(key, what)
             kind, name = target.value
             if what == "generate" and kind not in ("state", "parameter", "accessory", "integer_accessory"):

@@ -120,7 +120,8 @@ def _gather(components, sweep, start, time, size):
         for name, value in values.items():
             kind = components.place.get(name, (None,))[0]
             if kind is None or (kinds is not None and kind not in kinds):
-                known = [n for n, (k, _) in components.place.items() if kinds is None or k in kinds]
+                known = [n for n, (k, _) in components.place.items()
+                         if n not in components.tables and (kinds is None or k in kinds)]
                 raise unknown(name, known, f"component of the model that {source} can set")
             if name in given:
                 raise Error(f"'{name}' is given in the sweep and in start=: give it once")

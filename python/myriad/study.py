@@ -25,6 +25,7 @@ from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, 
                     make_options, refuse_missing)
 from .study_result import StudyResult
 from .symbols import t_begin, t_end, time as time_symbol
+from .whole_numbers import check_whole_numbers
 
 __all__ = ["Study", "study"]
 
@@ -93,6 +94,7 @@ class Study:
             if draws is not None:
                 made.repeat(_whole(draws, "draws", 1 << 62), "draw")
             made.seed(_whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
+            check_whole_numbers(getattr(model, "generate", ()), made.size, self._shared_integers)
             self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
             for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
                 if not isinstance(reduction, Reduction):
@@ -119,7 +121,8 @@ class Study:
             return f"{self._components.place[name][0]}.{name}"
         if name in ("t_begin", "t_end"):
             return name
-        raise unknown(name, list(self._components.place), "component of the model")
+        known = [n for n in self._components.place if n not in self._components.tables]
+        raise unknown(name, known, "component of the model")
 
     def _set_instances(self, made, components, sweep, start, time, draws):
         """Axes, random values and values for all instances."""
@@ -181,6 +184,8 @@ class Study:
                 made.axis(*pairs[0])
             else:
                 made.zip(pairs)
+        self._shared_integers = {name_of(k): int(v) for k, v in constants.items()
+                                 if _time_name(k) is None and name_of(k) in components.shared_integers}
         for key, value in constants.items():
             if isinstance(value, Random):
                 made.axis(self._full_name(key), value.core())
@@ -248,7 +253,7 @@ class Study:
         Ctrl-C ends a run when the chunks under way are done, or after ten seconds, and raises `myriad.Interrupted`,
         whose `run` has what is done; so does the store, in which the next run goes on. Raises `myriad.Error` if the
         store is of another study, with what differs, if a disk is full, and if a worker of an executor dies; what was
-        done stays in the store, and `error.result` has it."""
+        done stays in the store, and of an executor's run `error.result` has it."""
         if check not in ("sizes", "checksums"):
             raise Error(f"check is {check!r}: give \"sizes\" or \"checksums\"")
         folder = "" if store is None else os.path.abspath(os.fspath(store))

@@ -34,6 +34,8 @@ class WithTangents:
         self.shared_integers = [*model.shared_integers, "transient_phases"]
         self.accessories = [*model.accessories, *self._growth, "time_summed", "phase_began"]
         self.integer_accessories, self.events = list(model.integer_accessories), model.events
+        self.generated, self.generator = model.generated, model.generator
+        self.generate = getattr(model, "generate", ())  # not of a model in C++
         every = [*self.states, *self.parameters, *self.shared, *self.shared_integers, *self.accessories,
                  *self.integer_accessories, *(e.name for e in self.events)]
         twice = next((name for name in every if every.count(name) > 1), None)

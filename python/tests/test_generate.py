@@ -128,6 +128,36 @@ def test_whole_numbers_are_those_of_python(interpreted):
             np.testing.assert_array_equal(result[f"a{c}_end"], expected[first + c], str(values[first + c]))
 
 
+@pytest.mark.parametrize("more", [{}, dict(interpreted=True), dict(precision="float")])
+def test_real_numbers_beside_that_of_the_instance_are_not_cut(more):
+    i, drawn = my.instance, my.uniform(0, 1)
+    curve = my.interpolate(i, [0.5, 1.5, 2.5], [1, 3, 9])
+    values = [my.minimum(i, 2.5), my.maximum(0.25 * i, -0.5 - i), my.minimum(drawn, i + 1), drawn, curve]
+    symbols = [my.accessory(f"a{c}") for c in range(5)]
+    model = my.model({x: -x}, generate={x: 1, **dict(zip(symbols, values))},
+                     initialise={y_0: my.minimum(my.instance, 2.5)})
+    result = my.study(model, draws=9, time=(0, 0.1), keep=[*symbols, y_0], **more).run(device="cpu")
+    n = np.arange(9)
+    limited, quarter, least, uniform, line = (result[f"a{c}_end"] for c in range(5))
+    np.testing.assert_array_equal(limited, np.minimum(n, 2.5))
+    np.testing.assert_array_equal(quarter, 0.25 * n)
+    np.testing.assert_array_equal(least, uniform)
+    np.testing.assert_allclose(line, np.interp(n, [0.5, 1.5, 2.5], [1, 3, 9]), rtol=1e-6)
+    np.testing.assert_array_equal(result["y_0_end"], np.minimum(n, 2.5))
+
+
+def test_places_counted_from_behind_are_exact_in_single_precision():
+    i, first = my.instance, 100_000_001
+    values = [(i - first) % 3, (first - i) % 7, -(i + first) // 10 + 10_000_000, (5 * (i - first) - 2) // 4 + 2**27]
+    symbols = [my.accessory(f"a{c}") for c in range(4)]
+    model = my.model({x: -x}, generate={x: 1, **dict(zip(symbols, values))})
+    result = my.study(model, draws=12, time=(0, 0.1), precision="float", keep=symbols).run(device="cpu")
+    n = np.arange(12)
+    expected = [(n - first) % 3, (first - n) % 7, -(n + first) // 10 + 10_000_000, (5 * (n - first) - 2) // 4 + 2**27]
+    for c, symbol in enumerate(symbols):
+        np.testing.assert_array_equal(result[f"a{c}_end"], expected[c], str(values[c]))
+
+
 def test_places_of_a_grid_are_exact_in_single_precision():
     last = my.accessory("last")
     model = my.model({x: -x}, generate={x: 1, last: (my.instance + 5_000_000_001) % 10})
@@ -283,3 +313,40 @@ def test_messages_of_studies():
         my.solve(model, {beta: 1, rho: 28}, time=(0, 1))
     run = my.solve(model, {beta: 1, rho: 28}, start={x: 1, y: 1, z: 1}, time=(0, 1), device="cpu")
     assert run.report.by_status == {"success": 1}
+
+
+def test_tangents_leave_no_instance_ungenerated():
+    model = my.with_tangents(lorenz(accessories={n: n, a: a}, generate=everything), 1)
+    with_tangents, without = generated(50, model).run(device="cpu"), generated(50).run(device="cpu")
+    for name in ("rho_end", "n_end", "a_end"):
+        np.testing.assert_array_equal(with_tangents[name], without[name], name)
+    np.testing.assert_allclose(with_tangents["x_end"], without["x_end"], rtol=1e-12)
+
+
+@pytest.mark.parametrize("draws, values, message", [
+    (2**31 + 1, {n: my.instance}, "n values from 0 to 2147483648 in a study of 2147483649.*32 bits: use an acc"),
+    (2**31 + 2, {n: -my.instance}, "n values from -2147483649 to 0"),
+    (2**32 + 1, {n: my.instance // 2}, "n values from 0 to 2147483648"),
+    (2**27, {a: my.instance**2 % 1000}, "computes `instance . instance`.*from 0 to 18014398241046529.*exact up to"),
+    (9, {a: (my.instance * 6364136223846793005 + 1) % 1000}, "computes `6364136223846793005`.*begin with a real"),
+    (9, {a: my.shared_integer("k") * my.shared_integer("k")}, "computes `k . k`.*from 2500000000 to 2500000000"),
+])
+def test_whole_numbers_of_large_studies_are_not_cut_silently(draws, values, message):
+    given = {"k": 50_000} if "k . k" in message else {}
+    with pytest.raises(my.Error, match=message):
+        my.study(my.model({x: -x}, generate={x: 1, **values}), given, draws=draws, time=(0, 1))
+
+
+@pytest.mark.parametrize("draws, value", [
+    (2**31, my.instance), (2**40, my.instance % 7), (2**40, my.minimum(my.instance, 5) * my.maximum(3, -my.instance)),
+    (2**26, my.instance * my.instance % 10), (2**32, abs(my.instance // 2 - 5)),
+    (2**31, my.where(my.instance > 3, my.instance, -my.instance)),
+])
+def test_whole_numbers_that_fit_are_taken(draws, value):
+    my.study(my.model({x: -x}, generate={x: 1, n: value}), draws=draws, time=(0, 1))
+
+
+@pytest.mark.parametrize("what", ["generate", "initialise", "after_step", "finalise", "accessories"])
+def test_assignments_in_a_list_are_refused_with_a_message(what):
+    with pytest.raises(my.Error, match=f"{what} is a list.*give a dict, as in"):
+        my.model({x: -x}, **{what: [n]})

@@ -219,6 +219,14 @@ def test_a_study_goes_on_after_an_interrupt_and_after_a_kill(tmp_path):
     np.testing.assert_array_equal(whole["x_end"][::399], some["x"])
 
 
+def test_the_message_of_an_unknown_name_lists_no_elements_of_tables():
+    table = my.table("T", np.ones((50, 50)))
+    with pytest.raises(my.Error, match="'qqq' is no component of the model: there are x, k$"):
+        my.study(my.model({x: -k * table[1, 2] * x}), {k: 1}, start={x: 1}, time=(0, 1), keep=["qqq"])
+    with pytest.raises(my.Error, match="'qqq' is no component.*there are x, k$"):
+        my.solve(my.model({x: -k * table[1, 2] * x}), {k: 1, "qqq": 2}, start={x: 1}, time=(0, 1))
+
+
 def test_damage_is_found_and_mended(tmp_path):
     study = my.study(duffing(), grid(), keep=[x], **call)
     expected = study.run(tmp_path / "store", chunk=10)["x_end"]
@@ -229,7 +237,7 @@ def test_damage_is_found_and_mended(tmp_path):
     file.write_bytes(data)
     damage, = my.verify(tmp_path / "store")
     assert damage.variable == "x_end" and "checksum" in damage.reason
-    with pytest.raises(my.Error, match="checksum"):
+    with pytest.raises(my.Error, match="its checksum is.*start the study again with the option check set to checksums"):
         my.open_study(tmp_path / "store")["x_end"]
     mended = study.run(tmp_path / "store", check="checksums")
     assert mended.instances == 10

@@ -89,8 +89,8 @@ file_check read_array_file(file_system& files, const std::string& path, const ar
 }
 
 constexpr const char* repair_advice =
-    "): start the study again with the store's option check = resume_check::checksums, which reads all that is stored "
-    "and does what is damaged once more";
+    "): start the study again with the option check set to checksums, which reads all that is stored and does what is "
+    "damaged once more";
 
 // Writes a file of an array, filled up to its full length, to a temporary place.
 new_file write_array_file(file_system& files, const std::string& temporary, const array_shape& shape,

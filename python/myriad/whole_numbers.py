@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: MIT
+"""How large the whole numbers of `generate` become in a study, and the refusal of those that would be cut."""
+
+from .errors import Error, at
+from .expression import integer, text, walk
+
+_most_32 = 2**31 - 1
+_most_exact = 2**53  # what double precision and numbers of 64 bits both hold
+
+
+def check_whole_numbers(assignments, instances, shared):
+    """Refuses whole numbers of `generate`, [(target, value)], that a study of so many instances makes too large.
+    `shared` has the values of shared integers by name. Numbers counted from that of the instance have 64 bits, others,
+    and integer accessories, 32."""
+    known = {}  # by node: the least and the largest value, and whether it has 64 bits
+    for node in walk([value for _, value in assignments]):
+        if node.type != integer:
+            continue
+        low, high, is_long = known[id(node)] = _range(node, known, instances, shared)
+        most = _most_exact if is_long else _most_32
+        if low < -most - 1 or high > most:
+            raise Error(f"generate computes `{text(node)}`{at(node.line)}, which is from {low} to {high} in a study of "
+                        f"{instances} instances: whole numbers are exact up to {most} there; begin with a real number, "
+                        "as in `1.0 * a * b`")
+    for target, value in assignments:
+        low, high, _ = known.get(id(value), (0, 0, False))
+        if target.type == integer and (low < -_most_32 - 1 or high > _most_32):
+            raise Error(f"generate gives the whole number {target.value[1]} values from {low} to {high} in a study of "
+                        f"{instances} instances, and it has 32 bits: use an accessory")
+
+
+def _range(node, known, instances, shared):
+    if node.op == "constant":
+        return node.value, node.value, abs(node.value) > _most_32
+    if node.op == "symbol":
+        if node.value == ("built-in", "instance"):
+            return 0, instances - 1, True
+        value = shared.get(node.value[1]) if node.value[0] == "shared_integer" else None
+        return (-_most_32 - 1, _most_32, False) if value is None else (value, value, False)
+    of = [known[id(a)] for a in node.args if a.type == integer]
+    (a, b, _), (c, d, _) = of[0], of[-1]
+    products = a * c, a * d, b * c, b * d
+    low, high = {
+        "add": (a + c, b + d), "subtract": (a - d, b - c), "negate": (-b, -a), "min": (min(a, c), min(b, d)),
+        "max": (max(a, c), max(b, d)), "multiply": (min(products), max(products)), "select": (min(a, c), max(b, d)),
+        "abs": (max(0, a, -b), max(-a, b)),
+        "quotient": (a // c, b // c) if c else (0, 0), "remainder": (0, min(b, d - 1)) if a >= 0 else (1 - d, d - 1),
+    }[node.op]
+    return low, high, any(is_long for _, _, is_long in of)
