@@ -4,6 +4,7 @@
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -62,3 +63,12 @@ def test_it_looks_for_libraries_in_no_folder_of_its_own(files, tmp_path):
     assert read("rpath") == []
     assert all(re.match(r"(libstdc\+\+|libm|libgcc_s|libc|libpthread|libdl|librt|ld-linux-.*)\.so\.", library)
                for library in read("needed"))
+
+
+@pytest.mark.skipif(shutil.which("nm") is None, reason="nm is not there")
+def test_a_cpp_runtime_linked_into_it_does_not_crash_beside_that_of_another_package(files, tmp_path):
+    """Which it did in its first message, when locales of one found their parts in the other."""
+    (tmp_path / "core.so").write_bytes(next(content for name, content in files.items() if name.endswith(".so")))
+    shown = subprocess.run(["nm", "--dynamic", "--defined-only", str(tmp_path / "core.so")], capture_output=True,
+                           text=True, check=True).stdout.split()
+    assert shown[2::3] == ["PyInit__core"]
