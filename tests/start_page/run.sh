@@ -17,7 +17,7 @@ fi
 # snippet: library
 cmake -S . -B build/library -DMYRIAD_BUILD_TESTS=OFF -DMYRIAD_BUILD_EXAMPLES=OFF \
       -DMYRIAD_BUILD_BENCHMARKS=OFF -DMYRIAD_BUILD_VALIDATION=OFF
-cmake --build build/library
+cmake --build build/library --parallel "$(nproc)"
 cmake --install build/library --prefix build/prefix
 # end of snippet
 

@@ -339,7 +339,7 @@ TEST_CASE("damaged, truncated, lengthened, deleted and exchanged files are found
 
     const store reader = store::open(run);
     CHECK_THROWS_WITH(reader.read<double>("x", 0, 4),
-                      Contains("/x/c.0 is damaged (its checksum is") && Contains("check = resume_check::checksums"));
+                      Contains("/x/c.0 is damaged (its checksum is") && Contains("the option check set to checksums"));
     CHECK_THROWS_WITH(reader.read<std::int64_t>("count", 9, 1), Contains("/count/c.2 is damaged (it is too short)"));
     CHECK_THROWS_WITH(reader.read<std::int64_t>("count", 12, 1), Contains("has not the length it should have"));
     CHECK_THROWS_WITH(reader.read<std::int32_t>("step", 16, 1), Contains("/step/c.4.0.0 is damaged (it is missing)"));
