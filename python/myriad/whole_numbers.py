@@ -10,8 +10,8 @@ _most_exact = 2**53  # what double precision and numbers of 64 bits both hold
 
 def check_whole_numbers(assignments, instances, shared):
     """Refuses whole numbers of `generate`, [(target, value)], that a study of so many instances makes too large.
-    `shared` has the values of shared integers by name. Numbers counted from that of the instance have 64 bits, others,
-    and integer accessories, 32."""
+    `shared` has the values of shared integers by name. Whole numbers computed from the instance's number have 64 bits,
+    all others, and integer accessories, have 32."""
     known = {}  # by node: the least and the largest value, and whether it has 64 bits
     for node in walk([value for _, value in assignments]):
         if node.type != integer:
