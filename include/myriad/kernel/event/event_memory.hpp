@@ -15,6 +15,9 @@ struct event_memory {
     redone_step<R, n_event<Model>> redo;
     bool locating;  // the next trial is redone, to end at an event
     flags open;     // on the surface, side not yet known
+    flags held;     // so, unless the state was moved: then it is the side noted
+    flags fresh;    // the event fired at the committed state
+    flags at_jump;  // and its function has a jump there
     flags on_jump;  // the event fired right before a jump that no step has passed yet; the side is the one beyond it
     std::int32_t waited;                         // turns that it has waited for other threads' events
     vec<std::int32_t, n_event<Model>> lingered;  // how often in a row the event has fired without its function leaving

@@ -21,8 +21,19 @@ struct step_ends {
 
     /// The event functions at fraction theta of the step, on the cubic through its ends.
     MYRIAD_FUNCTION event_values values_at(R theta) const {
-        const state inside = detail::hermite_interpolation(y, y1, slope, slope1, h, theta);
-        return detail::evaluate_events<Model>(fma(theta, h, t), inside, p);
+        return detail::evaluate_events<Model>(fma(theta, h, t), state_at(theta), p);
+    }
+    /// The state there; at the end without the slope there.
+    MYRIAD_FUNCTION state state_at(R theta) const {
+        return theta < R(1) ? detail::hermite_interpolation(y, y1, slope, slope1, h, theta) : y1;
+    }
+    /// The rounding errors of the event functions at the end: the state there is the sum of that at the start and of
+    /// increments.
+    MYRIAD_FUNCTION event_values roundings() const {
+        state size;
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_state<Model>; ++c) size[c] = max(abs(y[c]), abs(y1[c])) + abs(h * slope[c]);
+        return detail::event_roundings<Model>(t1, y1, size, p);
     }
     /// Slopes of the event functions along the solution, at the start and at the end.
     MYRIAD_FUNCTION event_values slopes() const { return detail::event_slopes<Model>(t, y, slope, p); }
