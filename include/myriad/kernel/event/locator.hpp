@@ -84,20 +84,19 @@ struct event_locator {
         }
         reals side;
         flags crossed;
-        nearness near{};
         if (sides_are_known) {
+            auto& near = sides.memory_of(i).near;
+            if constexpr (!is_pack<S>) crossed = seen.crossed & sides.asked();
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {
                 side[j] = e.above.get(j, i) ? R(1) : R(-1);
-                near.band[j] = near.past[j] = location_tolerance(j, i, locating);
-            }
-            if constexpr (!is_pack<S>) {
-                crossed = seen.crossed & sides.asked();
-                MYRIAD_UNROLL
-                for (int j = 0; j < m; ++j)
-                    if (!(abs(step.g1[j]) > near.band[j])) crossed.set(j, false);
+                const R tolerance = location_tolerance(j, i, locating);
+                near.rounding[j] = near.floor[j] = R(0);
+                near.band[j] = near.past[j] = tolerance;
+                if (!(abs(step.g1[j]) > tolerance)) crossed.set(j, false);
             }
         } else {
+            auto& near = sides.memory_of(i).near;
             step.g = detail::evaluate_events<Model>(step.t, step.y, p);
             near.rounding = step.roundings();
             sides.settle_open_sides(i, step, near.rounding);
@@ -112,13 +111,12 @@ struct event_locator {
                 near.band[j] = max(location_tolerance(j, i, locating), near.floor[j]);
                 const bool located = locating && (redo.target == j || redo.crossed[j]);
                 near.past[j] = located ? near.band[j] : near.floor[j];
-                crossed.set(j, sides.crosses(j, side[j], step.g1[j], near.past[j]) &&
-                                   !sides.is_at_jump(j, i, step, R(1), step.g1[j]));
+                crossed.set(j, sides.crosses(j, side[j], step.g1[j], near.past[j]) && !sides.is_at_jump(j, i, step.h));
             }
         }
-        const bool is_last = get_lane(s.final_step, i) && ends_near_root(step, near);
+        const bool is_last = get_lane(s.final_step, i) && ends_near_root(i, step);
         arrival reached{};
-        if (locating) reached = arrival_of(i, step, side, near);
+        if (locating) reached = arrival_of(i, step, side);
         if (scans || crossed.any_of() || (locating ? !reached.is_plain() : is_last)) {
             if constexpr (Method::first_same_as_last) {
                 step.slope1 = get_lanes<R>(ends.slope_end, i);
@@ -129,12 +127,12 @@ struct event_locator {
         }
         R low = R(0), high = R(1);
         if (MYRIAD_UNLIKELY(scans)) {
-            crossed = scan(i, step, near, side, low, high);
-            if (locating) reached = arrival_of(i, step, side, near);
+            crossed = scan(i, step, side, low, high);
+            if (locating) reached = arrival_of(i, step, side);
         }
         if (crossed.any_of()) {
             know_start(i, step, side);
-            begin_or_shorten(i, step, near, side, crossed, low, high, events);
+            begin_or_shorten(i, step, side, crossed, low, high, events);
             return trial_outcome::is_redone;
         }
         if (locating) {
@@ -146,13 +144,12 @@ struct event_locator {
                 end_location(i);
                 return trial_outcome::stands_before_sides;
             }
-            if (arrive(i, step, near, side, reached, events) == trial_outcome::is_redone)
-                return trial_outcome::is_redone;
+            if (arrive(i, step, side, reached, events) == trial_outcome::is_redone) return trial_outcome::is_redone;
         } else if (is_last) {
             know_start(i, step, side);
-            end_on_root(i, step, near, side, events);
+            end_on_root(i, step, side, events);
         }
-        sides.follow(i, step, side, near.past, near.band);
+        sides.follow(i, step, side);
         sides.note(i);
         return trial_outcome::stands;
     }
@@ -174,13 +171,6 @@ struct event_locator {
     }
 
 private:
-    /// How near to zero event functions are in a trial.
-    struct nearness {
-        reals rounding;  // their rounding errors at its end
-        reals floor;     // a function that starts no farther from zero starts on the surface
-        reals band;      // an event is located within this
-        reals past;      // a function past zero by no more than this has not crossed
-    };
     /// How closely event j is to be located: as its options say, unless that is more than a small part of the
     /// function's change in the step.
     MYRIAD_FUNCTION R location_tolerance(int j, int i, bool locating) const {
@@ -201,7 +191,8 @@ private:
         return clear;
     }
     /// Whether an event may happen at the end of the domain.
-    MYRIAD_FUNCTION bool ends_near_root(const ends_of_step& step, const nearness& near) const {
+    MYRIAD_FUNCTION bool ends_near_root(int i, const ends_of_step& step) const {
+        const auto& near = sides.memory_of(i).near;
         bool any_near = false;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
@@ -231,8 +222,9 @@ private:
     }
     /// Checks `sub_samples` points of the step for the first crossing, updates the sides up to it, and sets [low, high]
     /// to the part of the step that contains it.
-    MYRIAD_FUNCTION flags scan(int i, const ends_of_step& step, const nearness& near, reals& side, R& low, R& high) {
+    MYRIAD_FUNCTION flags scan(int i, const ends_of_step& step, reals& side, R& low, R& high) {
         const auto& args = sides.args;
+        const auto& near = sides.memory_of(i).near;
         auto& e = sides.e;
         flags crossed;
         crossed.clear();
@@ -243,8 +235,7 @@ private:
             const reals g = last ? step.g1 : step.values_at(theta);
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j)
-                crossed.set(
-                    j, sides.crosses(j, side[j], g[j], near.past[j]) && !sides.is_at_jump(j, i, step, theta, g[j]));
+                crossed.set(j, sides.crosses(j, side[j], g[j], near.past[j]) && !sides.is_at_jump(j, i, length));
             if (crossed.any_of()) {
                 high = theta;
                 break;
@@ -252,7 +243,7 @@ private:
             if (!last) low = theta;
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {
-                if (!(abs(g[j]) > near.past[j]) || sides.is_at_jump(j, i, step, theta, g[j])) continue;
+                if (!(abs(g[j]) > near.past[j]) || sides.is_at_jump(j, i, length)) continue;
                 side[j] = sign_of(g[j]);
                 if (!sides.is_timeless(i, length) && !sides.memory_of(i).on_jump[j]) e.left.set(j, i, true);
             }
@@ -261,12 +252,13 @@ private:
     }
 
     /// Sets up a lane whose trial crossed: either a redone step, or an event at the start of the step.
-    MYRIAD_FUNCTION void begin_or_shorten(int i, const ends_of_step& step, const nearness& near, const reals& side,
-                                          const flags& crossed, R low, R high, fired& events) {
+    MYRIAD_FUNCTION void begin_or_shorten(int i, const ends_of_step& step, const reals& side, const flags& crossed,
+                                          R low, R high, fired& events) {
         const auto& args = sides.args;
         auto& s = sides.s;
         auto& own = sides.memory_of(i);
         auto& redo = own.redo;
+        const auto& near = own.near;
         const bool again = own.locating;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
@@ -315,8 +307,10 @@ private:
         /// Only the event itself happens here.
         MYRIAD_FUNCTION bool is_plain() const { return is_close() && !others && all_left; }
     };
-    MYRIAD_FUNCTION arrival arrival_of(int i, const ends_of_step& step, const reals& side, const nearness& near) const {
-        const auto& redo = sides.memory_of(i).redo;
+    MYRIAD_FUNCTION arrival arrival_of(int i, const ends_of_step& step, const reals& side) const {
+        const auto& own = sides.memory_of(i);
+        const auto& redo = own.redo;
+        const auto& near = own.near;
         arrival reached{R(0), R(0), R(0), false, true};
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
@@ -333,11 +327,12 @@ private:
     }
 
     /// Handles a redone step that ended before its crossing: close to it its events fire; else it is lengthened.
-    MYRIAD_FUNCTION trial_outcome arrive(int i, const ends_of_step& step, const nearness& near, const reals& side,
-                                         const arrival& reached, fired& events) {
+    MYRIAD_FUNCTION trial_outcome arrive(int i, const ends_of_step& step, const reals& side, const arrival& reached,
+                                         fired& events) {
         auto& e = sides.e;
         auto& own = sides.memory_of(i);
         auto& redo = own.redo;
+        const auto& near = own.near;
         const bool narrow = redo.is_between(step.h);
         reals slope = step.g1, middle = step.g1;
         if (!reached.is_plain()) {
@@ -381,11 +376,11 @@ private:
     /// by rounding alone, judged by both its slope and the last step. A function that settles at zero, or is still
     /// falling towards it, gets there later or never; one that is about to turn back, as at a double root, does not
     /// cross it.
-    MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const nearness& near, const reals& side,
-                                     fired& events) {
+    MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const reals& side, fired& events) {
+        auto& own = sides.memory_of(i);
         const reals slope = step.slopes1();
         const R rounding = end_rounding(i, step);
-        sides.memory_of(i).at_jump.clear();
+        own.at_jump.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const R g = side[j] * step.g1[j], speed = -side[j] * slope[j] * sign_of(step.h);  // towards zero
@@ -394,7 +389,7 @@ private:
             const bool close = abs(g) <= sides.end_tolerance(j);
             // The discriminant of the parabola through the last step's start, with the slope at its end.
             const R bend = (last_speed - speed) / abs(step.h);
-            const bool turns = speed * speed <= R(8) * bend * (abs(g) + near.rounding[j]);
+            const bool turns = speed * speed <= R(8) * bend * (abs(g) + own.near.rounding[j]);
             events.put(j, i, sides.is_asked(j, side[j]) && close && speed > R(0) && at_zero && !turns, step.g1[j]);
         }
     }

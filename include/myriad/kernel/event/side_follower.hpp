@@ -180,14 +180,11 @@ struct side_follower {
         }
     }
 
-    /// Whether event j fired at a jump that the state at fraction theta of the step, where its function is g, may not
-    /// have passed: if another event is located right after that one, rounding may leave the state before the jump.
-    MYRIAD_FUNCTION bool is_at_jump(int j, int i, const step_ends<Model, R>& step, R theta, R g) const {
-        if (!memory_of(i).on_jump[j]) return false;
-        if (abs(theta * step.h) <= past_jump(i)) return true;
-        const R side = side_of(j, i);
-        if (!(side * g < R(0))) return false;
-        return side * ahead_of(i, fma(theta, step.h, step.t), step.state_at(theta), step.slope, step.p)[j] > R(0);
+    /// Whether event j fired at a jump that a state within `length` of it may not have passed: if another event is
+    /// located right after that one, rounding may leave the state before the jump.
+    MYRIAD_FUNCTION bool is_at_jump(int j, int i, R length) const {
+        const auto& own = memory_of(i);
+        return own.on_jump[j] && abs(length) <= own.jump_time;
     }
     /// Whether `length` is within the rounding of t: values that near do not show that a function has left the place
     /// where it fired.
@@ -195,20 +192,18 @@ struct side_follower {
         return abs(length) <= R(4) * epsilon_of<R> * abs(get_lane(s.now(), i));
     }
 
-    /// Updates the sides at the end of an accepted trial; `side` holds those before it. A function that is past zero by
-    /// no more than `past` has not crossed, and one within its `band` not left the surface.
-    MYRIAD_FUNCTION void follow(int i, const step_ends<Model, R>& step, const reals& side, const reals& past,
-                                const reals& band) {
+    /// Updates the sides at the end of an accepted trial that was looked at closely; `side` holds those before it. A
+    /// function within its `band` has not left the surface.
+    MYRIAD_FUNCTION void follow(int i, const step_ends<Model, R>& step, const reals& side) {
         const bool timeless = is_timeless(i, step.h);
         auto& own = memory_of(i);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            if (is_at_jump(j, i, step, R(1), step.g1[j]))
-                continue;  // after the trial it is still at the jump where it fired
+            if (is_at_jump(j, i, step.h)) continue;  // after the trial it is still at the jump where it fired
             own.on_jump.set(j, false);
             own.fresh.set(j, own.fresh[j] && timeless);
-            put_side(j, i, abs(step.g1[j]) > past[j] ? sign_of(step.g1[j]) : side[j]);
-            e.left.set(j, i, e.left.get(j, i) || (abs(step.g1[j]) > band[j] && !timeless));
+            put_side(j, i, abs(step.g1[j]) > own.near.past[j] ? sign_of(step.g1[j]) : side[j]);
+            e.left.set(j, i, e.left.get(j, i) || (abs(step.g1[j]) > own.near.band[j] && !timeless));
         }
     }
 
@@ -342,25 +337,43 @@ private:
 
     /// The roundings that a look ahead of a jump is long.
     static constexpr double roundings_ahead = 64;
+    /// Of a time of so many roundings, until a state has moved by its own rounding.
+    static constexpr int most_doublings = 64;
     /// A time longer than the rounding of t, and than the error of the last location at a jump.
     MYRIAD_FUNCTION R past_jump(int i) const {
         const R error = epsilon_of<R> * abs(get_lane(s.now(), i)) + memory_of(i).redo.error();
         return R(roundings_ahead) * error;
     }
-    /// The event functions a little ahead of (t, y), by the rounding of t and of the state: beyond a jump to which a
-    /// step was located, if the state is heading for it. A longer look would pass the next event, too, of a state that
-    /// is close to it.
-    MYRIAD_FUNCTION reals ahead_of(int i, R t, state y, const state& slope, const inputs<Model, R>& p) const {
-        const R ahead = copysign(past_jump(i), get_lane(s.data.t_end, i) - get_lane(s.now(), i));
+    /// The event functions a little ahead, by the rounding of t and of the state: beyond a jump to which a step was
+    /// located, if the state is heading for it. A longer look would pass the next event, too, of a state close to it.
+    MYRIAD_FUNCTION reals look_ahead(int i, const lane_data<Model, S>& at, const state& slope) const {
+        const R t = get_lane(s.now(), i), ahead = copysign(past_jump(i), get_lane(at.t_end, i) - t);
+        state y = get_lanes<R>(at.y, i);
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) {
             const R rounding = R(roundings_ahead) * epsilon_of<R> * abs(y[c]);
             y[c] += fma(ahead, slope[c], sign_of(slope[c]) * sign_of(ahead) * rounding);
         }
-        return detail::evaluate_events<Model>(t + ahead, y, p);
+        return detail::evaluate_events<Model>(t + ahead, y, inputs_of(i, at));
     }
-    MYRIAD_FUNCTION reals look_ahead(int i, const lane_data<Model, S>& at, const state& slope) const {
-        return ahead_of(i, get_lane(s.now(), i), get_lanes<R>(at.y, i), slope, inputs_of(i, at));
+    /// A time after which the state has passed the jumps right before it: longer where it moves slowly.
+    MYRIAD_FUNCTION R time_to_pass(int i, const state& slope, const reals& there) const {
+        const R t = get_lane(s.now(), i);
+        const flags on_jump = memory_of(i).on_jump;
+        R ahead = copysign(past_jump(i), get_lane(s.data.t_end, i) - t);
+        MYRIAD_ROLLED
+        for (int k = 0; k < most_doublings; ++k) {
+            state y = get_lanes<R>(s.data.y, i);
+            MYRIAD_UNROLL
+            for (int c = 0; c < n; ++c) y[c] = fma(ahead, slope[c], y[c]);
+            const reals g = detail::evaluate_events<Model>(t + ahead, y, inputs_of(i));
+            bool passed = true;
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) passed = passed && (!on_jump[j] || g[j] * there[j] > R(0));
+            ahead *= R(2);
+            if (passed) break;
+        }
+        return abs(ahead);
     }
     /// Sets the sides of functions at a jump, with values g here, to those a little ahead.
     MYRIAD_FUNCTION void look_beyond(int i, const flags& at_jump, const reals& g, const state& slope) {
@@ -374,6 +387,7 @@ private:
                 memory_of(i).on_jump.set(j, true);
             }
         }
+        if (memory_of(i).on_jump.any_of()) memory_of(i).jump_time = time_to_pass(i, slope, there);
     }
 };
 

@@ -21,11 +21,8 @@ struct step_ends {
 
     /// The event functions at fraction theta of the step, on the cubic through its ends.
     MYRIAD_FUNCTION event_values values_at(R theta) const {
-        return detail::evaluate_events<Model>(fma(theta, h, t), state_at(theta), p);
-    }
-    /// The state there; at the end without the slope there.
-    MYRIAD_FUNCTION state state_at(R theta) const {
-        return theta < R(1) ? detail::hermite_interpolation(y, y1, slope, slope1, h, theta) : y1;
+        const state inside = detail::hermite_interpolation(y, y1, slope, slope1, h, theta);
+        return detail::evaluate_events<Model>(fma(theta, h, t), inside, p);
     }
     /// The rounding errors of the event functions at the end: the state there is the sum of that at the start and of
     /// increments.
