@@ -93,6 +93,35 @@ TEST_CASE("samples across events lie on the exact solution, before and after eve
     });
 }
 
+TEST_CASE("a sample at the instant of an event shows the state before the action, however the time rounds",
+          "[output]") {
+    // x = (k / 10)^2 - t^2 falls to zero at k / 10, where rounding puts the event a little before or after
+    each_dense_method([]<class Dense, class Method> {
+        constexpr int size = 40;
+        for (const double tolerance : {0.0, 1e-15}) {
+            ensemble<bouncing> e(size);
+            options o = bounces(0);
+            for (int k = 1; k <= size; ++k) {
+                const double t = k / 10.0;
+                e.state(bouncing::x)[k - 1] = t * t;
+                o.samples.times_of_instances.push_back(t);
+            }
+            e.state(bouncing::v) = 0;
+            e.parameter(bouncing::g) = 2;
+            e.parameter(bouncing::r) = 0.75;
+            e.time_domain(0, 4.5);
+            o.samples.capacity = 1;
+            o.step = 0.5;
+            o.events[0].tolerance = tolerance;
+            solve<Dense>(tests::test_device(1), e, o);
+            for (int i = 0; i < size; ++i) {
+                CAPTURE(i, tolerance);
+                CHECK(e.samples().state(bouncing::v)(i, 0) < 0);
+            }
+        }
+    });
+}
+
 TEST_CASE("samples across events do not depend on the pack", "[output]") {
     // parabolas use only + - * /, so that a scalar lane and a pack agree bit for bit
     for (const std::int64_t every : {0, 1}) {
