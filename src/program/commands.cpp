@@ -249,7 +249,11 @@ void export_results(const studies::results& from, const std::string& path, const
     if (kind == ".csv") return export_csv(from, path);
     if (kind != ".npy") throw input_error(path + ": the name must end in .nc (netCDF), .csv or .npy");
     if (variable.empty()) throw input_error("an NPY file holds one variable: name it by --variable");
-    as_input([&] { return from.content().find(variable); });
+    as_input([&] {
+        for (const studies::coordinate& c : from.content().coordinates)
+            if (c.name == variable) return;
+        from.content().find(variable);
+    });
     export_npy(from, variable, path);
 }
 
@@ -467,6 +471,7 @@ int plot(const plot_request& asked) {
         const std::string beside = is_folder ? source + ".png" : fs::path(source).replace_extension(".png").string();
         const std::string picture = asked.output.empty() ? beside : asked.output;
         std::vector<std::string> words{find_python(is_folder), "-B", script, source, picture};
+        words.push_back("--reader=" + fs::read_symlink("/proc/self/exe").string());
         for (const auto& [option, value] :
              {std::pair("--variable", asked.variable), {"--over", asked.over}, {"--value", asked.value}})
             if (!value.empty()) words.push_back(message(option, '=', value));
