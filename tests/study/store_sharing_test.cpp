@@ -212,6 +212,32 @@ TEST_CASE("two processes that write one chunk with different bits leave one of t
     CHECK(first.verify().empty());
 }
 
+TEST_CASE("a server that does what it is told and loses its answer is asked again, and harms nothing") {
+    // As NFS, where a call that is repeated fails because it was done.
+    class forgetful final : public file_system {
+    public:
+        int rename(const std::string& a, const std::string& b) override {
+            return lost(file_system::rename(a, b), ENOENT);
+        }
+        int link(const std::string& a, const std::string& b) override { return lost(file_system::link(a, b), EEXIST); }
+        int mkdir(const std::string& p) override { return lost(file_system::mkdir(p), EEXIST); }
+        int unlink(const std::string& p) override { return lost(file_system::unlink(p), ENOENT); }
+
+    private:
+        int lost(int result, int code) {
+            if (result < 0 || ++calls_ % 7 != 0) return result;
+            errno = code;
+            return -1;
+        }
+        int calls_ = 0;
+    } server;
+    tests::temporary_folder folder;
+    run_synthetic(folder / "expected", synthetic_layout());
+    run_synthetic(folder / "run", synthetic_layout(), {.files = &server});
+    CHECK(store::open(folder / "run").verify().empty());
+    check_same(folder / "run", synthetic_layout(), tests::contents(folder / "expected"));
+}
+
 TEST_CASE("a finished store is opened on a disk that cannot be written to, and an unfinished one is refused") {
     class read_only final : public file_system {
     public:
