@@ -669,6 +669,7 @@ store store::create_or_resume(const std::string& given, const layout& wanted, co
     }
     made->expiry = options.expiry;
     made->given = wanted.coordinates;
+    made->content.description = wanted.description;  // the same, with its own line breaks
     const auto begin = [&] {
         made->found.clear();
         if (!there->damage.empty()) made->write_own(group_path(folder), there->text);

@@ -143,6 +143,7 @@ TEST_CASE("the folder is a group of Zarr with the layout and the description, fr
         CHECK(content.variables[v].role == given.variables[v].role);
     }
     CHECK_FALSE(store::content_of(folder / "none").has_value());
+    CHECK(made.content().description == given.description);
 }
 
 TEST_CASE("what is not done reads as the fill value, and the rest is there, while a study runs") {
