@@ -84,8 +84,8 @@ struct jacobian_groups {
     int group_of_column[n]{};
     int row[entries]{}, group[entries]{};  // of each entry
 
-    template <class Entry>
-    constexpr explicit jacobian_groups(const Entry* declared) {
+    template <class Entries>
+    constexpr explicit jacobian_groups(const Entries& declared) {
         number_set<n> rows[n]{}, taken[n]{};
         for (int e = 0; e < entries; ++e) rows[declared[e].column].insert(declared[e].row);
         for (int j = 0; j < n; ++j) {

@@ -23,8 +23,8 @@ struct symbolic_lu {
     int upper = 0;           // and above it
     int updates = 0;         // multiplications and subtractions of the factorisation
 
-    template <class Entry>
-    constexpr symbolic_lu(const Entry* entries, int length) {
+    template <class Entries>
+    constexpr symbolic_lu(const Entries& entries, int length) {
         number_set<n> row[n]{}, column[n]{};
         for (int e = 0; e < length; ++e) {
             if (entries[e].row == entries[e].column) continue;
@@ -76,8 +76,8 @@ struct lu_tables {
     int position[n_given]{};          // of the entries that are given
     int pivot_row[n_given]{};         // the row of those on the diagonal, else -1
 
-    template <class Entry>
-    constexpr lu_tables(const symbolic_lu<n>& symbolic, const Entry* entries) {
+    template <class Entries>
+    constexpr lu_tables(const symbolic_lu<n>& symbolic, const Entries& entries) {
         short number[n][n]{};
         int next = 0;
         for (int s = 0; s < n; ++s) {
