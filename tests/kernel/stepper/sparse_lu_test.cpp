@@ -74,7 +74,7 @@ template <class Model>
 void check_derivatives(double tolerance) {
     constexpr int n = n_state<Model>;
     inputs<Model, double> p{};
-    if constexpr (n_parameter<Model> > 0) p.parameter[0] = 1.7;
+    if constexpr (n_parameter < Model >> 0) p.parameter[0] = 1.7;
     vec<double, n> y;
     for (int c = 0; c < n; ++c) y[c] = std::sin(1.0 + c);
     matrix<double, n> dense;

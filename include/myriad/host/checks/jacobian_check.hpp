@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compares a model's own Jacobian, and its pattern, with the one by dual numbers. Host code; it calls the model on some initial states.
+// Compares a model's own Jacobian, and its pattern, with the one by dual numbers. Host code; it calls the model on some
+// initial states.
 #pragma once
 
 #include <algorithm>

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/model/hooks.hpp"
-#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/scalar/matrix_loop.hpp"
 #include "myriad/kernel/stepper/sparse_lu.hpp"
 
@@ -63,8 +63,7 @@ template <class Model>
         detail::n_accessory<Model>, " accessory, ", detail::n_integer_accessory<Model>, " integer accessory, ",
         detail::n_event<Model>, " event\nhooks: ", hooks, "\ndeclares: ", declares.empty() ? "nothing" : declares,
         "\nstiff methods: ", detail::gives_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers",
-        ", LU factors ",
-        host::lu_factors_of<Model>(), '\n');
+        ", LU factors ", host::lu_factors_of<Model>(), '\n');
 }
 
 }  // namespace myriad

@@ -25,7 +25,8 @@ namespace myriad::detail {
 /// tangents, and does not count.
 template <class Model>
 constexpr bool declares_jacobian_pattern() {
-    return requires { Model::jacobian_pattern; } && n_tangent<Model> == 0;
+    return requires { Model::jacobian_pattern; }
+    &&n_tangent<Model> == 0;
 }
 template <class Model>
 constexpr int n_jacobian_entry_of() {
@@ -75,9 +76,9 @@ struct number_set {
     }
 };
 
-/// The declared entries, and the columns in groups without a common row, so that one evaluation of rhs with dual numbers
-/// gives all columns of a group (Curtis, Powell and Reid, IMA J. Appl. Math. 13, 1974, 117): each column joins the first
-/// group that it fits.
+/// The declared entries, and the columns in groups without a common row, so that one evaluation of rhs with dual
+/// numbers gives all columns of a group (Curtis, Powell and Reid, IMA J. Appl. Math. 13, 1974, 117): each column joins
+/// the first group that it fits.
 template <int n, int entries>
 struct jacobian_groups {
     int count = 0;

@@ -214,8 +214,8 @@ using stage_factors =
 /// Loops over the components of a state: written out where the factors are, as one index that is no constant puts an
 /// array into a GPU's local memory.
 template <class Model, class S>
-using component_loop = std::conditional_t<factorises_sparsely<Model> && lanes_of<S> == 1,
-                                          unrolled_loop<n_state<Model>>, matrix_loop<S, n_state<Model>>>;
+using component_loop = std::conditional_t<factorises_sparsely<Model> && lanes_of<S> == 1, unrolled_loop<n_state<Model>>,
+                                          matrix_loop<S, n_state<Model>>>;
 
 /// Steps from (t, y) by h to t1; `trial.k[0]`, the slope at the start, must be set. As in an explicit step, a last
 /// stage that is the first of the next step is evaluated at t1.

@@ -128,7 +128,7 @@ inline constexpr int most_updates = 4096;
 /// as long as the code that is written out does not become too long.
 template <class Model>
 constexpr bool factorises_sparsely_of() {
-    if constexpr (has_jacobian_pattern<Model> && n_state<Model> > 6) {
+    if constexpr (has_jacobian_pattern<Model> && n_state < Model >> 6) {
         return symbolic_lu_of<Model>.updates <= most_updates;
     } else {
         return false;
