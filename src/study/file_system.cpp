@@ -12,6 +12,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -31,6 +32,15 @@ auto uninterrupted(F call) {
     return result;
 }
 
+std::string files_open() {
+    rlimit limit{};
+    ::getrlimit(RLIMIT_NOFILE, &limit);
+    return message(": this process has all ", limit.rlim_cur, " files open that it may have: raise the limit (`ulimit -n ",
+                   std::max<rlim_t>(4096, 2 * std::min<rlim_t>(limit.rlim_cur, 1 << 20)), "`)");
+}
+constexpr const char* all_files_open =
+    ": all programs together have as many files open as the machine allows: end some, or raise fs.file-max";
+
 std::string study_advice(int code) {
     switch (code) {
         case ENOSPC:
@@ -47,6 +57,10 @@ std::string study_advice(int code) {
             return ": give a folder with a shorter path";
         case ENOENT:
             return ": a folder of the study was removed; start again, which makes it anew";
+        case EMFILE:
+            return files_open() + " and start again, which goes on";
+        case ENFILE:
+            return all_files_open;
         case EMLINK:
         case ENOTSUP:
             return ": give a folder on a file system with hard links, as those of Linux and NFS";
@@ -69,6 +83,10 @@ std::string export_advice(int code) {
         case ENOTDIR:
         case ELOOP:
             return ": give a file in a folder that exists";
+        case EMFILE:
+            return files_open() + " and export again";
+        case ENFILE:
+            return all_files_open;
         case ENAMETOOLONG:
             return ": give a shorter name";
         case EEXIST:

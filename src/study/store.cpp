@@ -41,6 +41,7 @@ static_assert(std::endian::native == std::endian::little, "stores hold little-en
 
 namespace {
 
+constexpr std::size_t most_open = 8;                    // files of a chunk, since each thread of each device has one
 constexpr std::int64_t piece = std::int64_t{1} << 20;  // stays in a core's cache between its checksum and its copy
 
 std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count); }
@@ -508,13 +509,18 @@ struct store::implementation {
                      const chunk_record& record) {
         std::vector<std::pair<std::size_t, new_file>> written;
         stored_chunk stored{record, {}};
+        // Several are handed over before the first is waited for, so that the disk has them together.
+        std::size_t finished_files = 0;
+        const auto finish_until = [&](std::size_t end) {
+            while (finished_files < end) written[finished_files++].second.finish();
+        };
         for (std::size_t v = 0; v < variables.size(); ++v) {
             if (content.variables[v].extent == along::nothing) continue;
+            if (written.size() - finished_files == most_open) finish_until(written.size());
             written.emplace_back(v, write_array_file(files, self->temporary(), variables[v].shape, ordered[v],
                                                      stored.checksums.emplace_back()));
         }
-        // After all were handed over, so that the disk has them together.
-        for (auto& [v, file] : written) file.finish();
+        finish_until(written.size());
         for (auto& [v, file] : written) file.rename_to(path_of(variables[v], chunk));
         for (auto& [v, file] : written) sync_folder(files, folder + '/' + variables[v].name);
         write_text(files, self->temporary(), record_path(chunk), record_json(content, chunk, stored));
