@@ -35,7 +35,8 @@ auto uninterrupted(F call) {
 std::string files_open() {
     rlimit limit{};
     ::getrlimit(RLIMIT_NOFILE, &limit);
-    return message(": this process has all ", limit.rlim_cur, " files open that it may have: raise the limit (`ulimit -n ",
+    return message(": this process has all ", limit.rlim_cur,
+                   " files open that it may have: raise the limit (`ulimit -n ",
                    std::max<rlim_t>(4096, 2 * std::min<rlim_t>(limit.rlim_cur, 1 << 20)), "`)");
 }
 constexpr const char* all_files_open =

@@ -41,7 +41,7 @@ static_assert(std::endian::native == std::endian::little, "stores hold little-en
 
 namespace {
 
-constexpr std::size_t most_open = 8;                    // files of a chunk, since each thread of each device has one
+constexpr std::size_t most_open = 8;                   // files of a chunk, since each thread of each device has one
 constexpr std::int64_t piece = std::int64_t{1} << 20;  // stays in a core's cache between its checksum and its copy
 
 std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count); }

@@ -71,8 +71,10 @@ TEST_CASE("where no file can be opened any more, the message names the limit and
         }
         if (errno == EMFILE) open_file(file_system::real(), folder / "file", O_WRONLY | O_CREAT);
     });
-    CHECK_THAT(failure, Contains("this process has all 20 files open that it may have: raise the limit (`ulimit -n 4096`)"));
-    CHECK_THAT(file_error("opening", "x", EMFILE).of_export().what(), Contains("ulimit -n") && Contains("export again"));
+    CHECK_THAT(failure,
+               Contains("this process has all 20 files open that it may have: raise the limit (`ulimit -n 4096`)"));
+    CHECK_THAT(file_error("opening", "x", EMFILE).of_export().what(),
+               Contains("ulimit -n") && Contains("export again"));
     CHECK_THAT(file_error("opening", "x", ENFILE).what(), Contains("fs.file-max"));
 }
 
