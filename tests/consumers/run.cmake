@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Configures, builds and runs the project beside this file with Myriad from one of: find_package (installed into an
 # empty folder, with a model in a shared library too), no_xsimd (the same without SIMD lanes), no_study (Myriad built
-# where nlohmann_json is missing), Debian (the package, unpacked), add_subdirectory, FetchContent, CUDA (add_subdirectory with MYRIAD_ENABLE_CUDA in a project that has not
-# that language).
+# where nlohmann_json is missing), Debian (the package, unpacked), add_subdirectory, FetchContent, CUDA
+# (add_subdirectory with MYRIAD_ENABLE_CUDA in a project that has not that language).
 
 function(run_step title)
     message("== ${title}")
@@ -98,8 +98,9 @@ if(KIND STREQUAL "find_package")
                 -B "${WORK_DIR}/unknown" -DMYRIAD_COMPONENTS=opencl)
 endif()
 if(KIND STREQUAL "no_study")
-    run_refused("studies that are not installed" "component study of myriad is not installed, only core, openmp: install"
-                ${configure} -B "${WORK_DIR}/refused" -DWITH_STUDY=study)
+    run_refused("studies that are not installed"
+                "component study of myriad is not installed, only core, openmp: install" ${configure}
+                -B "${WORK_DIR}/refused" -DWITH_STUDY=study)
 endif()
 run_step("configure" ${configure} -B "${WORK_DIR}/build" ${further})
 run_step("build" "${CMAKE_COMMAND}" --build "${WORK_DIR}/build")
