@@ -6,7 +6,6 @@ import os
 import pathlib
 import shutil
 import subprocess
-import sys
 import time
 from dataclasses import dataclass
 
@@ -75,7 +74,10 @@ def find_compiler():
             return Compiler((program,), name, _identity(program))
     zig = importlib.util.find_spec("ziglang")
     if zig is not None and zig.origin is not None:
-        return Compiler((sys.executable, "-m", "ziglang", "c++"), "zig", _identity(zig.origin))
+        # Its program, and not `python -m ziglang`, which would run a ziglang.py of the current folder.
+        program = pathlib.Path(zig.origin).parent / "zig"
+        if program.is_file():
+            return Compiler((str(program), "c++"), "zig", _identity(program))
     return None
 
 
@@ -169,5 +171,5 @@ def kernel(header, struct, method, real):
     _loaded[asked] = obtained.loaded
     origin = "cache" if obtained.hit else f"compiled by {by.kind}"
     if obtained.unusable is not None:
-        origin += f" (the cache {obtained.unusable} cannot be used: MYRIAD_CACHE_DIR names another folder)"
+        origin += f" ({obtained.unusable}; MYRIAD_CACHE_DIR names another folder)"
     return Kernel(_loaded[asked], origin, time.perf_counter() - begin)

@@ -162,6 +162,8 @@ class Study:
         axes = [*on_grid, *([together] if together else [])]
         all_names = {name_of(k) for axis in axes for k, _ in axis if _time_name(k) is None}
         all_names |= {name_of(k) for k in constants if _time_name(k) is None}
+        for key in (*constants, *(k for axis in axes for k, _ in axis)):
+            self._full_name(key)  # one that there is not, before one that is missing
         for name in components.generated:
             if name in all_names:
                 raise Error(f"'{name}' is given to the study, and generate= of the model sets it: give it once")

@@ -219,6 +219,16 @@ def test_a_study_goes_on_after_an_interrupt_and_after_a_kill(tmp_path):
     np.testing.assert_array_equal(whole["x_end"][::399], some["x"])
 
 
+@pytest.mark.parametrize("sweep, start", [
+    ({"kk": my.linspace(0.2, 0.3, 3), B: 0.3}, {x: 1, v: 0}),
+    ({"kk": 0.2, B: 0.3}, {x: 1, v: 0}),
+    (my.grid({"kk": my.linspace(0.2, 0.3, 3)}, {B: 0.3}), {x: 1, v: 0}),
+])
+def test_an_unknown_name_is_not_reported_as_a_missing_one(sweep, start):
+    with pytest.raises(my.Error, match="'kk' is no component of the model: did you mean 'k'"):
+        my.study(duffing(), sweep, start=start, time=(0, 1))
+
+
 def test_the_message_of_an_unknown_name_lists_no_elements_of_tables():
     table = my.table("T", np.ones((50, 50)))
     with pytest.raises(my.Error, match="'qqq' is no component of the model: there are x, k$"):

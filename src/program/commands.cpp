@@ -145,7 +145,8 @@ std::vector<std::string> structs_of(const std::string& text) {
 }
 
 /// Compiles a model's header and registers it.
-void compile_model(const study_file::model_choice& wanted, const model_source& source, bool quiet) {
+void compile_model(const study_file::model_choice& wanted, const model_source& source, compile_permission permission,
+                   bool quiet) {
     const std::string name = wanted.model.substr(0, wanted.model.find('<'));
     const std::vector<std::string> structs = structs_of(source.text);
     const std::string last = name.substr(name.rfind(':') == std::string::npos ? 0 : name.rfind(':') + 1);
@@ -162,10 +163,12 @@ void compile_model(const study_file::model_choice& wanted, const model_source& s
                        message("method: there is no method \"", wanted.method, '"',
                                suggestion(method, std::vector<std::string>(std::begin(methods), std::end(methods)))));
     try {
-        compile_and_load({source, wanted.model, method_wanted(wanted), wanted.real}, data_file("model_flags.txt"),
-                         [&](const std::string& text) {
-                             if (!quiet) tell(text);
-                         });
+        compile_and_load(
+            {source, wanted.model, method_wanted(wanted), wanted.real}, data_file("model_flags.txt"), permission,
+            [&](const std::string& text) {
+                if (!quiet) tell(text);
+            },
+            &tell);
     } catch (const error& e) {
         throw wrong_at(wanted.header_place, e.what());
     }
@@ -211,7 +214,10 @@ struct run_request {
     std::string file, folder, model, header;
     std::vector<std::string> devices;
     std::string exported;
-    bool only_check = false, checksums = false, any_arithmetic = false, quiet = false;
+    bool only_check = false, checksums = false, any_arithmetic = false, quiet = false, compiles = false;
+    compile_permission permission() const {
+        return compiles ? compile_permission::given : compile_permission::not_given;
+    }
 };
 
 /// Files of the program in the folder of results.
@@ -265,7 +271,7 @@ std::string beside(const std::string& file, const std::string& path) {
 /// Runs a study; the header is there already when it goes on.
 int run_study(const run_request& asked, study_file& file, const std::string& text, const std::string& folder,
               study_file::model_choice wanted, const std::optional<model_source>& header) {
-    if (header) compile_model(wanted, *header, asked.quiet);
+    if (header) compile_model(wanted, *header, asked.permission(), asked.quiet);
     const program_model& model = find_model(wanted);
     any_study study(find_method(model, wanted).make());
     file.describe(study, model, devices_of(asked.devices));
@@ -306,7 +312,8 @@ int run_study(const run_request& asked, study_file& file, const std::string& tex
     return 0;
 }
 
-int run(const run_request& asked) {
+int run(run_request asked) {
+    asked.compiles = asked.compiles || !asked.only_check;
     const std::string text = read_file(asked.file);
     study_file file(asked.file, text);
     study_file::model_choice wanted = file.model();
@@ -356,7 +363,7 @@ int resume(const run_request& asked) {
     return run_study(asked, file, text, folder, wanted, header);
 }
 
-int list(const std::vector<std::string>& files, const std::string& model) {
+int list(const std::vector<std::string>& files, const run_request& asked) {
     for (const std::string& path : files) {
         study_file::model_choice wanted;
         std::string header = path;
@@ -366,19 +373,20 @@ int list(const std::vector<std::string>& files, const std::string& model) {
             wanted = file->model();
             header = wanted.header.empty() ? "" : beside(path, wanted.header);
         }
-        if (!model.empty()) wanted.model = model;
+        if (!asked.model.empty()) wanted.model = asked.model;
         if (!header.empty()) {
             const model_source source = as_input([&] { return read_model_source(header); });
             if (wanted.model.empty()) throw input_error(path + ": name the model in it, by --model");
-            compile_model(wanted, source, false);
+            compile_model(wanted, source, asked.permission(), false);
         }
         show_model(find_model(wanted));
     }
     if (!files.empty()) return 0;
     for (const program_model& m : registered_models()) show_model(m);
     if (registered_models().empty())
-        std::cout << "This program has no models of its own: `myriad list model.hpp --model NAME` shows those of a "
-                     "header, and `header = \"model.hpp\"` in a study's file compiles them.\n";
+        std::cout
+            << "This program has no models of its own: `myriad list model.hpp --model NAME --compile` shows those of "
+               "a header, and `header = \"model.hpp\"` in a study's file compiles them.\n";
     return 0;
 }
 
@@ -451,9 +459,11 @@ struct plot_request {
 
 /// A Python that can draw: the first on the PATH may not be the one that the system's packages are for.
 std::string find_python(bool is_folder) {
-    const char* const imports = is_folder ? "import matplotlib" : "import matplotlib, netCDF4";
+    // As plot.py does: no modules from the folder it is run in or from PYTHONPATH, but those that the user installed.
+    const std::string imports = message("import site; site.addsitedir(site.getusersitepackages()); import matplotlib",
+                                        is_folder ? "" : ", netCDF4");
     for (const char* python : {"python3", "/usr/bin/python3"})
-        if (child_process({python, "-c", imports}, "/dev/null").wait() == 0) return python;
+        if (child_process({python, "-I", "-c", imports}, "/dev/null").wait() == 0) return python;
     throw error(message("pictures need a Python 3 with matplotlib", is_folder ? "" : " and netCDF4",
                         ": install it (Debian, Ubuntu: apt-get install python3-matplotlib",
                         is_folder ? ")" : " python3-netcdf4), or draw the folder of the results"));
@@ -470,7 +480,7 @@ int plot(const plot_request& asked) {
         // The name of a folder may have dots.
         const std::string beside = is_folder ? source + ".png" : fs::path(source).replace_extension(".png").string();
         const std::string picture = asked.output.empty() ? beside : asked.output;
-        std::vector<std::string> words{find_python(is_folder), "-B", script, source, picture};
+        std::vector<std::string> words{find_python(is_folder), "-I", "-B", script, source, picture};
         words.push_back("--reader=" + fs::read_symlink("/proc/self/exe").string());
         for (const auto& [option, value] :
              {std::pair("--variable", asked.variable), {"--over", asked.over}, {"--value", asked.value}})
@@ -497,7 +507,12 @@ int parse_and_run(int argc, const char* const* argv) {
     CLI::App* const list_command = app.add_subcommand("list", "Show models and their components");
     list_command->add_option("FILE", files, "Studies or headers of models; none: the models of this program");
     list_command->add_option("--model", asked.model, "The model of a header");
-    list_command->callback([&] { status = list(files, asked.model); });
+    const auto add_compile_option = [&](CLI::App* command) {
+        command->add_flag("--compile", asked.compiles,
+                          "Compile the model's header and run its code though you never did before: you trust it");
+    };
+    add_compile_option(list_command);
+    list_command->callback([&] { status = list(files, asked); });
 
     const auto add_run_options = [&](CLI::App* command) {
         command
@@ -516,12 +531,14 @@ int parse_and_run(int argc, const char* const* argv) {
     run_command->add_option("--model", asked.model, "Its model, if the file names none")->type_name("NAME");
     run_command->add_option("--header", asked.header, "The model's header, if the file names none")->type_name("FILE");
     run_command->add_flag("--check", asked.only_check, "Only say whether the file is right, and how many instances");
+    add_compile_option(run_command);
     add_run_options(run_command);
     run_command->callback([&] { status = run(asked); });
 
     CLI::App* const resume_command = app.add_subcommand("resume", "Go on with the study in a folder");
     resume_command->add_option("FOLDER", asked.folder, "Folder of the results")->required();
     resume_command->add_flag("--checksums", asked.checksums, "Read all that is there, and do what is damaged again");
+    add_compile_option(resume_command);
     add_run_options(resume_command);
     resume_command->callback([&] { status = resume(asked); });
 

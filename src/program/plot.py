@@ -12,11 +12,18 @@ axes that --at does not fix. Over two, colours show one value for each place, of
 import argparse
 import json
 import os
+import site
 import subprocess
 import sys
 import tempfile
 
-import figure as figures
+# Run in isolation (python -I), without the modules of the current folder and of PYTHONPATH: those beside this file, and
+# what the user has installed.
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+if sys.flags.no_user_site:
+    site.addsitedir(site.getusersitepackages())
+
+import figure as figures  # noqa: E402  pylint: disable=wrong-import-position
 
 REDUCTIONS = ("last", "minimum", "maximum", "mean", "distinct")
 
@@ -246,6 +253,20 @@ def draw(pyplot, numpy, data, asked):
     return figure
 
 
+def import_elsewhere():
+    """The libraries, imported in a folder without the settings of anybody (matplotlibrc), which can name modules."""
+    try:
+        here = os.open(".", os.O_RDONLY)
+    except OSError:
+        return figures.import_libraries()
+    try:
+        os.chdir(os.path.dirname(os.path.abspath(__file__)))
+        return figures.import_libraries()
+    finally:
+        os.fchdir(here)
+        os.close(here)
+
+
 def main():
     """Reads the arguments; exit status 2 if something is missing or wrong."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -258,7 +279,7 @@ def main():
     parser.add_argument("--value", choices=REDUCTIONS, default="last")
     asked = parser.parse_args()
     try:
-        pyplot, numpy = figures.import_libraries()
+        pyplot, numpy = import_elsewhere()
         data = (Folder if os.path.isdir(asked.results) else File)(numpy, asked.results, asked.reader)
         figures.save(draw(pyplot, numpy, data, asked), asked.picture, dpi=200)
     except figures.PlotError as error:

@@ -12,6 +12,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -30,6 +31,16 @@ auto uninterrupted(F call) {
     while (result < 0 && errno == EINTR) result = call();
     return result;
 }
+
+std::string files_open() {
+    rlimit limit{};
+    ::getrlimit(RLIMIT_NOFILE, &limit);
+    return message(": this process has all ", limit.rlim_cur,
+                   " files open that it may have: raise the limit (`ulimit -n ",
+                   std::max<rlim_t>(4096, 2 * std::min<rlim_t>(limit.rlim_cur, 1 << 20)), "`)");
+}
+constexpr const char* all_files_open =
+    ": all programs together have as many files open as the machine allows: end some, or raise fs.file-max";
 
 std::string study_advice(int code) {
     switch (code) {
@@ -50,9 +61,9 @@ std::string study_advice(int code) {
         case EISDIR:
             return ": it is a folder, which belongs to no study; remove it, and start again";
         case EMFILE:
+            return files_open() + " and start again, which goes on";
         case ENFILE:
-            return ": too many files are open; raise the limit (ulimit -n), or keep fewer variables, and start again. "
-                   "What was finished is kept";
+            return all_files_open;
         case EMLINK:
         case ENOTSUP:
             return ": give a folder on a file system with hard links, as those of Linux and NFS";
@@ -75,6 +86,10 @@ std::string export_advice(int code) {
         case ENOTDIR:
         case ELOOP:
             return ": give a file in a folder that exists";
+        case EMFILE:
+            return files_open() + " and export again";
+        case ENFILE:
+            return all_files_open;
         case ENAMETOOLONG:
             return ": give a shorter name";
         case EEXIST:

@@ -27,6 +27,7 @@ static_assert(std::endian::native == std::endian::little, "stores hold little-en
 namespace {
 
 constexpr const char* own_group = "{\"zarr_format\": 3, \"node_type\": \"group\"}\n";
+constexpr std::size_t most_open = 8;  // files of a chunk, since each thread of each device has one
 
 std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count); }
 
@@ -542,21 +543,20 @@ struct store::implementation : store_files {
 
     void write_chunk(std::int64_t chunk, const std::vector<std::span<const std::byte>>& ordered,
                      const chunk_record& record) {
-        constexpr std::size_t most_open = 32;  // since a process may have no more than 1024 files open
         std::vector<std::pair<std::size_t, new_file>> written;
-        std::size_t finished_files = 0;
-        const auto finish_all = [&] {
-            for (; finished_files < written.size(); ++finished_files) written[finished_files].second.finish();
-        };
         stored_chunk stored{record, {}};
+        // Several are handed over before the first is waited for, so that the disk has them together.
+        std::size_t finished_files = 0;
+        const auto finish_until = [&](std::size_t end) {
+            while (finished_files < end) written[finished_files++].second.finish();
+        };
         for (std::size_t v = 0; v < variables.size(); ++v) {
             if (content.variables[v].extent == along::nothing) continue;
+            if (written.size() - finished_files == most_open) finish_until(written.size());
             written.emplace_back(v, write_array_file(files, self->temporary(), variables[v].shape, ordered[v],
                                                      stored.checksums.emplace_back()));
-            // After several were handed over, so that the disk has them together.
-            if (written.size() - finished_files == most_open) finish_all();
         }
-        finish_all();
+        finish_until(written.size());
         for (auto& [v, file] : written) file.rename_to(path_of(variables[v], chunk));
         for (auto& [v, file] : written) sync_folder(files, folder + '/' + variables[v].name);
         write_own(record_path(chunk), record_json(content, group.checksum, chunk, stored));

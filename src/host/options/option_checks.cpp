@@ -117,9 +117,14 @@ void option_limits::check(const options& o) const {
     const auto n_state = static_cast<std::size_t>(components.state.count);
     check_tolerance_count("relative_tolerance", o.relative_tolerance, n_state);
     check_tolerance_count("absolute_tolerance", o.absolute_tolerance, n_state);
-    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c)
+    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
         check_positive("relative_tolerance", o.relative_tolerance[c],
                        "give the error you accept per step, such as 1e-9");
+        require(
+            o.relative_tolerance[c] < 1, "relative_tolerance is ", o.relative_tolerance[c],
+            " (must be less than 1, an error as large as the solution): give the error you accept per step, such as "
+            "1e-9, or a large absolute_tolerance");
+    }
     for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c)
         require(o.absolute_tolerance[c] >= 0 && std::isfinite(o.absolute_tolerance[c]), "absolute_tolerance is ",
                 o.absolute_tolerance[c],

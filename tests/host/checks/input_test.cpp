@@ -267,6 +267,13 @@ TEST_CASE("tolerances that are not positive and finite are refused", "[input]") 
     o.relative_tolerance = -1e-9;
     options_refused(o, {"relative_tolerance is -1e-09 (must be positive"});
 }
+TEST_CASE("a relative tolerance of 9e18 is refused, and does not end in states that are not finite", "[input]") {
+    for (const double bad : {1.0, 9e18, 1e300}) {
+        options o;
+        o.relative_tolerance = {1e-9, bad};
+        options_refused(o, {"relative_tolerance is ", "must be less than 1", "absolute_tolerance"});
+    }
+}
 
 template <class R>
 void check_relative_tolerance_alone(double tolerance) {
