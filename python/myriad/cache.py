@@ -157,7 +157,7 @@ def _shrink(folder, keep):
     entries = []
     for entry in os.scandir(folder):
         with contextlib.suppress(OSError):
-            if entry.name.endswith(".so"):
+            if entry.name.endswith((".so", ".pch", ".gch")):
                 facts = entry.stat()
                 entries.append((facts.st_mtime, facts.st_size, pathlib.Path(entry.path)))
     total = sum(size for _, size, _ in entries)
@@ -180,4 +180,6 @@ def clear():
             path.unlink(missing_ok=True)
             path.with_suffix(".lock").unlink(missing_ok=True)
             removed += 1
+        for path in (*folder.glob("*.pch"), *folder.glob("*.gch")):  # headers for the compiler
+            path.unlink(missing_ok=True)
     return removed
