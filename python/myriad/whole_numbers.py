@@ -18,8 +18,8 @@ def check_constants(nodes, assigned):
         most = _most_exact if beside_long else _most_32
         if not -most - 1 <= constant.value <= most:
             raise Error(f"the whole number {constant.value}{at(constant.line)} has more than "
-                        f"{53 if beside_long else 32} bits: those of a model are from {-most - 1} to {most}; for a real "
-                        f"number write {constant.value}.0, and use an accessory")
+                        f"{53 if beside_long else 32} bits: those of a model are from {-most - 1} to {most}; for a "
+                        f"real number write {constant.value}.0, and use an accessory")
 
 
 def check_whole_numbers(assignments, instances, shared):

@@ -48,6 +48,7 @@ cases = [
     (example_models.oregonator, "rosenbrock_23", (), False, "double"),
     (lyapunov, "tsitouras_5", (), False, "double"),
     (epidemic, "cash_karp", (), False, "float"),
+    (test_cpp.every_operation, "tsitouras_5", (), False, "double"),
     (example_models.continuation, "rodas_5p", ("pid_control", "mixed_scale"), True, "double"),
 ]
 models = (*example_models.headers, test_cpp.every_operation, epidemic)
