@@ -304,6 +304,9 @@ class Vector(np.ndarray):
         function = of_numbers(ufunc)
         if function is not None and method == "__call__" and not options:
             result = elementwise(function, *inputs)
+        elif function is not None and method == "reduce" and ufunc in (np.maximum, np.minimum):
+            result = np.frompyfunc(function, 2, 1).reduce(inputs[0].view(np.ndarray), **options)
+            result = result.view(Vector) if isinstance(result, np.ndarray) else result
         else:  # sums and products, of which NumPy's work on objects
             plain = [x.view(np.ndarray) if isinstance(x, Vector) else x for x in inputs]
             result = getattr(ufunc, method)(*plain, **options)

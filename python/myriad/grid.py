@@ -30,7 +30,11 @@ def as_numbers(values):
     """What users give as numbers, as an array; also objects that are real numbers, as those of `fractions`."""
     array = np.asarray(values)
     if array.dtype == object and all(isinstance(x, (numbers.Real, decimal.Decimal)) for x in array.flat):
-        array = array.astype(float)
+        try:
+            array = array.astype(float)
+        except OverflowError:
+            raise Error(f"a value is too large for double precision{at(users_line())}: give numbers up to 1.8e308"
+                        ) from None
     return array
 
 

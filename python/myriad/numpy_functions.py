@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """NumPy's functions of expressions, and of arrays of them, as this package's."""
 
+import functools
+import inspect
 import math
 import operator
 
@@ -101,7 +103,9 @@ def _inverse_sinh(x):
     return ex.copysign(ex.log1p(size + size * size / (1 + ex.sqrt(1 + size * size))), x)
 
 
-def _clip(x, low=None, high=None):
+def _clip(x, low=None, high=None, out=None, **by_name):
+    low = next((by_name[n] for n in ("a_min", "min") if n in by_name), low)
+    high = next((by_name[n] for n in ("a_max", "max") if n in by_name), high)
     x = x if low is None else ex.elementwise(ex.maximum, x, low)
     return x if high is None else ex.elementwise(ex.minimum, x, high)
 
@@ -128,7 +132,17 @@ def of_numbers(ufunc):
 
 def of_arrays(function):
     """What stands for one of NumPy's other functions, or None."""
-    return _array_functions.get(function)
+    ours = _array_functions.get(function)
+    return ours and functools.partial(_checked, function, ours)
+
+
+def _checked(function, ours, *arguments, **options):
+    try:
+        inspect.signature(ours).bind(*arguments, **options)
+    except TypeError as why:
+        raise Error(f"numpy.{function.__name__} of expressions has other arguments than were given{at(users_line())}: "
+                    f"{why}") from None
+    return ours(*arguments, **options)
 
 
 def _add_numpys_methods():

@@ -60,9 +60,9 @@ class Report:
 
 class Run(Mapping):
     """The results of one call of `solve`, a mapping from names to arrays. `run["x"]` is that of a sampled state, one
-    row per instance and one column per sample; of a recorded component, one column per phase; of others the value at the
-    end, or that of an input. Its length is the number of names, `size` that of the instances. Arrays are views of the
-    core's memory, not copies. Results of a GPU are copied to the host when they are first asked for."""
+    row per instance and one column per sample; of a recorded component, one column per phase; of others the value at
+    the end, or that of an input. Its length is the number of names, `size` that of the instances. Arrays are views of
+    the core's memory, not copies. Results of a GPU are copied to the host when they are first asked for."""
 
     def __init__(self, components, ensemble, report, kernel, sweep, inputs, recorded, sampled, seconds, from_phase,
                  notes=()):

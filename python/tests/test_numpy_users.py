@@ -158,9 +158,22 @@ def test_select_piecewise_polyval_and_fmod_have_the_values_of_numpy():
     check(lambda x: np.fmod(x, 0.7))
     check(lambda x: np.fmod(7.0, x + 0.1))
     check(lambda x: np.clip(x, -1, None))
+    check(lambda x: np.clip(x, a_min=-1, a_max=0.5))
     check(lambda x: np.logaddexp(x, 2.0))
     check(lambda x: np.where(np.isnan(x) | np.isinf(x), 0.0, x))
     check(lambda x: np.float64(2.5) % (x + 10) + np.float64(7) // (x + 10))
+
+
+def test_the_largest_of_a_vector_is_taken_by_instance():
+    model = my.model(lambda t, y: [np.max(y), y.min()], states="a b")
+    assert model.derivatives(0, [np.array([1.0, 3.0]), np.array([2.0, -1.0])]).tolist() == [[2.0, 3.0], [1.0, -1.0]]
+
+
+def test_calls_of_numpys_functions_that_do_not_fit_are_refused():
+    for call in (lambda: np.where(x > 0), lambda: np.round(x, 2), lambda: np.interp(x, [0, 1], [0, 1]),
+                 lambda: solved({k: 10**400})):
+        with pytest.raises(my.Error, match="test_numpy_users.py"):
+            call()
 
 
 def test_polynomials_of_symbols_and_vectors_are_taken():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Headers that are prepared once for the compiler: the same kernels in less time, and nothing lost where they are bad."""
+"""Headers that are prepared once for the compiler: the same kernels in less time, nothing lost where they are bad."""
 
 import os
 import subprocess
