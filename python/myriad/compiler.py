@@ -85,8 +85,12 @@ def _is_compiler(word):
 def find_compiler():
     """The compiler to use: that of $MYRIAD_CXX or $CXX, clang++ or g++ on the PATH, or the one of the package ziglang;
     None if there is none."""
-    if chosen := os.environ.get("MYRIAD_CXX") or os.environ.get("CXX"):
-        return _compiler_of(chosen, "MYRIAD_CXX" if os.environ.get("MYRIAD_CXX") else "CXX")
+    if chosen := os.environ.get("MYRIAD_CXX"):
+        return _compiler_of(chosen, "MYRIAD_CXX")
+    if chosen := os.environ.get("CXX"):  # meant for all programs: one that cannot compile models is passed over
+        named = _compiler_of(chosen, "CXX")
+        if any(map(_is_compiler, named.command)) and _major_version(named.command) >= _oldest[named.kind]:
+            return named
     for name, oldest in (("clang++", _oldest["clang++"]), ("g++", _oldest["g++"])):
         program = shutil.which(name)
         if program is not None and _major_version([program]) >= oldest:

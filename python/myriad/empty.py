@@ -6,6 +6,7 @@ import types
 import numpy as np
 
 from . import _core
+from .errors import Error
 
 _names = _core.status_names()
 _types = {"status": np.uint8, "integer_accessory": np.int32, "shared_integer": np.int32,
@@ -24,10 +25,13 @@ class EmptyEnsemble:
     def array(self, kind, number=0):
         return self._shared[kind] if kind in self._shared else np.empty(0, _types.get(kind, self._real))
 
+    def device_array(self, *_):
+        raise Error("a run without instances has nothing on a GPU: use run[...]")
+
     def stored_samples(self):
         return np.empty(0, np.int32)
 
-    def samples(self, number):
+    def samples(self, number, on_device=False):
         return np.empty((0, self._capacity), self._real)
 
 
@@ -41,7 +45,7 @@ class EmptyReport:
     def __init__(self, columns, real):
         self._columns, self._real = columns, real
 
-    def records(self, kind, number):
+    def records(self, kind, number, on_device=False):
         return np.empty((0, self._columns), np.int32 if kind == "integer_accessory" else self._real)
 
     def __str__(self):

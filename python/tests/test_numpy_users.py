@@ -196,6 +196,8 @@ def test_a_compiler_may_have_arguments_and_one_that_calls_it(monkeypatch):
     y = my.state("y")
     run = my.solve(my.model({y: -y * 0.125}), start={y: 1}, time=(0, 1), device="cpu")
     assert run["y"][0] == pytest.approx(np.exp(-0.125)) and run.report.kernel.startswith("compiled by")
+    monkeypatch.setenv("CXX", f"{sys.executable} -S")  # no compiler of C++: another one is found
+    assert compiler.known_compiler().command == real.command
     monkeypatch.setenv("CXX", "no-such-compiler -O2")
     with pytest.raises(my.Error, match="CXX is 'no-such-compiler -O2', and there is no such program"):
         compiler.known_compiler()
