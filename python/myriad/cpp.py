@@ -6,8 +6,8 @@ import itertools
 import re
 
 from .derivatives import dependencies, derivatives
-from .expression import (as_number, condition, draws, infix, integer, is_long, number_text, real, symbols_of, text, walk,
-                         write)
+from .expression import (as_number, condition, draws, infix, integer, is_long, number_text, real, symbols_of, text,
+                         walk, write)
 
 _columns = 116  # inside the struct
 _deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
