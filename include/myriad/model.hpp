@@ -9,6 +9,8 @@
 #include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/reductions.hpp"
 #include "myriad/kernel/model/tables.hpp"
+#include "myriad/kernel/scalar/floored_division.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/matrix_loop.hpp"
 #include "myriad/kernel/scalar/select.hpp"
+#include "myriad/kernel/scalar/wrapping.hpp"

@@ -229,7 +229,7 @@ def _shrink(folder, keep):
                 with _locked(folder / f"{key.removesuffix('.lock')}.lock", wait=False) as held:
                     if held and mark:
                         shutil.rmtree(entry.path, ignore_errors=True)
-            elif entry.name.endswith(".so"):
+            elif entry.name.endswith((".so", ".pch", ".gch")):
                 facts = entry.stat(follow_symlinks=False)
                 entries.append((facts.st_mtime, facts.st_size, pathlib.Path(entry.path)))
     total = sum(size for _, size, _ in entries)
@@ -250,4 +250,6 @@ def clear():
         for path in folder.glob("*.so"):
             path.unlink(missing_ok=True)
             removed += 1
+        for path in (*folder.glob("*.pch"), *folder.glob("*.gch")):  # headers for the compiler
+            path.unlink(missing_ok=True)
     return removed

@@ -6,7 +6,8 @@ import itertools
 import re
 
 from .derivatives import dependencies, derivatives
-from .expression import as_number, condition, draws, integer, number_text, real, symbols_of, text, walk, write
+from .expression import (as_number, condition, draws, infix, integer, is_long, number_text, real, symbols_of, text,
+                         walk, write)
 
 _columns = 116  # inside the struct
 _deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
@@ -19,6 +20,8 @@ _largest_inlined = 150
 _sparse_states = range(7, 129)
 _most_derivatives = 1024  # beyond, the pattern alone is written, and the derivatives come from dual numbers
 
+_of_whole_numbers = {"add": "wrapping_add", "subtract": "wrapping_subtract", "multiply": "wrapping_multiply",
+                     "quotient": "floor_divide", "remainder": "floor_mod"}
 _headers = {"time": "t", "step": "h", "next_step": "h_next", "phase": "phase", "instance": "index",
             "t_begin": "t_begin", "t_end": "t_end"}
 _temporaries = {"add": "sum", "subtract": "difference", "multiply": "product", "divide": "quotient", "sqrt": "root",
@@ -27,9 +30,10 @@ _temporaries = {"add": "sum", "subtract": "difference", "multiply": "product", "
                 "reciprocal": "inverse", "hypot": "length", "negate": "opposite"}
 
 
-_instructions = {"pow": 40, "powr": 40, "find_interval": 20, "atan2": 25, "tan": 25,
-                 **dict.fromkeys(("sin", "cos", "sinpi", "cospi", "exp", "exp2", "log", "log2", "log10", "cbrt", "asin",
-                                  "acos", "atan", "sinh", "cosh", "tanh", "hypot"), 15),
+_instructions = {"pow": 40, "powr": 40, "find_interval": 20, "atan2": 25, "tan": 25, "fmod": 10, "floor_mod": 15,
+                 "floor_divide": 20,
+                 **dict.fromkeys(("sin", "cos", "sinpi", "cospi", "exp", "exp2", "expm1", "log", "log1p", "log2",
+                                  "log10", "cbrt", "asin", "acos", "atan", "sinh", "cosh", "tanh", "hypot"), 15),
                  **dict.fromkeys(("sincos.sine", "sincos.cosine", "sincospi.sine", "sincospi.cosine"), 10)}
 
 # Of several of these with equal arguments, the arguments are used once.
@@ -48,18 +52,18 @@ def _is_plain(node):
                for n in walk([node]))
 
 
-def _is_long(node):
-    """Whether a whole number has 64 bits in C++, as that of the instance has."""
-    return any(n.op == "constant" and not -2**31 <= n.value < 2**31 or n.value == ("built-in", "instance")
-               for n in walk([node]))
+def _is_natural(node):
+    """Whether a whole number cannot be negative, as numbers of instances, phases and detections."""
+    return all(n.value >= 0 if n.op == "constant" else
+               n.value[0] in ("built-in", "event_count") if n.op == "symbol" else
+               n.op in ("quotient", "remainder", "min", "max") for n in walk([node]))
 
 
 def generic_problem(roots):
     """The first node that cannot be computed for a whole pack, or None: packs of whole numbers have no products and do
     not mix with real ones."""
     for node in walk(roots):
-        products = node.type == integer and node.op in (
-            "multiply", "min", "max", "abs", "quotient", "remainder")
+        products = node.type == integer and node.op in ("multiply", "min", "max", "quotient", "remainder")
         if (products or any(_converts(node, a) and not _is_plain(a) for a in node.args)) and not _is_plain(node):
             return node
     return None
@@ -192,7 +196,16 @@ class Body:
         return name
 
     def text(self, node):
-        return write(node, self._leaf, self._call, self._convert)
+        return write(node, self._leaf, self._call, self._convert, self._operator)
+
+    @staticmethod
+    def _operator(node):
+        """C++'s operators. Those of whole numbers would be undefined at the ends of their range, and round quotients
+        towards zero."""
+        if node.type == integer and not (node.op in ("quotient", "remainder") and node.args[1].op == "constant" and
+                                         node.args[1].value > 0 and _is_natural(node.args[0])):
+            return None
+        return infix.get(node.op)
 
     def _convert(self, node, argument):
         """The conversion of an argument, as the text before its parenthesis."""
@@ -212,6 +225,8 @@ class Body:
         if node.op == "truth":
             return "true" if node.value else "false"
         if node.op == "constant":
+            if node.value == -2**31 and node.type == integer:
+                return "(-2147483647 - 1)"  # C++'s -2147483648 has 64 bits
             return str(node.value) if node.type == integer else self._number(node.value)
         return None
 
@@ -225,7 +240,7 @@ class Body:
         return f"{self.names.R}({number_text(float(value))})"
 
     def _call(self, node, arguments):
-        function = node.op
+        function = _of_whole_numbers.get(node.op, node.op) if node.type == integer else node.op
         if function in ("lookup", "find_interval"):
             table, first, *numbers = node.value
             return f"myriad::{function}(&{self.shared}[{table.name} + {first}], {', '.join(map(str, numbers))}, " \
@@ -238,9 +253,9 @@ class Body:
         if node.type != integer and (all(a.op == "constant" for a in numbers) or function in ("pow", "powr", "fma")):
             values[first:] = [f"{self.names.R}({v})" if a.op == "constant" and "(" not in v else v
                               for a, v in zip(numbers, values[first:])]
-        elif node.type == integer and function in ("min", "max") and any(map(_is_long, numbers)):
-            values = [v if _is_long(a) else f"std::int64_t({v})" for a, v in zip(numbers, values)]
-        elif node.type == integer and not self.scalar and all(map(_is_plain, numbers)):
+        elif node.type == integer and function in ("min", "max") and any(map(is_long, numbers)):
+            values = [v if is_long(a) else f"std::int64_t({v})" for a, v in zip(numbers, values)]
+        elif node.type == integer and not self.scalar and function == "select" and all(map(_is_plain, numbers)):
             values[first] = f"myriad::integer_of<{self.names.R}>({values[first]})"
         return f"myriad::{function}({', '.join(values)})"
 
@@ -444,7 +459,7 @@ class Writer:
             elif a is target:
                 only_if, value = ~chosen, b
         for op, operator in (("add", "+="), ("subtract", "-="), ("multiply", "*=")):
-            if value.op == op and value.args[0] is target:
+            if value.op == op and value.args[0] is target and target.type == real:
                 return only_if, operator, value.args[1]
         return only_if, "=", value
 

@@ -26,6 +26,8 @@ smooth = {
     "sincospi": my.sincospi(x * y)[0] + my.sincospi(x * z)[1],
     "where": my.where(x > y, x * x, y * z) + my.where(x < y, x * x, y * z),
     "extremes": my.minimum(x * x, y) + my.maximum(x * x, z),
+    "expm1": my.expm1(x * y), "log1p": my.log1p(x * z), "fmod": my.fmod(x * z, y) + my.fmod(x * y, k),
+    "remainder": (x * z) % y + (x * y) % z, "quotient rounded down": x * ((x * z) // y) + my.trunc(z) + my.ceil(z),
 }
 
 

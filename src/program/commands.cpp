@@ -123,6 +123,10 @@ const program_method& find_method(const program_model& model, const study_file::
     const std::string name = method_wanted(wanted);
     const program_method* const method = method_of(model, name, wanted.real);
     if (method != nullptr) return *method;
+    // A study that names none takes the only one that the program has.
+    if (wanted.method_place.line == 0 && !wanted.samples && model.methods.size() == 1 &&
+        model.methods.front().real == wanted.real)
+        return model.methods.front();
     std::vector<std::string> names;
     for (const program_method& m : model.methods)
         names.push_back(m.name + (m.real == studies::element::f32 ? " (float)" : ""));
