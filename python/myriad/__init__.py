@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Myriad: very large ensembles of small systems of ordinary differential equations, from models written in Python."""
 
+import builtins as _builtins
+import sys as _sys
+
 from . import _core, cache, plots, reduce
 from .axes import *  # noqa: F403
 from .cpp_model import CppModel
@@ -19,3 +22,14 @@ from .table import *  # noqa: F403
 from .tangents import *  # noqa: F403
 
 __version__ = _core.version
+
+_public = ["CppModel", "Damage", "Error", "Interrupted", "Run", "Study", "StudyResult", "cache", "controls", "methods",
+           "open_study", "plots", "reduce", "solve", "status_names", "study", "verify",
+           *(name for part in ("axes", "expression", "grid", "interpolate", "model", "symbols", "table", "tangents")
+             for name in _sys.modules[f"{__name__}.{part}"].__all__)]
+# What `from myriad import *` brings: nothing that has the name of a function of Python's, such as abs.
+__all__ = [name for name in _public if not hasattr(_builtins, name)]
+
+
+def __dir__():
+    return sorted([*_public, "__version__"])

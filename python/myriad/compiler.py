@@ -4,13 +4,14 @@
 import importlib.util
 import os
 import pathlib
+import re
+import shlex
 import shutil
 import subprocess
-import sys
 import time
 from dataclasses import dataclass
 
-from . import _core, cache
+from . import _core, cache, precompiled
 from .errors import Error
 
 _include = pathlib.Path(__file__).parent / "include"
@@ -60,22 +61,45 @@ def _kind_of(program):
     return "clang++" if "clang" in name else "g++"
 
 
+def _compiler_of(chosen, variable):
+    """The compiler that a variable of the environment names: a program, maybe with arguments, and maybe behind one that
+    calls it, as in "ccache g++ -fno-plt"."""
+    try:
+        words = [chosen] if shutil.which(chosen) else shlex.split(chosen)  # a path may have blanks
+    except ValueError as why:
+        raise Error(f"{variable} is {chosen!r}, which is no command: {why}") from None
+    program = shutil.which(words[0]) if words else None
+    if program is None:
+        raise Error(f"{variable} is {chosen!r}, and there is no such program: give a C++ compiler (g++ 12, clang++ 14 "
+                    "or newer) by its path, maybe with arguments, or unset the variable")
+    called = next((found for word in words[1:] if not word.startswith("-") and _is_compiler(word) and
+                   (found := shutil.which(word))), program)
+    return Compiler((program, *words[1:]), _kind_of(called), f"{_identity(called)} {words[1:]}")
+
+
+def _is_compiler(word):
+    return re.search(r"(g|clang|c)\+\+(-[0-9.]+)?$", word) is not None
+
+
 def find_compiler():
-    """The compiler to use: $MYRIAD_CXX, clang++ or g++ on the PATH, or the one of the package ziglang; None if there is
-    none."""
+    """The compiler to use: that of $MYRIAD_CXX or $CXX, clang++ or g++ on the PATH, or the one of the package ziglang;
+    None if there is none."""
     if chosen := os.environ.get("MYRIAD_CXX"):
-        program = shutil.which(chosen)
-        if program is None:
-            raise Error(f"MYRIAD_CXX is {chosen!r}, and there is no such program: give the path of a C++ compiler "
-                        "(g++ 12, clang++ 14 or newer), or unset the variable")
-        return Compiler((program,), _kind_of(program), _identity(program))
+        return _compiler_of(chosen, "MYRIAD_CXX")
+    if chosen := os.environ.get("CXX"):  # meant for all programs: one that cannot compile models is passed over
+        named = _compiler_of(chosen, "CXX")
+        if any(map(_is_compiler, named.command)) and _major_version(named.command) >= _oldest[named.kind]:
+            return named
     for name, oldest in (("clang++", _oldest["clang++"]), ("g++", _oldest["g++"])):
         program = shutil.which(name)
         if program is not None and _major_version([program]) >= oldest:
             return Compiler((program,), name, _identity(program))
     zig = importlib.util.find_spec("ziglang")
     if zig is not None and zig.origin is not None:
-        return Compiler((sys.executable, "-m", "ziglang", "c++"), "zig", _identity(zig.origin))
+        # Its program, and not `python -m ziglang`, which would run a ziglang.py of the current folder.
+        program = pathlib.Path(zig.origin).parent / "zig"
+        if program.is_file():
+            return Compiler((str(program), "c++"), "zig", _identity(program))
     return None
 
 
@@ -84,7 +108,7 @@ _found = {}
 
 def known_compiler():
     """What `find_compiler` found for these variables of the environment."""
-    asked = (os.environ.get("MYRIAD_CXX"), os.environ.get("PATH"))
+    asked = tuple(map(os.environ.get, ("MYRIAD_CXX", "CXX", "PATH")))
     if asked not in _found:
         _found[asked] = find_compiler()
     return _found[asked]
@@ -110,19 +134,29 @@ def first_message(output):
 
 def source_of(header, struct, method, real):
     """The file that is compiled: the model's header and the request for its kernel."""
-    return (f"#include <myriad/python/kernel_library.hpp>\n\n{header}\n"
+    return (f"#include <{precompiled.HEADER}>\n\n{header}\n"
             f"using myriad_method = {method};\nMYRIAD_KERNEL_LIBRARY({struct}, myriad_method, {real})\n")
+
+
+def _run(command):
+    try:
+        return subprocess.run(command, capture_output=True, text=True, errors="replace", check=False,
+                              stdin=subprocess.DEVNULL)
+    except OSError as why:
+        raise Error(f"the compiler {command[0]} cannot be run: {why.strerror}") from None
 
 
 def _compile(by, flags, source, workplace):
     file, made = workplace / "model.cpp", workplace / "model.so"
     file.write_text(source, encoding="utf-8")
     command = [*by.command, *flags, f"-I{_include}", str(file), "-o", str(made)]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False,
-                              stdin=subprocess.DEVNULL)
-    except OSError as why:
-        raise Error(f"the compiler {by.command[0]} cannot be run: {why.strerror}") from None
+    key = precompiled.key_of(by, flags, _core.headers)
+    headers = precompiled.arguments(key, by)
+    done = _run([*command, *headers])
+    if headers and done.returncode != 0:  # they may be damaged, and messages are better without
+        done = _run(command)
+    elif not headers and done.returncode == 0:
+        precompiled.begin(key, by, flags, _include)
     if done.returncode != 0 or not made.exists():
         raise Error(f"the model does not compile ({os.path.basename(by.command[0])}): "
                     f"{first_message(done.stderr + done.stdout)}")
@@ -157,7 +191,8 @@ def kernel(header, struct, method, real):
     if instruction_set not in _architectures:
         raise Error(f"MYRIAD_INSTRUCTION_SET is {instruction_set!r}: name one of {', '.join(_architectures)}, or unset "
                     "the variable")
-    asked = (header, struct, method, real, instruction_set, os.environ.get("MYRIAD_CXX"))
+    asked = (header, struct, method, real, instruction_set, os.environ.get("MYRIAD_CXX"),
+             os.environ.get("CXX"))
     if asked in _loaded:
         return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
     by = compiler()
@@ -169,5 +204,5 @@ def kernel(header, struct, method, real):
     _loaded[asked] = obtained.loaded
     origin = "cache" if obtained.hit else f"compiled by {by.kind}"
     if obtained.unusable is not None:
-        origin += f" (the cache {obtained.unusable} cannot be used: MYRIAD_CACHE_DIR names another folder)"
+        origin += f" ({obtained.unusable}; MYRIAD_CACHE_DIR names another folder)"
     return Kernel(_loaded[asked], origin, time.perf_counter() - begin)

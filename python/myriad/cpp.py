@@ -5,7 +5,9 @@ import copy
 import itertools
 import re
 
-from .expression import condition, draws, integer, number_text, real, text, walk, write
+from .derivatives import dependencies, derivatives
+from .expression import (as_number, condition, draws, infix, integer, is_long, number_text, real, symbols_of, text,
+                         walk, write)
 
 _columns = 116  # inside the struct
 _deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
@@ -14,7 +16,12 @@ _largest_literal = 1 << 24  # exact in single precision
 # and cosines, g++ 12, AVX-512, ns per evaluation: inlined 3.6, called 5.9 (two oscillators); 11.0 and 10.9 (four,
 # 192 instructions); 18.2 and 14.1 (six); 65 and 37 (twelve, which then compile in 7 s instead of 66).
 _largest_inlined = 150
+# Stiff methods keep dense factors of fewer states in registers, and have no other ones for more states.
+_sparse_states = range(7, 129)
+_most_derivatives = 1024  # beyond, the pattern alone is written, and the derivatives come from dual numbers
 
+_of_whole_numbers = {"add": "wrapping_add", "subtract": "wrapping_subtract", "multiply": "wrapping_multiply",
+                     "quotient": "floor_divide", "remainder": "floor_mod"}
 _headers = {"time": "t", "step": "h", "next_step": "h_next", "phase": "phase", "instance": "index",
             "t_begin": "t_begin", "t_end": "t_end"}
 _temporaries = {"add": "sum", "subtract": "difference", "multiply": "product", "divide": "quotient", "sqrt": "root",
@@ -23,9 +30,10 @@ _temporaries = {"add": "sum", "subtract": "difference", "multiply": "product", "
                 "reciprocal": "inverse", "hypot": "length", "negate": "opposite"}
 
 
-_instructions = {"pow": 40, "powr": 40, "find_interval": 20, "atan2": 25, "tan": 25,
-                 **dict.fromkeys(("sin", "cos", "sinpi", "cospi", "exp", "exp2", "log", "log2", "log10", "cbrt", "asin",
-                                  "acos", "atan", "sinh", "cosh", "tanh", "hypot"), 15),
+_instructions = {"pow": 40, "powr": 40, "find_interval": 20, "atan2": 25, "tan": 25, "fmod": 10, "floor_mod": 15,
+                 "floor_divide": 20,
+                 **dict.fromkeys(("sin", "cos", "sinpi", "cospi", "exp", "exp2", "expm1", "log", "log1p", "log2",
+                                  "log10", "cbrt", "asin", "acos", "atan", "sinh", "cosh", "tanh", "hypot"), 15),
                  **dict.fromkeys(("sincos.sine", "sincos.cosine", "sincospi.sine", "sincospi.cosine"), 10)}
 
 # Of several of these with equal arguments, the arguments are used once.
@@ -44,18 +52,18 @@ def _is_plain(node):
                for n in walk([node]))
 
 
-def _is_long(node):
-    """Whether a whole number has 64 bits in C++, as that of the instance has."""
-    return any(n.op == "constant" and not -2**31 <= n.value < 2**31 or n.value == ("built-in", "instance")
-               for n in walk([node]))
+def _is_natural(node):
+    """Whether a whole number cannot be negative, as numbers of instances, phases and detections."""
+    return all(n.value >= 0 if n.op == "constant" else
+               n.value[0] in ("built-in", "event_count") if n.op == "symbol" else
+               n.op in ("quotient", "remainder", "min", "max") for n in walk([node]))
 
 
 def generic_problem(roots):
     """The first node that cannot be computed for a whole pack, or None: packs of whole numbers have no products and do
     not mix with real ones."""
     for node in walk(roots):
-        products = node.type == integer and node.op in (
-            "multiply", "min", "max", "abs", "quotient", "remainder")
+        products = node.type == integer and node.op in ("multiply", "min", "max", "quotient", "remainder")
         if (products or any(_converts(node, a) and not _is_plain(a) for a in node.args)) and not _is_plain(node):
             return node
     return None
@@ -188,7 +196,16 @@ class Body:
         return name
 
     def text(self, node):
-        return write(node, self._leaf, self._call, self._convert)
+        return write(node, self._leaf, self._call, self._convert, self._operator)
+
+    @staticmethod
+    def _operator(node):
+        """C++'s operators. Those of whole numbers would be undefined at the ends of their range, and round quotients
+        towards zero."""
+        if node.type == integer and not (node.op in ("quotient", "remainder") and node.args[1].op == "constant" and
+                                         node.args[1].value > 0 and _is_natural(node.args[0])):
+            return None
+        return infix.get(node.op)
 
     def _convert(self, node, argument):
         """The conversion of an argument, as the text before its parenthesis."""
@@ -208,6 +225,8 @@ class Body:
         if node.op == "truth":
             return "true" if node.value else "false"
         if node.op == "constant":
+            if node.value == -2**31 and node.type == integer:
+                return "(-2147483647 - 1)"  # C++'s -2147483648 has 64 bits
             return str(node.value) if node.type == integer else self._number(node.value)
         return None
 
@@ -221,7 +240,7 @@ class Body:
         return f"{self.names.R}({number_text(float(value))})"
 
     def _call(self, node, arguments):
-        function = node.op
+        function = _of_whole_numbers.get(node.op, node.op) if node.type == integer else node.op
         if function in ("lookup", "find_interval"):
             table, first, *numbers = node.value
             return f"myriad::{function}(&{self.shared}[{table.name} + {first}], {', '.join(map(str, numbers))}, " \
@@ -234,9 +253,9 @@ class Body:
         if node.type != integer and (all(a.op == "constant" for a in numbers) or function in ("pow", "powr", "fma")):
             values[first:] = [f"{self.names.R}({v})" if a.op == "constant" and "(" not in v else v
                               for a, v in zip(numbers, values[first:])]
-        elif node.type == integer and function in ("min", "max") and any(map(_is_long, numbers)):
-            values = [v if _is_long(a) else f"std::int64_t({v})" for a, v in zip(numbers, values)]
-        elif node.type == integer and not self.scalar and all(map(_is_plain, numbers)):
+        elif node.type == integer and function in ("min", "max") and any(map(is_long, numbers)):
+            values = [v if is_long(a) else f"std::int64_t({v})" for a, v in zip(numbers, values)]
+        elif node.type == integer and not self.scalar and function == "select" and all(map(_is_plain, numbers)):
             values[first] = f"myriad::integer_of<{self.names.R}>({values[first]})"
         return f"myriad::{function}({', '.join(values)})"
 
@@ -297,7 +316,9 @@ class Writer:
             out.append("    static constexpr myriad::reduction reductions[] = {")
             out += [f"        {{{r.observed}, myriad::over_phase::{r.kind}, {r.accessory}}}," for r in model.reductions]
             out.append("    };")
-        blocks = [self.function("rhs", "n_state", model.rhs)]
+        pattern, jacobian = self.jacobian()
+        out += ["    " + line for line in pattern]
+        blocks = [self.function("rhs", "n_state", model.rhs)] + jacobian
         if model.events:
             blocks.append(self.function("events", "n_event", [e.function for e in model.events]))
         if model.observed:
@@ -327,6 +348,30 @@ class Writer:
         if work(model.rhs) > _largest_inlined:
             declared.append("large_rhs")
         return [f"static constexpr bool {name} = true;" for name in declared]
+
+    def jacobian(self):
+        """What stiff methods need of a large model: the pattern of its Jacobian, whether it depends on time, as lines,
+        and the derivatives, in a list of one function or none."""
+        model = self.model
+        if len(model.states) not in _sparse_states:
+            return [], []
+        states = [s for s in symbols_of(model.rhs) if s.value[0] == "state"]
+        by_name = {s.value[1]: s for s in states}
+        order = [by_name[name] for name in model.states if name in by_name]
+        column = {i: model.states.index(s.value[1]) for i, s in enumerate(order)}
+        found = derivatives(model.rhs, order)
+        rows = found if found is not None else dependencies(model.rhs, order)
+        entries = [(row, i) for row, columns in enumerate(rows) for i in sorted(columns)]
+        if not entries or len(entries) > len(model.states) ** 2 // 2 and len(entries) > _most_derivatives:
+            return [], []
+        lines = []
+        if all(s.value != ("built-in", "time") for s in symbols_of(model.rhs)):
+            lines.append("static constexpr bool autonomous = true;")
+        written = ", ".join(f"{{{model.states[row]}, {model.states[column[i]]}}}" for row, i in entries)
+        lines += _wrap(f"static constexpr myriad::jacobian_entry jacobian_pattern[] = {{{written}}};", 0)
+        if found is None or len(entries) > _most_derivatives:
+            return lines, []
+        return lines, [self.function("jacobian", len(entries), [as_number(found[row][i]) for row, i in entries])]
 
     # Functions of the state
 
@@ -414,7 +459,7 @@ class Writer:
             elif a is target:
                 only_if, value = ~chosen, b
         for op, operator in (("add", "+="), ("subtract", "-="), ("multiply", "*=")):
-            if value.op == op and value.args[0] is target:
+            if value.op == op and value.args[0] is target and target.type == real:
                 return only_if, operator, value.args[1]
         return only_if, "=", value
 

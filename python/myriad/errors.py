@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the package raises: one class, so that callers can tell its messages from those of other packages."""
 
+import difflib
 import os
 import sys
 
@@ -13,12 +14,43 @@ class Error(ValueError):
     """Something in a model, a sweep or the options of a call is wrong; the message says what and what to do."""
 
 
+class UnknownOption(Error, TypeError):
+    """A call names an option that does not exist."""
+
+
 def users_line():
     """File and line of the innermost caller outside this package, as (file, line), or None."""
     frame = sys._getframe(1)
     while frame is not None and frame.f_code.co_filename.startswith(_here):
         frame = frame.f_back
     return None if frame is None else (frame.f_code.co_filename, frame.f_lineno)
+
+
+# What SciPy and other packages call options, and what to write instead.
+_elsewhere = {
+    "t_span": "time=(begin, end)", "tspan": "time=(begin, end)", "y0": "start={x: 1, v: 0}",
+    "x0": "start={x: 1, v: 0}", "u0": "start={x: 1, v: 0}", "t_eval": "samples=times", "saveat": "samples=times",
+    "dense_output": "samples=, a number of evenly spaced times or an array of times",
+    "args": "values of parameters in the sweep, {k: 0.1}", "p": "values of parameters in the sweep, {k: 0.1}",
+    "first_step": "step=", "h0": "step=", "dt": "step=", "max_step": "maximum_step=", "hmax": "maximum_step=",
+    "dtmax": "maximum_step=", "min_step": "minimum_step=", "hmin": "minimum_step=", "dtmin": "minimum_step=",
+    "mxstep": "max_steps=", "nsteps": "max_steps=", "maxiters": "max_steps=", "reltol": "rtol=", "abstol": "atol=",
+    "fun": "a model, the first argument", "f": "a model, the first argument", "alg": "method=", "callback": "events=",
+    "threads": "device=\"cpu:4\"", "n_jobs": "device=\"cpu:4\""}
+_needless = ("jac", "jac_sparsity", "lband", "uband", "vectorized", "Dfun", "tfirst")
+
+
+def refuse_options(given, known, call):
+    """Refuses options that a call does not have, {name: value}, with what it has in their place."""
+    for name in given:
+        if name in _needless:
+            hint = "leave it out, as the model's equations say all of this"
+        elif name in _elsewhere:
+            hint = f"give {_elsewhere[name]}"
+        else:
+            near = difflib.get_close_matches(name, known, 1)
+            hint = f"did you mean '{near[0]}'?" if near else f"help(myriad.{call}) lists what there is"
+        raise UnknownOption(f"{call} has no option '{name}'{at(users_line())}: {hint}")
 
 
 def refuse_masked(values, what):

@@ -3,6 +3,8 @@
 one object. Operators and functions record what they are applied to and compute nothing, except with constants alone.
 """
 
+import builtins
+import decimal
 import math
 import numbers
 import operator
@@ -14,10 +16,10 @@ import numpy as np
 
 from .errors import Error, at, refuse_masked, users_line
 
-__all__ = ["sqrt", "cbrt", "abs", "floor", "round", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinpi",
-           "cospi", "sinh", "cosh", "tanh", "exp", "exp2", "log", "log2", "log10", "pow", "powr", "reciprocal",
-           "hypot", "copysign", "fma", "sincos", "sincospi", "minimum", "maximum", "where", "is_finite", "uniform",
-           "normal", "pi"]
+__all__ = ["sqrt", "cbrt", "abs", "floor", "ceil", "trunc", "round", "sin", "cos", "tan", "asin", "acos", "atan",
+           "atan2", "sinpi", "cospi", "sinh", "cosh", "tanh", "exp", "exp2", "expm1", "log", "log2", "log10", "log1p",
+           "pow", "powr", "reciprocal", "hypot", "copysign", "fmod", "fma", "sincos", "sincospi", "minimum", "maximum",
+           "where", "is_finite", "uniform", "normal", "pi"]
 
 pi = math.pi
 
@@ -66,8 +68,12 @@ def constant(number):
     if isinstance(number, (bool, np.bool_)):
         return make("truth", value=bool(number), type=condition)
     if isinstance(number, numbers.Integral):
-        return make("constant", value=int(number), type=integer)
-    if isinstance(number, numbers.Real):
+        number = int(number)
+        if number.bit_length() > 1024:
+            raise Error(f"a whole number of {number.bit_length()} bits is too large for double precision"
+                        f"{at(users_line())}")
+        return make("constant", value=number, type=integer)
+    if isinstance(number, (numbers.Real, decimal.Decimal)):
         number = float(number)
         if number != number:
             raise Error(f"a constant is NaN{at(users_line())}: check how it was computed")
@@ -176,13 +182,15 @@ def _power(base, exponent):
     if _is_constant(exponent):
         n = exponent.value
         if _is_constant(base):
+            if base.type == exponent.type == integer and (base.value.bit_length() - 1) * n > 1024:
+                raise Error(f"{text(base)} ** {text(exponent)} is not a number of double precision{at(users_line())}")
             try:
                 return constant(base.value ** n)
             except (ZeroDivisionError, OverflowError):
                 raise Error(f"{base.value} ** {n} is not a finite number{at(users_line())}") from None
         if n == 0.5:
             return sqrt(base)
-        if float(n).is_integer():
+        if exponent.type == integer or float(n).is_integer():
             return _whole_power(base, int(n))
     return make("pow", (to_real(base), to_real(exponent)))
 
@@ -225,62 +233,46 @@ def _binary(build):
     return forward, backward
 
 
-def _add(a, b):
+def add(a, b):
     return _arithmetic("add", operator.add, a, b)
 
 
-def _subtract(a, b):
+def subtract(a, b):
     return _arithmetic("subtract", operator.sub, a, b)
 
 
-def _multiply(a, b):
+def multiply(a, b):
     return _arithmetic("multiply", operator.mul, a, b)
 
 
-def _divide(a, b):
+def divide(a, b):
     return _arithmetic("divide", operator.truediv, a, b, always_real=True)
 
 
-_whole_operations = ("add", "subtract", "multiply", "negate", "min", "max", "quotient", "remainder")
-
-
-def _is_counted(a):
-    """Whether a whole number is computed from those of instances, phases and detections alone."""
-    return a.type == integer and not _is_constant(a) and all(
-        _is_whole(n) or (n.value[0] in ("built-in", "event_count") if n.op == "symbol" else n.op in _whole_operations)
-        for n in walk([a]))
-
-
-def _may_be_negative(a):
-    return any(n.op in ("subtract", "negate") or _is_whole(n) and n.value < 0 for n in walk([a]))
-
-
-def _whole_remainder(a, b):
-    """a % b where both are whole numbers, b is a positive constant, and all are counted: exact, however large a is and
-    in every precision. None elsewhere. C++ rounds quotients towards zero."""
-    if not (_is_counted(a) and _is_whole(b) and b.value > 0):
-        return None
-    made = make("remainder", (a, b), type=integer)
-    if not _may_be_negative(a):
-        return made
-    reads_instance = any(n.value == ("built-in", "instance") for n in walk([a]))
-    return make("remainder", (_add(made, b), b), type=integer) if reads_instance else None
-
-
-def _floor_divide(a, b):
+def _division(op, of_whole, fold, a, b):
+    """// or %, as Python has them."""
     a, b = as_number(a), as_number(b)
-    remainder = _whole_remainder(a, b)
-    if remainder is None:
-        return floor(_divide(a, b))
-    return make("quotient", (_subtract(a, remainder) if _may_be_negative(a) else a, b), type=integer)
+    is_integer = a.type == b.type == integer
+    if _is_constant(b) and b.value == 0:
+        raise Error(f"`{text(a)}` is divided by zero{at(users_line())}")
+    if _is_constant(a) and _is_constant(b):
+        return constant(fold(a.value, b.value))
+    if is_integer:
+        return make(of_whole, (a, b), type=integer)
+    return make(op, (to_real(a), to_real(b)))
 
 
-def _remainder(a, b):
-    a, b = as_number(a), as_number(b)
-    remainder = _whole_remainder(a, b)
-    if remainder is not None:
-        return remainder
-    return a - _multiply(b, floor(_divide(a, b)))
+def floor_divide(a, b):
+    return _division("floor_divide", "quotient", operator.floordiv, a, b)
+
+
+def remainder(a, b):
+    return _division("floor_mod", "remainder", operator.mod, a, b)
+
+
+def is_long(node):
+    """Whether a whole number has 64 bits, as that of the instance has; others have 32."""
+    return any(n.value == ("built-in", "instance") for n in walk([node]) if n.op == "symbol")
 
 
 class _NumpyFunctions:
@@ -289,15 +281,17 @@ class _NumpyFunctions:
     __slots__ = ()
 
     def __array_ufunc__(self, ufunc, method, *inputs, **options):
-        function = _numpy_functions().get(ufunc)
+        from .numpy_functions import of_numbers
+        function = of_numbers(ufunc)
         if function is None or method != "__call__" or options:
             raise Error(f"numpy.{ufunc.__name__} cannot be applied to expressions of a model{at(users_line())}: use "
                         "the functions of myriad")
         return elementwise(function, *inputs)
 
     def __array_function__(self, function, types, args, options):
-        if function in _array_functions and len(args) == 3 and not options:
-            return elementwise(_array_functions[function], *args)
+        from .numpy_functions import of_arrays
+        if (ours := of_arrays(function)) is not None:
+            return ours(*args, **options)
         raise Error(f"numpy.{function.__name__} cannot be applied to expressions of a model{at(users_line())}: use the "
                     "functions of myriad")
 
@@ -306,9 +300,13 @@ class Vector(np.ndarray):
     """An array of expressions: NumPy's functions of it are this module's, element by element."""
 
     def __array_ufunc__(self, ufunc, method, *inputs, out=None, **options):
-        function = _numpy_functions().get(ufunc)
+        from .numpy_functions import of_numbers
+        function = of_numbers(ufunc)
         if function is not None and method == "__call__" and not options:
             result = elementwise(function, *inputs)
+        elif function is not None and method == "reduce" and ufunc in (np.maximum, np.minimum):
+            result = np.frompyfunc(function, 2, 1).reduce(inputs[0].view(np.ndarray), **options)
+            result = result.view(Vector) if isinstance(result, np.ndarray) else result
         else:  # sums and products, of which NumPy's work on objects
             plain = [x.view(np.ndarray) if isinstance(x, Vector) else x for x in inputs]
             result = getattr(ufunc, method)(*plain, **options)
@@ -319,8 +317,9 @@ class Vector(np.ndarray):
         return out[0]
 
     def __array_function__(self, function, types, args, options):
-        if function in _array_functions and len(args) == 3 and not options:
-            return elementwise(_array_functions[function], *args)
+        from .numpy_functions import of_arrays
+        if (ours := of_arrays(function)) is not None:
+            return ours(*args, **options)
         return super().__array_function__(function, types, args, options)
 
 
@@ -351,12 +350,12 @@ class Expression(Node, _NumpyFunctions):
 
     __slots__ = ()
     __hash__ = Node.__hash__
-    __add__, __radd__ = _binary(_add)
-    __sub__, __rsub__ = _binary(_subtract)
-    __mul__, __rmul__ = _binary(_multiply)
-    __truediv__, __rtruediv__ = _binary(_divide)
-    __floordiv__, __rfloordiv__ = _binary(_floor_divide)
-    __mod__, __rmod__ = _binary(_remainder)
+    __add__, __radd__ = _binary(add)
+    __sub__, __rsub__ = _binary(subtract)
+    __mul__, __rmul__ = _binary(multiply)
+    __truediv__, __rtruediv__ = _binary(divide)
+    __floordiv__, __rfloordiv__ = _binary(floor_divide)
+    __mod__, __rmod__ = _binary(remainder)
     __pow__, __rpow__ = _binary(_power)
     __lt__, _ = _binary(lambda a, b: _compare("less", operator.lt, a, b))
     __le__, _ = _binary(lambda a, b: _compare("less_equal", operator.le, a, b))
@@ -366,8 +365,10 @@ class Expression(Node, _NumpyFunctions):
     __ne__, _ = _binary(lambda a, b: _compare("not_equal", operator.ne, a, b))
     del _
 
+    __divmod__, __rdivmod__ = _binary(lambda a, b: (floor_divide(a, b), remainder(a, b)))
+
     def __neg__(self):
-        return make("negate", (self,), type=self.type)
+        return subtract(0, self) if self.type == integer else make("negate", (self,))
 
     def __pos__(self):
         return self
@@ -375,18 +376,27 @@ class Expression(Node, _NumpyFunctions):
     def __abs__(self):
         return abs(self)
 
-    def __round__(self):
+    def __round__(self, digits=None):
+        if digits:
+            raise Error(f"`{text(self)}` is rounded to {digits} digits{at(users_line())}: there is rounding to whole "
+                        "numbers alone, as in round(10 * x) / 10")
         return round(self)
 
     def __floor__(self):
         return floor(self)
+
+    def __ceil__(self):
+        return ceil(self)
+
+    def __trunc__(self):
+        return trunc(self)
 
     def _refuse_number(self, *_):
         raise Error(f"`{text(self)}` is not a number yet, while the model is recorded{at(users_line())}: use the "
                     "functions of myriad (myriad.sin, not math.sin), and keep it in arrays of objects, as "
                     "np.zeros_like(y) or np.zeros(2, dtype=object) makes them")
 
-    __float__ = __int__ = __index__ = __complex__ = __trunc__ = __ceil__ = _refuse_number
+    __float__ = __int__ = __index__ = __complex__ = _refuse_number
 
 
 def _both(a, b):
@@ -446,9 +456,9 @@ _unary = {  # for the values of constants and for `evaluate`; C++ uses myriad's 
     "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh,
     "exp": np.exp, "exp2": np.exp2, "log": np.log, "log2": np.log2, "log10": np.log10,
     "reciprocal": lambda x: 1.0 / x,
-    "round": lambda x: np.copysign(np.floor(np.abs(x) + 0.5), x),
-    "sinpi": lambda x: np.sin(np.pi * np.remainder(x, 2.0)),
-    "cospi": lambda x: np.cos(np.pi * np.remainder(x, 2.0)),
+    "rint": np.rint, "expm1": np.expm1, "log1p": np.log1p,
+    "sinpi": lambda x: np.sin(np.pi * (x - 2.0 * np.rint(0.5 * x))),
+    "cospi": lambda x: np.cos(np.pi * (x - 2.0 * np.rint(0.5 * x))),
 }
 
 
@@ -463,8 +473,35 @@ def _function(name, description):
 
 sqrt = _function("sqrt", "Square root; NaN of negative numbers.")
 cbrt = _function("cbrt", "Cube root.")
-floor = _function("floor", "The largest whole number that is not above x.")
-round = _function("round", "The nearest whole number, halves away from zero.")
+_floor, _rint = _function("floor", ""), _function("rint", "")
+
+
+def _of_real(x, function):
+    """A function that leaves whole numbers as they are."""
+    x = as_number(x)
+    return x if x.type == integer else function(x)
+
+
+def floor(x):
+    """The largest whole number that is not above x."""
+    return _of_real(x, _floor)
+
+
+def ceil(x):
+    """The smallest whole number that is not below x."""
+    return _of_real(x, lambda x: -_floor(-x))
+
+
+def trunc(x):
+    """x without its fraction."""
+    return _of_real(x, lambda x: copysign(_floor(abs(x)), x))
+
+
+def round(x):
+    """The nearest whole number, halves to the even one, as Python and NumPy round."""
+    return _of_real(x, _rint)
+
+
 sin = _function("sin", "Sine of an angle in radians.")
 cos = _function("cos", "Cosine of an angle in radians.")
 tan = _function("tan", "Tangent of an angle in radians.")
@@ -478,6 +515,8 @@ cosh = _function("cosh", "Hyperbolic cosine.")
 tanh = _function("tanh", "Hyperbolic tangent.")
 exp = _function("exp", "Exponential function.")
 exp2 = _function("exp2", "2 to the power of x.")
+expm1 = _function("expm1", "exp(x) - 1, accurate for small x.")
+log1p = _function("log1p", "log(1 + x), accurate for small x.")
 log = _function("log", "Natural logarithm; NaN of negative numbers, minus infinity of zero.")
 log2 = _function("log2", "Logarithm to base 2.")
 log10 = _function("log10", "Logarithm to base 10.")
@@ -496,6 +535,8 @@ def _function_of_two(name, description):
 atan2 = _function_of_two("atan2", "The angle of the point (second, first).")
 hypot = _function_of_two("hypot", "sqrt(a^2 + b^2).")
 copysign = _function_of_two("copysign", "The magnitude of the first with the sign of the second.")
+fmod = _function_of_two("fmod", "The exact remainder of a division with its quotient cut, with the sign of the first; "
+                                "% has that of the second.")
 powr = _function_of_two("powr", "x to the power y for x >= 0, in half the time of pow: NaN for negative x.")
 
 
@@ -507,7 +548,9 @@ def pow(x, y):
 def abs(x):
     """Absolute value."""
     x = as_number(x)
-    return constant(x.value if x.value >= 0 else -x.value) if _is_constant(x) else make("abs", (x,), type=x.type)
+    if _is_constant(x):
+        return constant(builtins.abs(x.value))
+    return maximum(x, -x) if x.type == integer else make("abs", (x,))
 
 
 def fma(a, b, c):
@@ -595,44 +638,6 @@ def is_finite(x):
     return make("is_finite", (to_real(as_number(x)),), type=condition)
 
 
-def _numpy_functions():
-    if not _numpy_table:
-        for name in ("sqrt", "cbrt", "floor", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "exp2", "log", "log2",
-                     "log10", "hypot", "copysign", "reciprocal"):
-            _numpy_table[getattr(np, name)] = globals()[name]
-        for name in ("asin", "acos", "atan", "atan2"):
-            _numpy_table[getattr(np, name.replace("a", "arc", 1))] = globals()[name]
-        _numpy_table.update({
-            np.absolute: abs, np.fabs: abs, np.minimum: minimum, np.maximum: maximum, np.power: pow,
-            np.square: lambda x: x * x, np.isfinite: is_finite,
-            np.sign: lambda x: where(x > 0, 1.0, where(x < 0, -1.0, x)), np.heaviside: lambda x, h: where(
-                x > 0, 1.0, where(x < 0, 0.0, h)), np.deg2rad: lambda x: x * (pi / 180),
-            np.add: _add, np.subtract: _subtract, np.multiply: _multiply, np.true_divide: _divide,
-            np.floor_divide: _floor_divide, np.remainder: _remainder, np.negative: operator.neg,
-            np.positive: operator.pos, np.less: operator.lt, np.less_equal: operator.le, np.greater: operator.gt,
-            np.greater_equal: operator.ge, np.equal: operator.eq, np.not_equal: operator.ne,
-            np.logical_and: operator.and_, np.logical_or: operator.or_, np.logical_not: operator.invert,
-            np.logical_xor: operator.xor, np.bitwise_and: operator.and_, np.bitwise_or: operator.or_,
-            np.bitwise_xor: operator.xor, np.invert: operator.invert,
-        })
-    return _numpy_table
-
-
-_numpy_table = {}
-_array_functions = {np.where: where, np.clip: lambda x, low, high: minimum(maximum(x, low), high)}
-
-
-def _add_numpys_methods():
-    """NumPy's functions of an array of objects call a method of each: np.sin(array) calls array[0].sin()."""
-    for function, ours in _numpy_functions().items():
-        if function.nin == 1 and function.__name__ not in ("absolute", "negative", "positive", "invert"):
-            setattr(Expression, function.__name__, lambda self, ours=ours: ours(self))
-    for name, ours in (("arctan2", atan2), ("hypot", hypot), ("copysign", copysign)):
-        setattr(Expression, name, lambda self, other, ours=ours: ours(self, other))
-
-
-_add_numpys_methods()
-
 # ----------------------------------------------------------------------------------------------------------------------
 # Walking through a graph
 # ----------------------------------------------------------------------------------------------------------------------
@@ -662,19 +667,21 @@ def symbols_of(roots):
     return [node for node in walk(roots) if node.op == "symbol"]
 
 
-_infix = {  # symbol, precedence: higher binds tighter
+infix = {  # symbol, precedence: higher binds tighter
     "or": ("||", 1), "and": ("&&", 2), "equal": ("==", 3), "not_equal": ("!=", 3), "less": ("<", 4),
     "less_equal": ("<=", 4), "greater": (">", 4), "greater_equal": (">=", 4), "add": ("+", 5), "subtract": ("-", 5),
     "multiply": ("*", 6), "divide": ("/", 6), "quotient": ("/", 6), "remainder": ("%", 6),
 }
+_as_in_python = {**infix, "quotient": ("//", 6), "floor_divide": ("//", 6), "floor_mod": ("%", 6)}
 _prefix = {"negate": "-", "not": "!"}
 _atom, _unary_precedence = 9, 8
 
 
-def write(root, leaf, call, convert=None, infix=_infix):
+def write(root, leaf, call, convert, operator_of):
     """An expression as text with as few parentheses as C++ and Python need. `leaf(node)` is the text of a node without
     arguments or one that has a name, else None; `call(node, arguments)` that of a function; `convert(node, argument)`
-    is the type that an argument is converted to first, or None."""
+    is the type that an argument is converted to first, or None; `operator_of(node)` is the sign and the precedence of
+    an operator, or None."""
     texts = {}
     stack = [root]
     while stack:
@@ -697,8 +704,8 @@ def write(root, leaf, call, convert=None, infix=_infix):
             to = convert and convert(node, argument)
             if to:
                 arguments[i] = (f"{to}({arguments[i][0]})", _atom)
-        if node.op in infix:
-            symbol, precedence = infix[node.op]
+        if (sign := operator_of(node)) is not None:
+            symbol, precedence = sign
             (left, left_precedence), (right, right_precedence) = arguments
             mixed = node.op == "or"  # && within || in parentheses, as compilers suggest
             if left_precedence < precedence or mixed and left_precedence == 2:
@@ -713,6 +720,9 @@ def write(root, leaf, call, convert=None, infix=_infix):
         else:
             texts[id(node)] = (call(node, [a for a, _ in arguments]), _atom)
     return texts[id(root)][0]
+
+
+_called = {"select": "where", "rint": "round"}  # in Python
 
 
 def number_text(value):
@@ -736,8 +746,8 @@ def text(node):
 
     if len(walk([node])) > 200:
         return f"({node.op} of {len(walk([node]))} operations)"
-    written = write(node, leaf, lambda n, arguments: f"{n.op.replace('select', 'where')}({', '.join(arguments)})",
-                    infix={**_infix, "quotient": ("//", 6)})
+    written = write(node, leaf, lambda n, arguments: f"{_called.get(n.op, n.op)}({', '.join(arguments)})",
+                    lambda *_: None, lambda n: _as_in_python.get(n.op))
     written = written.replace("&&", "and").replace("||", "or").replace("!(", "not (")
     return written if len(written) <= 100 else written[:97] + "..."
 
@@ -748,7 +758,8 @@ def text(node):
 
 _operations = {
     "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
-    "quotient": operator.floordiv, "remainder": operator.mod, "negate": operator.neg, "less": operator.lt,
+    "quotient": np.floor_divide, "remainder": np.mod, "floor_divide": np.floor_divide, "floor_mod": np.mod,
+    "fmod": np.fmod, "negate": operator.neg, "less": operator.lt,
     "less_equal": operator.le, "greater": operator.gt, "greater_equal": operator.ge, "equal": operator.eq,
     "not_equal": operator.ne, "and": np.logical_and, "or": np.logical_or, "not": np.logical_not, "select": np.where,
     "is_finite": np.isfinite, "abs": np.abs, "min": np.fmin, "max": np.fmax, "pow": np.power, "powr": np.power,

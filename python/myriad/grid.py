@@ -3,6 +3,9 @@
 axes, the last one varying fastest; a zip takes the values of equally long arrays together.
 """
 
+import decimal
+import numbers
+
 import numpy as np
 
 from .axes import Axis
@@ -23,13 +26,25 @@ def _name(key, line):
     raise Error(f"{key!r} names nothing to sweep over{at(line)}: use a symbol, as from myriad.parameter, or its name")
 
 
+def as_numbers(values):
+    """What users give as numbers, as an array; also objects that are real numbers, as those of `fractions`."""
+    array = np.asarray(values)
+    if array.dtype == object and all(isinstance(x, (numbers.Real, decimal.Decimal)) for x in array.flat):
+        try:
+            array = array.astype(float)
+        except OverflowError:
+            raise Error(f"a value is too large for double precision{at(users_line())}: give numbers up to 1.8e308"
+                        ) from None
+    return array
+
+
 def _numbers(name, values, line):
     """Values as an array of whole numbers or of double precision, without NaN; axes of studies as they are."""
     if isinstance(values, Axis):
         return values
     refuse_masked(values, name)
     try:
-        array = np.asarray(values)
+        array = as_numbers(values)
         if array.dtype.kind == "c":
             raise Error(f"the values of {name} are complex{at(line)}: a model is real")
         array = array.astype(np.int64 if array.dtype.kind in "iub" else float, copy=False)
@@ -137,9 +152,9 @@ def grid(*parts, **axes):
         for name, values in _collect(part, {}, line).items():
             if values.ndim == 0:
                 add([], {}, {name: values.item()})
-            elif values.ndim > 1 or not values.size:
-                what = "no values" if not values.size else f"values of shape {values.shape}"
-                raise Error(f"{name} has {what}{at(line)}: an axis of a grid is a list of numbers")
+            elif values.ndim > 1:
+                raise Error(f"{name} has values of shape {values.shape}{at(line)}: an axis of a grid is a list of "
+                            "numbers")
             else:
                 add([(name, values)], {name: (name, values)}, {})
     return Sweep(made_axes, coordinates, constants)
@@ -152,9 +167,9 @@ def zip(mapping=None, **arrays):
     constants = {n: v.item() for n, v in given.items() if v.ndim == 0}
     along = {n: v for n, v in given.items() if v.ndim > 0}
     for name, values in along.items():
-        if values.ndim > 1 or not values.size:
-            what = "no values" if not values.size else f"values of shape {values.shape}"
-            raise Error(f"{name} has {what}{at(line)}: give one number per instance, in one dimension")
+        if values.ndim > 1:
+            raise Error(f"{name} has values of shape {values.shape}{at(line)}: give one number per instance, in one "
+                        "dimension")
     lengths = {n: len(v) for n, v in along.items()}
     if len(set(lengths.values())) > 1:
         listed = ", ".join(f"{n} has {length}" for n, length in lengths.items())

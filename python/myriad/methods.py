@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The methods of integration and the choices of step-size control, by the names of the C++ library."""
 
+import difflib
+
 from .errors import Error
 
 methods = ("cash_karp", "dormand_prince_5", "tsitouras_5", "verner_7", "dormand_prince_8", "runge_kutta_4",
@@ -9,17 +11,29 @@ fixed_step = ("runge_kutta_4",)
 controls = ("pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step", "tolerance_per_instance")
 
 
+default = "tsitouras_5"  # docs/methods.md#the-default
+
+# What other packages call methods that are here, or whose place one takes.
+_elsewhere = {"rk45": "dormand_prince_5", "dopri5": "dormand_prince_5", "dp5": "dormand_prince_5",
+              "rk23": "tsitouras_5", "bs3": "tsitouras_5", "tsit5": "tsitouras_5", "dop853": "dormand_prince_8",
+              "dp8": "dormand_prince_8", "vern7": "verner_7", "rk4": "runge_kutta_4", "radau": "rodas_5p",
+              "bdf": "rodas_5p", "lsoda": "rodas_5p", "vode": "rodas_5p", "cvode": "rodas_5p", "rodas5p": "rodas_5p",
+              "rosenbrock23": "rosenbrock_23", "rkck": "cash_karp"}
+
+
 def method_type(name, chosen=(), samples=False):
     """The C++ type of a method with choices of its control, and with dense output if samples are wanted."""
     if name not in methods:
-        raise Error(f"there is no method {name!r}: choose one of {', '.join(methods)}")
+        near = _elsewhere.get(str(name).lower()) or next(iter(difflib.get_close_matches(str(name), methods, 1)), None)
+        hint = f"use \"{near}\", or another" if near else "choose one"
+        raise Error(f"there is no method {name!r}: {hint} of {', '.join(methods)}")
     chosen = tuple(chosen) if isinstance(chosen, (list, tuple, set)) else (chosen,)
     for choice in chosen:
         if choice not in controls:
             raise Error(f"there is no step-size control {choice!r}: choose of {', '.join(controls)}")
     if chosen and name in fixed_step:
         raise Error(f"{name} takes fixed steps and has no step-size control to choose: leave out control=, or take "
-                    "cash_karp, for example")
+                    "an adaptive method")
     written = f"myriad::{name}"
     if chosen:
         written = f"myriad::controlled<{', '.join([written] + ['myriad::' + c for c in chosen])}>"

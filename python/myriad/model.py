@@ -14,6 +14,7 @@ from .expression import (Node, as_condition, as_number, draws, evaluate, integer
                          to_real, vector, walk)
 from .parse import from_sympy, parse, parse_equations, sympy_name
 from .table import element_name, tables_of
+from .whole_numbers import check_constants
 
 __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
            "integral"]
@@ -405,6 +406,7 @@ class Model:
         if drawn is not None:
             raise Error(f"`{text(drawn)}`{at(drawn.line)} is drawn in an equation, event or hook{at(self.line)}: "
                         "random numbers are for generate= alone; let it set a parameter")
+        check_constants(everything, [e for _, assignments in hooks for _, e in assignments])
         everything += walk([e for _, e in self.generate])
         self.tables = tables_of(everything)
         self.shared_values = {element_name(t, i): float(v) for t in self.tables for i, v in enumerate(t.values.flat)}

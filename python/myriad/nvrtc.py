@@ -207,7 +207,7 @@ def kernel(header, struct, method, real, shared, device, generates=False):
     _loaded[asked] = obtained.loaded
     origin = "cache" if obtained.hit else f"compiled by NVRTC {library().version}"
     if obtained.unusable is not None:
-        origin += f" (the cache {obtained.unusable} cannot be used: MYRIAD_CACHE_DIR names another folder)"
+        origin += f" ({obtained.unusable}; MYRIAD_CACHE_DIR names another folder)"
     return Kernel(_loaded[asked], origin, time.perf_counter() - begin)
 
 

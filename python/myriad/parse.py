@@ -15,16 +15,27 @@ _binary = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
 _compare = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq,
             ast.NotEq: operator.ne}
 functions = {name: getattr(ex, name) for name in ex.__all__ if name not in ("sincos", "sincospi", "pi")}
-functions.update(min=ex.minimum, max=ex.maximum)
+functions.update(min=ex.minimum, max=ex.maximum, ln=ex.log)
+
+
+def _shown(source):
+    """A text for messages, cut where it is long."""
+    return source if len(source) <= 100 else f"{source[:97]}..."
 
 
 def parse(source, names, what):
     """The expression that a text stands for; ^ is a power. `names` has the symbols, `what` says where it stands."""
+    shown = _shown(source.strip())
     try:
         tree = ast.parse(source.strip().replace("^", "**"), mode="eval").body
-    except SyntaxError as error:
-        raise Error(f"{what}: `{source.strip()}` is no expression: {error.msg}") from None
-    return _Reader(names, what).read(tree)
+        return _Reader(names, what).read(tree)
+    except (RecursionError, MemoryError):
+        raise Error(f"{what}: `{shown}` has too many operations within each other: write it in parts, as in "
+                    "\"a = x + y; x' = a * z\"") from None
+    except (SyntaxError, ValueError) as error:
+        if isinstance(error, Error):
+            raise
+        raise Error(f"{what}: `{shown}` is no expression: {getattr(error, 'msg', error)}") from None
 
 
 class _Reader:
@@ -40,7 +51,14 @@ class _Reader:
         if isinstance(tree, ast.Name):
             return self.name(tree)
         if isinstance(tree, ast.BinOp) and type(tree.op) in _binary:
-            return _binary[type(tree.op)](self.read(tree.left), self.read(tree.right))
+            chain = []  # of the operations that come first, without recursion, as sums may have many terms
+            while isinstance(tree, ast.BinOp) and type(tree.op) in _binary:
+                chain.append(tree)
+                tree = tree.left
+            value = self.read(tree)
+            for operation in reversed(chain):
+                value = _binary[type(operation.op)](value, self.read(operation.right))
+            return value
         if isinstance(tree, ast.UnaryOp):
             inner = self.read(tree.operand)
             if isinstance(tree.op, ast.USub):
@@ -93,7 +111,7 @@ def parse_equations(source, names, where):
             names[name] = names[name] if names[name] is not None else symbol("state", name)
     equations, known = {}, dict(names)
     for line in lines:
-        what = f"equation `{line}`{where}"
+        what = f"equation `{_shown(line)}`{where}"
         match = derivative.fullmatch(line)
         if match:
             state = names[match[1] or match[2]]
@@ -140,8 +158,8 @@ def from_sympy(value, names, what):
             raise Error(f"{what}: '{name}' of `{value}` is unknown: name it in parameters=\"...\" or shared=\"...\"")
         return names[name]
 
-    same = {"Abs": "abs", "floor": "floor", "Min": "minimum", "Max": "maximum", "sqrt": "sqrt", "atan2": "atan2",
-            "cbrt": "cbrt", "ln": "log"}
+    same = {"Abs": "abs", "floor": "floor", "Min": "minimum", "Max": "maximum", "ceiling": "ceil", "sqrt": "sqrt",
+            "atan2": "atan2", "cbrt": "cbrt", "ln": "log"}
     same.update({n: n for n in ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log")})
     relations = {sympy.StrictLessThan: operator.lt, sympy.LessThan: operator.le, sympy.StrictGreaterThan: operator.gt,
                  sympy.GreaterThan: operator.ge, sympy.Equality: operator.eq, sympy.Unequality: operator.ne}
@@ -190,6 +208,8 @@ def from_sympy(value, names, what):
             if e.exp == sympy.Rational(1, 2):
                 return ex.sqrt(convert(e.base))
             return convert(e.base) ** convert(e.exp)
+        if isinstance(e, sympy.Mod):
+            return convert(e.args[0]) % convert(e.args[1])
         if isinstance(e, sympy.Piecewise):
             value, condition = e.args[-1]
             if condition != sympy.true:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The outcome of `solve`: arrays by name, statuses, the report, and the way to xarray and pandas."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from . import _core
@@ -56,11 +58,11 @@ class Report:
     __repr__ = __str__
 
 
-class Run:
-    """The results of one call of `solve`. `run["x"]` is an array by name: of a sampled state one row per instance and
-    one column per sample, of a recorded component one column per phase, of others the value at the end, or that of an
-    input. Arrays are views of the core's memory, not copies. Results of a
-    GPU are copied to the host when they are first asked for."""
+class Run(Mapping):
+    """The results of one call of `solve`, a mapping from names to arrays. `run["x"]` is that of a sampled state, one
+    row per instance and one column per sample; of a recorded component, one column per phase; of others the value at
+    the end, or that of an input. Its length is the number of names, `size` that of the instances. Arrays are views of
+    the core's memory, not copies. Results of a GPU are copied to the host when they are first asked for."""
 
     def __init__(self, components, ensemble, report, kernel, sweep, inputs, recorded, sampled, seconds, from_phase,
                  notes=()):
@@ -204,8 +206,29 @@ class Run:
             return self.sample_times
         raise KeyError("the times were not recorded: give record=dict(..., time=True) or samples= to solve")
 
+    def _names(self):
+        """The names of all components that have results, and of recorded times."""
+        tables = self._components.tables
+        return list(dict.fromkeys([*(n for n in self._components.place if n not in tables), *self._recorded]))
+
+    def __iter__(self):
+        return iter(self._names())
+
     def __len__(self):
-        return self.size
+        return len(self._names())
+
+    def __contains__(self, name):
+        try:
+            self[name]
+        except (KeyError, Error):
+            return False
+        return True
+
+    def _ipython_key_completions_(self):
+        return self._names()
+
+    # two runs are equal if they are the same, as their arrays have no single truth value
+    __eq__, __hash__ = object.__eq__, object.__hash__
 
     def __reduce__(self):
         raise Error("the results of a run cannot be pickled or copied: pickle run.to_xarray(), or the arrays that you "

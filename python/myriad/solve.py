@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """`solve`: checks names and shapes, fills an ensemble of the core, integrates it and hands the arrays over."""
 
+import inspect
 import itertools
 import math
 import re
@@ -11,9 +12,10 @@ import numpy as np
 from . import _core, compiler, nvrtc, tape
 from .components import Components, name_of, unknown
 from .device import DeviceInput, is_on_gpu
-from .errors import Error, refuse_masked
-from .grid import Sweep
-from .methods import fixed_step, method_type
+from .empty import EmptyEnsemble, EmptyReport, kernel as no_kernel
+from .errors import Error, refuse_masked, refuse_options
+from .grid import Sweep, as_numbers
+from .methods import default, fixed_step, method_type
 from .run import Interrupted, Run
 
 _directions = {"falling": -1, "either": 0, "rising": 1}
@@ -68,7 +70,7 @@ def _numbers(value, name):
     if is_on_gpu(value):
         return DeviceInput(value, name)
     refuse_masked(value, f"'{name}'")
-    array = np.asarray(value)
+    array = as_numbers(value)
     if array.dtype.kind == "c":
         raise Error(f"'{name}' is complex: a model is real, so give real and imaginary parts as two components")
     if array.dtype.kind not in "biuf":
@@ -100,6 +102,17 @@ def _sweep_values(sweep):
                 "myriad.grid(k=..., B=...)")
 
 
+def ends_of(time):
+    """Begin and end of the time domain."""
+    if time is None:
+        raise Error("time is missing: give begin and end, as in time=(0, 10)")
+    try:
+        begin, end = time
+    except (TypeError, ValueError):
+        raise Error(f"time is {time!r}: give begin and end, as in time=(0, 10)") from None
+    return begin, end
+
+
 def refuse_missing(components, given):
     """Refuses a call that leaves out what every instance needs."""
     for what, names, where in (
@@ -128,10 +141,7 @@ def _gather(components, sweep, start, time, size):
             given[name] = _numbers(value, name)
     given = {**{name: np.asarray(value) for name, value in components.defaults.items()}, **given}
     refuse_missing(components, given)
-    try:
-        begin, end = time
-    except (TypeError, ValueError):
-        raise Error(f"time is {time!r}: give begin and end, as in time=(0, 10)") from None
+    begin, end = ends_of(time)
     domain = _numbers(begin, "begin of time"), _numbers(end, "end of time")
     lengths = {name: len(a) for name, a in (*given.items(), ("begin of time", domain[0]), ("end of time", domain[1]))
                if a.ndim == 1}
@@ -427,11 +437,22 @@ def choose_kernel(model, components, method, control, sampled, precision, interp
     return compiler.kernel(*model.source(), written, precision), components.names
 
 
-def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, method=None, control=(),
+def _inputs(components, given):
+    """What results tell of the inputs."""
+    return {name: array for name, array in given.items() if components.place[name][0] in (
+        "parameter", "shared", "shared_integer", "state")}
+
+
+def _first_recorded(record):
+    """The number of the first phase that is recorded."""
+    return int(dict(record).get("from_phase", 0)) if hasattr(record, "items") else 0
+
+
+def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, samples=None, method=None, control=(),
           rtol=1e-8, atol=1e-8, step=None, minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1,
           max_steps=10_000_000, phase_length=0, carry_on=False, carry_on_step=False, events=None, sub_samples=1,
           accumulation_limit=50, tolerance_scale=None, invalid="refuse", schedule="automatic", size=None,
-          precision="double", device="auto", interpreted=None, progress=None):
+          precision="double", device="auto", interpreted=None, progress=None, **unknown):
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
     model             from `myriad.model(...)`
@@ -446,8 +467,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
                       a t of its own) or `run[myriad.time]` are the recorded times
     samples           dense output: a number of evenly spaced times, an array of times, or `dict(states=, evenly= |
                       times= | every=, capacity=, minimum_spacing=, from_phase=)`
-    method, control   as in the C++ library: "cash_karp" (default), "dormand_prince_5" (default with samples, which it
-                      interpolates more accurately), "tsitouras_5", "verner_7",
+    method, control   as in the C++ library: "tsitouras_5" (default), "dormand_prince_5", "cash_karp", "verner_7",
                       "dormand_prince_8", "runge_kutta_4", "rosenbrock_23", "rodas_5p"; control is one or several of
                       "pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
                       "tolerance_per_instance", the last with `tolerance_scale=`
@@ -471,6 +491,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     `myriad.Interrupted`, whose `run` has what is done; on the CPU, instances that take more than a second longer end as
     "interrupted", and on a GPU those under way come to their end."""
     begin = clock.perf_counter()
+    refuse_options(unknown, inspect.signature(solve).parameters, "solve")
     if precision not in ("double", "float"):
         raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
     devices, no_gpu = device_names(device, interpreted)
@@ -481,8 +502,7 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     if not hasattr(model, "source"):
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
-    if method is None:
-        method = "cash_karp" if samples is None else "dormand_prince_5"
+    method = default if method is None else method
     components = Components(model)
     given, domain, count = _gather(components, sweep, start, time, size)
     method_type(method, control, samples is not None)  # refuses what does not exist
@@ -498,6 +518,12 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     elif invalid != "refuse":
         raise Error(f"invalid is {invalid!r}: give \"refuse\" or \"mark\"")
 
+    if count == 0:
+        real = np.dtype("f8" if precision == "double" else "f4")
+        from_phase = _first_recorded(record)
+        return Run(components, EmptyEnsemble(components, given, real, options.sample_capacity),
+                   EmptyReport(max(options.phases - from_phase, 0), real), no_kernel, sweep, _inputs(components, given),
+                   recorded, sampled, clock.perf_counter() - begin, from_phase)
     kernels = [kernel_for(d, model, components, method, control, samples is not None, precision, interpreted)
                for d in devices]
     kernel, names = kernels[0]
@@ -524,10 +550,8 @@ def solve(model, sweep=None, *, start=None, time, phases=1, record=None, samples
         raise in_python(error) from None
     finally:
         finish()
-    inputs = {name: array for name, array in given.items() if components.place[name][0] in (
-        "parameter", "shared", "shared_integer", "state")}
-    run = Run(components, ensemble, report, kernel, sweep, inputs, recorded, sampled, clock.perf_counter() - begin,
-              int(dict(record).get("from_phase", 0)) if hasattr(record, "items") else 0, [no_gpu] if no_gpu else [])
+    run = Run(components, ensemble, report, kernel, sweep, _inputs(components, given), recorded, sampled,
+              clock.perf_counter() - begin, _first_recorded(record), [no_gpu] if no_gpu else [])
     if failure is not None:
         if isinstance(failure, KeyboardInterrupt):
             raise Interrupted(run) from None

@@ -4,6 +4,7 @@ a stop, and handed to any executor. The C++ library's `study` with a model of Py
 
 import concurrent.futures
 import hashlib
+import inspect
 import os
 import pickle
 import queue
@@ -15,14 +16,14 @@ import numpy as np
 from . import _core, nvrtc
 from .axes import Axis, Random
 from .components import Components, name_of, unknown
-from .errors import Error
+from .errors import Error, refuse_options
 from .expression import Node
 from .grid import Sweep
-from .methods import fixed_step, method_type
+from .methods import default, fixed_step, method_type
 from .reduce import Reduction
 from .run import Interrupted
-from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, device_names, in_python, kernel_for,
-                    make_options, refuse_missing)
+from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, device_names, ends_of, in_python,
+                    kernel_for, make_options, refuse_missing)
 from .study_result import StudyResult
 from .symbols import t_begin, t_end, time as time_symbol
 from .whole_numbers import check_whole_numbers
@@ -66,8 +67,7 @@ class Study:
             raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...)")
         if precision not in ("double", "float"):
             raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
-        if method is None:
-            method = "cash_karp" if samples is None else "dormand_prince_5"
+        method = default if method is None else method
         if method in fixed_step and others["step"] is None:
             raise Error(f"{method} takes fixed steps: give step=")
         components = self._components = Components(model)
@@ -126,10 +126,7 @@ class Study:
 
     def _set_instances(self, made, components, sweep, start, time, draws):
         """Axes, random values and values for all instances."""
-        try:
-            begin, end = time
-        except (TypeError, ValueError):
-            raise Error(f"time is {time!r}: give begin and end, as in time=(0, 10)") from None
+        begin, end = ends_of(time)
         given = dict(_by_name(start, "start", "start={x: 1, v: 0}"))
         for name, value in (("t_begin", begin), ("t_end", end)):
             if value is not None:
@@ -162,6 +159,8 @@ class Study:
         axes = [*on_grid, *([together] if together else [])]
         all_names = {name_of(k) for axis in axes for k, _ in axis if _time_name(k) is None}
         all_names |= {name_of(k) for k in constants if _time_name(k) is None}
+        for key in (*constants, *(k for axis in axes for k, _ in axis)):
+            self._full_name(key)  # one that there is not, before one that is missing
         for name in components.generated:
             if name in all_names:
                 raise Error(f"'{name}' is given to the study, and generate= of the model sets it: give it once")
@@ -173,6 +172,10 @@ class Study:
         for name, value in components.defaults.items():
             if name not in components.tables and name not in all_names:
                 made.set(self._full_name(name), value)
+        empty = next((k for axis in axes for k, v in axis if len(v) == 0), None)
+        if empty is not None:
+            raise Error(f"'{_time_name(empty) or name_of(empty)}' has no values: a study has one instance or more; "
+                        "myriad.solve takes a sweep of none")
         for axis in axes:
             pairs = [(self._full_name(k), v.core() if isinstance(v, Axis) else
                       _core.values(np.asarray(v, float).tolist())) for k, v in axis]
@@ -233,7 +236,8 @@ class Study:
         self._core.note("kernel", "interpreted" if self._runs_interpreted else "compiled")
         self._core.set_run(devices, _whole(chunk or 0, "chunk", 1 << 62))
 
-    def run(self, store=None, *, device="auto", chunk=None, executor=None, check="sizes", expiry=60, progress=None):
+    def run(self, store=None, *, device="auto", chunk=None, executor=None, check="sizes", expiry=60, arithmetic="same",
+            progress=None):
         """Computes what is not there yet, and returns a `StudyResult`.
 
         store      a folder, in which the study goes on if it is run again, also by several processes at a time, each
@@ -245,6 +249,8 @@ class Study:
                    Parsl: its workers compute chunks, and send their values here, where they are kept
         check      what is looked at of a store that exists: "sizes" of files, or "checksums", for which all is read
         expiry     seconds after which chunks of a process on another machine that gives no sign of life are taken over
+        arithmetic "same": a store that another instruction set, compiler or library began is refused, since results
+                   differ in their last digits; "any": it is gone on with, and `warnings` says so
         progress   True for a bar, or a function of the numbers of instances done and of all
 
         A GPU that fails is left out with a warning, and its chunks are done by the other devices. GPUs of one kind give
@@ -256,6 +262,8 @@ class Study:
         done stays in the store, and of an executor's run `error.result` has it."""
         if check not in ("sizes", "checksums"):
             raise Error(f"check is {check!r}: give \"sizes\" or \"checksums\"")
+        if arithmetic not in ("same", "any"):
+            raise Error(f"arithmetic is {arithmetic!r}: give \"same\" or \"any\"")
         folder = "" if store is None else os.path.abspath(os.fspath(store))
         if device == "auto" and executor is not None:
             device = "cpu:1"
@@ -264,7 +272,7 @@ class Study:
         try:
             if not folder and self._has_store:  # from an earlier run
                 self._build(*self._given[:2], **self._given[2])
-            self._core.set_store(folder, float(expiry), check == "checksums")
+            self._core.set_store(folder, float(expiry), check == "checksums", arithmetic == "any")
             self._has_store = bool(folder)
             if executor is not None:
                 return _ExecutedRun(self, executor, devices, chunk, folder or None, show).run()
@@ -444,12 +452,12 @@ class _ExecutedRun:
         return self._study._result(results, {**facts, "seconds": clock.perf_counter() - self._begin}, self._folder)
 
 
-def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples=None, keep=None, reduce=(),
+def study(model, sweep=None, *, start=None, time=None, phases=1, record=None, samples=None, keep=None, reduce=(),
           draws=None, seed=0, title="", units=None, notes=None, method=None, control=(), rtol=1e-8, atol=1e-8,
           step=None,
           minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1, max_steps=10_000_000, phase_length=0,
           carry_on=False, carry_on_step=False, events=None, sub_samples=1, accumulation_limit=50,
-          schedule="automatic", precision="double", interpreted=None):
+          schedule="automatic", precision="double", interpreted=None, **unknown):
     """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
     What `generate=` of the model sets is given neither in the sweep nor in start.
 
@@ -474,6 +482,7 @@ def study(model, sweep=None, *, start=None, time, phases=1, record=None, samples
     All others are those of `solve`. Inputs that are not finite mark their instances as invalid_input. Names of results
     are those of the C++ library: "x" at recorded phases, "x_sample", "x_end", "t_last", "status"; of initial values of
     states "x_begin". Raises `myriad.Error`."""
+    refuse_options(unknown, inspect.signature(study).parameters, "study")
     return Study(model, sweep, dict(
         start=start, time=time, phases=phases, record=record, samples=samples, keep=keep, reduce=reduce, draws=draws,
         seed=seed, title=title, units=units, notes=notes, method=method, control=control, rtol=rtol, atol=atol,

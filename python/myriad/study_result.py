@@ -3,6 +3,7 @@
 
 import json
 import os
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -22,10 +23,10 @@ class Damage(NamedTuple):
     reason: str
 
 
-class StudyResult:
-    """Results by name: `result["x_end"]` is an array with the axes of the study, and then the phases or samples. Of an
-    axis, and of other coordinates, it is the values. `result[x]` of a component is what was recorded of it, or its last
-    values."""
+class StudyResult(Mapping):
+    """Results by name, a mapping whose length is the number of names: `result["x_end"]` is an array with the axes of
+    the study, and then the phases or samples. Of an axis, and of other coordinates, it is the values. `result[x]` of a
+    component is what was recorded of it, or its last values."""
 
     def __init__(self, results, folder=None, facts=None):
         self._results, self.folder = results, folder
@@ -95,7 +96,7 @@ class StudyResult:
         if not of_instances:
             return self._results.read(name, 0, 1)[0]
         values = self._results.read(name, 0, self.size)
-        return values.reshape(*self.shape, *(n for _, n in inner))
+        return values.reshape((*self.shape, *(n for _, n in inner)))
 
     def _coordinate(self, name):
         along = self._coordinates[name][0]
@@ -103,8 +104,22 @@ class StudyResult:
             return self._results.coordinate(name, 1)[0]
         return self._results.coordinate(name, {**self._axes, **self._inner}[along])
 
+    def __iter__(self):
+        return iter(self.names)
+
     def __len__(self):
-        return self.size
+        return len(self.names)
+
+    def __contains__(self, key):
+        try:
+            return self._name(key) in self.names
+        except (KeyError, Error):
+            return False
+
+    def _ipython_key_completions_(self):
+        return self.names
+
+    __eq__, __hash__ = object.__eq__, object.__hash__
 
     def __repr__(self):
         state = "" if self.complete else f", {self.done} of them done"

@@ -6,7 +6,7 @@ import weakref
 from . import _core
 from .compiler import Kernel
 from .errors import Error
-from .expression import walk
+from .expression import integer, is_long, walk
 from .table import element_name
 
 methods = tuple(_core.interpreted_methods())
@@ -18,6 +18,10 @@ _limits = dict(zip(("states", "parameters", "accessories", "integer accessories"
 def _refuse(why):
     return Error(f"the model cannot be interpreted, as {why}: install a C++ compiler (clang++ 14 or g++ 12 or newer), "
                  "or `pip install ziglang`")
+
+
+_of_whole_numbers = {"add": "wrapping_add", "subtract": "wrapping_subtract", "multiply": "wrapping_multiply",
+                     "quotient": "quotient", "remainder": "remainder"}
 
 
 class Writer:
@@ -64,8 +68,8 @@ class Writer:
             for argument in dict.fromkeys(map(id, node.args)):
                 if uses[argument] == 0:
                     free.append(register[argument])
-            # products and remainders read their arguments after they have stored something
-            unread = [r for r in free if node.op not in ("dot", "remainder") or r not in arguments]
+            # products read their arguments after they have stored something
+            unread = [r for r in free if node.op != "dot" or r not in arguments]
             if len(unread) < (2 if node.op == "dot" else 1):
                 raise _refuse("one of its functions needs more intermediate values than the interpreter has")
             to = register[id(node)] = unread[-1]
@@ -87,12 +91,8 @@ class Writer:
                 stride, rows = numbers if len(numbers) == 2 else (1, *numbers)
                 place = self.place[element_name(table, first)][1]
                 self._emit(node.op, to, rows, arguments[0], stride, float(place))
-            elif node.op in ("quotient", "remainder"):
-                self._emit("divide", to, *arguments)
-                self._emit("floor", to, to)
-                if node.op == "remainder":
-                    self._emit("multiply", to, to, arguments[1])
-                    self._emit("subtract", to, arguments[0], to)
+            elif node.type == integer and node.op in _of_whole_numbers:
+                self._emit(_of_whole_numbers[node.op], to, *arguments, int(is_long(node)))
             elif node.op in ("constant", "truth"):
                 self._emit("constant", to, value=float(node.value))
             else:

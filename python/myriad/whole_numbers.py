@@ -2,10 +2,24 @@
 """How large the whole numbers of `generate` become in a study, and the refusal of those that would be cut."""
 
 from .errors import Error, at
-from .expression import integer, text, walk
+from .expression import integer, is_long, text, walk
 
 _most_32 = 2**31 - 1
 _most_exact = 2**53  # what double precision and numbers of 64 bits both hold
+
+
+def check_constants(nodes, assigned):
+    """Refuses whole constants that the whole numbers beside them, or what they are assigned to, cannot hold. Those
+    beside real numbers are real already."""
+    for constant, user in [(a, node) for node in nodes for a in node.args] + [(e, e) for e in assigned]:
+        if constant.op != "constant" or constant.type != integer:
+            continue
+        beside_long = is_long(user)
+        most = _most_exact if beside_long else _most_32
+        if not -most - 1 <= constant.value <= most:
+            raise Error(f"the whole number {constant.value}{at(constant.line)} has more than "
+                        f"{53 if beside_long else 32} bits: those of a model are from {-most - 1} to {most}; for a "
+                        f"real number write {constant.value}.0, and use an accessory")
 
 
 def check_whole_numbers(assignments, instances, shared):
@@ -40,10 +54,12 @@ def _range(node, known, instances, shared):
     of = [known[id(a)] for a in node.args if a.type == integer]
     (a, b, _), (c, d, _) = of[0], of[-1]
     products = a * c, a * d, b * c, b * d
+    largest = max(abs(a), abs(b))
+    quotients = [p // q for p in (a, b) for q in (c, d)] if c > 0 or d < 0 else [-largest, largest, 0]
     low, high = {
-        "add": (a + c, b + d), "subtract": (a - d, b - c), "negate": (-b, -a), "min": (min(a, c), min(b, d)),
+        "add": (a + c, b + d), "subtract": (a - d, b - c), "min": (min(a, c), min(b, d)),
         "max": (max(a, c), max(b, d)), "multiply": (min(products), max(products)), "select": (min(a, c), max(b, d)),
-        "abs": (max(0, a, -b), max(-a, b)),
-        "quotient": (a // c, b // c) if c else (0, 0), "remainder": (0, min(b, d - 1)) if a >= 0 else (1 - d, d - 1),
+        "quotient": (min(quotients), max(quotients)),
+        "remainder": (min(0, c + 1), min(b, d - 1) if a >= 0 and c > 0 else max(0, d - 1)),
     }[node.op]
     return low, high, any(is_long for _, _, is_long in of)

@@ -334,6 +334,7 @@ void bind_options(nb::module_& m) {
                  o.phase_time = time ? phase_time::carry_on : phase_time::restart;
                  o.phase_step = step ? phase_step::carry_on : phase_step::restart;
              })
+        .def_prop_ro("sample_capacity", [](const options& o) { return o.samples.capacity; })
         .def("mark_invalid", [](options& o) { o.invalid_instances = invalid_instances::mark; })
         .def("add_event",
              [](options& o, int direction, double tolerance, std::int64_t stop_after) {
@@ -359,6 +360,12 @@ void bind_options(nb::module_& m) {
 NB_MODULE(_core, m) {
     using namespace myriad;
     using namespace myriad::python;
+    // Imported anew, as after its names were taken out of sys.modules, the module has what it had: types exist once.
+    static PyObject* known = nullptr;
+    if (known != nullptr) {
+        if (PyDict_Merge(m.attr("__dict__").ptr(), known, 0) != 0) throw nb::python_error();
+        return;
+    }
     nb::register_exception_translator(
         [](const std::exception_ptr& thrown, void*) {
             try {
@@ -426,4 +433,5 @@ NB_MODULE(_core, m) {
     bind_precision<double>(m, "Ensemble64", "Report64");
     bind_precision<float>(m, "Ensemble32", "Report32");
     bind_study(m);
+    known = PyDict_Copy(m.attr("__dict__").ptr());
 }

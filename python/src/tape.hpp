@@ -11,13 +11,17 @@
     X(cbrt)                  \
     X(abs)                   \
     X(floor)                 \
-    X(round)                 \
+    X(rint)                  \
     X(sin)                   \
     X(cos)                   \
     X(tan)                   \
     X(asin)                  \
-    X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(exp) X(exp2) X(log) X(log2) X(log10) X(reciprocal) X(sinpi) X(cospi)
-#define MYRIAD_TAPE_BINARY(X) X(min) X(max) X(pow) X(atan2) X(hypot) X(copysign)
+    X(acos)                  \
+    X(atan)                  \
+    X(sinh) X(cosh) X(tanh) X(exp) X(exp2) X(log) X(log2) X(log10) X(expm1) X(log1p) X(reciprocal) X(sinpi) X(cospi)
+#define MYRIAD_TAPE_BINARY(X) X(min) X(max) X(pow) X(atan2) X(hypot) X(copysign) X(fmod) X(floor_mod) X(floor_divide)
+// Of whole numbers, which go round at the ends of their 32 bits, or 64 where `c` is not zero.
+#define MYRIAD_TAPE_WHOLE(X) X(wrapping_add) X(wrapping_subtract) X(wrapping_multiply) X(quotient) X(remainder)
 // Draws of random numbers, of `generate` alone: uniform between two numbers, normal with mean and standard deviation.
 #define MYRIAD_TAPE_DRAW(X) X(uniform) X(normal)
 #define MYRIAD_TAPE_INFIX(X) X(add, +) X(subtract, -) X(multiply, *) X(divide, /)
@@ -34,7 +38,7 @@
 #define MYRIAD_TAPE_STORE(X) \
     X(result) X(state) X(parameter) X(accessory) X(integer_accessory) X(next_step) X(end_phase) X(end_instance)
 // The methods that the interpreter is compiled for.
-#define MYRIAD_TAPE_METHODS(X) X(cash_karp) X(dormand_prince_5) X(runge_kutta_4)
+#define MYRIAD_TAPE_METHODS(X) X(tsitouras_5) X(cash_karp) X(dormand_prince_5) X(runge_kutta_4)
 
 namespace myriad::python {
 
@@ -52,7 +56,7 @@ enum class tape_code : std::uint8_t {
     powr,
 #define MYRIAD_TAPE_NAME(name, ...) name,
     MYRIAD_TAPE_UNARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_BINARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_INFIX(MYRIAD_TAPE_NAME)
-        MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_NAME) MYRIAD_TAPE_DRAW(MYRIAD_TAPE_NAME)
+        MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_NAME) MYRIAD_TAPE_WHOLE(MYRIAD_TAPE_NAME) MYRIAD_TAPE_DRAW(MYRIAD_TAPE_NAME)
 #undef MYRIAD_TAPE_NAME
 #define MYRIAD_TAPE_NAME(name) load_##name,
             MYRIAD_TAPE_LOAD(MYRIAD_TAPE_NAME)
@@ -77,7 +81,7 @@ inline constexpr const char* tape_names[] = {
     "powr",
 #define MYRIAD_TAPE_NAME(name, ...) #name,
     MYRIAD_TAPE_UNARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_BINARY(MYRIAD_TAPE_NAME) MYRIAD_TAPE_INFIX(MYRIAD_TAPE_NAME)
-        MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_NAME) MYRIAD_TAPE_DRAW(MYRIAD_TAPE_NAME)
+        MYRIAD_TAPE_COMPARISON(MYRIAD_TAPE_NAME) MYRIAD_TAPE_WHOLE(MYRIAD_TAPE_NAME) MYRIAD_TAPE_DRAW(MYRIAD_TAPE_NAME)
 #undef MYRIAD_TAPE_NAME
 #define MYRIAD_TAPE_NAME(name) "load_" #name,
             MYRIAD_TAPE_LOAD(MYRIAD_TAPE_NAME)

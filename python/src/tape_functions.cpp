@@ -30,9 +30,49 @@ void apply_function(tape_code code, const R& x, const R& y, R& result) {
             break;
     }
 }
+
+namespace {
+
+template <class T>
+T of_whole_numbers(tape_code code, T x, T y) {
+    switch (code) {
+        case tape_code::wrapping_add:
+            return myriad::wrapping_add(x, y);
+        case tape_code::wrapping_subtract:
+            return myriad::wrapping_subtract(x, y);
+        case tape_code::wrapping_multiply:
+            return myriad::wrapping_multiply(x, y);
+        case tape_code::quotient:
+            return myriad::floor_divide(x, y);
+        default:
+            return myriad::floor_mod(x, y);
+    }
+}
+
+}  // namespace
+
+template <class R>
+void apply_to_whole_numbers(tape_code code, bool is_long, const R& x, const R& y, R& result) {
+    if constexpr (is_dual<R>) {
+        R of_values;
+        apply_to_whole_numbers(code, is_long, x.value, y.value, of_values.value);
+        result = R(of_values.value);
+    } else {
+        for (int i = 0; i < lanes_of<R>; ++i) {
+            const std::int64_t a = whole(detail::get_lane(x, i)), b = whole(detail::get_lane(y, i));
+            const auto short_a = static_cast<std::int32_t>(a), short_b = static_cast<std::int32_t>(b);
+            const std::int64_t of = is_long ? of_whole_numbers(code, a, b) : of_whole_numbers(code, short_a, short_b);
+            detail::set_lane(result, i, static_cast<double>(of));
+        }
+    }
+}
+
 using lanes = pack<double, tape_batches>;
 template void apply_function(tape_code, const double&, const double&, double&);
 template void apply_function(tape_code, const lanes&, const lanes&, lanes&);
 template void apply_function(tape_code, const dual<double>&, const dual<double>&, dual<double>&);
+template void apply_to_whole_numbers(tape_code, bool, const double&, const double&, double&);
+template void apply_to_whole_numbers(tape_code, bool, const lanes&, const lanes&, lanes&);
+template void apply_to_whole_numbers(tape_code, bool, const dual<double>&, const dual<double>&, dual<double>&);
 
 }  // namespace myriad::python

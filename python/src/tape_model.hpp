@@ -24,14 +24,22 @@ inline R real_lanes(const I& from) {
         return to;
     }
 }
+/// The whole number that a register holds.
+inline std::int64_t whole(double x) {
+    return x < 0x1p63 ? static_cast<std::int64_t>(x) : std::numeric_limits<std::int64_t>::max();
+}
 template <class I, class R>
 inline void store_integer(I& to, const R& from) {
-    for (int i = 0; i < lanes_of<R>; ++i) detail::set_lane(to, i, static_cast<std::int32_t>(detail::get_lane(from, i)));
+    for (int i = 0; i < lanes_of<R>; ++i)
+        detail::set_lane(to, i, static_cast<std::int32_t>(whole(detail::get_lane(from, i))));
 }
 
 /// The elementary functions, compiled once for each kind of numbers, in tape_functions.cpp.
 template <class R>
 void apply_function(tape_code code, const R& x, const R& y, R& result);
+/// The same for operations of whole numbers.
+template <class R>
+void apply_to_whole_numbers(tape_code code, bool is_long, const R& x, const R& y, R& result);
 
 /// What a hook of a tape wants for its instances.
 template <class R>
@@ -131,8 +139,10 @@ template <class R, class Source>
                 r[to] = real_lanes<R>(s.p.integer_accessory[a]);
                 break;
             default:
-                if (code >= tape_code::powr && code <= tape_code::copysign) {
+                if (code >= tape_code::powr && code <= tape_code::floor_divide) {
                     apply_function(code, r[a], r[b], r[to]);
+                } else if (code >= tape_code::wrapping_add && code <= tape_code::remainder) {
+                    apply_to_whole_numbers(code, c != 0, r[a], r[b], r[to]);
                 } else if constexpr (Source::in_hook) {
                     run_in_hook<R>(*step, s, r);
                 } else if constexpr (requires { s.p.random; }) {
@@ -235,7 +245,7 @@ inline void run_in_generate(const tape_step& step, Instance& instance, R* r) {
             instance.accessory[c] = x;
             break;
         case tape_code::store_integer_accessory:
-            instance.integer_accessory[c] = static_cast<std::int32_t>(x);
+            instance.integer_accessory[c] = static_cast<std::int32_t>(whole(x));
             break;
         default:
             break;

@@ -4,6 +4,7 @@
 import multiprocessing
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import time
@@ -111,14 +112,14 @@ def test_a_failed_compilation_leaves_nothing(tmp_path, monkeypatch):
 
     with pytest.raises(my.Error):
         cache.obtain("e", fail, read)
-    assert [p.name for p in tmp_path.iterdir()] == ["e.lock"]
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_folder_that_cannot_be_made(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "file" / "cache"))
     found = cache.obtain("f", _writer("made"), read)
-    assert found == cache.Obtained("made", False, tmp_path / "file" / "cache")
+    assert found == cache.Obtained("made", False, f"the cache {tmp_path}/file/cache cannot be used: Not a directory")
     assert cache.obtain("f", _writer("again"), read).hit
     told, _, _ = run_script(MYRIAD_CACHE_DIR=str(tmp_path / "file" / "cache"))
     assert told.startswith("compiled by") and f"the cache {tmp_path}/file/cache cannot be used" in told
@@ -154,7 +155,99 @@ def test_what_cannot_be_loaded_is_not_kept(tmp_path, monkeypatch):
 def test_a_lock_that_cannot_be_opened(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
     (tmp_path / "j.lock").symlink_to(tmp_path / "nowhere" / "else")  # which stops root too
-    assert cache.obtain("j", _writer("made"), read) == cache.Obtained("made", False, tmp_path)
+    assert cache.obtain("j", _writer("made"), read) == cache.Obtained(
+        "made", False, f"the cache {tmp_path} cannot be used: Too many levels of symbolic links")
+
+
+def test_under_umask_0_the_cache_is_the_users_alone(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "of" / "mine"))
+    before = os.umask(0)
+    try:
+        cache.obtain("k", _writer("made"), read)
+    finally:
+        os.umask(before)
+    modes = {p.name: p.stat().st_mode & 0o777 for p in tmp_path.rglob("*")}
+    assert modes == {"of": 0o700, "mine": 0o700, "k.so": 0o600}
+
+
+def _refused(why, key):
+    """Nothing of the cache is loaded, and the model is made elsewhere."""
+    with pytest.warns(RuntimeWarning, match=why):
+        found = cache.obtain(key, _writer("own"), read)
+    assert found.loaded == "own" and re.search(why, found.unusable)
+
+
+def test_a_cache_that_others_may_write_to_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    cache.obtain("m", _writer("planted"), read)
+    for mode in (0o777, 0o720, 0o702):
+        tmp_path.chmod(mode)
+        _refused(rf"others may write to it \(mode {mode:o}\).*chmod go-w", f"m{mode}")
+    tmp_path.chmod(0o700)
+    assert cache.obtain("m", _writer("never made"), read).hit
+
+
+def test_a_file_of_the_cache_that_may_be_somebody_elses_is_made_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "cache"))
+    file = tmp_path / "cache" / "n.so"
+
+    def opened_to_others():
+        file.chmod(0o622)
+
+    def linked():
+        file.rename(tmp_path / "elsewhere")
+        file.symlink_to(tmp_path / "elsewhere")
+
+    def pipe():
+        file.unlink()
+        os.mkfifo(file)
+
+    for plant in (opened_to_others, linked, pipe):
+        cache.obtain("n", _writer("planted"), read)
+        plant()
+        assert cache.obtain("n", _writer("own"), read) == cache.Obtained("own", False), plant.__name__
+        assert file.is_file() and not file.is_symlink() and file.stat().st_mode & 0o777 == 0o600
+        file.unlink()
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root makes files of others")
+def test_what_belongs_to_another_user_is_refused(tmp_path, monkeypatch):
+    folder = tmp_path / "cache"
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(folder))
+    cache.obtain("o", _writer("planted"), read)
+    os.chown(folder / "o.so", 12345, -1)
+    assert cache.obtain("o", _writer("own"), read) == cache.Obtained("own", False)
+    os.chown(folder, 12345, -1)
+    _refused("it belongs to another user, of number 12345", "o1")
+    os.chown(folder, 0, -1)
+    (tmp_path / "link").symlink_to(folder)
+    os.chown(tmp_path / "link", 12345, -1, follow_symlinks=False)
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "link"))
+    _refused("it belongs to another user, of number 12345", "o2")
+
+
+def test_a_killed_compilation_leaves_nothing_after_the_next_one(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    script = ("import os, signal; from myriad import cache\n"
+              "cache.obtain('p', lambda folder: os.kill(os.getpid(), signal.SIGKILL), None)")
+    for key in ("p", "q"):  # the same model, and another one
+        subprocess.run([sys.executable, "-c", script], check=False)
+        assert sorted(p.name.split(".")[1] for p in tmp_path.glob("p.*") if p.suffix != ".so") == ["lock", "work"]
+        cache.obtain(key, _writer("made"), read)
+        assert {p.name for p in tmp_path.iterdir()} <= {"p.so", "q.so"}
+        (tmp_path / "p.so").unlink(missing_ok=True)
+
+
+def test_a_place_of_a_living_process_stays(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+
+    def make(workplace):
+        cache.obtain("inner", _writer("made"), read)
+        assert workplace.is_dir() and (tmp_path / "outer.lock").exists()
+        return _writer("made")(workplace)
+
+    assert cache.obtain("outer", make, read) == cache.Obtained("made", False)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["inner.so", "outer.so"]
 
 
 def test_what_a_key_depends_on():

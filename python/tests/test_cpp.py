@@ -59,10 +59,12 @@ def every_operation():
     a, b = my.accessory("a"), my.accessory("b")
     peak, at_peak = my.accessory("peak"), my.accessory("at_peak")
     unary = (my.sqrt, my.cbrt, my.abs, my.floor, my.round, my.sin, my.cos, my.tan, my.asin, my.acos, my.atan, my.sinpi,
-             my.cospi, my.sinh, my.cosh, my.tanh, my.exp, my.exp2, my.log, my.log2, my.log10, my.reciprocal)
+             my.cospi, my.sinh, my.cosh, my.tanh, my.exp, my.exp2, my.expm1, my.log, my.log1p, my.log2, my.log10,
+             my.reciprocal, my.ceil, my.trunc)
     total = sum(function(0.1 + 0.05 * my.abs(v)) for function in unary)
     total += my.pow(my.abs(x) + 1, 1.7) + my.powr(my.abs(x) + 1, k) + my.hypot(x, v) + my.copysign(2, x)
     total += my.fma(x, v, 1) + my.atan2(v, x) + my.minimum(x, v, 0) + my.maximum(1.5, B) + my.pow(2, B)
+    total += my.fmod(x, 0.3) + v % k + v // k + (n - 5) // 2 + n % 3
     total += x**-2 + x**7 + 2**my.minimum(x, 3) + x % 2 + x // 2 + sum(my.sincos(x)) + sum(my.sincospi(v))
     chosen = my.where((x > 0) & ~(v < 1) | my.is_finite(x) & (mode == n) | (n > 2), total, 1)
     chosen += my.where(n == 1, 2, 3) + my.where(B > 0, 0.25, 0.5) + my.where(B > C, B, 0) + 2 * n
@@ -71,13 +73,13 @@ def every_operation():
         {x: B * C - C / (B - 1) + my.cos(C), v: chosen - rest}, shared=(B, C), name="sink",
         accessories={peak: my.phase_maximum(x * v), at_peak: my.time_of_maximum(x * v), mode: 0},
         events=[my.event(x - my.time, name="first", do={
-                    x: v, v: x, count: count * 2 + my.phase, a: my.phase * 0.5 + count,
+                    x: v, v: x, count: count * 2 + my.phase - 7 // count % mode, a: my.phase * 0.5 + count,
                     my.end_phase: (count > 2) & (x > v), my.end_instance: a > 1e9}),
                 my.event(B - my.time, name="second"),
                 my.event(C - x, name="third", do={v: my.where(mode == 2, v + 1, v), b: my.where(x > 0, b, 3)})],
         initialise={a: my.phase, count: my.instance, my.next_step: 0.1},
         after_step={count: my.where(x > 0, count + 1, count), a: -a, my.end_phase: B > C},
-        finalise={k: k + 0.1, my.t_begin: my.t_end, count: my.event_count("first") + 1,
+        finalise={k: k + 0.1, my.t_begin: my.t_end, count: abs(my.event_count("first") + 1 - (my.instance - 3) % 7),
                   b: my.event_count("second") / 2, mode: my.maximum(mode, 3)})
 
 

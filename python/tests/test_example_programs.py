@@ -81,7 +81,7 @@ def test_quickstart(run_program):
     table = columns(run_program("quickstart"))  # to six digits
     run = my.solve(example_models.oscillator(), {"k": np.linspace(0.2, 0.3, 4608), "B": 0.3},
                    start={"x": -0.5, "v": -0.1}, time=(0, tau), phases=288, rtol=1e-9, record=dict(
-                       from_phase=256, states="x"), device="cpu")
+                       from_phase=256, states="x"), method="cash_karp", device="cpu")
     np.testing.assert_allclose(run["x"].ravel(), table["x"], rtol=1e-5, atol=1e-9)
 
 
@@ -90,7 +90,7 @@ def test_duffing(run_sweep):
     names = ["x", "v", "x_local_max", "v_second_zero", "x_global_max", "zeros"]
     run = my.solve(example_models.duffing(), {"k": first_of(table, "k", 97), "B": 0.3}, start={"x": -0.5, "v": -0.1},
                    time=(0, tau), phases=12, rtol=1e-9, atol=1e-9, step=1e-2, minimum_step=1e-12, maximum_step=1e6,
-                   record=dict(from_phase=8, states=names), interpreted=True)
+                   record=dict(from_phase=8, states=names), method="cash_karp", interpreted=True)
     same(table, run, names)
 
 
@@ -98,7 +98,7 @@ def test_overlap(run_sweep, tmp_path):
     run_sweep("overlap", instances=97, phases=3, chunks=1, solvers=1)
     table = columns((tmp_path / "table_chunks" / "1_of_1.csv").read_text())
     run = my.solve(example_models.duffing(), {"k": table["k"], "B": 0.3}, start={"x": -0.5, "v": -0.1}, time=(0, tau),
-                   phases=3, rtol=1e-9, atol=1e-9, interpreted=True)
+                   phases=3, rtol=1e-9, atol=1e-9, method="cash_karp", interpreted=True)
     same(table, run, ["x", "v", "x_global_max", "zeros"])
 
 
@@ -110,7 +110,7 @@ def test_studies(run_program, tmp_path):
     sweep = my.grid(k=written["k"], x=written["x_begin"], B=0.3)
     run = my.solve(example_models.oscillator(), {"k": sweep.values("k"), "B": 0.3},
                    start={"x": sweep.values("x"), "v": written["v_begin"].ravel()}, time=(0, tau), phases=68, rtol=1e-9,
-                   record=dict(from_phase=64, states="x"), device="cpu")
+                   record=dict(from_phase=64, states="x"), method="cash_karp", device="cpu")
     assert np.array_equal(run["x"], written["x"].reshape(run.size, -1))
     assert np.array_equal(run["v"], written["v_end"].ravel())
 
@@ -124,7 +124,7 @@ def test_moving(run_program):
 
 valves = dict(kappa=1.25, delta=10, beta=20, restitution=0.8, rest_band=1e-6)
 valve_options = dict(start={"y": 0.2, "v": 0, "u": 0}, time=(0, np.inf), rtol=1e-10, step=1e-2, minimum_step=1e-12,
-                     maximum_step=1e6, accumulation_limit=25)
+                     maximum_step=1e6, accumulation_limit=25, method="cash_karp")
 
 
 def test_relief_valve(run_sweep):
@@ -148,7 +148,8 @@ def test_relief_valve_contact(run_sweep):
     assert (run["time_at_rest"] > 0).any()
 
 
-bubble_options = dict(start={"y": 1, "v": 0}, rtol=1e-10, atol=1e-10, step=1e-2, minimum_step=1e-12, carry_on_step=True)
+bubble_options = dict(start={"y": 1, "v": 0}, rtol=1e-10, atol=1e-10, step=1e-2, minimum_step=1e-12, carry_on_step=True,
+                      method="cash_karp")
 
 
 def test_bubble_response(run_sweep):
@@ -344,7 +345,8 @@ def test_own_method(run_program):
 def test_bouncing_ball_of_hooks(run_program):
     said = re.search(r"time of the fifth impact ([\d.]+)", run_program("hooks"))
     run = my.solve(example_models.bouncing_ball(), {"r": np.linspace(0.5, 0.9, 10), "g": 9.81}, start={"x": 1, "v": 0},
-                   time=(0, np.inf), rtol=1e-9, atol=1e-9, events={"impact": dict(tolerance=1e-9)}, interpreted=True)
+                   time=(0, np.inf), rtol=1e-9, atol=1e-9, events={"impact": dict(tolerance=1e-9)},
+                   method="cash_karp", interpreted=True)
     assert f"{run['t_impact'][9]:.6g}" == said[1]
 
 

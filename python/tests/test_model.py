@@ -271,7 +271,7 @@ def of_wrong_shape(t, y, A=np.ones((3, 3))):
     (lambda: my.where(x, 1, 2), "is a number and not a condition"),
     (lambda: (x > 0) & 1, "is a number and not a condition"),
     (lambda: my.sin(x > 0), "is a condition and not a number"),
-    (lambda: np.arctanh(x), "numpy.arctanh cannot be applied"),
+    (lambda: np.spacing(x), "numpy.spacing cannot be applied"),
     # functions
     (lambda: my.model(branching, states="x v"), "use myriad.where"),
     (lambda: my.model(of_wrong_shape, states="x v"), r"of_wrong_shape failed .*y has shape \(2,\)"),

@@ -37,6 +37,13 @@ def epidemic():
                        "seed", "peak day", events="turning_point")
 
 
+def remainders():
+    """Rounding, remainders, and whole numbers that go round."""
+    x, n, a = my.state("x"), my.integer_accessory("n"), my.accessory("a")
+    return my.model({x: round(x) - x % 0.3 + x // 0.7 + my.fmod(x, 0.1) + my.log1p(my.expm1(x))},
+                    accessories={n: 0}, after_step={n: n + 1}, finalise={n: n * n // 3 - n % -5, a: n / 2 % 0.3})
+
+
 # What is compiled for each method: models with every kind of hook and event, outputs along the solution, tables.
 cases = [
     (example_models.duffing, "cash_karp", (), False, "double"),
@@ -48,6 +55,7 @@ cases = [
     (example_models.oregonator, "rosenbrock_23", (), False, "double"),
     (lyapunov, "tsitouras_5", (), False, "double"),
     (epidemic, "cash_karp", (), False, "float"),
+    (remainders, "tsitouras_5", (), False, "double"),
     (example_models.continuation, "rodas_5p", ("pid_control", "mixed_scale"), True, "double"),
 ]
 models = (*example_models.headers, test_cpp.every_operation, epidemic)

@@ -185,4 +185,4 @@ def test_traced_models_have_the_bits_of_written_ones(oscillator):
 def test_samples_are_as_accurate_as_the_steps(oscillator):
     run = my.solve(oscillator, {"w": [1.0]}, start={"x": 1, "v": 0}, time=(0, 6), samples=200, rtol=1e-7, atol=1e-7)
     error = np.abs(run["x"] - np.cos(run.sample_times)).max()
-    assert error < 1e-6  # 1.2e-7 with dormand_prince_5, the default here; 4e-6 with cash_karp
+    assert error < 1e-6  # 4e-6 with cash_karp

@@ -123,6 +123,10 @@ const program_method& find_method(const program_model& model, const study_file::
     const std::string name = method_wanted(wanted);
     const program_method* const method = method_of(model, name, wanted.real);
     if (method != nullptr) return *method;
+    // A study that names none takes the only one that the program has.
+    if (wanted.method_place.line == 0 && !wanted.samples && model.methods.size() == 1 &&
+        model.methods.front().real == wanted.real)
+        return model.methods.front();
     std::vector<std::string> names;
     for (const program_method& m : model.methods)
         names.push_back(m.name + (m.real == studies::element::f32 ? " (float)" : ""));
@@ -145,7 +149,8 @@ std::vector<std::string> structs_of(const std::string& text) {
 }
 
 /// Compiles a model's header and registers it.
-void compile_model(const study_file::model_choice& wanted, const model_source& source, bool quiet) {
+void compile_model(const study_file::model_choice& wanted, const model_source& source, compile_permission permission,
+                   bool quiet) {
     const std::string name = wanted.model.substr(0, wanted.model.find('<'));
     const std::vector<std::string> structs = structs_of(source.text);
     const std::string last = name.substr(name.rfind(':') == std::string::npos ? 0 : name.rfind(':') + 1);
@@ -162,10 +167,12 @@ void compile_model(const study_file::model_choice& wanted, const model_source& s
                        message("method: there is no method \"", wanted.method, '"',
                                suggestion(method, std::vector<std::string>(std::begin(methods), std::end(methods)))));
     try {
-        compile_and_load({source, wanted.model, method_wanted(wanted), wanted.real}, data_file("model_flags.txt"),
-                         [&](const std::string& text) {
-                             if (!quiet) tell(text);
-                         });
+        compile_and_load(
+            {source, wanted.model, method_wanted(wanted), wanted.real}, data_file("model_flags.txt"), permission,
+            [&](const std::string& text) {
+                if (!quiet) tell(text);
+            },
+            &tell);
     } catch (const error& e) {
         throw wrong_at(wanted.header_place, e.what());
     }
@@ -211,7 +218,10 @@ struct run_request {
     std::string file, folder, model, header;
     std::vector<std::string> devices;
     std::string exported;
-    bool only_check = false, checksums = false, quiet = false;
+    bool only_check = false, checksums = false, any_arithmetic = false, quiet = false, compiles = false;
+    compile_permission permission() const {
+        return compiles ? compile_permission::given : compile_permission::not_given;
+    }
 };
 
 /// Files of the program in the folder of results.
@@ -233,6 +243,14 @@ model_source kept_source(const std::string& path) {
     return source;
 }
 
+/// Says how much of the results is not there yet. Throws `error` if all of it is asked for.
+void tell_missing(const studies::results& from, bool require_complete) {
+    const std::string missing = studies::missing_text(from);
+    if (missing.empty()) return;
+    if (require_complete) throw error(missing + ": nothing is written; `myriad resume` goes on with the study");
+    tell("incomplete: " + missing);
+}
+
 void export_results(const studies::results& from, const std::string& path, const std::string& variable) {
     const std::string kind = fs::path(path).extension().string();
     if (kind != ".npy" && !variable.empty())
@@ -241,7 +259,11 @@ void export_results(const studies::results& from, const std::string& path, const
     if (kind == ".csv") return export_csv(from, path);
     if (kind != ".npy") throw input_error(path + ": the name must end in .nc (netCDF), .csv or .npy");
     if (variable.empty()) throw input_error("an NPY file holds one variable: name it by --variable");
-    as_input([&] { return from.content().find(variable); });
+    as_input([&] {
+        for (const studies::coordinate& c : from.content().coordinates)
+            if (c.name == variable) return;
+        from.content().find(variable);
+    });
     export_npy(from, variable, path);
 }
 
@@ -253,13 +275,14 @@ std::string beside(const std::string& file, const std::string& path) {
 /// Runs a study; the header is there already when it goes on.
 int run_study(const run_request& asked, study_file& file, const std::string& text, const std::string& folder,
               study_file::model_choice wanted, const std::optional<model_source>& header) {
-    if (header) compile_model(wanted, *header, asked.quiet);
+    if (header) compile_model(wanted, *header, asked.permission(), asked.quiet);
     const program_model& model = find_model(wanted);
     any_study study(find_method(model, wanted).make());
     file.describe(study, model, devices_of(asked.devices));
     if (header) study.note("source of the model", header->digest());
     studies::store_options options = file.store_options();
     if (asked.checksums) options.check = studies::resume_check::checksums;
+    if (asked.any_arithmetic) options.others = studies::other_arithmetic::warn;
     if (asked.only_check) {
         try {
             study.check();
@@ -293,7 +316,8 @@ int run_study(const run_request& asked, study_file& file, const std::string& tex
     return 0;
 }
 
-int run(const run_request& asked) {
+int run(run_request asked) {
+    asked.compiles = asked.compiles || !asked.only_check;
     const std::string text = read_file(asked.file);
     study_file file(asked.file, text);
     study_file::model_choice wanted = file.model();
@@ -343,7 +367,7 @@ int resume(const run_request& asked) {
     return run_study(asked, file, text, folder, wanted, header);
 }
 
-int list(const std::vector<std::string>& files, const std::string& model) {
+int list(const std::vector<std::string>& files, const run_request& asked) {
     for (const std::string& path : files) {
         study_file::model_choice wanted;
         std::string header = path;
@@ -353,19 +377,20 @@ int list(const std::vector<std::string>& files, const std::string& model) {
             wanted = file->model();
             header = wanted.header.empty() ? "" : beside(path, wanted.header);
         }
-        if (!model.empty()) wanted.model = model;
+        if (!asked.model.empty()) wanted.model = asked.model;
         if (!header.empty()) {
             const model_source source = as_input([&] { return read_model_source(header); });
             if (wanted.model.empty()) throw input_error(path + ": name the model in it, by --model");
-            compile_model(wanted, source, false);
+            compile_model(wanted, source, asked.permission(), false);
         }
         show_model(find_model(wanted));
     }
     if (!files.empty()) return 0;
     for (const program_model& m : registered_models()) show_model(m);
     if (registered_models().empty())
-        std::cout << "This program has no models of its own: `myriad list model.hpp --model NAME` shows those of a "
-                     "header, and `header = \"model.hpp\"` in a study's file compiles them.\n";
+        std::cout
+            << "This program has no models of its own: `myriad list model.hpp --model NAME --compile` shows those of "
+               "a header, and `header = \"model.hpp\"` in a study's file compiles them.\n";
     return 0;
 }
 
@@ -405,7 +430,13 @@ int info(const std::string& folder, bool verify) {
               << message("done: ", now.chunks, " of ", now.all_chunks, " chunks, ", now.instances, " of ",
                          now.all_instances, " instances; ", now.seconds, " s of computing\n");
     for (const auto& [name, count] : now.statuses) std::cout << message("  ", name, ": ", count, '\n');
+    if (now.damaged > 0)
+        tell(message("damaged: the records of ", now.damaged, " chunks, which are not counted: --verify says which"));
+    if (there.format() == 1)
+        std::cout << "format 1, of an earlier version: its metadata, coordinates and final results have no checksums\n";
     for (const std::string& device : there.devices()) std::cout << "device: " << device << '\n';
+    for (const studies::arithmetic& a : there.arithmetics())
+        std::cout << message("computed by: ", a.text(), ", on ", a.host, '\n');
     std::cout << "variables:\n";
     for (const studies::variable& v : content.variables)
         if (v.extent != studies::along::chunks)
@@ -416,7 +447,7 @@ int info(const std::string& folder, bool verify) {
         if (text.size() > 200) text = text.substr(0, 200) + " ...";
         std::cout << message("  ", a.name, ": ", text, '\n');
     }
-    if (!verify) return 0;
+    if (!verify) return now.damaged > 0 ? 1 : 0;
     const std::vector<studies::damage> damaged = there.verify();
     for (const studies::damage& d : damaged)
         tell(message("damaged: ", d.chunk >= 0 ? message("chunk ", d.chunk, ", ") : "", d.variable, ": ", d.reason));
@@ -432,9 +463,11 @@ struct plot_request {
 
 /// A Python that can draw: the first on the PATH may not be the one that the system's packages are for.
 std::string find_python(bool is_folder) {
-    const char* const imports = is_folder ? "import matplotlib" : "import matplotlib, netCDF4";
+    // As plot.py does: no modules from the folder it is run in or from PYTHONPATH, but those that the user installed.
+    const std::string imports = message("import site; site.addsitedir(site.getusersitepackages()); import matplotlib",
+                                        is_folder ? "" : ", netCDF4");
     for (const char* python : {"python3", "/usr/bin/python3"})
-        if (child_process({python, "-c", imports}, "/dev/null").wait() == 0) return python;
+        if (child_process({python, "-I", "-c", imports}, "/dev/null").wait() == 0) return python;
     throw error(message("pictures need a Python 3 with matplotlib", is_folder ? "" : " and netCDF4",
                         ": install it (Debian, Ubuntu: apt-get install python3-matplotlib",
                         is_folder ? ")" : " python3-netcdf4), or draw the folder of the results"));
@@ -451,7 +484,8 @@ int plot(const plot_request& asked) {
         // The name of a folder may have dots.
         const std::string beside = is_folder ? source + ".png" : fs::path(source).replace_extension(".png").string();
         const std::string picture = asked.output.empty() ? beside : asked.output;
-        std::vector<std::string> words{find_python(is_folder), "-B", script, source, picture};
+        std::vector<std::string> words{find_python(is_folder), "-I", "-B", script, source, picture};
+        words.push_back("--reader=" + fs::read_symlink("/proc/self/exe").string());
         for (const auto& [option, value] :
              {std::pair("--variable", asked.variable), {"--over", asked.over}, {"--value", asked.value}})
             if (!value.empty()) words.push_back(message(option, '=', value));
@@ -471,13 +505,18 @@ int parse_and_run(int argc, const char* const* argv) {
     plot_request picture;
     std::vector<std::string> files;
     std::string target, variable;
-    bool verify = false;
+    bool verify = false, require_complete = false;
     int status = 0;
 
     CLI::App* const list_command = app.add_subcommand("list", "Show models and their components");
     list_command->add_option("FILE", files, "Studies or headers of models; none: the models of this program");
     list_command->add_option("--model", asked.model, "The model of a header");
-    list_command->callback([&] { status = list(files, asked.model); });
+    const auto add_compile_option = [&](CLI::App* command) {
+        command->add_flag("--compile", asked.compiles,
+                          "Compile the model's header and run its code though you never did before: you trust it");
+    };
+    add_compile_option(list_command);
+    list_command->callback([&] { status = list(files, asked); });
 
     const auto add_run_options = [&](CLI::App* command) {
         command
@@ -485,6 +524,8 @@ int parse_and_run(int argc, const char* const* argv) {
             ->type_name("NAME");
         command->add_option("--export", asked.exported, "When all is done, write a file: .nc or .csv")
             ->type_name("FILE");
+        command->add_flag("--any-arithmetic", asked.any_arithmetic,
+                          "Go on where another instruction set, compiler or library began");
         command->add_flag("--quiet", asked.quiet, "Show no progress");
     };
     CLI::App* const run_command = app.add_subcommand("run", "Run a study, or go on with it");
@@ -494,12 +535,14 @@ int parse_and_run(int argc, const char* const* argv) {
     run_command->add_option("--model", asked.model, "Its model, if the file names none")->type_name("NAME");
     run_command->add_option("--header", asked.header, "The model's header, if the file names none")->type_name("FILE");
     run_command->add_flag("--check", asked.only_check, "Only say whether the file is right, and how many instances");
+    add_compile_option(run_command);
     add_run_options(run_command);
     run_command->callback([&] { status = run(asked); });
 
     CLI::App* const resume_command = app.add_subcommand("resume", "Go on with the study in a folder");
     resume_command->add_option("FOLDER", asked.folder, "Folder of the results")->required();
     resume_command->add_flag("--checksums", asked.checksums, "Read all that is there, and do what is damaged again");
+    add_compile_option(resume_command);
     add_run_options(resume_command);
     resume_command->callback([&] { status = resume(asked); });
 
@@ -512,7 +555,12 @@ int parse_and_run(int argc, const char* const* argv) {
     export_command->add_option("FOLDER", asked.folder, "Folder of the results")->required();
     export_command->add_option("FILE", target, "File to write: .nc (netCDF-4), .csv or .npy")->required();
     export_command->add_option("--variable", variable, "The variable of an NPY file")->type_name("NAME");
-    export_command->callback([&] { export_results(open_store(asked.folder), target, variable); });
+    export_command->add_flag("--require-complete", require_complete, "Write nothing unless all is computed");
+    export_command->callback([&] {
+        const store there = open_store(asked.folder);
+        tell_missing(there, require_complete);
+        export_results(there, target, variable);
+    });
 
     CLI::App* const plot_command = app.add_subcommand("plot", "Draw diagrams over one or two parameters");
     plot_command->add_option("RESULTS", picture.sources, "Folders of results, or netCDF files")->required();

@@ -4,29 +4,21 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <optional>
-#include <span>
-#include <sstream>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <dlfcn.h>
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/core/instruction_set.hpp"
-#include "myriad/study/crc32c.hpp"
 #include "myriad/version.hpp"
 #include "program/child_process.hpp"
+#include "program/model_cache.hpp"
 
 namespace myriad::programs {
 
@@ -39,12 +31,6 @@ std::string variable(const char* name) {
     return value != nullptr ? value : "";
 }
 
-std::string contents_of(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
 void write_file(const fs::path& path, const std::string& text) {
     std::ofstream file(path, std::ios::binary);
     file << text;
@@ -228,142 +214,43 @@ void compile(const compile_request& wanted, const std::string& compiler, const h
 // What was compiled
 // ---------------------------------------------------------------------------------------------------------------------
 
-fs::path cache_folder() {
-    if (const std::string chosen = variable("MYRIAD_CACHE_DIR"); !chosen.empty()) return chosen;
-    if (const std::string caches = variable("XDG_CACHE_HOME"); !caches.empty()) return fs::path(caches) / "myriad";
-    const std::string home = variable("HOME");
-    return home.empty() ? fs::path() : fs::path(home) / ".cache" / "myriad";
-}
-
-/// Holds the lock of a key, as far as the file system has locks: without, what is made twice is equal.
-class key_lock {
-public:
-    explicit key_lock(const fs::path& path) : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-        if (file_ >= 0) ::flock(file_, LOCK_EX);
-    }
-    key_lock(const key_lock&) = delete;
-    key_lock& operator=(const key_lock&) = delete;
-    ~key_lock() {
-        if (file_ >= 0) ::close(file_);
-    }
-
-private:
-    int file_;
-};
-
-/// A folder that is removed at the end.
-class temporary_folder {
-public:
-    explicit temporary_folder(const fs::path& in) {
-        std::string name = (in / "myriad.XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) return;
-        path = name;
-    }
-    temporary_folder(const temporary_folder&) = delete;
-    temporary_folder& operator=(const temporary_folder&) = delete;
-    ~temporary_folder() {
-        std::error_code ignored;
-        if (!path.empty()) fs::remove_all(path, ignored);
-    }
-    fs::path path;  ///< empty if it could not be made
-};
-
-// Behind a shared object there is the text that it was made from and a checksum of everything, by which damage is
-// noticed before the system loads it. Loaders do not look at it.
-std::uint32_t checksum(std::string_view text) { return studies::crc32c(std::as_bytes(std::span(text))); }
-
-void seal(const fs::path& path, const std::string& made_from) {
-    std::string whole = contents_of(path) + made_from;
-    const std::uint64_t size = made_from.size();
-    whole.append(reinterpret_cast<const char*>(&size), sizeof size);
-    const std::uint32_t sum = checksum(whole);
-    whole.append(reinterpret_cast<const char*>(&sum), sizeof sum);
-    write_file(path, whole);
-}
-bool is_whole(const fs::path& path, const std::string& made_from) {
-    const std::string whole = contents_of(path);
-    std::uint64_t size = 0;
-    std::uint32_t sum = 0;
-    if (whole.size() < made_from.size() + sizeof size + sizeof sum) return false;
-    std::memcpy(&sum, whole.data() + whole.size() - sizeof sum, sizeof sum);
-    const std::string_view summed(whole.data(), whole.size() - sizeof sum);
-    if (checksum(summed) != sum) return false;
-    std::memcpy(&size, summed.data() + summed.size() - sizeof size, sizeof size);
-    return size == made_from.size() &&
-           summed.substr(summed.size() - sizeof size - made_from.size(), made_from.size()) == made_from;
-}
-
 /// Loads it for the life of the process: its code may be running.
-void load(const fs::path& path) {
-    void* const handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+void load(const compiled_file& file) {
+    void* const handle = ::dlopen(file.path().c_str(), RTLD_NOW | RTLD_LOCAL);
     require(handle != nullptr, "the compiled model cannot be loaded: ", handle != nullptr ? "" : ::dlerror());
     const auto add = reinterpret_cast<void (*)()>(::dlsym(handle, register_symbol));
-    require(add != nullptr, path.string(), " holds no compiled model: remove it");
+    require(add != nullptr, "what was compiled holds no model: remove the cache of compiled models");
     add();
-}
-
-/// Removes what was not used for longest until the rest is within the limit.
-void shrink(const fs::path& folder, const fs::path& keep) {
-    std::uintmax_t limit = std::uintmax_t{1} << 30;
-    const std::string asked = variable("MYRIAD_CACHE_SIZE");
-    std::from_chars(asked.data(), asked.data() + asked.size(), limit);
-    std::error_code ignored;
-    std::vector<std::pair<fs::file_time_type, fs::path>> files;
-    std::uintmax_t total = 0;
-    for (fs::directory_iterator at(folder, ignored), end; !ignored && at != end; at.increment(ignored)) {
-        if (at->path().extension() != ".so") continue;
-        files.emplace_back(at->last_write_time(ignored), at->path());
-        total += at->file_size(ignored);
-    }
-    std::sort(files.begin(), files.end());
-    for (const auto& [time, path] : files) {
-        if (total <= limit) return;
-        if (path == keep) continue;
-        total -= std::min(total, fs::file_size(path, ignored));
-        fs::remove(path, ignored);
-        fs::remove(fs::path(path).replace_extension(".lock"), ignored);
-    }
 }
 
 }  // namespace
 
-void compile_and_load(const compile_request& wanted, const std::string& flags,
-                      const std::function<void(const std::string&)>& tell) {
+void compile_and_load(const compile_request& wanted, const std::string& flags, compile_permission permission,
+                      const std::function<void(const std::string&)>& tell,
+                      const std::function<void(const std::string&)>& warn) {
     const std::string compiler = find_compiler();
     const header_flags headers = read_flags(flags);
     std::string made_from = message(MYRIAD_VERSION, '\n', identity(compiler), '\n', headers.state);
     for (const std::string& flag : kernel_flags(headers, compiler)) made_from += flag + '\n';
     made_from += kernel_file(wanted) + host_file(wanted);
 
-    std::error_code problem;
-    fs::path folder = cache_folder();
-    if (!folder.empty()) fs::create_directories(folder, problem);
-    const bool usable = !folder.empty() && !problem && ::access(folder.c_str(), W_OK | X_OK) == 0;
-    std::optional<temporary_folder> own;
-    const fs::path file = folder / (text_hash(made_from) + ".so");
-    if (!folder.empty() && is_whole(file, made_from)) {
-        fs::last_write_time(file, fs::file_time_type::clock::now(), problem);
-        return load(file);
-    }
-    if (!usable) {
-        own.emplace(fs::temp_directory_path(problem));
-        folder = own->path;
-        require(!folder.empty(),
-                "neither the cache nor a temporary folder can be written: set MYRIAD_CACHE_DIR to a "
-                "folder that can");
-    }
-    const fs::path path = folder / file.filename();
-    const key_lock lock(fs::path(path).replace_extension(".lock"));
-    if (is_whole(path, made_from)) return load(path);  // made by the process that held the lock
-    const temporary_folder work(folder);
-    require(!work.path.empty(), "no folder can be made in ", folder.string(), ": is the disk full?");
+    const model_cache cache;
+    const std::string key = text_hash(made_from);
+    if (const auto file = cache.find(key, made_from)) return load(*file);
+    require(
+        permission == compile_permission::given || cache.knows(wanted.source.text), wanted.source.name,
+        " was never compiled by you, and what is compiled runs with all your rights: look at it, and give --compile if "
+        "you trust it",
+        cache.objection().empty() ? "" : message(" (", cache.objection(), ')'));
+    if (!cache.objection().empty()) warn(cache.objection());
+    const model_cache::workplace work(cache, key);
+    if (const auto file = cache.find(key, made_from)) return load(*file);  // made by the process that held the lock
     tell(message("compiling ", wanted.source.name, " with ", wanted.method, ", by ",
                  fs::path(compiler).filename().string()));
-    compile(wanted, compiler, headers, work.path);
-    seal(work.path / "model.so", made_from);
-    load(work.path / "model.so");
-    fs::rename(work.path / "model.so", path, problem);
-    if (usable) shrink(folder, path);
+    compile(wanted, compiler, headers, work.folder());
+    load(work.seal(made_from));
+    work.keep();
+    cache.remember(wanted.source.text);
 }
 
 }  // namespace myriad::programs

@@ -2,12 +2,16 @@
 // Headers of models as one text.
 #include "program/model_source.hpp"
 
+#include <cerrno>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <string_view>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "myriad/host/core/error.hpp"
 
@@ -18,12 +22,29 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string contents_of(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    require(!fs::is_directory(path) && file.good() && text.good(), "the header ", path.string(),
-            " cannot be read: give the path of a file with the model");
-    return text.str();
+    const auto refuse = [&](const std::string& why) {
+        throw error(message("the header ", path.string(), why, ": give the path of a file with the model"));
+    };
+    const auto failed = [&] { refuse(message(" cannot be read (", std::generic_category().message(errno), ')')); };
+    // A pipe would wait for its other end, and a device may have no end.
+    const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) failed();
+    const struct closed_at_end {
+        int file;
+        ~closed_at_end() { ::close(file); }
+    } guard{file};
+    struct stat is;
+    if (::fstat(file, &is) < 0) failed();
+    if (!S_ISREG(is.st_mode)) refuse(" is no regular file");
+    std::string text;
+    char part[65536];
+    for (;;) {
+        const ssize_t got = ::read(file, part, sizeof part);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) failed();
+        if (got == 0) return text;
+        text.append(part, static_cast<std::size_t>(got));
+    }
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -72,7 +93,8 @@ public:
                 continue;
             }
             const fs::path included = path.parent_path() / quoted_file(line);
-            if (quoted_file(line).empty() || !fs::is_regular_file(included)) {
+            std::error_code unknown;
+            if (quoted_file(line).empty() || !fs::exists(included, unknown)) {
                 joined += line;
                 joined += '\n';
                 continue;

@@ -27,8 +27,8 @@ public:
 
     /// What the file says of the model.
     struct model_choice {
-        std::string model, header;  ///< empty if the file does not say
-        std::string method = "cash_karp";
+        std::string model, header;           ///< empty if the file does not say
+        std::string method = "tsitouras_5";  ///< docs/methods.md#the-default
         studies::element real = studies::element::f64;
         bool samples = false;  ///< whether samples are wanted, for which the method must be dense<...>
         text_place model_place, header_place, method_place;  ///< of the keys, or of the file

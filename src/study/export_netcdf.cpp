@@ -20,10 +20,12 @@ void export_netcdf(const studies::results&, const std::string& path, const netcd
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <mutex>
-#include <optional>
+#include <set>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -35,6 +37,7 @@ void export_netcdf(const studies::results&, const std::string& path, const netcd
 #include "myriad/study/export.hpp"
 #include "myriad/study/file_system.hpp"
 #include "myriad/study/metadata.hpp"
+#include "myriad/study/own_process.hpp"
 #include "myriad/version.hpp"
 
 namespace myriad {
@@ -45,7 +48,6 @@ namespace {
 
 constexpr std::int64_t chunk_values = std::int64_t{1} << 17;  // 1 MB of doubles: what readers decompress at a time
 constexpr std::int64_t coordinate_part = std::int64_t{1} << 20;
-constexpr std::int64_t reserve_bytes = std::int64_t{1} << 22;  // more than HDF5 holds of a file's metadata
 
 int netcdf_type(element type) {
     switch (type) {
@@ -63,78 +65,57 @@ int netcdf_type(element type) {
     return NC_DOUBLE;
 }
 
-// Space on the disk that is given back when it is full, so that HDF5 can still write what it holds in memory: else it
-// may end the process with a segmentation fault. The file has no name, so nothing is left of it whatever happens.
-class reserve {
-public:
-    explicit reserve(const std::string& path)
-        : file_(std::in_place, file_system::real(), path, O_WRONLY | O_CREAT | O_EXCL) {
-        ::unlink(path.c_str());
-    }
-    void grow(std::int64_t bytes) {
-        bytes_ += bytes;
-        int code = EINTR;
-        while (code == EINTR) code = ::posix_fallocate(file_->descriptor(), 0, bytes_);
-        if (code != 0) throw file_error("writing", file_->path(), code);
-    }
-    void give_back() { file_.reset(); }
-
-private:
-    std::optional<open_file> file_;
-    std::int64_t bytes_ = 0;
-};
-
-// A file that is open for writing, removed unless it is finished.
+// A file that is open for writing, in a process that ends if this fails: HDF5 may end its process by a segmentation
+// fault when it closes, or ends with, a file that it could not write.
 class netcdf_file {
 public:
-    explicit netcdf_file(const std::string& path)
-        : path_(path), temporary_(message(path, ".part-", ::getpid())), reserve_(temporary_ + "-reserve") {
-        reserve_.grow(reserve_bytes);
+    explicit netcdf_file(const std::string& path) {
         errno = 0;
-        const int code = nc_create(temporary_.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_);
-        if (code != NC_NOERR) ::unlink(temporary_.c_str());
-        check(code);
-        open_ = true;
+        check(nc_create(path.c_str(), NC_NETCDF4 | NC_NOCLOBBER, &id_));
     }
     netcdf_file(const netcdf_file&) = delete;
     netcdf_file& operator=(const netcdf_file&) = delete;
-    ~netcdf_file() {
-        reserve_.give_back();
-        if (open_) nc_close(id_);
-        if (!temporary_.empty()) ::unlink(temporary_.c_str());
-    }
     operator int() const { return id_; }
 
-    void check(int code) const {
+    static void check(int code) {
         if (code == NC_NOERR) return;
         // HDF5's errors are all one to netCDF.
-        const std::string reason =
-            errno != 0 && (code == NC_EHDFERR || code > 0) ? std::strerror(errno) : nc_strerror(code);
-        host::refuse({"writing ", path_, " failed: ", reason,
-                      ": give a place that you may write to and that has space, and export again"});
+        if (errno != 0 && (code == NC_EHDFERR || code > 0)) throw file_error("writing", "", errno);
+        throw error(nc_strerror(code));
+    }
+    void close() {
+        errno = 0;
+        check(nc_close(id_));
     }
 
-    // What a variable holds in memory at most.
-    void reserve_more(std::int64_t bytes) { reserve_.grow(bytes); }
+private:
+    int id_ = -1;
+};
+
+// The path of a file that is removed at the end unless it got its name.
+class unfinished_file {
+public:
+    explicit unfinished_file(const std::string& path) : path_(path), temporary_(message(path, ".part-", ::getpid())) {
+        ::unlink(temporary_.c_str());  // that of a process which was killed
+    }
+    unfinished_file(const unfinished_file&) = delete;
+    unfinished_file& operator=(const unfinished_file&) = delete;
+    ~unfinished_file() {
+        if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    }
+    const std::string& temporary() const { return temporary_; }
 
     void finish() {
-        errno = 0;
-        check(nc_close(id_));  // else closed once more at the end, with more space
-        open_ = false;
-        reserve_.give_back();
         file_system& files = file_system::real();
         open_file written(files, temporary_, O_RDONLY);
-        written.sync();
-        if (files.rename(temporary_, path_) < 0) throw file_error("writing", path_, errno);
+        if (files.fsync(written.descriptor()) < 0 || files.rename(temporary_, path_) < 0)
+            throw file_error("writing", path_, errno);
         temporary_.clear();
         sync_folder(files, folder_of(path_));
     }
 
 private:
     std::string path_, temporary_;
-    reserve reserve_;
-    int id_ = -1;
-    bool open_ = false;
 };
 
 // Attributes of numbers that are about a variable's values have its type, as CF asks.
@@ -145,7 +126,7 @@ bool is_about_values(const std::string& name) {
     return false;
 }
 
-void put_integers(const netcdf_file& file, int variable, const attribute& a, const std::vector<std::int64_t>& values,
+void put_integers(int file, int variable, const attribute& a, const std::vector<std::int64_t>& values,
                   const element* type) {
     int stored = NC_INT64;
     if (type != nullptr && is_about_values(a.name)) {
@@ -155,10 +136,10 @@ void put_integers(const netcdf_file& file, int variable, const attribute& a, con
         stored = NC_INT;
     }
     const std::vector<long long> numbers(values.begin(), values.end());
-    file.check(nc_put_att_longlong(file, variable, a.name.c_str(), stored, numbers.size(), numbers.data()));
+    netcdf_file::check(nc_put_att_longlong(file, variable, a.name.c_str(), stored, numbers.size(), numbers.data()));
 }
 
-void put_attribute(const netcdf_file& file, int variable, attribute a, const element* type = nullptr) {
+void put_attribute(int file, int variable, attribute a, const element* type = nullptr) {
     std::replace(a.name.begin(), a.name.end(), '/', '_');
     errno = 0;
     std::visit(
@@ -166,11 +147,11 @@ void put_attribute(const netcdf_file& file, int variable, attribute a, const ele
             using T = std::remove_cvref_t<decltype(value)>;
             const char* const name = a.name.c_str();
             if constexpr (std::is_same_v<T, std::string>) {
-                file.check(nc_put_att_text(file, variable, name, value.size(), value.data()));
+                netcdf_file::check(nc_put_att_text(file, variable, name, value.size(), value.data()));
             } else if constexpr (std::is_same_v<T, double>) {
-                file.check(nc_put_att_double(file, variable, name, NC_DOUBLE, 1, &value));
+                netcdf_file::check(nc_put_att_double(file, variable, name, NC_DOUBLE, 1, &value));
             } else if constexpr (std::is_same_v<T, std::vector<double>>) {
-                file.check(nc_put_att_double(file, variable, name, NC_DOUBLE, value.size(), value.data()));
+                netcdf_file::check(nc_put_att_double(file, variable, name, NC_DOUBLE, value.size(), value.data()));
             } else if constexpr (std::is_same_v<T, std::int64_t>) {
                 put_integers(file, variable, a, {value}, type);
             } else {
@@ -178,6 +159,27 @@ void put_attribute(const netcdf_file& file, int variable, attribute a, const ele
             }
         },
         a.value);
+}
+
+// CF recommends letters, digits and underscores alone in names. The attribute description has all names as they are.
+std::string global_name(std::string name) {
+    for (char& c : name) {
+        const bool kept = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        if (!kept) c = '_';
+    }
+    const bool begins_with_letter =
+        !name.empty() && name.front() != '_' && !(name.front() >= '0' && name.front() <= '9');
+    return begins_with_letter ? name : 'x' + name;
+}
+
+// As CF's attribute history has it.
+std::string time_now() {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    ::gmtime_r(&now, &parts);
+    char text[32] = {};
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return text;
 }
 
 // Calls f(start, count) for boxes that have the places [first, first + count) of a grid, in their order.
@@ -219,43 +221,65 @@ void for_boxes(const std::vector<std::size_t>& lengths, std::size_t first, std::
     divide(0, first, count);
 }
 
+// Writes a file, and asks for values as {is_coordinate, number, first item}.
 class exporter {
 public:
-    exporter(const results& from, netcdf_file& file, const netcdf_options& options)
-        : from_(from), content_(from.content()), file_(file), options_(options) {
-        for (std::int64_t chunk = 0; chunk < content_.chunks(); ++chunk)
-            if (!from_.done(chunk)) {
-                ++missing_chunks_;
-                missing_instances_ += range_of(content_, chunk).count;
-            }
+    // Looks at the results, for what must not be asked in another process.
+    exporter(const results& from, const netcdf_options& options)
+        : content_(from.content()), options_(options), missing_(missing_text(from)) {
+        for (std::int64_t chunk = 0; chunk < content_.chunks(); ++chunk) {
+            done_.push_back(from.done(chunk));
+            if (!done_.back()) ++missing_chunks_;
+        }
+        for (const variable& v : content_.variables)
+            if (v.extent == along::nothing && from.written(v.name)) written_.insert(v.name);
+        for (const std::string& name : from.devices()) devices_ += (devices_.empty() ? "" : ", ") + name;
         for (const dimension& axis : content_.axes) grid_.push_back(static_cast<std::size_t>(axis.length));
     }
 
-    void run() {
+    void run(const std::string& path, const data_source& ask) {
+        netcdf_file file(path);
+        file_ = file;
+        ask_ = &ask;
         define();
-        for (const coordinate& c : content_.coordinates)
-            if (ids_.contains(c.name)) write_coordinate(c);
+        for (std::size_t c = 0; c < content_.coordinates.size(); ++c)
+            if (ids_.contains(content_.coordinates[c].name)) write_coordinate(c);
         for (std::int64_t chunk = 0; chunk < content_.chunks(); ++chunk) {
-            if (!from_.done(chunk)) continue;
+            if (!done_[static_cast<std::size_t>(chunk)]) continue;
             const chunk_range range = range_of(content_, chunk);
-            for (const variable& v : content_.variables)
-                if (v.extent == along::instances) write_items(v, range);
+            for (std::size_t v = 0; v < content_.variables.size(); ++v)
+                if (content_.variables[v].extent == along::instances) write_items(v, range);
         }
-        for (const variable& v : content_.variables) {
-            if (v.extent != along::nothing || !from_.written(v.name)) continue;
-            buffer_.resize(static_cast<std::size_t>(v.values_per_item()) * size_of(v.type));
-            from_.read(v.name, 0, 1, buffer_.data());
+        for (std::size_t number = 0; number < content_.variables.size(); ++number) {
+            const variable& v = content_.variables[number];
+            if (v.extent != along::nothing || !written_.contains(v.name)) continue;
+            get(number, 0, 1);
             std::vector<std::size_t> start(v.inner.size(), 0), count;
             for (const dimension& d : v.inner) count.push_back(static_cast<std::size_t>(d.length));
             put(v.name, start, count, buffer_.data());
         }
+        file.close();
+    }
+
+    // Answers what `run` asks for.
+    static void read(const results& from, const data_request& wanted, std::span<std::byte> to) {
+        const auto [is_coordinate, number, first] = wanted;
+        const layout& content = from.content();
+        if (is_coordinate != 0) {
+            const std::span values(reinterpret_cast<double*>(to.data()), to.size() / sizeof(double));
+            return content.coordinates[static_cast<std::size_t>(number)].values(first, values);
+        }
+        const variable& v = content.variables[static_cast<std::size_t>(number)];
+        const std::size_t item = static_cast<std::size_t>(v.values_per_item()) * size_of(v.type);
+        from.read(v.name, first, static_cast<std::int64_t>(to.size() / item), to.data());
     }
 
 private:
     int dimension_id(const dimension& d) {
         const auto [known, is_new] = dimensions_.emplace(d.name, -1);
         errno = 0;
-        if (is_new) file_.check(nc_def_dim(file_, d.name.c_str(), static_cast<std::size_t>(d.length), &known->second));
+        if (is_new)
+            netcdf_file::check(nc_def_dim(file_, d.name.c_str(), static_cast<std::size_t>(d.length), &known->second));
         return known->second;
     }
 
@@ -266,7 +290,8 @@ private:
         for (const dimension& d : dimensions) ids.push_back(dimension_id(d));
         int id = -1;
         errno = 0;
-        file_.check(nc_def_var(file_, name.c_str(), netcdf_type(type), static_cast<int>(ids.size()), ids.data(), &id));
+        netcdf_file::check(
+            nc_def_var(file_, name.c_str(), netcdf_type(type), static_cast<int>(ids.size()), ids.data(), &id));
         ids_[name] = id;
         if (!dimensions.empty()) {
             std::vector<std::size_t> piece(dimensions.size());
@@ -278,13 +303,12 @@ private:
                 piece[d] = static_cast<std::size_t>(part);
                 most = part == length ? std::max<std::int64_t>(1, most / part) : 1;
             }
-            file_.check(nc_def_var_chunking(file_, id, NC_CHUNKED, piece.data()));
+            netcdf_file::check(nc_def_var_chunking(file_, id, NC_CHUNKED, piece.data()));
             // Values come in the order of the pieces, so that memory for two of them is enough.
             std::size_t held = 2 * size_of(type);
             for (const std::size_t n : piece) held *= n;
-            file_.check(nc_set_var_chunk_cache(file_, id, held, 521, 1.0F));
-            file_.reserve_more(static_cast<std::int64_t>(held));
-            if (options_.deflate > 0) file_.check(nc_def_var_deflate(file_, id, 1, 1, options_.deflate));
+            netcdf_file::check(nc_set_var_chunk_cache(file_, id, held, 521, 1.0F));
+            if (options_.deflate > 0) netcdf_file::check(nc_def_var_deflate(file_, id, 1, 1, options_.deflate));
         }
         for (const attribute& a : attributes) put_attribute(file_, id, a, &type);
         return id;
@@ -325,10 +349,10 @@ private:
             const int id = define_variable(v.name, v.type, dimensions, v.attributes);
             // Readers take numbers with this attribute for floating-point ones, so integers have it only at need.
             const bool is_real = v.type == element::f64 || v.type == element::f32;
-            if (is_real || (v.extent == along::instances ? missing_chunks_ > 0 : !from_.written(v.name))) {
+            if (is_real || (v.extent == along::instances ? missing_chunks_ > 0 : !written_.contains(v.name))) {
                 std::byte value[8];
                 fill(v.type, value, 1);
-                file_.check(nc_def_var_fill(file_, id, NC_FILL, value));
+                netcdf_file::check(nc_def_var_fill(file_, id, NC_FILL, value));
             }
             if (v.role == role::coordinate) continue;
             std::string names;
@@ -341,21 +365,20 @@ private:
             if (!names.empty()) put_attribute(file_, id, {"coordinates", names});
         }
         define_global();
-        file_.check(nc_enddef(file_));
+        netcdf_file::check(nc_enddef(file_));
     }
 
     void define_global() {
         put_attribute(file_, NC_GLOBAL, {"Conventions", "CF-1.10"});
         put_attribute(file_, NC_GLOBAL, {"source", "Myriad " MYRIAD_VERSION});
-        for (const attribute& a : attributes_of(content_.description)) put_attribute(file_, NC_GLOBAL, a);
+        for (attribute& a : attributes_of(content_.description)) {
+            a.name = global_name(a.name);
+            put_attribute(file_, NC_GLOBAL, a);
+        }
+        put_attribute(file_, NC_GLOBAL, {"history", message(time_now(), " exported by Myriad " MYRIAD_VERSION)});
         put_attribute(file_, NC_GLOBAL, {"description", content_.description});
-        std::string devices;
-        for (const std::string& name : from_.devices()) devices += (devices.empty() ? "" : ", ") + name;
-        if (!devices.empty()) put_attribute(file_, NC_GLOBAL, {"devices", devices});
-        if (missing_chunks_ > 0)
-            put_attribute(file_, NC_GLOBAL,
-                          {"incomplete", message(missing_instances_, " of ", content_.instances(),
-                                                 " instances are not computed yet: they have _FillValue")});
+        if (!devices_.empty()) put_attribute(file_, NC_GLOBAL, {"devices", devices_});
+        if (!missing_.empty()) put_attribute(file_, NC_GLOBAL, {"incomplete", missing_ + ": they have _FillValue"});
     }
 
     std::vector<dimension> dimensions_of(const variable& v) const {
@@ -367,7 +390,7 @@ private:
     void put(const std::string& name, const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
              const void* values) {
         errno = 0;
-        file_.check(nc_put_vara(file_, ids_.at(name), start.data(), count.data(), values));
+        netcdf_file::check(nc_put_vara(file_, ids_.at(name), start.data(), count.data(), values));
     }
 
     void put_places(const std::string& name, std::size_t first, std::size_t count,
@@ -383,41 +406,50 @@ private:
         });
     }
 
-    void write_items(const variable& v, const chunk_range& range) {
-        const std::size_t item = static_cast<std::size_t>(v.values_per_item()) * size_of(v.type);
-        buffer_.resize(static_cast<std::size_t>(range.count) * item);
-        from_.read(v.name, range.first, range.count, buffer_.data());
-        std::vector<std::size_t> inner;
-        for (const dimension& d : v.inner) inner.push_back(static_cast<std::size_t>(d.length));
-        put_places(v.name, static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count), inner, item);
+    // Items of a variable, into the buffer.
+    void get(std::size_t number, std::int64_t first, std::int64_t count) {
+        const variable& v = content_.variables[number];
+        buffer_.resize(static_cast<std::size_t>(count * v.values_per_item()) * size_of(v.type));
+        (*ask_)({0, static_cast<std::int64_t>(number), first}, buffer_);
     }
 
-    void write_coordinate(const coordinate& c) {
+    void write_items(std::size_t number, const chunk_range& range) {
+        const variable& v = content_.variables[number];
+        get(number, range.first, range.count);
+        std::vector<std::size_t> inner;
+        for (const dimension& d : v.inner) inner.push_back(static_cast<std::size_t>(d.length));
+        put_places(v.name, static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count), inner,
+                   static_cast<std::size_t>(v.values_per_item()) * size_of(v.type));
+    }
+
+    void write_coordinate(std::size_t number) {
+        const coordinate& c = content_.coordinates[number];
         std::vector<dimension> dimensions;
         find_dimensions(c, dimensions);
         std::int64_t length = 1;
         for (const dimension& d : dimensions) length *= d.length;
-        std::vector<double> values;
         for (std::int64_t first = 0; first < length; first += coordinate_part) {
-            values.resize(static_cast<std::size_t>(std::min(coordinate_part, length - first)));
-            c.values(first, values);
-            if (dimensions.size() <= 1) {
+            const auto count = static_cast<std::size_t>(std::min(coordinate_part, length - first));
+            buffer_.resize(count * sizeof(double));
+            (*ask_)({1, static_cast<std::int64_t>(number), first}, buffer_);
+            if (dimensions.size() > 1) {
+                put_places(c.name, static_cast<std::size_t>(first), count, {}, sizeof(double));
+            } else {
                 const std::vector<std::size_t> start(dimensions.size(), static_cast<std::size_t>(first));
-                put(c.name, start, std::vector<std::size_t>(dimensions.size(), values.size()), values.data());
-                continue;
+                put(c.name, start, std::vector<std::size_t>(dimensions.size(), count), buffer_.data());
             }
-            buffer_.resize(values.size() * sizeof(double));
-            std::memcpy(buffer_.data(), values.data(), buffer_.size());
-            put_places(c.name, static_cast<std::size_t>(first), values.size(), {}, sizeof(double));
         }
     }
 
-    const results& from_;
     const layout& content_;
-    netcdf_file& file_;
     netcdf_options options_;
+    std::vector<bool> done_;         // chunks
+    std::set<std::string> written_;  // variables of the whole study
+    std::string devices_, missing_;
+    int file_ = -1;
+    const data_source* ask_ = nullptr;
     std::vector<std::size_t> grid_;
-    std::int64_t missing_chunks_ = 0, missing_instances_ = 0;
+    std::int64_t missing_chunks_ = 0;
     std::map<std::string, int> dimensions_, ids_;
     std::vector<std::byte> buffer_;
 };
@@ -430,10 +462,16 @@ void export_netcdf(const results& from, const std::string& path, const netcdf_op
     static std::mutex one_at_a_time;
     const std::lock_guard lock(one_at_a_time);
     const std::string place = file_place(path);
+    unfinished_file file(place);
     try {
-        netcdf_file file(place);
-        exporter(from, file, options).run();
+        exporter writes(from, options);
+        in_own_process([&](const data_source& ask) { writes.run(file.temporary(), ask); },
+                       [&](const data_request& wanted, std::span<std::byte> to) { exporter::read(from, wanted, to); });
         file.finish();
+    } catch (const process_error& failure) {
+        if (failure.code() != 0) throw file_error("writing", place, failure.code()).of_export();
+        host::refuse({"writing ", place, " failed: ", failure.what(),
+                      ": give a place that you may write to and that has space, and export again"});
     } catch (const file_error& failure) {
         throw failure.of_export();
     }

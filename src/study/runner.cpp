@@ -21,6 +21,7 @@
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/host/threads/parallel.hpp"
 #include "myriad/kernel/core/abi.hpp"
+#include "myriad/study/work_sharing.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
@@ -32,32 +33,44 @@ double seconds_since(clock::time_point begin) { return std::chrono::duration<dou
 
 /// A device, on which one thread integrates while another prepares the next chunk or stores the last one.
 struct used_device {
-    explicit used_device(const device& d) : where(d) {}
+    used_device(const device& d, std::size_t n) : where(d), number(n) {}
 
     const device where;
+    const std::size_t number;
     std::mutex turn;  // of the thread that integrates
     std::atomic<bool> failed{false};
-    std::string why;                    // it failed
-    std::atomic<double> per_second{0};  // instances, in its last chunk
+    std::string why;                     // it failed
+    std::atomic<bool> exploring{false};  // a thread has its first chunk, which shows how fast it is
 };
 
-/// Instances that a thread has finished of its chunk.
-using done_of_chunk = std::atomic<std::int64_t>;
+/// What a thread has of a chunk.
+struct thread_work {
+    explicit thread_work(std::size_t d) : number(d) {}
+
+    const std::size_t number;           // of its device
+    std::atomic<std::int64_t> done{0};  // instances
+    std::atomic<std::int64_t> rest{0};  // 0 if it has none
+    std::atomic<clock::rep> begun{0};
+    std::atomic<bool> is_wanted{false};  // by a device that is done with it earlier
+};
 
 /// Another thread has found that the device is lost.
 class device_lost : public std::exception {};
 /// The run is to end, and the chunk under way takes too long.
 class given_up : public std::exception {};
+/// Others are done with the chunk earlier.
+class handed_back : public std::exception {};
 
 class run {
 public:
     run(const any_model& model, const study_plan& plan, result_keeper& keeper, const run_settings& settings)
-        : model_(model), plan_(plan), keeper_(keeper), settings_(settings), earlier_(keeper.instances_done()),
-          committed_(earlier_) {
-        for (const device& d : settings.devices) devices_.emplace_back(d);
+        : model_(model), plan_(plan), keeper_(keeper), settings_(settings),
+          sharing_(settings.devices, keeper.content().chunk), earlier_(keeper.instances_done()), committed_(earlier_) {
+        for (const device& d : settings.devices) devices_.emplace_back(d, devices_.size());
     }
 
     run_outcome all() {
+        warnings_ = keeper_.warnings();
         if (!keeper_.complete()) run_threads();
         tell_warnings();
         show();
@@ -72,22 +85,22 @@ public:
 
 private:
     static constexpr int threads_per_device = 2;
-    static constexpr auto look_every = std::chrono::milliseconds(100);  // for signals, and to show progress
-    static constexpr auto ask_every = std::chrono::milliseconds(500);   // for chunks of other processes
-    static constexpr auto count_every = std::chrono::seconds(5);        // what other processes have done
+    static constexpr auto look_every = std::chrono::milliseconds(100);    // for signals, and to show progress
+    static constexpr auto ask_every = std::chrono::milliseconds(500);     // for chunks of other processes
+    static constexpr auto compare_every = std::chrono::milliseconds(10);  // with slower devices
+    static constexpr auto count_every = std::chrono::seconds(5);          // what other processes have done
 
     // -- The calling thread -------------------------------------------------------------------------------------------
 
     void run_threads() {
         std::vector<std::thread> threads;
+        for (const used_device& d : devices_)
+            for (int t = 0; t < threads_per_device; ++t) under_way_.emplace_back(d.number);
         try {
-            for (used_device& d : devices_) {
-                for (int t = 0; t < threads_per_device; ++t) {
-                    const std::lock_guard lock(mutex_);
-                    done_of_chunk& mine = under_way_.emplace_back(0);
-                    threads.emplace_back([this, &d, &mine] { work_until_the_end(d, mine); });
-                    ++working_;
-                }
+            for (thread_work& mine : under_way_) {
+                const std::lock_guard lock(mutex_);
+                threads.emplace_back([this, &mine] { work_until_the_end(devices_[mine.number], mine); });
+                ++working_;
             }
             watch();
         } catch (...) {
@@ -123,7 +136,7 @@ private:
                    .earlier = earlier_,
                    .seconds = seconds_since(begin_),
                    .by_status = of_all_.by_status};
-            for (const done_of_chunk& done : under_way_) now.done += done;
+            for (const thread_work& t : under_way_) now.done += t.done;
         }
         now.done = shown_ = std::clamp(now.done, shown_, now.total);  // a device that failed loses what it had
         call([&] { settings_.progress(now); });
@@ -152,7 +165,7 @@ private:
 
     // -- The threads of devices ---------------------------------------------------------------------------------------
 
-    void work_until_the_end(used_device& d, done_of_chunk& mine) {
+    void work_until_the_end(used_device& d, thread_work& mine) {
         try {
             work(d, mine);
         } catch (const given_up&) {  // by the next run it is done again
@@ -171,16 +184,21 @@ private:
         changed_.notify_all();
     }
 
-    void work(used_device& d, done_of_chunk& mine) {
+    void work(used_device& d, thread_work& mine) {
         std::unique_ptr<chunk_solver> solver = model_.make_device_solver(plan_, d.where);
         if (solver == nullptr) solver = model_.make_solver(plan_, d.where);
         const std::vector<bool> wanted =
             solver->on_device() ? plan_.needed_on_host() : std::vector<bool>(plan_.quantities.size(), true);
         std::int64_t piece = settings_.piece > 0 ? std::min(settings_.piece, content().chunk) : content().chunk;
         as_device(d, *solver, [&] { piece = std::min(piece, solver->most_at_a_time()); });
-        while (const std::optional<std::int64_t> chunk = next_chunk(d)) {
+        while (const std::optional<std::int64_t> chunk = next_chunk(d, mine)) {
             const chunk_range range = range_of(content(), *chunk);
             const auto begin = clock::now();
+            const auto leave = [&] {
+                mine.done = mine.rest = 0;
+                mine.is_wanted = false;
+                d.exploring = false;
+            };
             try {
                 computed made(plan_);
                 compute(d, *solver, range, piece, wanted, made, mine);
@@ -191,9 +209,14 @@ private:
                 committed_ += range.count;
                 outcome_.instances += range.count;
                 add(of_all_, how);
-                mine = 0;
+                leave();
+            } catch (const handed_back&) {
+                solver->clear();
+                sharing_.gave_back(d.number, mine.done, seconds_since(begin));
+                leave();
+                give_back(*chunk);
             } catch (...) {
-                mine = 0;
+                leave();
                 give_back(*chunk);
                 throw;
             }
@@ -203,36 +226,52 @@ private:
     const layout& content() const { return keeper_.content(); }
 
     /// The next chunk for this device; nothing if it is to end.
-    std::optional<std::int64_t> next_chunk(used_device& d) {
+    std::optional<std::int64_t> next_chunk(used_device& d, thread_work& mine) {
         for (;;) {
             if (stopping_ || d.failed || (settings_.stops && settings_.stops())) return {};
-            if (is_worthwhile(d)) {
-                if (const auto chunk = keeper_.claim_next()) return chunk;
+            // The first chunk alone, as long as it is not known how fast the device is.
+            if ((sharing_.is_known(d.number) || !d.exploring.exchange(true)) &&
+                is_worthwhile(d, content().chunk, left())) {
+                if (const auto chunk = keeper_.claim_next()) {
+                    mine.begun = clock::now().time_since_epoch().count();
+                    mine.rest = range_of(content(), *chunk).count;
+                    return chunk;
+                }
+                d.exploring = false;
             }
             if (keeper_.complete()) return {};
-            // Others are at work on the rest. They may fail, or be in other processes, and die.
-            std::unique_lock lock(mutex_);
-            if (!stopping_) changed_.wait_for(lock, ask_every);
+            // Others are at work on the rest. They may be slow, fail, or be in other processes, and die.
+            const auto until = clock::now() + ask_every;
+            do {
+                ask_for_a_chunk(d);
+                std::unique_lock lock(mutex_);
+                if (stopping_ || changed_.wait_for(lock, compare_every) == std::cv_status::no_timeout) break;
+            } while (clock::now() < until);
         }
     }
-    /// Whether the other devices would take longer for all that is left than this one for a chunk. It always is for the
-    /// fastest one.
-    bool is_worthwhile(const used_device& mine) {
-        const auto chunk = static_cast<double>(content().chunk);
-        double together = 0, fastest = 0;
-        for (const used_device& d : devices_) {
-            if (&d == &mine || d.failed) continue;
-            together += d.per_second;
-            fastest = std::max<double>(fastest, d.per_second);
+    /// Instances that are not done.
+    std::int64_t left() {
+        std::int64_t left = content().instances();
+        const std::lock_guard lock(mutex_);
+        left -= committed_;
+        for (const thread_work& t : under_way_) left -= t.done;
+        return left;
+    }
+    /// Whether a device should do so many instances beside those that its threads have, or go on with these.
+    bool is_worthwhile(const used_device& d, std::int64_t more, std::int64_t left) {
+        for (const thread_work& t : under_way_)
+            if (t.number == d.number) more += t.rest;
+        return sharing_.is_worthwhile(d.number, more, left);
+    }
+    /// Asks another device for a chunk that this one, which has nothing to do, is done with earlier.
+    void ask_for_a_chunk(const used_device& d) {
+        for (thread_work& t : under_way_) {
+            if (t.rest == 0 || t.is_wanted) continue;
+            const double seconds = seconds_since(clock::time_point(clock::duration(t.begun)));
+            if (!sharing_.is_better_off_with(d.number, t.number, t.rest, t.done, seconds)) continue;
+            t.is_wanted = true;
+            return;
         }
-        if (mine.per_second <= 0 || together <= 0) return true;
-        auto left = static_cast<double>(content().instances());
-        {
-            const std::lock_guard lock(mutex_);
-            left -= static_cast<double>(committed_);
-            for (const done_of_chunk& done : under_way_) left -= static_cast<double>(done);
-        }
-        return chunk / mine.per_second <= std::max(left / together, chunk / fastest);
     }
 
     /// What was computed of a chunk: the values of quantities, and the reductions that the device has done.
@@ -244,22 +283,30 @@ private:
         std::vector<std::unique_ptr<reduction_state>> reduced;
     };
 
-    /// Sets and integrates a chunk, in pieces if memory is short, and copies or reduces what is kept.
+    /// Sets and integrates a chunk, in pieces if memory is short or the device may be slow, and copies or reduces what
+    /// is kept.
     void compute(used_device& d, chunk_solver& solver, const chunk_range& range, std::int64_t& piece,
-                 const std::vector<bool>& wanted, computed& made, done_of_chunk& mine) {
-        double seconds = 0;
+                 const std::vector<bool>& wanted, computed& made, thread_work& mine) {
         for (std::int64_t at = 0; at < range.count;) {
-            const std::int64_t count = std::min(piece, range.count - at);
+            if (mine.is_wanted || (at > 0 && !is_worthwhile(d, 0, left() + at))) throw handed_back();
+            const std::int64_t rest = range.count - at;
+            const std::int64_t count = std::min(piece, sharing_.part(d.number, rest, left()));
             try {
                 for (std::size_t q = 0; q < wanted.size(); ++q)
                     if (wanted[q])
                         made.values[q].resize(static_cast<std::size_t>(range.count) * bytes_of(plan_.quantities[q]));
                 as_device(d, solver, [&] { solver.prepare(range.first + at, count); });
                 const auto progress = [&](std::int64_t done) {
-                    mine = at + done;
+                    mine.done = at + done;
+                    mine.rest = rest - done;
                     if (done < count && is_over()) throw given_up();
+                    if (done < count && mine.is_wanted) throw handed_back();
                 };
+                double seconds = 0;
                 const solved how = integrate(d, solver, progress, seconds);
+                const bool was_known = sharing_.is_known(d.number);
+                sharing_.measured(d.number, count, seconds);
+                if (!was_known) changed_.notify_all();
                 as_device(d, solver, [&] { take(solver, at, wanted, made); });
                 add(made.how, how);
             } catch (const out_of_memory& e) {
@@ -271,7 +318,6 @@ private:
             }
             at += count;
         }
-        if (seconds > 0) d.per_second = static_cast<double>(range.count) / seconds;
     }
     /// Copies and reduces a piece. Nothing is reduced twice if this throws.
     void take(chunk_solver& solver, std::int64_t at, const std::vector<bool>& wanted, computed& made) {
@@ -318,6 +364,8 @@ private:
             throw;
         } catch (const given_up&) {
             throw;
+        } catch (const handed_back&) {
+            throw;
         } catch (const std::exception& e) {
             if (on_device && !d.failed) drop(d, e.what());
             throw;
@@ -356,7 +404,7 @@ private:
                                                                           : reduced(plan_.reductions[r], range, all));
             columns.push_back(column_of(names.emplace_back(partial_name(plan_.asked.reductions[r])), found));
         }
-        chunk_record record{d.where.description(), seconds, {}};
+        chunk_record record{d.where.description(), seconds, {}, model_.arithmetic_on(d.where)};
         for (std::size_t s = 0; s < made.how.by_status.size(); ++s)
             if (made.how.by_status[s] > 0)
                 record.statuses.emplace_back(myriad::name_of(static_cast<myriad::status>(s)), made.how.by_status[s]);
@@ -406,6 +454,7 @@ private:
     void drop(used_device& d, const std::string& why) {
         d.why = why;
         d.failed = true;
+        sharing_.drop(d.number);
         warn(
             message("device ", d.where.name(), " is left out, and its chunks are done by others, as it failed: ", why));
     }
@@ -466,7 +515,8 @@ private:
     result_keeper& keeper_;
     const run_settings& settings_;
     std::deque<used_device> devices_;
-    std::deque<done_of_chunk> under_way_;
+    work_sharing sharing_;
+    std::deque<thread_work> under_way_;  // all there before the first thread
     clock::time_point begin_ = clock::now();
 
     std::mutex mutex_;

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Configures, builds and runs the project beside this file with Myriad from one of: find_package (installed into an
-# empty folder, with a model in a shared library too), no_xsimd (the same without SIMD lanes), Debian (the package,
-# unpacked), add_subdirectory, FetchContent, CUDA (add_subdirectory with MYRIAD_ENABLE_CUDA in a project that has not
-# that language).
+# empty folder, with a model in a shared library too), no_xsimd (the same without SIMD lanes), no_study (Myriad built
+# where nlohmann_json is missing), Debian (the package, unpacked), add_subdirectory, FetchContent, CUDA
+# (add_subdirectory with MYRIAD_ENABLE_CUDA in a project that has not that language).
 
 function(run_step title)
     message("== ${title}")
@@ -31,11 +31,13 @@ set(further)
 set(programs decay)
 if(KIND STREQUAL "find_package")
     run_step("install" "${CMAKE_COMMAND}" --install "${MYRIAD_BINARY_DIR}" --prefix "${prefix}")
-    list(APPEND further -DWITH_SHARED_LIBRARY=ON "-DMYRIAD_COMPONENTS=openmp")
+    list(APPEND further -DWITH_SHARED_LIBRARY=ON)
     list(APPEND programs decay_shared)
-    if(STUDY)
+    if(STUDY) # with which openmp comes
         list(APPEND further -DWITH_STUDY=study)
         list(APPEND programs stored)
+    else()
+        list(APPEND further "-DMYRIAD_COMPONENTS=openmp")
     endif()
     if(MPI)
         list(APPEND further -DWITH_MPI=mpi)
@@ -45,6 +47,14 @@ elseif(KIND STREQUAL "no_xsimd")
     set(by find_package)
     run_step("install" "${CMAKE_COMMAND}" --install "${MYRIAD_BINARY_DIR}" --prefix "${prefix}")
     list(APPEND further -DMYRIAD_SIMD=OFF)
+elseif(KIND STREQUAL "no_study")
+    set(by find_package)
+    run_step("configure Myriad" "${CMAKE_COMMAND}" -S "${source_dir}" -B "${WORK_DIR}/myriad" -G "${GENERATOR}"
+             "-DCMAKE_CXX_COMPILER=${CXX_COMPILER}" "-DMYRIAD_XSIMD_INCLUDE_DIR=${XSIMD_INCLUDE_DIR}"
+             -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON -DMYRIAD_BUILD_TESTS=OFF -DMYRIAD_BUILD_EXAMPLES=OFF
+             -DMYRIAD_BUILD_BENCHMARKS=OFF -DMYRIAD_BUILD_VALIDATION=OFF)
+    run_step("build Myriad" "${CMAKE_COMMAND}" --build "${WORK_DIR}/myriad")
+    run_step("install" "${CMAKE_COMMAND}" --install "${WORK_DIR}/myriad" --prefix "${prefix}")
 elseif(KIND STREQUAL "Debian")
     set(by find_package)
     run_step("package" "${CMAKE_COMMAND}" -E chdir "${MYRIAD_BINARY_DIR}" cpack -G DEB -B "${WORK_DIR}/package")
@@ -86,6 +96,11 @@ if(KIND STREQUAL "find_package")
                 -B "${WORK_DIR}/refused" "-DCMAKE_PREFIX_PATH=${WORK_DIR}/core" -DMYRIAD_COMPONENTS=openmp)
     run_refused("a component that there is not" "component opencl of myriad is not installed" ${configure}
                 -B "${WORK_DIR}/unknown" -DMYRIAD_COMPONENTS=opencl)
+endif()
+if(KIND STREQUAL "no_study")
+    run_refused("studies that are not installed"
+                "component study of myriad is not installed, only core, openmp: install" ${configure}
+                -B "${WORK_DIR}/refused" -DWITH_STUDY=study)
 endif()
 run_step("configure" ${configure} -B "${WORK_DIR}/build" ${further})
 run_step("build" "${CMAKE_COMMAND}" --build "${WORK_DIR}/build")

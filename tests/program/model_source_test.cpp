@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <sys/stat.h>
+
 #include "tests/catch.hpp"
 
 using namespace myriad::programs;
@@ -95,7 +97,17 @@ TEST_CASE("the hash of a text is FNV-1a") {
 
 TEST_CASE("a header that cannot be read is refused") {
     const folder here;
-    CHECK_THROWS_WITH(here.read("none.hpp"), Contains("none.hpp cannot be read: give the path of a file"));
+    CHECK_THROWS_WITH(here.read("none.hpp"),
+                      Contains("none.hpp cannot be read (No such file or directory): give the path of a file"));
     here.write("folder.hpp/x", "");
-    CHECK_THROWS_WITH(here.read("folder.hpp"), Contains("cannot be read"));
+    CHECK_THROWS_WITH(here.read("folder.hpp"), Contains("is no regular file"));
+}
+
+TEST_CASE("a pipe, a device or a folder that is named as a header is refused, and nobody waits") {
+    const folder here;
+    REQUIRE(mkfifo((here.path / "pipe.hpp").c_str(), 0600) == 0);
+    std::filesystem::create_directory(here.path / "folder.hpp");
+    here.write("includes.hpp", "#include \"pipe.hpp\"\n");
+    for (const char* name : {"pipe.hpp", "folder.hpp", "/dev/zero", "includes.hpp"})
+        CHECK_THROWS_WITH(here.read(name), Contains("is no regular file: give the path of a file"));
 }

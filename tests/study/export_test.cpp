@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <iostream>
 #include <sstream>
 
 #include <netcdf.h>
@@ -144,7 +145,7 @@ TEST_CASE("a netCDF file has the grid's dimensions, coordinates, values and attr
     CHECK(file.text("", "Conventions") == "CF-1.10");
     CHECK(file.text("", "model") == "synthetic");
     CHECK(file.number("", "seed") == 7);
-    CHECK(file.number("", "options.relative_tolerance") == 1e-9);
+    CHECK(file.number("", "options_relative_tolerance") == 1e-9);
     CHECK(file.text("", "devices") == "simulated device");
     CHECK(file.text("", "incomplete").empty());
     CHECK_THAT(file.text("", "description"), Contains("\"relative_tolerance\":1e-09"));
@@ -341,7 +342,10 @@ TEST_CASE("an export to a disk that gets full ends with an error, and the proces
         results.commit(chunk, std::vector{column_of("x", values), column_of("y", values)}, {});
     std::filesystem::create_directories(folder / "disk");
     // From one that is too small for anything to one that lacks a little at the end.
-    for (const char* const size : {"64k", "8M", "12M", "20M", "24M", "28M"}) {
+    myriad::export_netcdf(results, folder / "whole.nc");
+    const auto whole = static_cast<std::int64_t>(std::filesystem::file_size(folder / "whole.nc"));
+    for (const std::int64_t bytes : {std::int64_t{65536}, whole / 4, whole / 2, whole - (1 << 20), whole - 8192}) {
+        const std::string size = std::to_string(bytes);
         const int status = export_on_small_disk(results, folder / "disk", size);
         if (status == 77) {
             WARN("not tested: this user may not mount a disk");
@@ -350,6 +354,31 @@ TEST_CASE("an export to a disk that gets full ends with an error, and the proces
         INFO(size);
         CHECK(status == 0);
     }
+}
+
+// Not a test of its own: what check_failing_disk.sh runs where a call to the disk fails, in the folder
+// MYRIAD_TEST_FILES.
+TEST_CASE("an export fails and the process goes on", "[.][failing]") {
+    const char* const folder = std::getenv("MYRIAD_TEST_FILES");
+    REQUIRE(folder != nullptr);
+    const std::string place = std::string(folder) + "/out";
+    std::filesystem::create_directories(place);
+    std::ofstream(place + "/run.nc") << "old";
+    const store results = store::open(std::string(folder) + "/run");
+    std::string said = "exported";
+    try {
+        myriad::export_netcdf(results, place + "/run.nc");
+    } catch (const myriad::error& failure) {
+        said = failure.what();
+        CHECK(tests::text_of(place + "/run.nc") == "old");
+    }
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(place)) files += entry.is_regular_file() ? 1 : 0;
+    CHECK(files == 1);
+    ::unsetenv("MYRIAD_FAILING_DISK");
+    myriad::export_netcdf(results, place + "/run.nc");  // the libraries are in good order
+    CHECK(reader(place + "/run.nc").values<double>("x").size() == 35);
+    std::cout << said << '\n';
 }
 
 // Not a test: what check_exports.py reads, in the folder MYRIAD_TEST_FILES.

@@ -118,13 +118,18 @@ void option_limits::check(const options& o) const {
     check_tolerance_count("relative_tolerance", o.relative_tolerance, n_state);
     check_tolerance_count("absolute_tolerance", o.absolute_tolerance, n_state);
     for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c)
-        check_positive("relative_tolerance", o.relative_tolerance[c],
-                       "give the error you accept per step, such as 1e-9");
+        require(o.relative_tolerance[c] >= 0 && o.relative_tolerance[c] < 1, "relative_tolerance is ",
+                o.relative_tolerance[c],
+                " (must be at least 0 and less than 1, an error as large as the solution): give the error you accept "
+                "per step, such as 1e-9, or 0 for that of absolute_tolerance alone");
     for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c)
         require(o.absolute_tolerance[c] >= 0 && std::isfinite(o.absolute_tolerance[c]), "absolute_tolerance is ",
                 o.absolute_tolerance[c],
                 " (must not be negative, and finite): give the error you accept per step, such as "
                 "1e-9, or 0 for that of relative_tolerance alone");
+    for (std::size_t c = 0; c < n_state; ++c)
+        require(o.relative_tolerance[c] > 0 || o.absolute_tolerance[c] > 0,
+                "relative_tolerance and absolute_tolerance are 0: give the error you accept per step, such as 1e-9");
     if (adaptive) {
         require(std::isnan(o.step) || (o.step > 0 && std::isfinite(o.step)), "step is ", o.step,
                 " (must be positive and finite): give the length of the first step to try");

@@ -248,12 +248,15 @@ TEST_CASE("an infinite t_end with fixed steps ends at the event", "[input]") {
 // Options
 // --------------------------------------------------------------------------------------------------------------------
 
-TEST_CASE("tolerances that are not positive and finite are refused", "[input]") {
+TEST_CASE("tolerances that are negative or not finite are refused, and two that are zero", "[input]") {
     for (const double bad : {-1e-9, 0.0, -0.0, nan, infinity}) {
         CAPTURE(bad);
         options o;
         o.relative_tolerance = bad;
-        options_refused(o, {"relative_tolerance is ", "must be positive", "give the error you accept per step"});
+        if (bad != 0) options_refused(o, {"relative_tolerance is ", "must be at least 0", "or 0 for"});
+        o.absolute_tolerance = 0;
+        if (bad == 0)
+            options_refused(o, {"relative_tolerance and absolute_tolerance are 0", "error you accept per step"});
         o = {};
         o.absolute_tolerance = {1e-9, bad};
         if (bad != 0) options_refused(o, {"absolute_tolerance is ", "must not be negative", "or 0 for"});
@@ -265,7 +268,25 @@ TEST_CASE("tolerances that are not positive and finite are refused", "[input]") 
     }
     options o;
     o.relative_tolerance = -1e-9;
-    options_refused(o, {"relative_tolerance is -1e-09 (must be positive"});
+    options_refused(o, {"relative_tolerance is -1e-09 (must be at least 0"});
+}
+
+TEST_CASE("a relative tolerance of zero leaves the error to the absolute one", "[input]") {
+    auto e = good_decays<double>(100);
+    options o;
+    o.relative_tolerance = 0;
+    o.absolute_tolerance = 1e-9;
+    const auto report = solve<cash_karp>(one_thread, e, o);
+    CHECK(report.count(status::success) == 100);
+    for (std::int64_t i = 0; i < 100; ++i)
+        CHECK(std::abs(e.state(bare::x)[i] - std::exp(-e.parameter(bare::rate)[i])) < 1e-8);
+}
+TEST_CASE("a relative tolerance of 9e18 is refused, and does not end in states that are not finite", "[input]") {
+    for (const double bad : {1.0, 9e18, 1e300}) {
+        options o;
+        o.relative_tolerance = {1e-9, bad};
+        options_refused(o, {"relative_tolerance is ", "less than 1", "absolute_tolerance"});
+    }
 }
 
 template <class R>

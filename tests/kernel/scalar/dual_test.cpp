@@ -8,6 +8,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "myriad/kernel/scalar/floored_division.hpp"
 #include "myriad/kernel/scalar/pack.hpp"
 #include "tests/catch.hpp"
 
@@ -88,6 +89,8 @@ struct both {
 both sincos(wide x) { return {std::sin(x), std::cos(x)}; }
 both sincospi(wide x) { return {sinpi(x), std::cos(3.14159265358979323846264338327950288L * x)}; }
 wide powr(wide x, wide y) { return std::pow(x, y); }
+wide floor_divide(wide x, wide y) { return std::floor(x / y); }
+wide floor_mod(wide x, wide y) { return x - y * std::floor(x / y); }
 wide reciprocal(wide x) { return 1 / x; }
 wide cospi(wide x) { return std::cos(3.14159265358979323846264338327950288L * x); }
 
@@ -101,7 +104,8 @@ TEST_CASE("derivatives of sums, products and quotients follow the rules, constan
 
 TEST_CASE("derivatives of elementary functions agree with differences"){
     CHECK_DERIVATIVE(sqrt(x), 0.3, 2.0, 900.0) CHECK_DERIVATIVE(cbrt(x), 0.3, 2.0) CHECK_DERIVATIVE(abs(x), 0.3, -2.0)
-        CHECK_DERIVATIVE(floor(x) + x, 0.3, -2.4) CHECK_DERIVATIVE(round(x) + x, 0.3, -2.4)
+        CHECK_DERIVATIVE(floor(x) + x, 0.3, -2.4) CHECK_DERIVATIVE(round(x) + x, 0.3, -2.4) CHECK_DERIVATIVE(
+            rint(x) + x, 0.3, -2.4) CHECK_DERIVATIVE(expm1(x), 0.3, -2.0) CHECK_DERIVATIVE(log1p(x), 0.3, -0.7)
             CHECK_DERIVATIVE(sin(x), 0.3, -2.0, 40.0) CHECK_DERIVATIVE(cos(x), 0.3, -2.0, 40.0)
                 CHECK_DERIVATIVE(tan(x), 0.3, -1.2) CHECK_DERIVATIVE(asin(x), 0.3, -0.8)
                     CHECK_DERIVATIVE(acos(x), 0.3, -0.8) CHECK_DERIVATIVE(atan(x), 0.3, -5.0)
@@ -122,7 +126,11 @@ TEST_CASE("derivatives of functions of two arguments agree with differences in e
             CHECK_DERIVATIVE(pow(x, -2), 0.3, -2.0) CHECK_DERIVATIVE(atan2(x, 1.5), 0.3, -2.0)
                 CHECK_DERIVATIVE(atan2(1.5, x), 0.3, -2.0) CHECK_DERIVATIVE(atan2(x, x* x), 0.3, 2.0)
                     CHECK_DERIVATIVE(hypot(x, 1.5), 0.3, -2.0) CHECK_DERIVATIVE(hypot(x, x* x), 0.3, -2.0)
-                        CHECK_DERIVATIVE(fma(x, x, 2 * x), 0.3, -2.0) CHECK_DERIVATIVE(fma(x, 1.5, x), 0.3, -2.0)}
+                        CHECK_DERIVATIVE(fmod(x, 0.7), 2.4, -2.4) CHECK_DERIVATIVE(fmod(2.6, x), 0.7, -0.7)
+                            CHECK_DERIVATIVE(floor_mod(x, 0.7), 2.4, -2.4) CHECK_DERIVATIVE(floor_mod(-2.6, x), 0.7)
+                                CHECK_DERIVATIVE(floor_divide(x, 0.7) + x, 2.4, -2.4)
+                                    CHECK_DERIVATIVE(fma(x, x, 2 * x), 0.3, -2.0)
+                                        CHECK_DERIVATIVE(fma(x, 1.5, x), 0.3, -2.0)}
 
 TEST_CASE("a model's expression has the derivative of its difference quotient"){
     CHECK_DERIVATIVE(x - x * x * x - x / 4 + cos(x * 2) * exp(-x * x) + pow(1 / (x + 3), 2.5) * log(x + 4), 0.3, -1.2,

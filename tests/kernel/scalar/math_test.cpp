@@ -51,6 +51,7 @@ FUNCTION(cbrt, std::cbrt(x))
 FUNCTION(abs, std::fabs(x))
 FUNCTION(floor, std::floor(x))
 FUNCTION(round, std::round(x))
+FUNCTION(rint, std::rint(x))
 FUNCTION(sin, std::sin(x))
 FUNCTION(cos, std::cos(x))
 FUNCTION(tan, std::tan(x))
@@ -67,6 +68,8 @@ FUNCTION(exp2, std::exp2(x))
 FUNCTION(log, std::log(x))
 FUNCTION(log2, std::log2(x))
 FUNCTION(log10, std::log10(x))
+FUNCTION(expm1, std::expm1(x))
+FUNCTION(log1p, std::log1p(x))
 FUNCTION(reciprocal, 1 / x)
 #undef FUNCTION
 
@@ -107,6 +110,7 @@ FUNCTION(max, std::fmax(x, y))
 FUNCTION(copysign, std::copysign(x, y))
 FUNCTION(atan2, std::atan2(x, y))
 FUNCTION(hypot, std::hypot(x, y))
+FUNCTION(fmod, std::fmod(x, y))
 FUNCTION(pow, std::pow(x, y))
 FUNCTION(powr, std::pow(x, y))
 #undef FUNCTION
@@ -124,6 +128,7 @@ void for_unary_functions(Check check) {
     check(abs_function{});
     check(floor_function{});
     check(round_function{});
+    check(rint_function{});
     check(sin_function{});
     check(cos_function{});
     check(tan_function{});
@@ -140,6 +145,8 @@ void for_unary_functions(Check check) {
     check(log_function{});
     check(log2_function{});
     check(log10_function{});
+    check(expm1_function{});
+    check(log1p_function{});
     check(reciprocal_function{});
 }
 template <class Check>
@@ -149,6 +156,7 @@ void for_binary_functions(Check check) {
     check(copysign_function{});
     check(atan2_function{});
     check(hypot_function{});
+    check(fmod_function{});
     check(pow_function{});
 }
 template <class Check>
@@ -426,6 +434,10 @@ TEST_CASE("packs are accurate to the documented ulps") {
         check(abs_function{}, 0, -big, big);
         check(floor_function{}, 0, -100, 100);
         check(round_function{}, 0, -100, 100);
+        check(rint_function{}, 0, -100, 100);
+        for (const double range : {1e-3, 1.0, exponent}) check(expm1_function{}, 2, -range, range);
+        for (const double range : {1e-3, 0.5}) check(log1p_function{}, 2, -range, range);
+        check(log1p_function{}, 2, 1 / big, big, spacing::logarithmic);
     };
     of_type(double{});
     of_type(float{});
@@ -661,7 +673,7 @@ TEST_CASE("special values give what the standard library gives") {
     SUCCEED();
 }
 
-TEST_CASE("min, max, rounding, signs, sqrt and fma agree bit for bit between packs and plain numbers") {
+TEST_CASE("min, max, rounding, remainders, signs, sqrt and fma agree bit for bit between packs and plain numbers") {
     const auto of_type = []<class T>(T) {
         const std::vector<T> values = arguments<T>();
         const auto check = [](auto f, auto... x) {
@@ -681,6 +693,7 @@ TEST_CASE("min, max, rounding, signs, sqrt and fma agree bit for bit between pac
                 check(min_function{}, x, y);
                 check(max_function{}, x, y);
                 check(copysign_function{}, x, y);
+                check(fmod_function{}, x, y);
                 const T z = T(0.1) * x;
                 const T plain = myriad::fma(x, y, z);
                 const pack<T, 2> fused = myriad::fma(pack<T, 2>(x), pack<T, 2>(y), pack<T, 2>(z));
@@ -690,6 +703,7 @@ TEST_CASE("min, max, rounding, signs, sqrt and fma agree bit for bit between pac
             for (const T y : {x + T(0.5), x + T(0.25), x}) {
                 check(floor_function{}, y);
                 check(round_function{}, y);
+                check(rint_function{}, y);
                 check(abs_function{}, y);
                 check(sqrt_function{}, y);
             }

@@ -110,6 +110,8 @@ void check_uses(ensemble<Model, R>& instances, const options& o, std::int64_t co
     check_scales(data, scales_tolerances<Method>);
     check_sample_times(data, o, count);
     check_event_tolerances(instances, o, count);
+    // As the concept of Rosenbrock methods, whose header has kernels.
+    if constexpr (requires { Method::tableau().coupling; }) check_jacobian_pattern(instances, count);
 #if !defined(NDEBUG)
     check_jacobian(instances, count);
 #endif

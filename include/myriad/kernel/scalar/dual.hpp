@@ -201,6 +201,7 @@ struct functions<dual<S>> {
     }
     static MYRIAD_FUNCTION D floor(const D& x) { return D(f::floor(x.value)); }
     static MYRIAD_FUNCTION D round(const D& x) { return D(f::round(x.value)); }
+    static MYRIAD_FUNCTION D rint(const D& x) { return D(f::rint(x.value)); }
 
     static MYRIAD_FUNCTION D sin(const D& x) { return D(f::sin(x.value), x.derivative * f::cos(x.value)); }
     static MYRIAD_FUNCTION D cos(const D& x) { return D(f::cos(x.value), -x.derivative * f::sin(x.value)); }
@@ -256,6 +257,10 @@ struct functions<dual<S>> {
     static MYRIAD_FUNCTION D log10(const D& x) {
         return D(f::log10(x.value), constant(log10_e) * x.derivative / x.value);
     }
+    static MYRIAD_FUNCTION D expm1(const D& x) { return D(f::expm1(x.value), x.derivative * f::exp(x.value)); }
+    static MYRIAD_FUNCTION D log1p(const D& x) {
+        return D(f::log1p(x.value), x.derivative / (constant(real(1)) + x.value));
+    }
 
     // y x^(y - 1), not y x^y / x, which is NaN at x = 0; x^0 has derivative zero there too.
     template <class B>
@@ -296,6 +301,10 @@ struct functions<dual<S>> {
         const S one = constant(real(1));
         const auto kept = f::copysign(one, x.value) == f::copysign(one, sign.value);
         return D(f::copysign(x.value, sign.value), select(kept, x.derivative, -x.derivative));
+    }
+    static MYRIAD_FUNCTION D fmod(const D& x, const D& y) {
+        const S rest = f::fmod(x.value, y.value);
+        return D(rest, x.derivative - f::rint((x.value - rest) / y.value) * y.derivative);
     }
     // Selects as for the values, so that the derivative belongs to the number returned.
     static MYRIAD_FUNCTION D min(const D& a, const D& b) {

@@ -13,6 +13,7 @@
 #include "myriad/kernel/scalar/exponential.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 #include "myriad/kernel/scalar/trigonometry.hpp"
+#include "myriad/kernel/scalar/wrapping.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -35,6 +36,7 @@ struct functions<T> {
     static MYRIAD_FUNCTION T abs(T x) { return std::fabs(x); }
     static MYRIAD_FUNCTION T floor(T x) { return std::floor(x); }
     static MYRIAD_FUNCTION T round(T x) { return std::round(x); }
+    static MYRIAD_FUNCTION T rint(T x) { return std::rint(x); }
     static MYRIAD_FUNCTION T tan(T x) { return std::tan(x); }
     static MYRIAD_FUNCTION T asin(T x) { return std::asin(x); }
     static MYRIAD_FUNCTION T acos(T x) { return std::acos(x); }
@@ -47,6 +49,8 @@ struct functions<T> {
     static MYRIAD_FUNCTION T log(T x) { return std::log(x); }
     static MYRIAD_FUNCTION T log2(T x) { return std::log2(x); }
     static MYRIAD_FUNCTION T log10(T x) { return std::log10(x); }
+    static MYRIAD_FUNCTION T expm1(T x) { return std::expm1(x); }
+    static MYRIAD_FUNCTION T log1p(T x) { return std::log1p(x); }
     static MYRIAD_FUNCTION T pow(T x, T y) { return std::pow(x, y); }
     static MYRIAD_FUNCTION T powr(T x, T y) { return exponential<T>::powr(x, y); }
     static MYRIAD_FUNCTION void sincos(T x, T& sine, T& cosine) { trigonometry<T>::sincos(x, sine, cosine); }
@@ -54,6 +58,7 @@ struct functions<T> {
     static MYRIAD_FUNCTION T atan2(T y, T x) { return std::atan2(y, x); }
     static MYRIAD_FUNCTION T hypot(T x, T y) { return std::hypot(x, y); }
     static MYRIAD_FUNCTION T copysign(T x, T sign) { return std::copysign(x, sign); }
+    static MYRIAD_FUNCTION T fmod(T x, T y) { return std::fmod(x, y); }
     static MYRIAD_FUNCTION bool is_finite(T x) {
 #if defined(__CUDA_ARCH__)
         // Tests the exponent, to spare the floating-point pipe.
@@ -179,6 +184,8 @@ MYRIAD_UNARY(abs)
 MYRIAD_UNARY(floor)
 /// The nearest integer, halves away from zero.
 MYRIAD_UNARY(round)
+/// The nearest integer, halves to the even one, as Python's and NumPy's round.
+MYRIAD_UNARY(rint)
 /// Sine of an angle in radians; on GPUs, in double precision, within 2.1 ulps.
 MYRIAD_UNARY(sin)
 /// Cosine of an angle in radians; on GPUs, in double precision, within 2.1 ulps.
@@ -211,6 +218,10 @@ MYRIAD_UNARY(log)
 MYRIAD_UNARY(log2)
 /// Logarithm to base 10, with the same exceptions as `log`.
 MYRIAD_UNARY(log10)
+/// exp(x) - 1, accurate for small x.
+MYRIAD_UNARY(expm1)
+/// log(1 + x), accurate for small x.
+MYRIAD_UNARY(log1p)
 /// 1 / x, on GPUs without the slow path of a division: within 1 ulp for normal x and result; not finite for zero. For
 /// infinity it is NaN in double precision on GPUs, and zero elsewhere.
 MYRIAD_UNARY(reciprocal)
@@ -263,6 +274,8 @@ MYRIAD_BINARY(copysign)
 MYRIAD_BINARY(atan2)
 /// sqrt(a^2 + b^2).
 MYRIAD_BINARY(hypot)
+/// The remainder of a division whose quotient is cut towards zero, with the sign of the first; exact.
+MYRIAD_BINARY(fmod)
 #undef MYRIAD_BINARY
 
 /// For integers, such as integer accessories.
@@ -276,7 +289,7 @@ MYRIAD_FUNCTION constexpr T max(T a, T b) {
 }
 template <std::signed_integral T>
 MYRIAD_FUNCTION constexpr T abs(T a) {
-    return a < 0 ? -a : a;
+    return a < 0 ? wrapping_subtract(T(0), a) : a;
 }
 
 /// a * b + c, with one rounding if the target has the instruction and two otherwise, the same for every kind of number.

@@ -237,6 +237,17 @@ public:
                               xsimd::select(mask.parts[i], bits_as<real>(a.parts[i]), bits_as<real>(b.parts[i]))));
         return result;
     }
+    /// Of whole numbers, the low 32 bits with their sign.
+    static MYRIAD_FUNCTION pack wrapped_to_32_bits(const pack& a) requires(!is_real) {
+        if constexpr (sizeof(T) == sizeof(std::int32_t)) {
+            return a;
+        } else {
+            const batch_type half(T{1} << 31), bits((T{1} << 32) - 1);
+            pack result;
+            MYRIAD_EACH_BATCH(result.parts[i] = ((a.parts[i] + half) & bits) - half);
+            return result;
+        }
+    }
 };
 
 }  // namespace myriad::inline MYRIAD_TARGET

@@ -86,12 +86,15 @@ struct functions<pack<T, batches>> {
     // Without SSE4.1, xsimd's floor loses the sign of zero; the bit operation restores it.
     MYRIAD_UNARY(floor, xsimd::floor(x.parts[i]) | (x.parts[i] & xsimd::batch<T>(-T(0))))
     MYRIAD_UNARY(round, xsimd::round(x.parts[i]))
+    MYRIAD_UNARY(rint, xsimd::nearbyint(x.parts[i]) | (x.parts[i] & xsimd::batch<T>(-T(0))))
     MYRIAD_UNARY(asin, xsimd::asin(x.parts[i]))
     MYRIAD_UNARY(acos, xsimd::acos(x.parts[i]))
     MYRIAD_UNARY(atan, xsimd::atan(x.parts[i]))
     MYRIAD_UNARY(sinh, xsimd::sinh(x.parts[i]))
     MYRIAD_UNARY(cosh, xsimd::cosh(x.parts[i]))
     MYRIAD_UNARY(tanh, xsimd::tanh(x.parts[i]))
+    MYRIAD_UNARY(expm1, xsimd::expm1(x.parts[i]))
+    MYRIAD_UNARY(log1p, xsimd::log1p(x.parts[i]))
     MYRIAD_UNARY(exp, exponential<xsimd::batch<T>>::exp(x.parts[i]))
     MYRIAD_UNARY(exp2, exponential<xsimd::batch<T>>::exp2(x.parts[i]))
     MYRIAD_UNARY_WITH_REDO(sin, trigonometry<xsimd::batch<T>>::sin(x.parts[i]),
@@ -146,6 +149,16 @@ struct functions<pack<T, batches>> {
                               exponential<xsimd::batch<T>>::pow(result.parts[i], x.parts[i], y.parts[i]));
         return with_lanes_redone<scalar_pow>(result, unfinished, x, y);
     }
+    // The quotient cut towards zero is right or, rounded up, one too large; either way its remainder is a number of
+    // this type, so that the fused operation is exact. Quotients that are no such number are for the standard library.
+    MYRIAD_SCALAR_BINARY(fmod)
+    static MYRIAD_FUNCTION S fmod(const S& x, const S& y) {
+        const S size = abs(x), divisor = abs(y), quotient = size / divisor;
+        const S rest = fma(-floor(quotient), divisor, size);
+        const S result = copysign(select(rest < S(T(0)), rest + divisor, rest), x);
+        const mask kept = (quotient < S(fused ? exact_integers : T(0))) & is_finite(y);
+        return with_lanes_redone<scalar_fmod>(result, !kept, x, y);
+    }
 #undef MYRIAD_SCALAR_UNARY
 #undef MYRIAD_SCALAR_BINARY
 
@@ -179,6 +192,8 @@ private:
     }
 
     static constexpr bool is_double = sizeof(T) == sizeof(double);
+    static constexpr bool fused = MYRIAD_FUSED;
+    static constexpr T exact_integers = is_double ? T(0x1p53L) : T(0x1p24);  // below, all are numbers of this type
     static constexpr T smallest_normal = std::numeric_limits<T>::min();
     static constexpr T smallest_root = is_double ? T(0x1p-480L) : T(0x1p-50);
     static constexpr T largest_root = is_double ? T(0x1p500L) : T(0x1p60);

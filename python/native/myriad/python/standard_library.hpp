@@ -130,6 +130,18 @@ inline constexpr bool is_signed_v = [] {
 template <class T>
 inline constexpr bool is_unsigned_v = is_integral_v<T> && !is_signed_v<T>;
 template <class T>
+struct make_unsigned {};
+#define MYRIAD_UNSIGNED(name) \
+    template <>               \
+    struct make_unsigned<name> : type_identity<unsigned name> {};
+MYRIAD_UNSIGNED(short)
+MYRIAD_UNSIGNED(int)
+MYRIAD_UNSIGNED(long)
+MYRIAD_UNSIGNED(long long)
+#undef MYRIAD_UNSIGNED
+template <class T>
+using make_unsigned_t = typename make_unsigned<T>::type;
+template <class T>
 inline constexpr bool is_const_v = false;
 template <class T>
 inline constexpr bool is_const_v<const T> = true;

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+"""What the core makes of a sweep, for one without instances, which the core does not take."""
+
+import types
+
+import numpy as np
+
+from . import _core
+from .errors import Error
+
+_names = _core.status_names()
+_types = {"status": np.uint8, "integer_accessory": np.int32, "shared_integer": np.int32,
+          **dict.fromkeys(("phases_done", "accepted_steps", "rejected_steps", "located_steps", "rhs_evaluations"),
+                          np.int64)}
+
+
+class EmptyEnsemble:
+    """Arrays of length zero."""
+
+    def __init__(self, components, given, real, capacity):
+        self._real, self._capacity = real, capacity
+        self._shared = {kind: np.array([given[name] for name in names], _types.get(kind, real)) for kind, names in (
+            ("shared", components.shared), ("shared_integer", components.shared_integers))}
+
+    def array(self, kind, number=0):
+        return self._shared[kind] if kind in self._shared else np.empty(0, _types.get(kind, self._real))
+
+    def device_array(self, *_):
+        raise Error("a run without instances has nothing on a GPU: use run[...]")
+
+    def stored_samples(self):
+        return np.empty(0, np.int32)
+
+    def samples(self, number, on_device=False):
+        return np.empty((0, self._capacity), self._real)
+
+
+class EmptyReport:
+    """A report of nothing."""
+
+    by_status, notes, device = [0] * len(_names), [], "none"
+    instances = accepted_steps = rejected_steps = located_steps = rhs_evaluations = 0
+    seconds = kernel_seconds = 0.0
+
+    def __init__(self, columns, real):
+        self._columns, self._real = columns, real
+
+    def records(self, kind, number, on_device=False):
+        return np.empty((0, self._columns), np.int32 if kind == "integer_accessory" else self._real)
+
+    def __str__(self):
+        return "0 instances"
+
+
+kernel = types.SimpleNamespace(origin="none, as there is no instance", seconds=0.0)

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""Headers that are prepared once for the compiler: the same kernels in less time, nothing lost where they are bad."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from myriad import _core, compiler, precompiled
+
+MODEL = """
+import sys
+import myriad as my
+x = my.state("x")
+run = my.solve(my.model({x: -x * float(sys.argv[1])}), start={x: 1}, time=(0, 1), device="cpu")
+print(run.report.kernel, run["x"][0].hex(), round(run.report.compile_seconds, 3))
+"""
+
+
+@pytest.fixture
+def prepared(tmp_path, monkeypatch):
+    """A cache whose headers a first program has left."""
+    by = compiler.known_compiler()
+    if by.kind not in ("clang++", "g++"):
+        pytest.skip("this compiler prepares no headers")
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    return tmp_path, solved(0.5), by
+
+
+def solved(factor):
+    told = subprocess.run([sys.executable, "-c", MODEL, str(factor)], capture_output=True, text=True, check=True).stdout
+    return told.split()
+
+
+def headers_in(folder):
+    return [p for p in folder.iterdir() if p.name.endswith((".pch", ".gch"))]
+
+
+def test_the_second_model_compiles_faster_with_the_same_kernel_as_without(prepared, tmp_path_factory):
+    folder, first, by = prepared
+    assert len(headers_in(folder)) == 1
+    second = solved(0.75)
+    assert float(second[-1]) < 0.9 * float(first[-1])
+    flags = by.flags(_core.instruction_set())
+    source = compiler.source_of("struct nothing {};", "double", "int", "double").partition("using myriad_method")[0] + \
+        'extern "C" double twice(double x) { return 2 * x; }\n'
+    made = []
+    for arguments in (precompiled.arguments(precompiled.key_of(by, flags, _core.headers), by), []):
+        workplace = tmp_path_factory.mktemp("made")
+        (workplace / "model.cpp").write_text(source)
+        subprocess.run([*by.command, *flags, *arguments, f"-I{compiler._include}", "model.cpp", "-o", "model.so"],
+                       cwd=workplace, check=True, capture_output=True)
+        made.append((workplace / "model.so").read_bytes())
+        assert len(made) == 2 or arguments
+    assert made[0] == made[1]
+
+
+def test_damaged_headers_cost_time_and_nothing_else(prepared):
+    folder, _, _ = prepared
+    path, = headers_in(folder)
+    path.write_bytes(path.read_bytes()[:1000])
+    assert solved(0.25)[0] == "compiled"
+
+
+def test_headers_that_others_may_write_are_not_used(prepared):
+    folder, _, by = prepared
+    path, = headers_in(folder)
+    flags = by.flags(_core.instruction_set())
+    key = precompiled.key_of(by, flags, _core.headers)
+    assert precompiled.arguments(key, by)
+    os.chmod(path, 0o666)
+    assert not precompiled.arguments(key, by)
+
+
+def test_the_cache_is_emptied_of_them(prepared):
+    from myriad import cache
+
+    folder, _, _ = prepared
+    assert cache.clear() == 1 and not headers_in(folder)
