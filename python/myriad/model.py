@@ -68,9 +68,10 @@ class Event:
 
 
 def event(function, *, name=None, direction="either", tolerance=None, stop_after=0, do=None):
-    """An event of a model: `function` changes its sign, "rising", "falling" or "either". `tolerance` is the largest
-    value of the function at which the event counts as located (default: that of the solver); after `stop_after`
-    detections the phase ends (0: never). `do` are assignments at the event: {v: -r * v, myriad.end_phase: count == 5}.
+    """An event of a model: `function` changes its sign, "rising", "falling" or "either". Every change between the ends
+    of steps is found; `tolerance` is the largest value of the function at which it counts as located (default, or 0: as
+    close as time and state resolve). After `stop_after` detections the phase ends (0: never). `do` are assignments at
+    the event: {v: -r * v, myriad.end_phase: count == 5}.
     """
     if direction not in _directions:
         raise Error(f"the direction of an event is {direction!r}{at(users_line())}: choose \"rising\", \"falling\" or "
@@ -78,9 +79,9 @@ def event(function, *, name=None, direction="either", tolerance=None, stop_after
     if isinstance(stop_after, bool) or not isinstance(stop_after, (int, np.integer)) or stop_after < 0:
         raise Error(f"stop_after is {stop_after!r}{at(users_line())}: give the number of detections after which the "
                     "phase ends, 0 for never")
-    if tolerance is not None and not (isinstance(tolerance, (int, float)) and 0 < tolerance < float("inf")):
+    if tolerance is not None and not (isinstance(tolerance, (int, float)) and 0 <= tolerance < float("inf")):
         raise Error(f"the tolerance of an event is {tolerance!r}{at(users_line())}: give the largest value of the "
-                    "event function that counts as zero, as in tolerance=1e-8")
+                    "event function that counts as zero, as in tolerance=1e-8, or 0 for as close as it gets")
     if name is not None:
         sym.check_name(name, "an event")
     return Event(function, name, direction, tolerance, int(stop_after), {} if do is None else do)

@@ -19,7 +19,7 @@ from .methods import default, fixed_step, method_type
 from .run import Interrupted, Run
 
 _directions = {"falling": -1, "either": 0, "rising": 1}
-_default_event_tolerance = 1e-6
+_default_event_tolerance = 0.0  # as close as t and the state resolve
 _schedules = {"automatic": 0, "in_order": 1, "dynamic": 2, "by_cost": 3}
 # How the core's messages, which are the C++ library's, say things in Python.
 _in_python = (

@@ -378,8 +378,7 @@ private:
         put_attribute(file_, NC_GLOBAL, {"history", message(time_now(), " exported by Myriad " MYRIAD_VERSION)});
         put_attribute(file_, NC_GLOBAL, {"description", content_.description});
         if (!devices_.empty()) put_attribute(file_, NC_GLOBAL, {"devices", devices_});
-        if (!missing_.empty())
-            put_attribute(file_, NC_GLOBAL, {"incomplete", missing_ + ": they have _FillValue"});
+        if (!missing_.empty()) put_attribute(file_, NC_GLOBAL, {"incomplete", missing_ + ": they have _FillValue"});
     }
 
     std::vector<dimension> dimensions_of(const variable& v) const {

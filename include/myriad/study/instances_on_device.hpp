@@ -45,7 +45,7 @@ public:
     model_instances<R>& looked_at() override { return few_; }
     void check(std::int64_t count) override {
         const detail::default_arithmetic here;
-        before_ = host::check_uses<Method>(few_.all(), options_, count);
+        host::check_uses<Method>(few_.all(), options_, count);
         host::find_phases_left(few_.all(), options_, count).require_for(0, options_.phases);
         host::input_check<Model, R>(few_.all(), options_, count).run();
     }
@@ -57,7 +57,6 @@ public:
         if (options_.counting == counting::on)
             host::set_work(found, host::work_count{}, host::counted_work(few_.data(), count));
         host::note_tolerances<Method>(found, options_);
-        host::note_event_tolerances(found, few_.all(), options_, before_, count);
         host::note_stiffness<Method>(found, few_.all(), options_);
         host::note_exponents<Method>(found, few_.all(), options_);
         return found.notes;
@@ -73,7 +72,6 @@ private:
     const options& options_;
     instances_on_host<Model, Method, R> few_;
     host::prepared_arguments<Model, R> prepared_;
-    host::functions_within_tolerance<Model> before_;
 };
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

@@ -235,11 +235,6 @@ void ensemble_data<R>::mark_invalid(std::int64_t i) {
     this->status.data()[i] = myriad::status::invalid_input;
 }
 template <class R>
-bool ensemble_data<R>::has_fired_last(int event, std::int64_t i) const {
-    return this->status.data()[i] == myriad::status::stopped_by_event ||
-           (this->side.component(event)[i] == 0 && counts() && this->accepted.data()[i] > 0);
-}
-template <class R>
 digest ensemble_data<R>::inputs_digest(std::int64_t i) const {
     digest of_all;
     for (int c = 0; c < shape->n_state; ++c) of_all.add(this->state.component(c)[i]);

@@ -161,8 +161,9 @@ void option_limits::check(const options& o) const {
     require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), "events has ", o.events.size(),
             " entries, but the model has ", n_event, " event functions: give one entry for each, or none for defaults");
     for (const event_options& e : o.events) {
-        check_positive("event tolerance", e.tolerance,
-                       "give the |g| at which an event counts as located, such as 1e-6");
+        require(e.tolerance >= 0 && std::isfinite(e.tolerance), "event tolerance is ", e.tolerance,
+                " (must not be negative, and finite): give the |g| at which an event counts as located, such as 1e-6, "
+                "or 0 for as close as t and the state resolve");
         check_kept("event tolerance", e.tolerance);
         check_count("stop_after", e.stop_after, 0, 2'000'000'000);
         const int d = static_cast<int>(e.direction);

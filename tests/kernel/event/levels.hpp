@@ -16,8 +16,8 @@ struct levels {
     enum integer_accessory { steps, fired, which, n_integer_accessory = which + log_length };
     enum event { first, second, third, n_event };
     /// A jump up or down where x passes the level, the same detected by the square of x (whose rounding differs), a
-    /// jump where t passes it, a smooth crossing, and none.
-    enum kinds { up, down, square_up, time_up, smooth, none };
+    /// jump where t passes it, a smooth crossing, a double root, and none.
+    enum kinds { up, down, square_up, time_up, smooth, touch, none };
     enum actions { log, step_back, turn_round, stand_on_level, bounce };  // bounce: with half the speed
 
     template <class R>
@@ -37,6 +37,8 @@ struct levels {
                 return myriad::select(t < c, R(-1), R(1));
             case smooth:
                 return y[x] - c;
+            case touch:
+                return (y[x] - c) * (y[x] - c);
             default:
                 return R(1);
         }

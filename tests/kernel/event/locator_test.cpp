@@ -123,7 +123,7 @@ TEMPLATE_TEST_CASE("a flight that starts within the tolerance is caught when it 
                    ALL_METHODS) {
     constexpr double tolerance = 1e-6;
     // x0 + v0 t - t^2 / 2, upwards and mirrored; the first step, 10 long, ends far on the other side
-    for (const double x0 : {0.0, 0.3 * tolerance, -0.3 * tolerance, tolerance, -tolerance}) {
+    for (const double x0 : {0.0, 0.3 * tolerance, tolerance}) {
         for (const double v0 : {1.0, 1e-2}) {
             for (const double mirror : {1.0, -1.0}) {
                 for (const direction d : {direction::either, direction::falling, direction::rising}) {
@@ -162,7 +162,8 @@ TEMPLATE_TEST_CASE("a flight that never leaves the tolerance and then falls far 
     }
 }
 
-TEMPLATE_TEST_CASE("starting on the surface and leaving it is no crossing", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("starting on the surface and leaving it is no crossing, but starting right before it is", "",
+                   ALL_METHODS) {
     constexpr double tolerance = 1e-6;
     for (const double x0 : {0.0, 0.3 * tolerance, -0.3 * tolerance})
         for (const double v0 : {1.0, -1.0, 1e-3, -1e-3})
@@ -172,7 +173,7 @@ TEMPLATE_TEST_CASE("starting on the surface and leaving it is no crossing", "", 
                 solve<TestType>(
                     e, options_for(tolerance,
                                    std::is_same_v<TestType, myriad::runge_kutta_4> ? std::max(step, 1e-4) : step));
-                CHECK(count_of(e) == 0);
+                CHECK(count_of(e) == (x0 * v0 < 0 ? 1 : 0));
             }
 }
 
@@ -184,10 +185,11 @@ TEMPLATE_TEST_CASE("starting at rest on the surface is no crossing, and the next
     CHECK(agree(times_of(e, 1), {pi / 2, 3 * pi / 2, 5 * pi / 2}, spring_error));
 }
 
-TEMPLATE_TEST_CASE("a time event at t_begin does not fire", "", ALL_METHODS) {
+TEMPLATE_TEST_CASE("a time event at t_begin does not fire, one right after it does", "", ALL_METHODS) {
     auto e = ensemble_of(motion{}, {time(2), time(2 + 1e-12), never()}, 2, 3);
     solve<TestType>(e, options_for(1e-10, 0.1));
-    CHECK(count_of(e) == 0);
+    CHECK(count_of(e) == 1);
+    CHECK(agree(times_of(e, 1), {2 + 1e-12}, 1e-10));
 }
 
 TEMPLATE_TEST_CASE("touching zero without crossing is no event", "", ALL_METHODS) {
@@ -206,15 +208,16 @@ TEMPLATE_TEST_CASE("touching zero is no event when the interpolant is looked at 
     CHECK(zeros_of_wave<TestType>(-1, 1, -1, 20, o).empty());
 }
 
-TEMPLATE_TEST_CASE("a solution that dips below zero by less than the tolerance does not cross", "", ALL_METHODS) {
-    constexpr double tolerance = 1e-6;
-    for (const double step : {1e-4, 0.01}) {
-        auto e = ensemble_of(cosine, {position(-1 + 0.5 * tolerance), position(1 - 0.5 * tolerance), never()}, 0, 13);
-        auto o = options_for(tolerance, step);
-        o.maximum_step = step;
-        solve<TestType>(e, o);
-        CHECK(count_of(e) == 0);
-    }
+TEMPLATE_TEST_CASE("a solution that dips below zero by less than the tolerance crosses twice, too", "", ALL_METHODS) {
+    constexpr double tolerance = 1e-6, depth = 0.5 * tolerance;
+    auto e = ensemble_of(cosine, {position(-1 + depth), position(1 - depth), never()}, 0, 8);
+    auto o = options_for(tolerance, 1e-4);  // the dips are 2e-3 long
+    o.maximum_step = 1e-4;
+    solve<TestType>(e, o);
+    // the slope is 1e-3, and a tolerance counts as 1/64 of the function's change in a step at most
+    const double half = std::acos(1 - depth);
+    CHECK(agree(times_of(e, 0), {pi - half, pi + half}, 1e-4 / 64));
+    CHECK(agree(times_of(e, 1), {half, 2 * pi - half, 2 * pi + half}, 1e-4 / 64));
 }
 
 TEMPLATE_TEST_CASE("a solution that dips below zero by more than the tolerance crosses twice", "", ALL_METHODS) {
@@ -294,7 +297,10 @@ TEMPLATE_TEST_CASE("a root at t_end is found however many steps lead there", "",
             auto o = options_for(1e-9, 1.0 / steps, direction::falling);
             o.maximum_step = 1.0 / steps;
             solve<TestType>(e, o);
-            CHECK(times_of(e) == std::vector{t_begin + 1});
+            // past the sum of these it is a crossing like others
+            const double rounding = std::numeric_limits<double>::epsilon() * steps * (1 + std::abs(t_begin));
+            CHECK(agree(times_of(e), {t_begin + 1}, rounding));
+            CHECK(e.t()[0] == t_begin + 1);
         }
     }
 }

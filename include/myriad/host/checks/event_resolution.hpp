@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Refuses event tolerances that rounding cannot meet, and looks for those that a function never leaves. Host code; it
-// calls the model's `events` on some states.
+// Refuses event tolerances that rounding cannot meet. Host code; it calls the model's `events` on some states.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -52,39 +50,6 @@ inline double event_tolerance(const options& o, int event) {
     return o.events.empty() ? event_options{}.tolerance : o.events[static_cast<std::size_t>(event)].tolerance;
 }
 
-/// Of the instances looked at, those in which each event function is within its tolerance, and those in which its event
-/// may have happened there.
-template <class Model>
-struct functions_within_tolerance {
-    using counts = std::array<std::int64_t, static_cast<std::size_t>(n_event<Model>)>;
-    std::int64_t looked_at = 0;
-    counts within{}, fired{};
-
-    bool everywhere(int event) const { return looked_at > 0 && within[static_cast<std::size_t>(event)] == looked_at; }
-    bool fired_anywhere(int event) const { return fired[static_cast<std::size_t>(event)] > 0; }
-};
-
-/// Looks at a thousand or so of the first `count` instances that have not ended for good, at their states and
-/// `time_of(i)`. At none for models with `initialise`, before which `events` cannot be called.
-template <class Model, class R, class Time>
-functions_within_tolerance<Model> find_functions_within(ensemble<Model, R>& e, const options& o, std::int64_t count,
-                                                        Time&& time_of) {
-    functions_within_tolerance<Model> found;
-    if constexpr (has_events<Model> && !has_initialise<Model>) {
-        for_sampled_instances(e, count, [&](std::int64_t i) {
-            vec<R, n_state<Model>> y;
-            for (int c = 0; c < n_state<Model>; ++c) y[c] = e.state(c)[i];
-            const auto g = Model::template events<R>(time_of(i), y, inputs_of(e, i));
-            ++found.looked_at;
-            for (int j = 0; j < n_event<Model>; ++j) {
-                found.within[static_cast<std::size_t>(j)] += std::abs(g[j]) <= static_cast<R>(event_tolerance(o, j));
-                found.fired[static_cast<std::size_t>(j)] += ensemble_access::data(e).has_fired_last(j, i);
-            }
-        });
-    }
-    return found;
-}
-
 /// Throws `error` if an event tolerance is below the resolution of its function in most instances; in single ones,
 /// whose state may be huge, crossings are located as well as rounding lets them. Looks at a thousand or so of the first
 /// `count` instances, spread over them. Not for models with `initialise`, before which `events` cannot be called.
@@ -102,17 +67,18 @@ void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_
             const event_resolution<Model, R> finest(e, i);
             for (int j = 0; j < n_event<Model>; ++j) {
                 const double least = static_cast<double>(std::max(finest.of_constant[j], finest.of_start[j]));
-                if (tolerance_of(j) >= least) continue;
+                if (tolerance_of(j) == 0 || tolerance_of(j) >= least) continue;  // 0: as close as rounding lets it
                 ++too_fine[j].instances;
                 if (least > too_fine[j].least) too_fine[j] = {too_fine[j].instances, i, least};
             }
         });
         for (int j = 0; j < n_event<Model>; ++j) {
-            require(2 * too_fine[j].instances <= looked_at, "the tolerance of event ", j, " is ", tolerance_of(j),
-                    ", but rounding changes its function by ", too_fine[j].least, " in instance ", too_fine[j].worst,
-                    ", and by more than the tolerance in most instances: raise the tolerance, scale or shift the "
-                    "function or t",
-                    std::numeric_limits<R>::digits < 53 ? ", or use an ensemble of doubles" : "");
+            require(
+                2 * too_fine[j].instances <= looked_at, "the tolerance of event ", j, " is ", tolerance_of(j),
+                ", but rounding changes its function by ", too_fine[j].least, " in instance ", too_fine[j].worst,
+                ", and by more than the tolerance in most instances: raise the tolerance, leave it out for as close as "
+                "t and the state resolve, scale or shift the function or t",
+                std::numeric_limits<R>::digits < 53 ? ", or use an ensemble of doubles" : "");
         }
     }
 }

@@ -84,9 +84,6 @@ struct ensemble_data : detail::instance_arrays<component_array, R> {
     void expect_phases(std::int64_t phases);
     /// Marks an instance as one that cannot be integrated.
     void mark_invalid(std::int64_t i);
-    /// Whether the last thing that an instance which has taken steps saw of an event may be that it happened: the phase
-    /// then ended within the function's tolerance, which stores no side. An instance at rest at zero has none either.
-    bool has_fired_last(int event, std::int64_t i) const;
     /// To be called after a kernel has run: remembers the inputs of the instances that have ended.
     void remember_ended();
     /// Whether the states or parameters of such an instance were set since.

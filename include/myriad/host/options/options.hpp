@@ -43,7 +43,8 @@ enum class direction {
 /// How one event is detected.
 struct event_options {
     myriad::direction direction = myriad::direction::either;  ///< which crossings count
-    double tolerance = 1e-6;      ///< an event is located where |g| is at most this; in units of the event function
+    double tolerance = 0;         ///< an event is located to |g| of at most this, in units of the event function; 0: as
+                                  ///< closely as t and the state resolve
     std::int64_t stop_after = 0;  ///< number of detections in a phase that ends it (`stopped_by_event`); 0: never
 };
 
@@ -137,7 +138,7 @@ struct options {
 
     std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all
     std::int64_t sub_samples = 1;  ///< points per step at which event functions are evaluated (the last is the end)
-    std::int64_t accumulation_limit = 50;  ///< actions of one event, without its function leaving its tolerance in
+    std::int64_t accumulation_limit = 50;  ///< actions of one event, without its function leaving the surface in
                                            ///< between, that end the instance as `event_accumulation`
 
     record_options record = {};                        ///< what to keep at the end of every phase

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The notes of a report: tolerances that had to be raised, event tolerances that hide crossings, signs of stiffness,
-// and phases too long for the smallest Lyapunov exponent.
+// The notes of a report: tolerances that had to be raised, signs of stiffness, and phases too long for the smallest
+// Lyapunov exponent.
 #pragma once
 
 #include <algorithm>
@@ -22,24 +22,6 @@ namespace myriad::host::inline MYRIAD_ABI {
 template <class Method, class Model, class R>
 void note_tolerances(report<Model, R>& r, const options& o) {
     if (Method::embedded_order > 0) note_raised_tolerances<R>(r, o);
-}
-
-/// Adds a note if an event function was within its tolerance in all instances examined, before and after the call, and
-/// no event was located, nor happened at the end of a phase, for which no step is redone: a function that never leaves
-/// its tolerance has no side to change. Not refused beforehand, as a function may well start on its event surface.
-template <class Model, class R>
-void note_event_tolerances(report<Model, R>& r, ensemble<Model, R>& e, const options& o,
-                           const functions_within_tolerance<Model>& before, std::int64_t count) {
-    if (r.accepted_steps == 0 || r.located_steps > 0) return;  // nothing done, or not counted
-    const auto after = find_functions_within(e, o, count, [&](std::int64_t i) { return e.t()[i]; });
-    for (int j = 0; j < n_event<Model>; ++j) {
-        if (!before.everywhere(j) || !after.everywhere(j) || after.fired_anywhere(j)) continue;
-        r.notes.push_back(
-            message("the function of event ", j, " is within its tolerance, ", event_tolerance(o, j),
-                    ", at the start and at the end in all ", after.looked_at,
-                    " instances looked at, and no crossing was located: a function is seen to cross zero only from "
-                    "beyond its tolerance; if this one crosses, give a smaller tolerance"));
-    }
 }
 
 /// Adds a note if stability, not accuracy, limited an explicit method's steps in half or more of the instances

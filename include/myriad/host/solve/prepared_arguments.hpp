@@ -102,10 +102,9 @@ private:
 };
 
 /// Checks the options against the first `count` instances: sample times, event tolerances, and a model's own Jacobian
-/// in builds with assertions. Throws `error`. Returns which event functions are within their tolerances before the
-/// integration.
+/// in builds with assertions. Throws `error`.
 template <class Method, class Model, class R>
-functions_within_tolerance<Model> check_uses(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
+void check_uses(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
     auto& data = ensemble_access::data(instances);
     check_ended(data, o, count);
     check_scales(data, scales_tolerances<Method>);
@@ -116,7 +115,6 @@ functions_within_tolerance<Model> check_uses(ensemble<Model, R>& instances, cons
 #if !defined(NDEBUG)
     check_jacobian(instances, count);
 #endif
-    return find_functions_within(instances, o, count, [&](std::int64_t i) { return instances.t_begin_of(i); });
 }
 
 }  // namespace myriad::host::inline MYRIAD_ABI

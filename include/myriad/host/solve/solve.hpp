@@ -75,7 +75,7 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     const auto claim = data.take();
     host::check_options<Model, Method, R>(options);
     const auto kernel = host::require_kernel<Model, Method, R>(where);
-    const auto before = host::check_uses<Method>(instances, options, instances.size());
+    host::check_uses<Method>(instances, options, instances.size());
     const host::phases_left left = host::find_phases_left(instances, options, instances.size());
     left.require_for(0, options.phases);
     // On a GPU the data of large ensembles are checked chunk by chunk, while the GPU works on others.
@@ -89,7 +89,6 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     result.records = std::move(prepared.records());
     if (!left.note.empty()) result.notes.push_back(left.note);
     host::note_tolerances<Method>(result, options);
-    host::note_event_tolerances(result, instances, options, before, instances.size());
     host::note_stiffness<Method>(result, instances, options);
     host::note_exponents<Method>(result, instances, options);
     return result;

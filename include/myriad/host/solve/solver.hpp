@@ -107,7 +107,7 @@ public:
                         "restart() and set the instances again, or download() all of them first");
         }
         uploaded_ = downloadable_ = false;
-        before_ = host::check_uses<Method>(instances_, options_, wanted);
+        host::check_uses<Method>(instances_, options_, wanted);
         phases_left_ = host::find_phases_left(instances_, options_, wanted);
         phases_asked_ = 0;
         host::input_check<Model, R> data(instances_, options_, wanted);
@@ -233,7 +233,6 @@ public:
         report_.notes.clear();
         host::note_ended(report_, host::ensemble_access::data(instances_), count_);
         host::note_tolerances<Method>(report_, options_);
-        if (results_ == held::on_host) host::note_event_tolerances(report_, instances_, options_, before_, count_);
         report_.device = where_.name();
         if (engine_) {
             report_.kernel = engine_->facts();
@@ -326,7 +325,6 @@ private:
     bool integrated_ = false;
     bool has_records_ = true;  // they belong to the instances uploaded last
     host::work_count work_before_{};
-    host::functions_within_tolerance<Model> before_;
     myriad::report<Model, R> report_;
     std::unique_ptr<cuda::engine<Model, R>> engine_;  // destroyed first: it uses the memory above
 };

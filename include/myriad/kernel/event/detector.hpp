@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Detects events: every step checks the signs of the event functions, in all lanes at once. A lane in which one may
-// have crossed zero goes to the locator.
+// Detects events: every step checks the signs of the event functions, in all lanes at once. A lane in which one has
+// changed goes to the locator.
 #pragma once
 
 #include "myriad/kernel/event/locator.hpp"
@@ -10,6 +10,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 template <class Model, class Method, class S>
 struct event_detector {
+    using R = real_of<S>;
     using mask = mask_of<S>;
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
@@ -26,19 +27,25 @@ struct event_detector {
     MYRIAD_FUNCTION sight watch(const values& g1) const {
         const auto& sides = locator.sides;
         const auto& e = sides.e;
-        sight seen{g1, {}, {}, mask(false)};
+        sight seen{g1, {}, mask(false)};
         masks below;
         below.clear();
-        seen.beyond.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            below.set_negative(j, g1[j]);
-            seen.beyond.set(j, abs(g1[j]) > S(sides.args.event[j].tolerance));
+        for (int j = 0; j < m; ++j) below.set_negative(j, g1[j]);
+        // A function has crossed if it was above zero and is below, or was below and is above: zero is on either side.
+        seen.crossed = ~(e.above ^ below);
+        if (is_pack<S> || MYRIAD_UNLIKELY(any(seen.crossed.any_of()))) {
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) seen.crossed.set(j, seen.crossed[j] & (g1[j] != S(R(0))));
         }
-        // A function has crossed if it was above zero and is below, or was below and is above.
-        seen.crossed = seen.beyond & ~(e.above ^ below);
-        seen.busy = e.flags[e.in_question] | (seen.crossed & sides.asked()).any_of() |
-                    (sides.s.final_step & !seen.beyond.all_of());
+        seen.busy = e.flags[e.in_question] | (seen.crossed & (sides.asked() | ~e.left)).any_of();
+        if (any(sides.s.final_step)) {
+            masks far;
+            far.clear();
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) far.set(j, abs(g1[j]) > S(sides.end_tolerance(j)));
+            seen.busy = seen.busy | (sides.s.final_step & !far.all_of());
+        }
         return seen;
     }
 
@@ -73,8 +80,11 @@ struct event_detector {
             }
         }
         auto& e = sides.e;
-        e.above = e.above ^ seen.crossed.in(follow);
-        e.left = e.left | seen.beyond.in(follow);
+        masks crossed = seen.crossed.in(follow);
+        // A function whose event was just located, maybe past zero, changes its side after the event's action.
+        if constexpr (!is_pack<S>) crossed = crossed & ~events.which;
+        e.above = e.above ^ crossed;
+        e.left = e.left | masks::all_in(follow);
     }
 
 private:

@@ -32,33 +32,33 @@ MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, F
 }
 
 /// The earliest crossing in a step, from the cubic through each event function's values and slopes at both ends. `side`
-/// is the side of zero each function was on. A function that starts within its tolerance and leaves it crosses where it
-/// returns.
+/// is the side of zero each function was on, `floor` how near to zero it counts as on the surface, and `tolerance` how
+/// closely the crossing is to be located. A function that starts on the surface and leaves it crosses where it returns.
 template <class Model, class R>
 MYRIAD_FUNCTION located_crossing<R> earliest_crossing(const step_ends<Model, R>& step,
                                                       const vec<R, n_event<Model>>& side,
                                                       const mask_set<bool, n_event<Model>>& crossed,
-                                                      const event_arguments<R>* event) {
+                                                      const vec<R, n_event<Model>>& floor,
+                                                      const vec<R, n_event<Model>>& tolerance) {
     const auto slope = step.slopes(), slope1 = step.slopes1();
     return detail::first_of<R>(crossed, [&](int j) MYRIAD_LAMBDA {
         const R per_step = side[j] * step.h;
         const function_ends<R> g{side[j] * step.g[j], per_step * slope[j], side[j] * step.g1[j], per_step * slope1[j]};
-        const bool on_surface = !(g.value > event[j].tolerance);
+        const bool on_surface = !(g.value > floor[j]);
         if (on_surface && !(g.slope > R(0))) return R(0);
-        return detail::crossing_fraction(g, on_surface, R(guess_part) * event[j].tolerance);
+        return detail::crossing_fraction(g, on_surface, R(guess_part) * tolerance[j]);
     });
 }
 
 /// The same for crossings found between the fractions `low` and `high` of a step, by the secants between these points.
 template <class Model, class R>
 MYRIAD_FUNCTION located_crossing<R> earliest_crossing_between(R low, R high, const step_ends<Model, R>& step,
-                                                              const mask_set<bool, n_event<Model>>& crossed,
-                                                              const event_arguments<R>* event) {
+                                                              const mask_set<bool, n_event<Model>>& crossed) {
     const auto g = step.values_at(low), g1 = high < R(1) ? step.values_at(high) : step.g1;
     return detail::first_of<R>(crossed, [&](int j) MYRIAD_LAMBDA {
-        // A function within its tolerance at `low` may be about to leave and return.
-        const bool within = abs(g[j]) <= event[j].tolerance;
-        return fma(high - low, within ? R(0.5) : g[j] / (g[j] - g1[j]), low);
+        // A function that is not on the other side at `low` is about to leave the surface and return.
+        const bool opposite = (g[j] > R(0) && g1[j] < R(0)) || (g[j] < R(0) && g1[j] > R(0));
+        return fma(high - low, opposite ? g[j] / (g[j] - g1[j]) : R(0.5), low);
     });
 }
 

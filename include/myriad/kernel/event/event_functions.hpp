@@ -2,6 +2,8 @@
 // A model's event functions, and their slopes along the solution.
 #pragma once
 
+#include <limits>
+
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/math.hpp"
@@ -27,6 +29,43 @@ MYRIAD_FUNCTION vec<S, n_event<Model>> event_slopes(const S& t, const vec<S, n_s
     MYRIAD_UNROLL
     for (int j = 0; j < n_event<Model>; ++j) slopes[j] = g[j].derivative;
     return slopes;
+}
+
+/// The weight of component c in `event_roundings`: between 1 and 2, no two alike.
+constexpr double rounding_weight(int c) {
+    const double turns = 0.61803398874989485 * c;
+    return 1 + (turns - static_cast<double>(static_cast<long long>(turns)));
+}
+
+/// How far rounding may put the event functions at (t, y) from their values, as far as that shows: nothing can be told
+/// from values closer to zero. A few roundings of t and of states of the given sizes, times the derivatives. One
+/// derivative does for all of them, with weights, so that x - y has a rounding error though its two terms cancel.
+/// States too small for normal numbers have that of the smallest. Zero where the functions have no finite derivative,
+/// or are constant but for jumps.
+template <class Model, class R>
+MYRIAD_FUNCTION vec<R, n_event<Model>> event_roundings(const R& t, const vec<R, n_state<Model>>& y,
+                                                       const vec<R, n_state<Model>>& size, const inputs<Model, R>& p) {
+    constexpr R least = std::numeric_limits<R>::min() / epsilon_of<R>;
+    vec<dual<R>, n_state<Model>> y_dual;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_state<Model>; ++c) y_dual[c] = dual<R>(y[c], R(rounding_weight(c)) * (size[c] + least));
+    const auto g = Model::template events<dual<R>>(dual<R>(t, R(0.5) * t), y_dual, p);
+    vec<R, n_event<Model>> rounding;
+    MYRIAD_UNROLL
+    for (int j = 0; j < n_event<Model>; ++j) {
+        const R change = abs(g[j].derivative);
+        rounding[j] = change < infinity_of<R> ? R(8) * epsilon_of<R> * change : R(0);
+    }
+    return rounding;
+}
+/// The same for a state that was given, not integrated.
+template <class Model, class R>
+MYRIAD_FUNCTION vec<R, n_event<Model>> event_roundings(const R& t, const vec<R, n_state<Model>>& y,
+                                                       const inputs<Model, R>& p) {
+    vec<R, n_state<Model>> size;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_state<Model>; ++c) size[c] = abs(y[c]);
+    return detail::event_roundings<Model>(t, y, size, p);
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

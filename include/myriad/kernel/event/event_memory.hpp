@@ -9,13 +9,27 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
+/// How near to zero event functions are in a trial.
+template <class R, int events>
+struct event_nearness {
+    vec<R, events> rounding;  // their rounding errors at its end
+    vec<R, events> floor;     // a function that starts no farther from zero starts on the surface
+    vec<R, events> band;      // an event is located within this
+    vec<R, events> past;      // a function past zero by no more than this has not crossed
+};
+
 template <class Model, class R>
 struct event_memory {
     using flags = mask_set<bool, n_event<Model>>;
     redone_step<R, n_event<Model>> redo;
-    bool locating;  // the next trial is redone, to end at an event
-    flags open;     // on the surface, side not yet known
+    event_nearness<R, n_event<Model>> near;  // of the trial that is looked at closely
+    bool locating;                           // the next trial is redone, to end at an event
+    flags open;                              // on the surface, side not yet known
+    flags held;                              // so, unless the state was moved: then it is the side noted
+    flags fresh;                             // the event fired at the committed state
+    flags at_jump;                           // and its function has a jump there
     flags on_jump;  // the event fired right before a jump that no step has passed yet; the side is the one beyond it
+    R jump_time;    // that it takes to pass it
     std::int32_t waited;                         // turns that it has waited for other threads' events
     vec<std::int32_t, n_event<Model>> lingered;  // how often in a row the event has fired without its function leaving
 };

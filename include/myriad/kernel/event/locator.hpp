@@ -72,36 +72,49 @@ struct event_locator {
         step.y = get_lanes<R>(s.data.y, i);
         step.y1 = get_lanes<R>(ends.y, i);
         step.slope = get_lanes<R>(ends.slope_start, i);
-        const bool scans = args.sub_samples > 1;
+        const bool scans = args.sub_samples > 1, locating = sides.memory_of(i).locating;
         bool sides_are_known = false;
         if constexpr (!is_pack<S>) {
             const auto& own = sides.memory_of(i);
-            sides_are_known = !scans && !(own.open | own.on_jump).any_of();
+            step.g1 = ends.g;
+            sides_are_known = !scans && !(own.open | own.on_jump).any_of() && is_clear(i, step, locating);
+        } else {
+            // Not the pack's values, which may round differently from those they are compared with.
+            step.g1 = detail::evaluate_events<Model>(step.t1, step.y1, p);
         }
         reals side;
         flags crossed;
-        bool within = false;
         if (sides_are_known) {
-            if constexpr (!is_pack<S>) {
-                step.g1 = ends.g;
-                crossed = seen.crossed & sides.asked();
-                within = !seen.beyond.all_of();
-            }
+            auto& near = sides.memory_of(i).near;
+            if constexpr (!is_pack<S>) crossed = seen.crossed & sides.asked();
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) side[j] = e.above.get(j, i) ? R(1) : R(-1);
+            for (int j = 0; j < m; ++j) {
+                side[j] = e.above.get(j, i) ? R(1) : R(-1);
+                const R tolerance = location_tolerance(j, i, locating);
+                near.rounding[j] = near.floor[j] = R(0);
+                near.band[j] = near.past[j] = tolerance;
+                if (!(abs(step.g1[j]) > tolerance)) crossed.set(j, false);
+            }
         } else {
-            // Not the pack's values, which may round differently from those they are compared with.
-            step.g1 = is_pack<S> ? detail::evaluate_events<Model>(step.t1, step.y1, p) : get_lanes<R>(ends.g, i);
-            sides.settle_open_sides(i, step);
+            auto& near = sides.memory_of(i).near;
+            step.g = detail::evaluate_events<Model>(step.t, step.y, p);
+            near.rounding = step.roundings();
+            sides.settle_open_sides(i, step, near.rounding);
+            const auto& redo = sides.memory_of(i).redo;
             crossed.clear();
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {
                 side[j] = sides.side_of(j, i);
-                within = within || abs(step.g1[j]) <= args.event[j].tolerance;
-                crossed.set(j, sides.crosses(j, side[j], step.g1[j]) && !sides.is_at_jump(j, i, step.h));
+                // Only as far as it was on the other side at the start may a function be there without having crossed.
+                const R start = sides.memory_of(i).on_jump[j] ? R(0) : -side[j] * step.g[j];
+                near.floor[j] = max(near.rounding[j], start);
+                near.band[j] = max(location_tolerance(j, i, locating), near.floor[j]);
+                const bool located = locating && (redo.target == j || redo.crossed[j]);
+                near.past[j] = located ? near.band[j] : near.floor[j];
+                crossed.set(j, sides.crosses(j, side[j], step.g1[j], near.past[j]) && !sides.is_at_jump(j, i, step.h));
             }
         }
-        const bool locating = sides.memory_of(i).locating, is_last = get_lane(s.final_step, i) && within;
+        const bool is_last = get_lane(s.final_step, i) && ends_near_root(i, step);
         arrival reached{};
         if (locating) reached = arrival_of(i, step, side);
         if (scans || crossed.any_of() || (locating ? !reached.is_plain() : is_last)) {
@@ -124,9 +137,10 @@ struct event_locator {
         }
         if (locating) {
             if (sides_are_known && reached.is_plain()) {
-                const auto& redo = sides.memory_of(i).redo;
+                auto& own = sides.memory_of(i);
+                own.at_jump.clear();
                 MYRIAD_UNROLL
-                for (int j = 0; j < m; ++j) events.put(j, i, redo.target == j, step.g1[j]);
+                for (int j = 0; j < m; ++j) events.put(j, i, own.redo.target == j, step.g1[j]);
                 end_location(i);
                 return trial_outcome::stands_before_sides;
             }
@@ -157,6 +171,40 @@ struct event_locator {
     }
 
 private:
+    /// How closely event j is to be located: as its options say, unless that is more than a small part of the
+    /// function's change in the step.
+    MYRIAD_FUNCTION R location_tolerance(int j, int i, bool locating) const {
+        return locating ? sides.memory_of(i).redo.tolerance[j] : sides.args.event[j].tolerance;
+    }
+    /// Whether what happens in a trial can be told without the rounding errors of the event functions, as these are
+    /// smaller than tolerances that were given: every function has left its surface since its event and is beyond its
+    /// tolerance, or at the event that is located.
+    MYRIAD_FUNCTION bool is_clear(int i, const ends_of_step& step, bool locating) const {
+        const auto& redo = sides.memory_of(i).redo;
+        bool clear = true;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const R tolerance = location_tolerance(j, i, locating), g = abs(step.g1[j]);
+            const bool arrives = locating && redo.target == j && g <= R(arrival_part) * tolerance;
+            clear = clear && sides.e.left.get(j, i) && tolerance > R(0) && (g > tolerance || arrives);
+        }
+        return clear;
+    }
+    /// Whether an event may happen at the end of the domain.
+    MYRIAD_FUNCTION bool ends_near_root(int i, const ends_of_step& step) const {
+        const auto& near = sides.memory_of(i).near;
+        bool any_near = false;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool given = sides.args.event[j].tolerance > R(0);
+            const R close = given ? near.band[j] : max(near.band[j], R(last_part) * abs(step.g[j] - step.g1[j]));
+            any_near = any_near || abs(step.g1[j]) <= close;
+        }
+        return any_near;
+    }
+    /// The part of the last step beyond which rounding could not be told from a slow approach.
+    static constexpr double last_part = 1.0 / 64;
+
     /// The event to which the step was redone is reached.
     MYRIAD_FUNCTION void end_location(int i) {
         sides.memory_of(i).locating = false;
@@ -176,6 +224,7 @@ private:
     /// to the part of the step that contains it.
     MYRIAD_FUNCTION flags scan(int i, const ends_of_step& step, reals& side, R& low, R& high) {
         const auto& args = sides.args;
+        const auto& near = sides.memory_of(i).near;
         auto& e = sides.e;
         flags crossed;
         crossed.clear();
@@ -186,7 +235,7 @@ private:
             const reals g = last ? step.g1 : step.values_at(theta);
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j)
-                crossed.set(j, sides.crosses(j, side[j], g[j]) && !sides.is_at_jump(j, i, length));
+                crossed.set(j, sides.crosses(j, side[j], g[j], near.past[j]) && !sides.is_at_jump(j, i, length));
             if (crossed.any_of()) {
                 high = theta;
                 break;
@@ -194,7 +243,7 @@ private:
             if (!last) low = theta;
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {
-                if (!(abs(g[j]) > args.event[j].tolerance) || sides.is_at_jump(j, i, length)) continue;
+                if (!(abs(g[j]) > near.past[j]) || sides.is_at_jump(j, i, length)) continue;
                 side[j] = sign_of(g[j]);
                 if (!sides.is_timeless(i, length) && !sides.memory_of(i).on_jump[j]) e.left.set(j, i, true);
             }
@@ -209,17 +258,21 @@ private:
         auto& s = sides.s;
         auto& own = sides.memory_of(i);
         auto& redo = own.redo;
+        const auto& near = own.near;
         const bool again = own.locating;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= args.event[j].tolerance;
+            const bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= near.band[j];
             redo.crossed.set(j, crossed[j] || undecided);
+            if (again) continue;
+            const R change = abs(step.g1[j] - step.g[j]);
+            redo.tolerance[j] = min(args.event[j].tolerance, R(largest_part) * change);
         }
         located_crossing<R> first;
         if (MYRIAD_UNLIKELY(args.sub_samples > 1 && !again)) {
-            first = detail::earliest_crossing_between(low, high, step, crossed, args.event);
+            first = detail::earliest_crossing_between(low, high, step, crossed);
         } else {
-            first = detail::earliest_crossing(step, side, crossed, args.event);
+            first = detail::earliest_crossing(step, side, crossed, near.floor, redo.tolerance);
         }
         redo.target = first.event;
         const R guess = step.h * first.fraction;
@@ -235,33 +288,37 @@ private:
         if (!here) return;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool near = abs(step.g[j]) <= args.event[j].tolerance;
-            const bool happens = redo.target == j || (redo.crossed[j] && (near || redo.narrow));
+            const bool close = abs(step.g[j]) <= max(redo.tolerance[j], near.floor[j]);
+            const bool happens = redo.target == j || (redo.crossed[j] && (close || redo.narrow));
             events.put(j, i, happens, step.g[j]);
+            own.at_jump.set(j, happens && !close);
         }
         stepping<Model, Method, S>{args, s}.resume(i, redo.resume);
     }
 
     /// How near to its event a redone step that did not cross has ended.
     struct arrival {
-        R gap, tolerance;  // of the event's function
-        bool others;       // other functions crossed in the trial before
-        bool all_left;     // every function has left the surface since its event last fired
+        R gap, band, close;  // of the event's function: its value, within which it fires, and needs no better guess
+        bool others;         // other functions crossed in the trial before
+        bool all_left;       // every function has left the surface since its event last fired
 
         /// A better guess is not worth another trial.
-        MYRIAD_FUNCTION bool is_close() const { return abs(gap) <= R(arrival_part) * tolerance; }
+        MYRIAD_FUNCTION bool is_close() const { return abs(gap) <= close; }
         /// Only the event itself happens here.
         MYRIAD_FUNCTION bool is_plain() const { return is_close() && !others && all_left; }
     };
     MYRIAD_FUNCTION arrival arrival_of(int i, const ends_of_step& step, const reals& side) const {
-        const auto& redo = sides.memory_of(i).redo;
-        arrival reached{R(0), R(0), false, true};
+        const auto& own = sides.memory_of(i);
+        const auto& redo = own.redo;
+        const auto& near = own.near;
+        arrival reached{R(0), R(0), R(0), false, true};
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             reached.all_left = reached.all_left && sides.e.left.get(j, i);
             if (redo.target == j) {
                 reached.gap = side[j] * step.g1[j];
-                reached.tolerance = sides.args.event[j].tolerance;
+                reached.band = near.band[j];
+                reached.close = max(R(arrival_part) * redo.tolerance[j], R(0.5) * near.rounding[j]);
             } else {
                 reached.others = reached.others || redo.crossed[j];
             }
@@ -269,13 +326,13 @@ private:
         return reached;
     }
 
-    /// Handles a redone step that ended before its crossing: within the tolerance its events fire; else it is
-    /// lengthened.
+    /// Handles a redone step that ended before its crossing: close to it its events fire; else it is lengthened.
     MYRIAD_FUNCTION trial_outcome arrive(int i, const ends_of_step& step, const reals& side, const arrival& reached,
                                          fired& events) {
-        const auto& args = sides.args;
         auto& e = sides.e;
-        auto& redo = sides.memory_of(i).redo;
+        auto& own = sides.memory_of(i);
+        auto& redo = own.redo;
+        const auto& near = own.near;
         const bool narrow = redo.is_between(step.h);
         reals slope = step.g1, middle = step.g1;
         if (!reached.is_plain()) {
@@ -288,12 +345,12 @@ private:
             for (int j = 0; j < m; ++j)
                 if (redo.target == j) approach = side[j] * slope[j];
             const R guess = step.h - reached.gap * reciprocal(approach);
-            const bool short_of_it = reached.gap > reached.tolerance;
+            const bool short_of_it = reached.gap > reached.band;
             bool further = short_of_it && !narrow && redo.tries < redo.most_trials;
             if (further) {
                 redo.lengthen(step.h, guess);
             } else {
-                further = abs(reached.gap) <= reached.tolerance && redo.improve(step.h, guess, reached.gap > R(0));
+                further = abs(reached.gap) <= reached.band && redo.improve(step.h, guess, reached.gap > R(0));
             }
             if (further) {
                 add_to_count(sides.s.located, i);
@@ -303,31 +360,37 @@ private:
         const bool timeless = sides.is_timeless(i, step.h);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const R near = args.event[j].tolerance;
-            const bool heads = abs(step.g1[j]) <= near && side[j] * slope[j] * step.h < R(0);
-            const bool jumps = narrow && side[j] * step.g1[j] > near;
+            const R band = near.band[j];
+            const bool heads = abs(step.g1[j]) <= band && side[j] * slope[j] * step.h < R(0);
+            const bool jumps = narrow && side[j] * step.g1[j] > band;
             const bool happens = redo.target == j || (redo.crossed[j] && (heads || jumps));
             events.put(j, i, happens, step.g1[j]);
-            const bool at_jump = sides.memory_of(i).on_jump[j];
-            if (!reached.all_left && !timeless && !at_jump && abs(middle[j]) > near) e.left.set(j, i, true);
+            if (!reached.all_left && !timeless && !own.on_jump[j] && abs(middle[j]) > band) e.left.set(j, i, true);
+            own.at_jump.set(j, happens && abs(step.g1[j]) > band);
         }
         end_location(i);
         return trial_outcome::stands;
     }
 
-    /// Events at the end of the domain: a function within its tolerance and moving towards zero fires if it is past
-    /// zero, or short of it by rounding alone, judged by both its slope and the last step. A function that settles at
-    /// zero, or is still falling towards it, gets there later or never.
+    /// Events at the end of the domain: a function moving towards zero fires if it is at or past zero, or short of it
+    /// by rounding alone, judged by both its slope and the last step. A function that settles at zero, or is still
+    /// falling towards it, gets there later or never; one that is about to turn back, as at a double root, does not
+    /// cross it.
     MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const reals& side, fired& events) {
+        auto& own = sides.memory_of(i);
         const reals slope = step.slopes1();
         const R rounding = end_rounding(i, step);
+        own.at_jump.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const R g = side[j] * step.g1[j], speed = -side[j] * slope[j] * sign_of(step.h);  // towards zero
             const R last_speed = (side[j] * step.g[j] - g) / abs(step.h);
             const bool at_zero = g <= R(0) || g <= (speed < last_speed ? speed : last_speed) * rounding;
-            const bool near = abs(g) <= sides.args.event[j].tolerance;
-            events.put(j, i, sides.is_asked(j, side[j]) && near && speed > R(0) && at_zero, step.g1[j]);
+            const bool close = abs(g) <= sides.end_tolerance(j);
+            // The discriminant of the parabola through the last step's start, with the slope at its end.
+            const R bend = (last_speed - speed) / abs(step.h);
+            const bool turns = speed * speed <= R(8) * bend * (abs(g) + own.near.rounding[j]);
+            events.put(j, i, sides.is_asked(j, side[j]) && close && speed > R(0) && at_zero && !turns, step.g1[j]);
         }
     }
 
@@ -339,7 +402,7 @@ private:
         const R t_begin = args.t_begin != nullptr ? args.t_begin[s.instance[i]] : args.common_t_begin;
         const R steps = static_cast<R>(s.iterations_of(args, i));
         const R rounding = R(2) * epsilon_of<R> * steps * max(abs(step.t1), abs(t_begin));
-        return min(rounding, R(1.0 / 64) * abs(step.h));
+        return min(rounding, R(last_part) * abs(step.h));
     }
 };
 

@@ -20,18 +20,19 @@ struct redone_step {
     static constexpr std::int32_t most_trials = 80;
 
     R length;          // of the next trial; 0: the event is at the start of the step
-    R before, beyond;  // the bracket: longest length known to end before the event, shortest beyond it
+    R before, beyond;  // the bracket: longest length known to end before the event, shortest beyond it; or the start
     R resume;          // the step size to resume with afterwards
     std::int32_t tries;
     std::int32_t target;             // the event to which the step is redone
     bool narrow;                     // `before` and `beyond` are equal up to rounding
     mask_set<bool, events> crossed;  // the events that crossed in the trial that found the target
+    vec<R, events> tolerance;        // of event functions in this step
 
     /// A trial of length h ended beyond an event.
     MYRIAD_FUNCTION void begin(R h, R guess, R h_next) {
         resume = h_next;
         before = R(0);
-        beyond = h;
+        beyond = guess == R(0) ? R(0) : h;
         tries = 0;
         narrow = false;
         length = guess == R(0) || is_inside(guess, h) ? guess : R(0.5) * h;
@@ -43,6 +44,11 @@ struct redone_step {
         length = tries < most_guesses && is_inside(guess, h) ? guess : R(0.5) * (before + h);
         narrow = are_one(before, h);
         if (narrow || tries >= most_trials) length = before;
+    }
+    /// A bound on the distance in time of a jump from where it was located, but for the rounding of t.
+    MYRIAD_FUNCTION R error() const {
+        const bool bisected = narrow || tries >= most_guesses;
+        return (bisected ? abs(beyond - before) : R(0)) + epsilon_of<R> * abs(beyond);
     }
     /// Whether the event, up to rounding, is where a redone step of length h ended before it.
     MYRIAD_FUNCTION bool is_between(R h) const { return are_one(h, beyond); }

@@ -19,10 +19,10 @@ MYRIAD_FUNCTION R sign_of(R x) {
     return x > R(0) ? R(1) : x < R(0) ? R(-1) : R(0);
 }
 
-/// The sides of a pack's event functions. A crossing is a change of side. The side on which a function was last seen
-/// beyond its tolerance is remembered, so that a function that stays within the tolerance neither fires twice nor is
-/// lost, and one that only touches zero does not fire. Where a step starts within the tolerance, the function's slope
-/// along the solution tells where it is heading.
+/// The sides of a pack's event functions. A crossing is a change of side. The side on which a function was last seen is
+/// remembered, so that one that lands on zero is not lost, and one that only touches zero does not fire. Values within
+/// rounding of zero count as zero. Right after its event a function may still be short of the surface, as closely as
+/// the event was located, but counts as on the side that its slope along the solution is heading for.
 template <class Model, class Method, class S>
 struct side_follower {
     using R = real_of<S>;
@@ -52,20 +52,27 @@ struct side_follower {
         for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA { begin_lane(i); });
     }
 
+    /// The value of event function j beyond which nothing can happen at the end of the domain.
+    MYRIAD_FUNCTION R end_tolerance(int j) const {
+        const R tolerance = args.event[j].tolerance;
+        return tolerance > R(0) ? tolerance : infinity_of<R>;
+    }
+
     /// Stores the sides of lane i for its next phase. A phase without a step has not evaluated its event functions.
     MYRIAD_FUNCTION void keep(int i) const {
         if (s.iterations_of(args, i) == 0) return;
         const auto& p = inputs_of(i);
         const auto& own = memory_of(i);
-        const reals g = detail::evaluate_events<Model>(get_lane(s.data.t, i), get_lanes<R>(s.data.y, i), p);
+        const R t = get_lane(s.data.t, i);
+        const state y = get_lanes<R>(s.data.y, i);
+        const reals g = detail::evaluate_events<Model>(t, y, p), rounding = roundings_if_needed(t, y, g, p);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool left = e.left.get(j, i);
-            kept_side kept = left ? kept_side::within : kept_side::unknown;
-            if (abs(g[j]) > args.event[j].tolerance || (own.on_jump[j] && !left))
-                kept = left ? kept_side::beyond : kept_side::on_jump;
-            const int sign = own.open[j] ? 0 : e.above.get(j, i) ? 1 : -1;
-            kept_at(j, i) = static_cast<std::int8_t>(sign * static_cast<int>(kept));
+            const R side = side_of(j, i);
+            kept_side kept = side * g[j] > rounding[j] ? kept_side::beyond : kept_side::within;
+            if (is_fresh(j, i)) kept = kept_side::fired;
+            if (!e.left.get(j, i) && own.on_jump[j]) kept = kept_side::on_jump;
+            kept_at(j, i) = static_cast<std::int8_t>(static_cast<int>(side) * static_cast<int>(kept));
         }
     }
     /// Makes the next phase of lane i begin with all sides unknown.
@@ -74,24 +81,25 @@ struct side_follower {
         for (int j = 0; j < m; ++j) kept_at(j, i) = static_cast<std::int8_t>(kept_side::unknown);
     }
 
-    /// Updates the sides after a hook changed inputs of event functions, whose values were `before`. A function within
-    /// its tolerance keeps its side, unless the hook moved it there: then the slope at the next step decides. One at a
-    /// jump keeps the side beyond it, which its value here does not show, until `settle` looks again.
+    /// Updates the sides after a hook changed inputs of event functions, whose values were `before`. A function that
+    /// the hook moved has the side on which it is now or, on the surface, that which the slope at the next step shows.
+    /// One at a jump keeps the side beyond it, which its value here does not show, until `settle` looks again.
     MYRIAD_FUNCTION void restart(const mask& lanes, const values& before, const fired& events) {
         const values g = detail::evaluate_events<Model>(s.now(), s.data.y, s.data);
         for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA {
             auto& own = memory_of(i);
             bool undefined = false;
+            const reals rounding =
+                roundings_if_needed(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), get_lanes<R>(g, i), inputs_of(i));
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {
-                const R now = get_lane(g[j], i), tolerance = args.event[j].tolerance;
+                const R now = get_lane(g[j], i), then = get_lane(before[j], i);
                 undefined = undefined || now != now;
-                if (events.which.get(j, i) || own.on_jump[j]) continue;
-                if (abs(now) > tolerance) {
-                    put_side(j, i, sign_of(now));
-                } else if (abs(get_lane(before[j], i)) > tolerance) {
-                    put_side(j, i, R(0));
-                }
+                if (events.which.get(j, i) || own.on_jump[j] || now == then) continue;
+                const bool is_there = abs(now) <= rounding[j], was_there = abs(then) <= rounding[j];
+                // Right after its event a function that a hook hardly moves is as good as on the surface.
+                const bool keeps = is_there ? was_there : is_fresh(j, i) && abs(now) <= R(2) * abs(then);
+                if (!keeps) put_side(j, i, is_there ? R(0) : sign_of(now));
             }
             e.flags.set(e.undefined, i, undefined);
             note(i);
@@ -106,9 +114,12 @@ struct side_follower {
     /// jump earlier, as this action may have moved the state.
     MYRIAD_FUNCTION void settle(int i, const fired& events, const lane_data<Model, S>& before) {
         bool passes = !get_lane(events.changed, i) && !e.flags.get(e.in_question, i);
+        auto& own = memory_of(i);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
-            passes = passes && (!events.which.get(j, i) || (e.left.get(j, i) && !fires_at_jump(j, i, events)));
+        for (int j = 0; j < m; ++j) {
+            if (events.which.get(j, i)) own.fresh.set(j, true);
+            passes = passes && (!events.which.get(j, i) || (e.left.get(j, i) && !own.at_jump[j]));
+        }
         if (!passes) return settle_with_care(i, events, before);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
@@ -133,6 +144,7 @@ struct side_follower {
     }
     MYRIAD_FUNCTION void put_side(int j, int i, R side) {
         memory_of(i).open.set(j, side == R(0));
+        memory_of(i).held.set(j, false);
         e.above.set(j, i, side > R(0));
     }
     /// Notes whether the next trial of lane i has to be looked at closely. To be called after what decides it changed.
@@ -150,27 +162,29 @@ struct side_follower {
         const std::uint32_t asked = side > R(0) ? args.falling[j / 32] : side < R(0) ? args.rising[j / 32] : 0u;
         return ((asked >> (j % 32)) & 1u) != 0;
     }
-    /// Whether a function with value g has crossed from the given side.
-    MYRIAD_FUNCTION bool crosses(int j, R side, R g) const {
-        return is_asked(j, side) && side * g < -args.event[j].tolerance;
-    }
+    /// Whether a function with value g has crossed from the given side, by more than `past`.
+    MYRIAD_FUNCTION bool crosses(int j, R side, R g, R past) const { return is_asked(j, side) && side * g < -past; }
 
-    /// Sets open sides to where the functions are heading.
-    MYRIAD_FUNCTION void settle_open_sides(int i, const step_ends<Model, R>& step) {
-        const flags open = memory_of(i).open;
+    /// Sets open sides to where the functions are heading, or to where they are if they are not on the surface, as
+    /// after the host moved the state.
+    MYRIAD_FUNCTION void settle_open_sides(int i, const step_ends<Model, R>& step, const reals& rounding) {
+        const flags open = memory_of(i).open, held = memory_of(i).held;
         if (!open.any_of()) return;
         const reals slope = step.slopes();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
-            if (open[j]) put_side(j, i, sign_of(slope[j]) * sign_of(step.h));
+        for (int j = 0; j < m; ++j) {
+            if (!open[j]) continue;
+            const bool on_surface = abs(step.g[j]) <= max(args.event[j].tolerance, rounding[j]);
+            const R heading = held[j] ? (e.above.get(j, i) ? R(1) : R(-1)) : sign_of(slope[j]) * sign_of(step.h);
+            put_side(j, i, on_surface ? heading : sign_of(step.g[j]));
+        }
     }
 
     /// Whether event j fired at a jump that a state within `length` of it may not have passed: if another event is
     /// located right after that one, rounding may leave the state before the jump.
     MYRIAD_FUNCTION bool is_at_jump(int j, int i, R length) const {
         const auto& own = memory_of(i);
-        if (!own.on_jump[j]) return false;
-        return abs(length) <= past_jump(i, own.locating ? own.redo.resume : get_lane(s.data.h_next, i));
+        return own.on_jump[j] && abs(length) <= own.jump_time;
     }
     /// Whether `length` is within the rounding of t: values that near do not show that a function has left the place
     /// where it fired.
@@ -178,16 +192,18 @@ struct side_follower {
         return abs(length) <= R(4) * epsilon_of<R> * abs(get_lane(s.now(), i));
     }
 
-    /// Updates the sides at the end of an accepted trial; `side` holds those before it.
+    /// Updates the sides at the end of an accepted trial that was looked at closely; `side` holds those before it. A
+    /// function within its `band` has not left the surface.
     MYRIAD_FUNCTION void follow(int i, const step_ends<Model, R>& step, const reals& side) {
         const bool timeless = is_timeless(i, step.h);
+        auto& own = memory_of(i);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             if (is_at_jump(j, i, step.h)) continue;  // after the trial it is still at the jump where it fired
-            const bool beyond = abs(step.g1[j]) > args.event[j].tolerance;
-            memory_of(i).on_jump.set(j, false);
-            put_side(j, i, beyond ? sign_of(step.g1[j]) : side[j]);
-            e.left.set(j, i, e.left.get(j, i) || (beyond && !timeless));
+            own.on_jump.set(j, false);
+            own.fresh.set(j, own.fresh[j] && timeless);
+            put_side(j, i, abs(step.g1[j]) > own.near.past[j] ? sign_of(step.g1[j]) : side[j]);
+            e.left.set(j, i, e.left.get(j, i) || (abs(step.g1[j]) > own.near.band[j] && !timeless));
         }
     }
 
@@ -196,8 +212,19 @@ private:
         return args.side[static_cast<std::int64_t>(j) * args.size + s.instance[i]];
     }
     MYRIAD_FUNCTION bool fires_at_jump(int j, int i, const fired& events) const {
-        return events.which.get(j, i) && abs(get_lane(events.value[j], i)) > args.event[j].tolerance;
+        return events.which.get(j, i) && memory_of(i).at_jump[j];
     }
+    /// The rounding errors of the event functions g at (t, y), or zero if all are farther from the surface than the
+    /// tolerances that were given, and so than rounding.
+    MYRIAD_FUNCTION reals roundings_if_needed(R t, const state& y, const reals& g, const inputs<Model, R>& p) const {
+        bool clear = true;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j)
+            clear = clear && abs(g[j]) > args.event[j].tolerance && args.event[j].tolerance > R(0);
+        return clear ? reals{} : detail::event_roundings<Model>(t, y, p);
+    }
+    /// Whether event j fired at the committed state. After an ordinary step every function has left.
+    MYRIAD_FUNCTION bool is_fresh(int j, int i) const { return memory_of(i).fresh[j] && !e.left.get(j, i); }
     /// Slopes of the event functions of lane i along the solution, from the data `at`. For a function right before a
     /// jump, where the slope is zero, a number of the sign that it would have: towards the jump if the function is past
     /// it a little ahead.
@@ -237,12 +264,16 @@ private:
             g = detail::evaluate_events<Model>(t, y, p);
             slope = detail::event_slopes<Model>(t, y, along, p);
         }
+        const reals rounding = roundings_if_needed(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), g, inputs_of(i));
         flags at_jump;
         at_jump.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool fires = events.which.get(j, i), waits = !fires && on_jump[j];
-            const bool beyond = abs(g[j]) > args.event[j].tolerance;
+            const bool jumps = fires_at_jump(j, i, events);
+            // An event's action that hardly moves its function leaves it on the surface, as closely as it was located.
+            const R residual = fires && !jumps ? R(2) * abs(get_lane(events.value[j], i)) : R(0);
+            const bool beyond = abs(g[j]) > max(rounding[j], residual);
             if (g[j] != g[j]) e.flags.set(e.undefined, i, true);
             if (waits) {
                 at_jump.set(j, beyond);
@@ -254,7 +285,7 @@ private:
                 const bool acted = moved || slope[j] != before[j];
                 const bool unresolved = from * sign_of(before[j]) * sense > R(0);
                 const bool rests = ahead == R(0) && !e.left.get(j, i);
-                at_jump.set(j, (moved || !unresolved) && beyond);
+                at_jump.set(j, jumps && (moved || !unresolved) && beyond);
                 R side = ahead;
                 if (unresolved || ahead == R(0)) side = acted || rests ? from : -from;
                 if (moved && beyond) side = sign_of(g[j]);
@@ -273,55 +304,90 @@ private:
         const auto& p = inputs_of(i);
         auto& own = memory_of(i);
         const reals g = detail::evaluate_events<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), p);
+        const reals rounding = roundings_if_needed(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), g, p);
+        bool undefined = false;
         flags at_jump;
         at_jump.clear();
-        bool undefined = false;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const int kept = kept_at(j, i);
             const auto kind = static_cast<kept_side>(kept < 0 ? -kept : kept);
-            const bool beyond = abs(g[j]) > args.event[j].tolerance;
+            const bool beyond = abs(g[j]) > rounding[j] && kind != kept_side::fired;
             undefined = undefined || g[j] != g[j];
             at_jump.set(j, beyond && kind == kept_side::on_jump);
-            own.on_jump.set(j, false);
             e.left.set(j, i, true);
-            put_side(j, i, beyond ? sign_of(g[j]) : kind == kept_side::within ? R(kept) : R(0));
+            put_side(j, i, beyond ? sign_of(g[j]) : R(0));
+            if (kind == kept_side::within) {
+                e.above.set(j, i, kept > 0);
+                own.open.set(j, true);
+                own.held.set(j, true);
+            }
             own.lingered[j] = 0;
         }
         e.flags.set(e.undefined, i, undefined);
+        own.on_jump.clear();
+        own.fresh.clear();
         own.locating = false;
+        own.redo.begin(R(0), R(0), R(0));
         if (MYRIAD_UNLIKELY(at_jump.any_of())) {
             look_beyond(i, at_jump, g, s.slope_of(i));
         }
         note(i);
     }
 
-    /// A time that is sure to pass a jump to which a step was located: longer than the rounding of t and of the state.
-    MYRIAD_FUNCTION R past_jump(int i, R h_next) const {
-        constexpr R fraction = std::is_same_v<R, float> ? R(0x1p-12) : R(0x1p-26);
-        return fma(fraction, abs(h_next), R(64) * epsilon_of<R> * abs(get_lane(s.now(), i)));
+    /// The roundings that a look ahead of a jump is long.
+    static constexpr double roundings_ahead = 64;
+    /// Of a time of so many roundings, until a state has moved by its own rounding.
+    static constexpr int most_doublings = 64;
+    /// A time longer than the rounding of t, and than the error of the last location at a jump.
+    MYRIAD_FUNCTION R past_jump(int i) const {
+        const R error = epsilon_of<R> * abs(get_lane(s.now(), i)) + memory_of(i).redo.error();
+        return R(roundings_ahead) * error;
     }
-    /// The event functions a little ahead: beyond the jump to which a step was located, if the state is heading for it.
+    /// The event functions a little ahead, by the rounding of t and of the state: beyond a jump to which a step was
+    /// located, if the state is heading for it. A longer look would pass the next event, too, of a state close to it.
     MYRIAD_FUNCTION reals look_ahead(int i, const lane_data<Model, S>& at, const state& slope) const {
-        const R t = get_lane(s.now(), i);
-        const R ahead = copysign(past_jump(i, get_lane(at.h_next, i)), get_lane(at.t_end, i) - t);
+        const R t = get_lane(s.now(), i), ahead = copysign(past_jump(i), get_lane(at.t_end, i) - t);
         state y = get_lanes<R>(at.y, i);
         MYRIAD_UNROLL
-        for (int c = 0; c < n; ++c) y[c] = fma(ahead, slope[c], y[c]);
+        for (int c = 0; c < n; ++c) {
+            const R rounding = R(roundings_ahead) * epsilon_of<R> * abs(y[c]);
+            y[c] += fma(ahead, slope[c], sign_of(slope[c]) * sign_of(ahead) * rounding);
+        }
         return detail::evaluate_events<Model>(t + ahead, y, inputs_of(i, at));
+    }
+    /// A time after which the state has passed the jumps right before it: longer where it moves slowly.
+    MYRIAD_FUNCTION R time_to_pass(int i, const state& slope, const reals& there) const {
+        const R t = get_lane(s.now(), i);
+        const flags on_jump = memory_of(i).on_jump;
+        R ahead = copysign(past_jump(i), get_lane(s.data.t_end, i) - t);
+        MYRIAD_ROLLED
+        for (int k = 0; k < most_doublings; ++k) {
+            state y = get_lanes<R>(s.data.y, i);
+            MYRIAD_UNROLL
+            for (int c = 0; c < n; ++c) y[c] = fma(ahead, slope[c], y[c]);
+            const reals g = detail::evaluate_events<Model>(t + ahead, y, inputs_of(i));
+            bool passed = true;
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) passed = passed && (!on_jump[j] || g[j] * there[j] > R(0));
+            ahead *= R(2);
+            if (passed) break;
+        }
+        return abs(ahead);
     }
     /// Sets the sides of functions at a jump, with values g here, to those a little ahead.
     MYRIAD_FUNCTION void look_beyond(int i, const flags& at_jump, const reals& g, const state& slope) {
         const reals there = look_ahead(i, s.data, slope);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            if (!at_jump[j] || !(abs(there[j]) > args.event[j].tolerance)) continue;
+            if (!at_jump[j] || !(there[j] > R(0) || there[j] < R(0))) continue;
             put_side(j, i, sign_of(there[j]));
             if (g[j] * there[j] < R(0)) {
                 e.left.set(j, i, false);
                 memory_of(i).on_jump.set(j, true);
             }
         }
+        if (memory_of(i).on_jump.any_of()) memory_of(i).jump_time = time_to_pass(i, slope, there);
     }
 };
 

@@ -24,6 +24,14 @@ struct step_ends {
         const state inside = detail::hermite_interpolation(y, y1, slope, slope1, h, theta);
         return detail::evaluate_events<Model>(fma(theta, h, t), inside, p);
     }
+    /// The rounding errors of the event functions at the end: the state there is the sum of that at the start and of
+    /// increments.
+    MYRIAD_FUNCTION event_values roundings() const {
+        state size;
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_state<Model>; ++c) size[c] = max(abs(y[c]), abs(y1[c])) + abs(h * slope[c]);
+        return detail::event_roundings<Model>(t1, y1, size, p);
+    }
     /// Slopes of the event functions along the solution, at the start and at the end.
     MYRIAD_FUNCTION event_values slopes() const { return detail::event_slopes<Model>(t, y, slope, p); }
     MYRIAD_FUNCTION event_values slopes1() const { return detail::event_slopes<Model>(t1, y1, slope1, p); }

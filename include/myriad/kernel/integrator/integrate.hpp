@@ -63,12 +63,13 @@ struct integrator {
             }
             ++s.iteration;
             mask accepted = judge(trial, seen, locator, events);
-            if constexpr (samples) sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted);
+            if constexpr (samples)
+                sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted, any_event(events));
             mask reduced;
             if constexpr (has_reductions<Model>)
                 reduced = reducer<Model, Method, S>{s}.reduce(trial, end_time(), accepted);
             if constexpr (!is_pack<S>) {
-                if (!accepted && !fires(events)) continue;
+                if (!accepted && !any_event(events)) continue;
             }
             commit(trial, accepted, events);
             hook_driver<Model, Method, S> hooks{args, s, locator.sides, events};
@@ -162,11 +163,12 @@ struct integrator {
         }
     }
 
-    static MYRIAD_FUNCTION bool fires(const fired_events<Model, S>& events) {
+    /// The lanes in which an event fired.
+    static MYRIAD_FUNCTION mask any_event(const fired_events<Model, S>& events) {
         if constexpr (has_events<Model>) {
             return events.which.any_of();
         } else {
-            return false;
+            return mask(false);
         }
     }
 
@@ -178,9 +180,7 @@ struct integrator {
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]);
         if constexpr (shows_step) s.data.h = select(accepted, s.h, s.data.h);
-        mask at_event = mask(false);
-        if constexpr (has_events<Model>) at_event = events.which.any_of();
-        stepping_type{args, s}.advance(accepted, end_time(), at_event);
+        stepping_type{args, s}.advance(accepted, end_time(), any_event(events));
         s.slopes.accept(accepted, trial);
     }
 

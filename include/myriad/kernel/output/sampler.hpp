@@ -45,10 +45,12 @@ struct sampler {
         const R end = get_lane(s.data.t_end, i);
         set_lane(o.begin, i, get_lane(s.data.t_begin, i));
         set_lane(o.end, i, end);
-        // If time continues from phase to phase, the previous phase stored the sample at its end.
-        const bool has_start = args.carry_time && get_lane(s.data.phase, i) > 0 && ends_with(i, t);
+        // If time continues from phase to phase, the previous phase stored the sample at its end, up to rounding.
+        const R last = last_time(i);
+        const bool has_start =
+            args.carry_time && get_lane(s.data.phase, i) > 0 && abs(last - t) <= R(4) * epsilon_of<R> * abs(t);
         const auto passed = [&](R time) MYRIAD_LAMBDA {
-            return (has_start && time == t) || (end < t ? time > t : end > t && time < t);
+            return (has_start && (end < t ? time >= last : time <= last)) || (end < t ? time > t : end > t && time < t);
         };
         while (o.index[i] < args.sample.count && passed(sample_time(i))) ++o.index[i];
         set_next(i);
@@ -59,13 +61,16 @@ struct sampler {
         }
     }
 
-    /// Stores the samples within the accepted trial steps, which end at t1, before they are committed.
-    MYRIAD_FUNCTION void save(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
+    /// Stores the samples within the accepted trial steps, which end at t1, before they are committed. Where a step
+    /// ends at an event, a sample at the instant of it, up to the rounding of t, shows the state before the action.
+    MYRIAD_FUNCTION void save(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted,
+                              const mask& at_event) {
         if (args.sample.stored == nullptr) return;
         if (args.sample.every > 0) {
             save_steps(trial, t1, accepted);
         } else {
-            save_times(trial, t1, accepted);
+            const S rounding = time_rounding(t1), later = select(s.h < S(R(0)), t1 - rounding, t1 + rounding);
+            save_times(trial, t1, select(at_event, later, t1), accepted);
         }
     }
 
@@ -81,9 +86,11 @@ private:
         });
     }
 
-    MYRIAD_FUNCTION void save_times(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
+    /// `last` is t1 or, at an event, the last time that is the same instant.
+    MYRIAD_FUNCTION void save_times(const trial_step<Method, S, n>& trial, const S& t1, const S& last,
+                                    const mask& accepted) {
         const S t0 = s.now();
-        mask due = accepted & falls_between(t0, t1);
+        mask due = accepted & falls_between(t0, last);
         if (!any(due)) return;
         step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slopes.end(), {}};
         if constexpr (Method::first_same_as_last || interpolates_with_slope_end<Method>)
@@ -94,24 +101,29 @@ private:
             const auto inside = detail::interpolate(step, theta);
             vec<S, n> y;
             MYRIAD_UNROLL
-            for (int c = 0; c < n; ++c) y[c] = select(o.next == t1, trial.y[c], inside[c]);
+            for (int c = 0; c < n; ++c) y[c] = select(is_past(o.next, t1), trial.y[c], inside[c]);
             for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
                 store(i, get_lane(o.next, i), get_lanes<R>(y, i));
                 ++o.index[i];
                 set_next(i);
             });
-            due = accepted & falls_between(t0, t1);
+            due = accepted & falls_between(t0, last);
         }
     }
 
     /// Lanes whose next sample falls into the step from t0 to t1. Excluded is a sample left behind by a hook that
     /// reversed the phase; included is one that rounding of t put between the end of the last step and t0.
     MYRIAD_FUNCTION mask falls_between(const S& t0, const S& t1) const {
-        const S slack = S(R(4) * epsilon_of<R>) * abs(t0);
+        const S slack = time_rounding(t0);
         const S ahead = select(s.h < S(R(0)), t0 - o.next, o.next - t0);
-        const mask backwards = s.h < S(R(0)), forwards = !backwards;
-        return ((backwards & (t1 <= o.next)) | (forwards & (t1 >= o.next))) & (ahead >= -slack);
+        return is_past(t1, o.next) & (ahead >= -slack);
     }
+    /// Whether t is at or past the other time, in the direction of the step.
+    MYRIAD_FUNCTION mask is_past(const S& t, const S& other) const {
+        const mask backwards = s.h < S(R(0)), forwards = !backwards;
+        return (backwards & (t <= other)) | (forwards & (t >= other));
+    }
+    static MYRIAD_FUNCTION S time_rounding(const S& t) { return S(R(4) * epsilon_of<R>) * abs(t); }
 
     MYRIAD_FUNCTION R never(int i) const {
         constexpr R far = infinity_of<R>;
@@ -131,10 +143,11 @@ private:
         return fma(static_cast<R>(k) / static_cast<R>(args.sample.count - 1), end - begin, begin);
     }
 
-    /// Whether the last sample has time t.
-    MYRIAD_FUNCTION bool ends_with(int i, R t) const {
+    /// The time of the last sample, infinite if there is none.
+    MYRIAD_FUNCTION R last_time(int i) const {
         const std::int32_t stored = args.sample.stored[s.instance[i]];
-        return stored > 0 && args.sample.time[static_cast<std::int64_t>(stored - 1) * args.size + s.instance[i]] == t;
+        return stored > 0 ? args.sample.time[static_cast<std::int64_t>(stored - 1) * args.size + s.instance[i]]
+                          : infinity_of<R>;
     }
 
     MYRIAD_FUNCTION void store(int i, R t, const vec<R, n>& y) const {

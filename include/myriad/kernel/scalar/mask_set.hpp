@@ -25,6 +25,13 @@ public:
         for (int j = 0; j < size; ++j) made.masks_[j] = M(((words[j / 32] >> (j % 32)) & 1u) != 0);
         return made;
     }
+    /// All masks in these lanes.
+    static MYRIAD_FUNCTION mask_set all_in(const M& lanes) {
+        mask_set made;
+        MYRIAD_UNROLL
+        for (int j = 0; j < size; ++j) made.masks_[j] = lanes;
+        return made;
+    }
     MYRIAD_FUNCTION const M& operator[](int j) const { return masks_[j]; }
     MYRIAD_FUNCTION void set(int j, const M& value) { masks_[j] = value; }
     /// Sets mask j, which must not be set yet, where x, which is not zero, is negative.
@@ -82,6 +89,12 @@ public:
         mask_set made;
         MYRIAD_UNROLL
         for (int k = 0; k < count; ++k) made.words_[k] = words[k];
+        return made;
+    }
+    static MYRIAD_FUNCTION mask_set all_in(bool lane) {
+        mask_set made;
+        MYRIAD_UNROLL
+        for (int k = 0; k < count; ++k) made.words_[k] = lane ? used(k) : 0u;
         return made;
     }
     MYRIAD_FUNCTION bool operator[](int j) const { return ((words_[j / 32] >> (j % 32)) & 1u) != 0; }
