@@ -109,8 +109,8 @@ struct integrator {
         s.ended = mask(false);
         if (over) watch.interrupt();  // those that have begun another phase
         watch.plan();
-        if constexpr (chooses_first_step<Method>) {
-            const mask open = begun & s.control.first_step_open;
+        if constexpr (is_adaptive<Method>) {
+            const mask open = begun & (s.data.h_next == S(R(0)));
             if (any(open)) detail::choose_first_step(args, s, open);
         }
         s.slopes.begin(begun, s.now(), s.data, s.extra_evaluations);
