@@ -235,6 +235,13 @@ void ensemble_data<R>::mark_invalid(std::int64_t i) {
     this->status.data()[i] = myriad::status::invalid_input;
 }
 template <class R>
+void ensemble_data<R>::leave(std::int64_t i) {
+    if (this->ended.data()[i] != 0) return;
+    this->ended.data()[i] = 1;
+    this->status.data()[i] = myriad::status::interrupted;
+    if (this->phase.data()[i] == 0) this->t.data()[i] = t_begin_of(i);
+}
+template <class R>
 bool ensemble_data<R>::has_fired_last(int event, std::int64_t i) const {
     return this->status.data()[i] == myriad::status::stopped_by_event ||
            (this->side.component(event)[i] == 0 && counts() && this->accepted.data()[i] > 0);

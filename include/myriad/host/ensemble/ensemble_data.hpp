@@ -84,6 +84,8 @@ struct ensemble_data : detail::instance_arrays<component_array, R> {
     void expect_phases(std::int64_t phases);
     /// Marks an instance as one that cannot be integrated.
     void mark_invalid(std::int64_t i);
+    /// Ends instance i, which was not begun, as `interrupted`, unless it has ended before.
+    void leave(std::int64_t i);
     /// Whether the last thing that an instance which has taken steps saw of an event may be that it happened: the phase
     /// then ended within the function's tolerance, which stores no side. An instance at rest at zero has none either.
     bool has_fired_last(int event, std::int64_t i) const;

@@ -15,12 +15,16 @@ namespace myriad::host::inline MYRIAD_ABI {
 
 /// The properties of a method that a kernel's arguments depend on.
 struct method_traits {
-    bool adaptive, scales_tolerances;
+    bool adaptive;
     int embedded_order;
+    bool scales_tolerances;
 };
 template <class Method>
-inline constexpr method_traits traits_of{Method::embedded_order > 0, scales_tolerances<Method>,
-                                         Method::embedded_order};
+inline constexpr method_traits traits_of = {
+    .adaptive = Method::embedded_order > 0,
+    .embedded_order = Method::embedded_order,
+    .scales_tolerances = scales_tolerances<Method>,
+};
 
 /// The options in the form that a kernel of the method takes, in its arguments: `kernel_arguments`, or others with the
 /// same members, for so many states and events.

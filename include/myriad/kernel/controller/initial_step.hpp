@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The first step of a phase if the user gave none: from the slope, the tolerances and the domain; or, as an option, from
-// the change of the slope too.
+// The first step of a phase if the user gave none: from the slope, the tolerances and the domain; or, as an option,
+// from the change of the slope too.
 #pragma once
 
 #include "myriad/kernel/controller/fast_power.hpp"
@@ -9,10 +9,10 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// By the slope alone: no component changes by more than `args.first_change` of its size, which is at least atol / rtol.
-/// Shampine and Reichelt, SIAM J. Sci. Comput. 18 (1997) 1, and their code ode45. At most a tenth of the domain; in one
-/// without an end, and where the slope says nothing, at most `args.step`. A component that is zero and has no absolute
-/// tolerance has no size.
+/// By the slope alone: no component changes by more than `args.first_change` of its size, which is at least atol /
+/// rtol. Shampine and Reichelt, SIAM J. Sci. Comput. 18 (1997) 1, and their code ode45. At most a tenth of the domain;
+/// in one without an end, and where the slope says nothing, at most `args.step`. A component that is zero and has no
+/// absolute tolerance has no size.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION S step_by_slope(const kernel_arguments<Model, real_of<S>>& args,
                                 const integration_state<Model, Method, S>& s, const vec<S, n_state<Model>>& slope) {
@@ -31,9 +31,9 @@ MYRIAD_FUNCTION S step_by_slope(const kernel_arguments<Model, real_of<S>>& args,
     return smaller(select((rate > S(R(0))) & (h > S(R(0))), h, usual), most);
 }
 
-/// By the slope and its change. Hairer, Norsett, Wanner, Solving ODE I, II.4, "Starting step size", in the maximum norm:
-/// an Euler step that changes y by a hundredth of its size shows how fast the slope changes; the leading error term of
-/// the first step is to be a hundredth of the tolerance.
+/// By the slope and its change. Hairer, Norsett, Wanner, Solving ODE I, II.4, "Starting step size", in the maximum
+/// norm: an Euler step that changes y by a hundredth of its size shows how fast the slope changes; the leading error
+/// term of the first step is to be a hundredth of the tolerance.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& args,
                                     integration_state<Model, Method, S>& s, const mask_of<S>& open,
