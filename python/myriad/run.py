@@ -20,7 +20,7 @@ _first_failure = status_names.index("max_steps")
 
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C ended a call of `solve`; `run` has the instances that were done, and the others as not_started, or as
-    interrupted if they were under way and took more than a second longer."""
+    interrupted if they were under way and took more than half a second longer."""
 
     def __init__(self, run):
         super().__init__(f"{run.done} of {run.size} instances were done; .run has them")

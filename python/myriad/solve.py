@@ -382,8 +382,8 @@ def _positive_infinity(value):
 
 
 def make_options(components, size, *, phases, record, samples, step, minimum_step, maximum_step, growth_limit,
-                 shrink_limit, max_steps, phase_length, carry_on, carry_on_step, sub_samples, accumulation_limit,
-                 schedule):
+                 shrink_limit, max_steps, time_limit, phase_length, carry_on, carry_on_step, sub_samples,
+                 accumulation_limit, schedule):
     """The core's options, but for tolerances and events, and the places of what is recorded and sampled, by name."""
     options = _core.Options()
     options.phases = _whole(phases, "phases")
@@ -393,6 +393,7 @@ def make_options(components, size, *, phases, record, samples, step, minimum_ste
     options.growth_limit = _real(growth_limit, "growth_limit")
     options.shrink_limit = _real(shrink_limit, "shrink_limit")
     options.max_steps = _whole(max_steps, "max_steps", 1 << 62)
+    options.time_limit = 0 if time_limit is None else _real(time_limit, "time_limit")
     options.phase_length = _real(phase_length, "phase_length")
     options.carry_on(bool(carry_on), bool(carry_on_step))
     options.sub_samples = _whole(sub_samples, "sub_samples")
@@ -450,8 +451,8 @@ def _first_recorded(record):
 
 def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, samples=None, method=None, control=(),
           rtol=1e-8, atol=1e-8, step=None, minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1,
-          max_steps=10_000_000, phase_length=0, carry_on=False, carry_on_step=False, events=None, sub_samples=1,
-          accumulation_limit=50, tolerance_scale=None, invalid="refuse", schedule="automatic", size=None,
+          max_steps=1_000_000, time_limit=None, phase_length=0, carry_on=False, carry_on_step=False, events=None,
+          sub_samples=1, accumulation_limit=50, tolerance_scale=None, invalid="refuse", schedule="automatic", size=None,
           precision="double", device="auto", interpreted=None, progress=None, **unknown):
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
@@ -472,7 +473,10 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
                       "pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
                       "tolerance_per_instance", the last with `tolerance_scale=`
     rtol, atol        tolerances of the error per step: numbers, lists in the order of the states, or dicts by state
-    step              the fixed step, or the first one of an adaptive method
+    step              the fixed step, or the first one of an adaptive method, which else follows from the slope, the
+                      tolerances and the domain
+    max_steps         trial steps in a phase, after which an instance ends as "max_steps"
+    time_limit        seconds after which the call returns: what is left ends as "interrupted"
     carry_on          phases begin where the last one ended, as for phases that events end
     carry_on_step     phases begin with the step size that the last one would have tried next, and not with `step`:
                       for many short phases of a smooth motion
@@ -488,8 +492,8 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
     progress          True for a bar, or a function of the numbers of instances done and of all
 
     Raises `myriad.Error` if something is missing or does not fit, before any work. Ctrl-C raises
-    `myriad.Interrupted`, whose `run` has what is done; on the CPU, instances that take more than a second longer end as
-    "interrupted", and on a GPU those under way come to their end."""
+    `myriad.Interrupted`, whose `run` has what is done; instances that take more than half a second longer end as
+    "interrupted"."""
     begin = clock.perf_counter()
     refuse_options(unknown, inspect.signature(solve).parameters, "solve")
     if precision not in ("double", "float"):
@@ -511,8 +515,8 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
     options, recorded, sampled = make_options(
         components, count, phases=phases, record=record, samples=samples, step=step, minimum_step=minimum_step,
         maximum_step=maximum_step, growth_limit=growth_limit, shrink_limit=shrink_limit, max_steps=max_steps,
-        phase_length=phase_length, carry_on=carry_on, carry_on_step=carry_on_step, sub_samples=sub_samples,
-        accumulation_limit=accumulation_limit, schedule=schedule)
+        time_limit=time_limit, phase_length=phase_length, carry_on=carry_on, carry_on_step=carry_on_step,
+        sub_samples=sub_samples, accumulation_limit=accumulation_limit, schedule=schedule)
     if invalid == "mark":
         options.mark_invalid()
     elif invalid != "refuse":

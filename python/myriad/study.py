@@ -455,7 +455,7 @@ class _ExecutedRun:
 def study(model, sweep=None, *, start=None, time=None, phases=1, record=None, samples=None, keep=None, reduce=(),
           draws=None, seed=0, title="", units=None, notes=None, method=None, control=(), rtol=1e-8, atol=1e-8,
           step=None,
-          minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1, max_steps=10_000_000, phase_length=0,
+          minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1, max_steps=1_000_000, phase_length=0,
           carry_on=False, carry_on_step=False, events=None, sub_samples=1, accumulation_limit=50,
           schedule="automatic", precision="double", interpreted=None, **unknown):
     """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
@@ -487,6 +487,6 @@ def study(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
         start=start, time=time, phases=phases, record=record, samples=samples, keep=keep, reduce=reduce, draws=draws,
         seed=seed, title=title, units=units, notes=notes, method=method, control=control, rtol=rtol, atol=atol,
         step=step, minimum_step=minimum_step, maximum_step=maximum_step, growth_limit=growth_limit,
-        shrink_limit=shrink_limit, max_steps=max_steps, phase_length=phase_length, carry_on=carry_on,
+        shrink_limit=shrink_limit, max_steps=max_steps, time_limit=None, phase_length=phase_length, carry_on=carry_on,
         carry_on_step=carry_on_step, events=events, sub_samples=sub_samples, accumulation_limit=accumulation_limit,
         schedule=schedule, precision=precision, interpreted=interpreted))

@@ -321,6 +321,7 @@ void bind_options(nb::module_& m) {
         .def_rw("growth_limit", &options::growth_limit)
         .def_rw("shrink_limit", &options::shrink_limit)
         .def_rw("max_steps", &options::max_steps)
+        .def_rw("time_limit", &options::time_limit)
         .def_rw("phase_length", &options::phase_length)
         .def_rw("sub_samples", &options::sub_samples)
         .def_rw("accumulation_limit", &options::accumulation_limit)

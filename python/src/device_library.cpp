@@ -170,6 +170,7 @@ void loaded_kernel<R>::launch(shared_placement, const arguments& a, unsigned lon
     put_head(at.sample, a.sample, a.sample.minimum_spacing, at.sample_head);
     put(at.sample_columns, a.sample.column, m.n_state);
     put(at.queue, &queue, 1);
+    put(at.stop, &how.stop, 1);
     void* all[] = {parameters_.data()};
     cuda::check(
         cudaLaunchKernel(all_->integrate, dim3(how.blocks), dim3(how.threads), all, how.shared_bytes, how.stream),

@@ -17,7 +17,7 @@
 namespace myriad::python {
 
 inline host::method_traits traits_of(const model_facts& kernel) {
-    return {kernel.embedded_order > 0, kernel.scales_tolerances, kernel.chooses_first_step};
+    return {kernel.embedded_order > 0, kernel.embedded_order, kernel.scales_tolerances};
 }
 inline host::step_sizes steps_of(const host::method_traits& method) {
     return method.adaptive ? host::step_sizes::kept : host::step_sizes::fixed;

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <exception>
 #include <limits>
-#include <thread>
 #include <utility>
 
-#include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/core/error.hpp"
+#include "myriad/host/threads/polling_backoff.hpp"
 
 namespace myriad::python {
 
@@ -112,17 +110,13 @@ void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
 }
 
 template <class R>
-void resident<R>::wait(const options& o, std::int64_t size) {
+void resident<R>::wait(const options& o, std::int64_t size, clock::time_point deadline) {
     host::progress_relay relay{o.progress, size, nullptr};
-    using clock = std::chrono::steady_clock;
-    const auto begin = clock::now();
-    while (!engine_->idle()) {
-        if (clock::now() - begin < std::chrono::milliseconds{5}) {
-            std::this_thread::yield();
-            continue;
-        }
-        std::this_thread::sleep_for(std::chrono::microseconds{50});
-        host::progress_relay::call(&relay, 0);  // an exception waits for the kernel, which cannot be stopped
+    relay.deadline = deadline;
+    auto told = detail::stop_request::none;
+    for (host::polling_backoff waiting; !engine_->idle(); waiting.pause()) {
+        const auto asked = host::progress_relay::ask(&relay);
+        if (ends_kernels(asked) && asked != std::exchange(told, asked)) engine_->stop(asked);
     }
     host::progress_relay::call(&relay, size);
     if (relay.failure) std::rethrow_exception(relay.failure);
@@ -151,7 +145,8 @@ host::work_count resident<R>::work() {
 template <class R>
 void resident<R>::integrate(ensemble<R>& instances, const options& o, host::data_check<R>& check,
                             report_of<R>& result) {
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = clock::now();
+    const auto deadline = host::progress_relay::deadline_in(o.time_limit);
     auto& data = instances.data;
     for (const device_input<R>& input : instances.on_device) given_there_.insert(input.component);
     if (!check.passes(0, data.size)) check.run();
@@ -162,7 +157,7 @@ void resident<R>::integrate(ensemble<R>& instances, const options& o, host::data
     engine_->integrate(call_->arguments);
     std::exception_ptr failure;
     try {
-        wait(o, data.size);
+        wait(o, data.size, deadline);
     } catch (...) {
         failure = std::current_exception();
     }
@@ -180,10 +175,11 @@ void resident<R>::integrate(ensemble<R>& instances, const options& o, host::data
         all(data.t_end, data.t_end.components());
         host::summarise(data, result, data.size);
     }
+    host::note_failures(result, data, o, data.size);
     host::set_work(result, {}, work());
     result.kernel = engine_->facts();
     result.kernel_seconds = engine_->kernel_seconds();
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result.seconds = std::chrono::duration<double>(clock::now() - begin).count();
     result.device = device::cuda(how_.device).name();
     if (failure) std::rethrow_exception(failure);
 }

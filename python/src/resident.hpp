@@ -12,6 +12,7 @@
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
+#include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report_of.hpp"
 #include "prepared_call.hpp"
@@ -44,11 +45,13 @@ public:
     int number() const { return how_.device; }
 
 private:
+    using clock = host::progress_relay::clock;
+
     host::engine_key key() const { return &program_; }
     void take_engine();
     std::size_t bytes_per_instance() const;
     void take_inputs(const ensemble<R>& instances, bool mark_invalid);
-    void wait(const options& o, std::int64_t size);
+    void wait(const options& o, std::int64_t size, clock::time_point deadline);
     host::work_count work();
 
     device_program& program_;

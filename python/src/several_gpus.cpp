@@ -18,6 +18,7 @@
 #include "myriad/host/chunks/chunked_solve.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/core/error.hpp"
+#include "myriad/host/threads/polling_backoff.hpp"
 
 namespace myriad::python {
 
@@ -31,13 +32,15 @@ struct parts_of_call {
     const cuda::past past;
     std::int64_t part = 1;                       // instances of a part
     std::atomic<std::int64_t> next{0}, done{0};  // instances
+    std::atomic<detail::stop_request> asked{detail::stop_request::none};
     std::atomic<bool> stopped{false};
 
     std::mutex mutex;
     std::condition_variable changed;
     std::size_t working = 0;  // threads
     std::exception_ptr failure;
-    double kernel_seconds = 0;  // of the GPU that took longest
+    std::vector<std::int64_t> left;  // the first instances of parts that were given to a thread and not begun
+    double kernel_seconds = 0;       // of the GPU that took longest
     cuda::kernel_facts facts{};
 };
 
@@ -72,6 +75,7 @@ public:
             }
             for (slot& s : slots_) take_back(s);
             const std::lock_guard lock(all_.mutex);
+            if (first < all_.size) all_.left.push_back(first);
             all_.kernel_seconds = std::max(all_.kernel_seconds, kernel_seconds_);
             all_.facts = slots_[0].engine->facts();
             for (slot& s : slots_)
@@ -94,6 +98,12 @@ private:
 
     void take_back(slot& s) {
         if (s.count == 0) return;
+        for (host::polling_backoff waiting; !s.engine->idle(); waiting.pause()) {
+            const detail::stop_request asked = all_.asked;
+            if (!ends_kernels(asked) || asked == std::exchange(told_, asked)) continue;
+            for (slot& one : slots_)
+                if (one.engine != nullptr) one.engine->stop(asked);
+        }
         s.engine->wait();
         all_.done += std::exchange(s.count, 0);
         const auto [from, to] = s.engine->kernel_interval(clock_);
@@ -104,6 +114,7 @@ private:
     chunks chunks_;
     parts_of_call& all_;
     std::array<slot, 2> slots_;
+    detail::stop_request told_ = detail::stop_request::none;  // to the engines
     void* clock_ = nullptr;
     double kernel_seconds_ = 0, kernels_until_ = 0;
 };
@@ -116,10 +127,23 @@ std::string names_of(const std::vector<placed_kernel>& on) {
     return names;
 }
 
+namespace {
+
+/// Ends the instances of parts that were not begun as they are.
+template <class R>
+void leave(host::ensemble_data<R>& data, parts_of_call& all) {
+    for (std::int64_t first = all.next; first < all.size; first += all.part) all.left.push_back(first);
+    for (const std::int64_t first : all.left)
+        for (std::int64_t i = first; i < std::min(first + all.part, all.size); ++i) data.leave(i);
+}
+
+}  // namespace
+
 template <class R>
 void integrate_on_several(const std::vector<placed_kernel>& on, shaped_arguments<R>& arguments, const options& o,
                           host::ensemble_data<R>& data, host::data_check<R>& check, report_of<R>& result) {
     const auto begin = std::chrono::steady_clock::now();
+    const auto deadline = host::progress_relay::deadline_in(o.time_limit);
     if (!check.passes(0, data.size)) check.run();
     const host::work_count before = data.untouched ? host::work_count{} : host::counted_work(data, data.size);
     parts_of_call all(data.size, data.untouched ? cuda::past::none : cuda::past::kept);
@@ -136,6 +160,8 @@ void integrate_on_several(const std::vector<placed_kernel>& on, shaped_arguments
 
     data.untouched = false;
     host::progress_relay relay{o.progress, data.size, nullptr};
+    relay.deadline = deadline;
+    relay.last_call = begin;
     std::vector<std::thread> threads;
     try {
         for (std::size_t w = 0; w < workers.size(); ++w) {
@@ -155,17 +181,21 @@ void integrate_on_several(const std::vector<placed_kernel>& on, shaped_arguments
             all.changed.wait_for(lock, std::chrono::milliseconds{20});
             lock.unlock();
             const std::int64_t done = all.done;
-            if (done < data.size && !host::progress_relay::call(&relay, done)) all.stopped = true;
+            if (done < data.size) relay.last_done = done;
+            all.asked = host::progress_relay::ask(&relay);
+            if (all.asked != detail::stop_request::none) all.stopped = true;
             lock.lock();
         }
     }
     for (std::thread& t : threads) t.join();
     if (all.failure) std::rethrow_exception(all.failure);
-    if (all.done == data.size) host::progress_relay::call(&relay, data.size);
+    if (relay.over) leave(data, all);
+    if (all.done == data.size || relay.over) host::progress_relay::call(&relay, data.size);
 
     host::summarise(data, result, data.size);
     host::set_work(result, before, host::counted_work(data, data.size));
     host::note_ended(result, data, data.size);
+    host::note_failures(result, data, o, data.size);
     data.remember_ended();
     result.kernel = all.facts;
     result.kernel_seconds = all.kernel_seconds;

@@ -2,8 +2,11 @@
 """Models on a GPU: `scripts/gpu.sh --python` runs these, which need NumPy and pytest alone."""
 
 import os
+import signal
 import subprocess
 import sys
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -267,3 +270,41 @@ def test_a_sweep_that_takes_much_of_the_memory_is_integrated_in_chunks():
     with pytest.raises(my.Error, match="is not on a GPU: the run was on the CPU, or in parts"):
         many.device["x"]
     assert np.array_equal(few["x"], many["x"][:, :2])
+
+
+def endless(**more):
+    """Oscillators of which two take for ever, and the seconds that the call took."""
+    end = np.full(100_000, 10.0)
+    end[[5, 70_000]] = 1e12
+    x, v, w = *my.states("x v"), my.parameter("w")
+    call = dict(sweep={w: np.linspace(1, 2, 100_000)}, start={x: 1, v: 0}, device="cuda", rtol=1e-6)
+    model = my.model({x: v, v: -w * w * x}, name="endless")
+    my.solve(model, time=(0, 1), **call)  # compiles it
+    begin = time.perf_counter()
+    try:
+        run = my.solve(model, time=(0, end), max_steps=2_000_000_000, **call, **more)
+    except my.Interrupted as interrupted:
+        run = interrupted.run
+    return run, time.perf_counter() - begin
+
+
+def test_time_limit_ends_a_kernel():
+    run, seconds = endless(time_limit=0.5)
+    assert run.report.by_status == {"success": 99_998, "interrupted": 2} and 0.5 <= seconds < 1
+    assert (run.status[[5, 70_000]] == my.status_names.index("interrupted")).all() and np.isfinite(run["x"]).all()
+    again, seconds = endless(time_limit=0.1, phases=3, schedule="by_cost")
+    assert again.report.by_status["interrupted"] >= 2 and seconds < 1
+
+
+def test_ctrl_c_ends_a_kernel_within_a_second():
+    sent = []
+
+    def stop():
+        sent.append(time.perf_counter())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    endless(time_limit=0.01)  # compiled, so that the signal comes when the kernel runs
+    threading.Timer(2, stop).start()
+    run, _ = endless()
+    assert time.perf_counter() - sent[0] < 1.2
+    assert run.report.by_status.get("interrupted") == 2 and run.done == 99_998

@@ -392,3 +392,49 @@ on_axis = lambda: my.study(my.model({x: -x}), my.grid({my.t_end: my.linspace(1, 
                            samples=3)  # the host looks at the domains, and sets the instances
 assert np.allclose(on_axis().run(device="cuda")["x_sample"], domains(samples=3).run(device="cpu")["x_sample"])
 """)
+
+
+ENDLESS = """
+import signal, threading, time
+end = np.ones(400)
+end[130::200] = 1e12
+def endless(device, **more):
+    begin = time.perf_counter()
+    try:
+        return my.solve(model, sweep(400), start={x: -0.5, v: -0.1}, time=(0, end), device=device,
+                        max_steps=2_000_000_000, **more)
+    finally:
+        assert time.perf_counter() - begin < 120  # with the time to compile it
+def check(run):
+    assert (run.status[130::200] == my.status_names.index("interrupted")).all()
+    assert np.isfinite(run["x"]).all() and (run.t[130::200] < 1e12).all()
+    assert set(run.report.by_status) <= {"success", "interrupted", "not_started"}
+"""
+
+
+@pytest.mark.parametrize("device, more", [("'cuda'", "phases=2"), ("'cuda'", "schedule='dynamic'"),
+                                          ("['cuda:0', 'cuda:1']", ""), ("'cuda'", "schedule='by_cost', phases=3")])
+def test_a_kernel_that_runs_for_ever_ends_by_time_limit(run, device, more):
+    run(ENDLESS + f"""
+limited = endless({device}, time_limit=0.5, {more})
+check(limited)
+assert limited.report.by_status["interrupted"] + limited.report.by_status.get("success", 0) == 400
+assert any("time_limit = 0.5 s was over" in note for note in limited.report.notes)
+assert endless({device}, time_limit=0.2, {more}).report.by_status["interrupted"] >= 2
+assert solve({device}, 50).report.by_status == {{"success": 50}}  # the next call is not stopped
+""", MYRIAD_SIMULATED_GPUS=2)
+
+
+@pytest.mark.parametrize("device", ["'cuda'", "['cuda:0', 'cuda:1']"])
+def test_ctrl_c_ends_a_kernel_that_runs_for_ever(run, device):
+    run(ENDLESS + f"""
+endless({device}, time_limit=0.1)  # compiled, so that the signal comes while the kernel runs
+threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    endless({device})
+except my.Interrupted as interrupted:
+    check(interrupted.run)
+else:
+    raise AssertionError("was not interrupted")
+assert solve({device}, 50).report.by_status == {{"success": 50}}
+""", MYRIAD_SIMULATED_GPUS=2)

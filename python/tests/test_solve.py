@@ -186,3 +186,32 @@ def test_samples_are_as_accurate_as_the_steps(oscillator):
     run = my.solve(oscillator, {"w": [1.0]}, start={"x": 1, "v": 0}, time=(0, 6), samples=200, rtol=1e-7, atol=1e-7)
     error = np.abs(run["x"] - np.cos(run.sample_times)).max()
     assert error < 1e-6  # 4e-6 with cash_karp
+
+
+@pytest.mark.parametrize("schedule", ["automatic", "dynamic", "by_cost"])
+def test_a_time_limit_ends_what_takes_for_ever(oscillator, schedule):
+    end = np.ones(50)
+    end[20] = 1e12
+    call = dict(start=start, max_steps=2_000_000_000, phases=2, schedule=schedule)
+    run = my.solve(oscillator, {"w": 1}, time=(0, end), time_limit=0.3, **call)
+    assert run.report.by_status == {"success": 49, "interrupted": 1} and run.report.seconds < 8
+    assert my.status_names[run.status[20]] == "interrupted" and 0 < run.t[20] < 1e12 and np.isfinite(run["x"]).all()
+    assert "interrupted: time_limit = 0.3 s was over" in run.report.notes and "note: interrupted" in str(run.report)
+    for wrong in (-1, float("nan"), "soon"):
+        with pytest.raises(my.Error, match="time_limit"):
+            my.solve(oscillator, {"w": 1}, start=start, time=(0, 1), time_limit=wrong)
+
+
+def test_notes_say_what_ended_instances(oscillator):
+    few = my.solve(oscillator, {"w": w}, start=start, time=(0, 1000), max_steps=50)
+    assert any(note.startswith("max_steps: 50 trial steps did not take") for note in few.report.notes)
+    coarse = my.solve(oscillator, {"w": 1e3}, start=start, time=(1e6, 1e6 + 100), precision="float")
+    assert coarse.report.by_status == {"step_underflow": 1}
+    assert any(note.startswith("step_underflow: time, which single precision resolves to 0.0625")
+               for note in coarse.report.notes)
+
+
+def test_the_default_first_step_is_one_that_time_resolves(oscillator):
+    for begin, precision in ((1e6, "float"), (-1e6, "float"), (1e15, "double")):
+        run = my.solve(oscillator, {"w": 1e-3}, start=start, time=(begin, begin + 1000), precision=precision, rtol=1e-5)
+        assert run.report.by_status == {"success": 1} and abs(run["x"][0] - np.cos(1)) < 1e-3

@@ -379,6 +379,7 @@ void study_file::read_options(any_study& study, const program_model& model) {
         from.read("growth_limit", o.growth_limit);
         from.read("shrink_limit", o.shrink_limit);
         from.read("max_steps", o.max_steps);
+        from.read("time_limit", o.time_limit);
         from.read("phase_time", o.phase_time, {{"restart", phase_time::restart}, {"carry_on", phase_time::carry_on}});
         from.read("phase_length", o.phase_length);
         from.read("phase_step", o.phase_step, {{"restart", phase_step::restart}, {"carry_on", phase_step::carry_on}});

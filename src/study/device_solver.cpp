@@ -102,7 +102,7 @@ void device_solver_of<R>::prepare(std::int64_t first, std::int64_t count) {
 
 template <class R>
 solved device_solver_of<R>::integrate(const device&, const std::function<void(std::int64_t done)>& progress) {
-    instances_->integrate();
+    instances_->integrate([&] { progress(0); });
     solved how;
     const std::vector<std::int64_t> found = instances_->reduce({}, {detail::reduction_kind::statuses});
     std::copy(found.begin(), found.end(), how.by_status.begin());

@@ -282,6 +282,9 @@ private:
         require(asked_.options.samples.times_of_instances.empty(),
                 "samples.times_of_instances has times for each instance of one call: a study has none, give times or "
                 "evenly");
+        require(asked_.options.time_limit == 0,
+                "time_limit is given, but a study keeps what it has done and goes on where it was stopped: leave it "
+                "out, stop the run when it is time, or bound the steps of an instance by max_steps");
         if (!asked_.generator.empty()) return;
         for (const component& c : names_.all()) {
             if (c.kind == accessory || c.kind == integer_accessory || c.kind == shared_integer) continue;

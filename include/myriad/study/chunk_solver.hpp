@@ -128,8 +128,8 @@ public:
     /// See `cuda::engine`.
     virtual void generate(const std::shared_ptr<const cuda::generation>& how, std::int64_t first,
                           std::int64_t count) = 0;
-    /// Integrates them, and waits until that is done.
-    virtual void integrate() = 0;
+    /// Integrates them, and waits until that is done; calls `watch` meanwhile, which may throw, and so ends it.
+    virtual void integrate(const std::function<void()>& watch) = 0;
     virtual void fetch(const cuda::device_values& what, std::byte* to) = 0;
     virtual std::vector<std::int64_t> reduce(const cuda::device_values& what, const cuda::device_reduction& how) = 0;
 };

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/model/model_shape.hpp"
+#include "myriad/host/threads/polling_backoff.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/chunk_solver.hpp"
 
@@ -38,9 +40,16 @@ public:
     void generate(const std::shared_ptr<const cuda::generation>& how, std::int64_t first, std::int64_t count) final {
         use([&](auto& e) { e.generate(*arguments_, how, first, count); });
     }
-    void integrate() final {
+    void integrate(const std::function<void()>& watch) final {
         use([&](auto& e) {
             e.integrate(*arguments_);
+            try {
+                for (host::polling_backoff waiting; !e.idle(); waiting.pause()) watch();
+            } catch (...) {
+                e.stop(detail::stop_request::end_now);
+                e.wait();
+                throw;
+            }
             e.wait();
         });
     }

@@ -46,6 +46,15 @@ void call(void (*kernel)(A...), void** arguments) {
     simulated::call_with(kernel, arguments, std::index_sequence_for<A...>());
 }
 
+/// Copies of the arguments, which a launch may not outlive. For good, as tests are short.
+template <class... A>
+void** copy(void (*)(A...), void** arguments) {
+    void** const copies = new void*[sizeof...(A) + 1];
+    std::size_t i = 0;
+    ((copies[i] = new std::remove_cv_t<A>(*static_cast<std::remove_cv_t<A>*>(arguments[i])), ++i), ...);
+    return copies;
+}
+
 }  // namespace simulated
 
 #define blockIdx (simulated::now.block)
@@ -82,8 +91,9 @@ double staged[32'768];
 unsigned long long reduced_in_block[32'768];
 }
 
-#define SIMULATED_KERNEL(name) \
-    extern "C" void run_##name(void** arguments) { simulated::call(&name, arguments); }
+#define SIMULATED_KERNEL(name)                                                          \
+    extern "C" void run_##name(void** arguments) { simulated::call(&name, arguments); } \
+    extern "C" void** copy_##name(void** arguments) { return simulated::copy(&name, arguments); }
 #define SIMULATED_PROGRAM           \
     using namespace myriad::detail; \
     extern "C" void set_place(const simulated::place* where) { simulated::now = *where; }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A driver of GPUs, libcuda.so.1, that computes on this CPU: device memory is the host's, streams do their work at
-// once, and programs are shared objects of device.hpp, whose threads are run one block at a time, each with a stack of
-// its own. MYRIAD_SIMULATED_GPUS says how many devices there are, MYRIAD_SIMULATED_CAPABILITY which,
-// MYRIAD_SIMULATED_MEGABYTES what memory each has, and MYRIAD_SIMULATED_LAUNCHES how many kernels the last one runs
-// before it fails.
+// once, except for kernels, which run in a thread while other streams work, and programs are shared objects of
+// device.hpp, whose threads are run one block at a time, each with a stack of its own. MYRIAD_SIMULATED_GPUS says how
+// many devices there are, MYRIAD_SIMULATED_CAPABILITY which, MYRIAD_SIMULATED_MEGABYTES what memory each has, and
+// MYRIAD_SIMULATED_LAUNCHES how many kernels the last one runs before it fails.
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <dlfcn.h>
@@ -62,6 +63,7 @@ struct place {
 };
 struct kernel {
     void (*run)(void**);
+    void** (*copy)(void**);  // of the arguments
     void (*set_place)(const place*);
 };
 
@@ -122,6 +124,43 @@ private:
     std::byte* stacks_;
     place place_;
 };
+
+}  // namespace
+
+namespace {
+
+/// Work in order: the kernel that is running, which other work of the stream waits for.
+class stream {
+public:
+    ~stream() { wait(); }
+    bool busy() const { return running_; }
+    void wait() {
+        const std::lock_guard lock(mutex_);
+        if (thread_.joinable()) thread_.join();
+    }
+    template <class Work>
+    void begin(Work work) {
+        wait();
+        const std::lock_guard lock(mutex_);
+        running_ = true;
+        thread_ = std::thread([this, work] {
+            work();
+            running_ = false;
+        });
+    }
+
+private:
+    std::mutex mutex_;
+    std::thread thread_;
+    std::atomic<bool> running_{false};
+};
+/// What was recorded last.
+struct event {
+    std::atomic<stream*> of{nullptr};
+};
+void wait_for(void* s) {
+    if (s != nullptr) static_cast<stream*>(s)->wait();
+}
 
 }  // namespace
 
@@ -198,7 +237,7 @@ DRIVER cuCtxGetDevice(int* device) {
     *device = current;
     return current >= 0 ? success : invalid_context;
 }
-DRIVER cuCtxSynchronize() { return state(); }
+DRIVER cuCtxSynchronize() { return state(); }  // for work of other libraries, which there is none of
 DRIVER cuMemAlloc_v2(std::uintptr_t* memory, std::size_t bytes) {
     NEEDS_CONTEXT;
     if (bytes > memory_per_device) return out_of_memory;
@@ -238,35 +277,60 @@ DRIVER cuMemFreeHost(void* memory) {
 DRIVER cuMemHostRegister_v2(void*, std::size_t, unsigned) { return success; }
 DRIVER cuMemHostUnregister(void*) { return success; }
 DRIVER cuPointerGetAttribute(void*, int, std::uintptr_t) { return invalid_value; }  // pageable memory
-DRIVER cuMemcpyAsync(std::uintptr_t to, std::uintptr_t from, std::size_t bytes, void*) {
+DRIVER cuMemcpyAsync(std::uintptr_t to, std::uintptr_t from, std::size_t bytes, void* where) {
     NEEDS_CONTEXT;
+    wait_for(where);
     if (is_on_device(to)) uploaded += bytes;
     std::memcpy(reinterpret_cast<void*>(to), reinterpret_cast<const void*>(from), bytes);
     return success;
 }
 DRIVER cuMemcpy2DAsync_v2(const void*, void*) { return invalid_value; }  // for pinned memory alone
-DRIVER cuMemsetD8Async(std::uintptr_t memory, unsigned char value, std::size_t bytes, void*) {
+DRIVER cuMemsetD8Async(std::uintptr_t memory, unsigned char value, std::size_t bytes, void* where) {
     NEEDS_CONTEXT;
+    wait_for(where);
     std::memset(reinterpret_cast<void*>(memory), value, bytes);
     return success;
 }
-DRIVER cuStreamCreate(void** stream, unsigned) {
+DRIVER cuStreamCreate(void** made, unsigned) {
     NEEDS_CONTEXT;
-    *stream = new char;
+    *made = new stream;
     return success;
 }
-DRIVER cuStreamDestroy_v2(void* stream) {
+DRIVER cuStreamDestroy_v2(void* old) {
     NEEDS_CONTEXT;
-    delete static_cast<char*>(stream);
+    delete static_cast<stream*>(old);
     return success;
 }
-DRIVER cuStreamSynchronize(void*) { return state(); }
-DRIVER cuStreamQuery(void*) { return state(); }
-DRIVER cuStreamWaitEvent(void*, void*, unsigned) { return state(); }
-DRIVER cuEventCreate(void** event, unsigned) { return cuStreamCreate(event, 0); }
-DRIVER cuEventDestroy_v2(void* event) { return cuStreamDestroy_v2(event); }
-DRIVER cuEventSynchronize(void*) { return success; }
-DRIVER cuEventRecord(void*, void*) { return state(); }
+DRIVER cuStreamSynchronize(void* s) {
+    wait_for(s);
+    return state();
+}
+DRIVER cuStreamQuery(void* s) {
+    constexpr int not_ready = 600;
+    return s != nullptr && static_cast<stream*>(s)->busy() ? not_ready : state();
+}
+DRIVER cuStreamWaitEvent(void*, void* reached, unsigned) {
+    wait_for(static_cast<event*>(reached)->of);
+    return state();
+}
+DRIVER cuEventCreate(void** made, unsigned) {
+    NEEDS_CONTEXT;
+    *made = new event;
+    return success;
+}
+DRIVER cuEventDestroy_v2(void* old) {
+    NEEDS_CONTEXT;
+    delete static_cast<event*>(old);
+    return success;
+}
+DRIVER cuEventSynchronize(void* reached) {
+    wait_for(static_cast<event*>(reached)->of);
+    return success;
+}
+DRIVER cuEventRecord(void* reached, void* s) {
+    static_cast<event*>(reached)->of = static_cast<stream*>(s);
+    return state();
+}
 DRIVER cuEventElapsedTime(float* milliseconds, void*, void*) {
     *milliseconds = 1;
     return success;
@@ -281,14 +345,22 @@ DRIVER cuOccupancyMaxActiveBlocksPerMultiprocessor(int* blocks, const void*, int
     return success;
 }
 DRIVER cuLaunchKernel(const void* function, unsigned blocks, unsigned rows, unsigned, unsigned threads, unsigned,
-                      unsigned, unsigned, void*, void** arguments, void**) {
+                      unsigned, unsigned, void* where, void** arguments, void**) {
     NEEDS_CONTEXT;
     if (current == devices() - 1) --launches_left;
-    static std::mutex one_at_a_time;
-    const std::lock_guard lock(one_at_a_time);
-    for (unsigned row = 0; row < rows; ++row)
-        for (unsigned b = 0; b < blocks; ++b)
-            block_of_threads::run(*static_cast<const kernel*>(function), {b, row}, {blocks, rows}, threads, arguments);
+    const kernel code = *static_cast<const kernel*>(function);
+    const auto work = [=, copies = code.copy(arguments)] {
+        static std::mutex one_at_a_time;
+        const std::lock_guard lock(one_at_a_time);
+        for (unsigned row = 0; row < rows; ++row)
+            for (unsigned b = 0; b < blocks; ++b)
+                block_of_threads::run(code, {b, row}, {blocks, rows}, threads, copies);
+    };
+    if (where == nullptr) {
+        work();
+    } else {
+        static_cast<stream*>(where)->begin(work);
+    }
     return success;
 }
 DRIVER cuModuleLoadData(void** module, const void* image) {
@@ -303,9 +375,10 @@ DRIVER cuModuleLoadData(void** module, const void* image) {
 }
 DRIVER cuModuleGetFunction(const void** function, void* module, const char* name) {
     void* const run = dlsym(module, (std::string("run_") + name).c_str());
+    void* const copy = dlsym(module, (std::string("copy_") + name).c_str());
     void* const set_place = dlsym(module, "set_place");
-    if (run == nullptr || set_place == nullptr) return not_found;
-    *function =
-        new kernel{reinterpret_cast<void (*)(void**)>(run), reinterpret_cast<void (*)(const place*)>(set_place)};
+    if (run == nullptr || copy == nullptr || set_place == nullptr) return not_found;
+    *function = new kernel{reinterpret_cast<void (*)(void**)>(run), reinterpret_cast<void** (*)(void**)>(copy),
+                           reinterpret_cast<void (*)(const place*)>(set_place)};
     return success;
 }

@@ -48,7 +48,8 @@ run_statistics run_by_cost(const any_run& all, const run_options& options) {
     const part_of_run first_phase{true, cost.data(), nullptr};
     const run_statistics first = all.run(all, silent, &first_phase);
     if (first.failed || first.least_stack < first.stack) return first;
-    if (options.stop != nullptr && options.stop(options.context) != stop_request::none) return first;
+    const stop_request asked = options.stop != nullptr ? options.stop(options.context) : stop_request::none;
+    if (asked == stop_request::begin_no_more || asked == stop_request::end_now) return first;
     const std::vector<std::uint32_t> order = order_by_cost(cost.data(), count);
     const part_of_run other_phases{false, nullptr, order.data()};
     run_statistics used = all.run(all, options, &other_phases);

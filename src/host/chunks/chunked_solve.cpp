@@ -34,6 +34,7 @@ public:
 
     /// Nothing is written to the ensemble before all of its data are checked.
     void run() {
+        relay_.last_call = progress_relay::clock::now();
         engines_.push_back(source_.take());
         engine& first = *engines_.front();
         clock_ = first.start_clock();
@@ -45,11 +46,13 @@ public:
             instances_.untouched = false;
             begin(first, 0, size_);
             source_.download(first);
+            for (polling_backoff waiting; relay_.may_stop() && !first.idle(); waiting.pause()) ask_whether_to_stop();
             first.wait();
             take_back(first, size_);
             sum_up_results();
         } else {
             run_chunks();
+            leave_the_rest();
         }
         if (options_.counting == counting::on) set_work(result_, work_before_, work_after_);
         result_.kernel = first.facts();
@@ -92,7 +95,7 @@ private:
                 .share();
         for (std::int64_t first = 0, count = 0; first < size_; first += count) {
             engine* const worker = &free_engine();
-            if (relay_.failure) break;
+            if (first > 0 && ask_whether_to_stop()) break;
             count = plan_.count_from(first);
             wait_for_check(first + count);
             begin(*worker, first, count);
@@ -111,8 +114,25 @@ private:
                 sum_up_results();
             } else {
                 help_to_bring_back();
+                ask_whether_to_stop();
             }
         }
+    }
+    /// Whether no further chunk is to be begun. Tells the engines what is to become of those under way.
+    bool ask_whether_to_stop() {
+        if (!relay_.may_stop()) return false;
+        const stop_request asked = progress_relay::ask(&relay_);
+        if (ends_kernels(asked) && asked != std::exchange(told_, asked))
+            for (const auto& e : engines_) e->stop(asked);
+        return asked != stop_request::none;
+    }
+    /// What becomes of the instances of chunks that were not begun.
+    void leave_the_rest() {
+        if (back_until_ == size_) return;
+        for (std::int64_t i = back_until_; i < size_ && relay_.over; ++i) instances_.leave(i);
+        back_until_ = size_;
+        sum_up_results();
+        if (relay_.over) progress_relay::call(&relay_, size_);
     }
     /// Downloads one chunk that the device has finished, if there is one that the other thread has not taken.
     void help_to_bring_back() {
@@ -132,6 +152,7 @@ private:
         if (under_way_.size() < engines_.size()) return *engines_[under_way_.size()];
         for (polling_backoff waiting;;) {
             if (waiting.is_over(under_way_.front().back)) return wait_for_oldest();
+            ask_whether_to_stop();
             if (checked_ < size_ && may_hold_more() && keeps_too_few_busy()) {
                 try {
                     return add_engine();
@@ -234,6 +255,7 @@ private:
     std::optional<std::int64_t> most_engines_;
     std::vector<std::unique_ptr<engine>> engines_;
     std::deque<part> under_way_;
+    stop_request told_ = stop_request::none;  // to the engines
     void* clock_ = nullptr;
     double kernels_until_ = 0;
     work_count work_before_{}, work_after_{};

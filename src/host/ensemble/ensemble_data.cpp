@@ -235,6 +235,13 @@ void ensemble_data<R>::mark_invalid(std::int64_t i) {
     this->status.data()[i] = myriad::status::invalid_input;
 }
 template <class R>
+void ensemble_data<R>::leave(std::int64_t i) {
+    if (this->ended.data()[i] != 0) return;
+    this->ended.data()[i] = 1;
+    this->status.data()[i] = myriad::status::interrupted;
+    if (this->phase.data()[i] == 0) this->t.data()[i] = t_begin_of(i);
+}
+template <class R>
 digest ensemble_data<R>::inputs_digest(std::int64_t i) const {
     digest of_all;
     for (int c = 0; c < shape->n_state; ++c) of_all.add(this->state.component(c)[i]);

@@ -141,8 +141,14 @@ void option_limits::check(const options& o) const {
     // Fixed steps do not use tolerances.
     for (std::size_t c = 0; adaptive && c < o.relative_tolerance.size(); ++c)
         check_kept("relative_tolerance", o.relative_tolerance[c]);
-    for (std::size_t c = 0; adaptive && c < o.absolute_tolerance.size(); ++c)
+    for (std::size_t c = 0; adaptive && c < o.absolute_tolerance.size(); ++c) {
         check_kept("absolute_tolerance", o.absolute_tolerance[c]);
+        const double least = std::ldexp(1.0, digits > 24 ? -1022 : -126);
+        require(o.absolute_tolerance[c] == 0 || rounded(o.absolute_tolerance[c]) >= least, "absolute_tolerance is ",
+                o.absolute_tolerance[c], ", below the smallest normal number, ", least,
+                ", where a ratio of error to tolerance has no meaning: give at least that, or 0 for that of "
+                "relative_tolerance alone");
+    }
     require(o.minimum_step >= 0 && std::isfinite(o.minimum_step), "minimum_step is ", o.minimum_step,
             " (must not be negative): give 0 for the resolution of t");
     check_kept("minimum_step", o.minimum_step);
@@ -158,6 +164,8 @@ void option_limits::check(const options& o) const {
             ", which is 1 in single precision, that of step-size control: give a smaller value, such as 0.1");
     // Fixed steps are counted in the state's real type, exact up to its mantissa.
     check_count("max_steps", o.max_steps, 1, digits > 31 ? 2'000'000'000 : 16'000'000);
+    require(o.time_limit >= 0, "time_limit is ", o.time_limit,
+            " (must not be negative): give the seconds that the call may take, or 0 for no limit");
     require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), "events has ", o.events.size(),
             " entries, but the model has ", n_event, " event functions: give one entry for each, or none for defaults");
     for (const event_options& e : o.events) {

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <locale>
 #include <mutex>
 #include <numeric>
 #include <ostream>
 #include <sstream>
+#include <type_traits>
 
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/core/error.hpp"
@@ -208,6 +210,33 @@ void note_ended(report_of<R>& r, const ensemble_data<R>& e, std::int64_t count) 
                               "restart() starts all instances again"));
 }
 
+// Without numbers of instances, which the report has, so that parts of a study say the same.
+template <class R>
+void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::int64_t count) {
+    const auto any = [&](status s) { return r.by_status[static_cast<std::size_t>(s)] > 0; };
+    if (any(status::max_steps))
+        r.notes.push_back(message("max_steps: ", o.max_steps,
+                                  " trial steps did not take an instance to the end of its phase: raise max_steps, or "
+                                  "look at why the steps are so short"));
+    if (any(status::interrupted) && o.time_limit > 0)
+        r.notes.push_back(message("interrupted: time_limit = ", o.time_limit, " s was over"));
+    if (!any(status::step_underflow)) return;
+    // Steps end at the resolution of time, unless a longer smallest step was given.
+    double coarsest = 0;
+    for (std::int64_t i = 0; i < count; ++i) {
+        if (e.status.data()[i] != status::step_underflow) continue;
+        const R t = std::abs(e.t.data()[i]), spacing = std::nextafter(t, std::numeric_limits<R>::infinity()) - t;
+        if (o.minimum_step <= static_cast<double>(spacing)) coarsest = std::max(coarsest, static_cast<double>(spacing));
+    }
+    constexpr bool single = std::is_same_v<R, float>;
+    if (coarsest > 0)
+        r.notes.push_back(
+            message("step_underflow: time, which ", single ? "single" : "double", " precision resolves to ", coarsest,
+                    " there, is too coarse for the steps needed: ", single ? "use double precision, or let" : "let",
+                    " time begin near 0, or scale it; if that does not help, the right-hand side jumps or "
+                    "runs away there, or the tolerance is below its rounding"));
+}
+
 template <class R>
 void note_raised_tolerances(report_of<R>& r, const options& o) {
     for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
@@ -233,11 +262,13 @@ template work_count counted_work(const ensemble_data<double>&, std::int64_t, std
 template void add_summary(const ensemble_data<double>&, report_of<double>&, std::int64_t, std::int64_t);
 template void summarise(const ensemble_data<double>&, report_of<double>&, std::int64_t);
 template void note_ended(report_of<double>&, const ensemble_data<double>&, std::int64_t);
+template void note_failures(report_of<double>&, const ensemble_data<double>&, const options&, std::int64_t);
 template void note_raised_tolerances(report_of<double>&, const options&);
 template work_count counted_work(const ensemble_data<float>&, std::int64_t, std::int64_t);
 template void add_summary(const ensemble_data<float>&, report_of<float>&, std::int64_t, std::int64_t);
 template void summarise(const ensemble_data<float>&, report_of<float>&, std::int64_t);
 template void note_ended(report_of<float>&, const ensemble_data<float>&, std::int64_t);
+template void note_failures(report_of<float>&, const ensemble_data<float>&, const options&, std::int64_t);
 template void note_raised_tolerances(report_of<float>&, const options&);
 
 }  // namespace host::inline MYRIAD_ABI

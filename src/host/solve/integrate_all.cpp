@@ -28,6 +28,7 @@ template <class R>
 void integrate_all(const device& where, const options& o, const any_run* on_cpu, chunk_source* on_gpu,
                    ensemble_data<R>& instances, data_check<R>& check, report_of<R>& result) {
     progress_relay relay{o.progress, instances.size, nullptr};
+    relay.deadline = progress_relay::deadline_in(o.time_limit);
     const auto begin = std::chrono::steady_clock::now();
     if (where.which() == device::kind::cpu) {
         const auto work = [&] {
@@ -39,7 +40,7 @@ void integrate_all(const device& where, const options& o, const any_run* on_cpu,
         how.threads = where.threads();
         how.schedule = o.schedule;
         how.progress = &progress_relay::call;
-        if (o.progress) how.stop = &progress_relay::ask;
+        if (relay.may_stop()) how.stop = &progress_relay::ask;
         how.context = &relay;
         const run_statistics used = run_kernel(*on_cpu, how);
         result.lane_turns = used.lane_turns;
@@ -53,6 +54,7 @@ void integrate_all(const device& where, const options& o, const any_run* on_cpu,
     }
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     note_ended(result, instances, instances.size);
+    note_failures(result, instances, o, instances.size);
     instances.remember_ended();
     if (relay.failure) std::rethrow_exception(relay.failure);
     result.device = where.name();

@@ -62,6 +62,7 @@ class engine final : public myriad::cuda::engine<Model, R> {
     using access = myriad::detail::array_access;
     using kind = myriad::detail::array_kind;
     using clock = std::chrono::steady_clock;
+    using stop_request = myriad::detail::stop_request;
 
 public:
     ~engine() override {
@@ -96,6 +97,7 @@ public:
     void integrate(const arguments& host) override {
         const turn mine(taken_, call::integrate);
         demand(count_ > 0, "nothing was uploaded to be integrated");
+        asked_to_stop_ = stop_request::none;
         ask([=, this, now = host, first = first_, count = count_]() mutable {
             begun_ = started_;
             the_gpu.meet(call::kernel);
@@ -106,7 +108,10 @@ public:
             now.size = count;
             now.first_index += first;
             now.shared = {shared_.data(), shared_integer_.data()};
-            myriad::openmp::run<Model, Method, R>(now, {.threads = 1});
+            myriad::detail::run_options how{.threads = 1};
+            how.stop = [](void* asked) -> stop_request { return *static_cast<unordered<stop_request>*>(asked); };
+            how.context = &asked_to_stop_;
+            myriad::openmp::run<Model, Method, R>(now, how);
             done_ = clock::now();
         });
     }
@@ -205,6 +210,7 @@ public:
         synchronise();
     }
     bool idle() override { return under_way_ == 0 || the_gpu.seems_idle; }
+    void stop(stop_request how) override { asked_to_stop_ = how; }
     void* mark() override {
         const turn mine(taken_);
         ask([] {});
@@ -396,6 +402,7 @@ private:
         for (const rows& r : *all) r.to_host(fetched_.data());
     }
 
+    unordered<stop_request> asked_to_stop_;
     unordered<bool> taken_;     // by a thread
     unordered<int> under_way_;  // in the stream
     std::uint64_t random_ = 0;

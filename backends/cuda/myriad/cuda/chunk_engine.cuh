@@ -16,6 +16,7 @@
 #include "myriad/cuda/resources.cuh"
 #include "myriad/cuda/schedule.cuh"
 #include "myriad/cuda/staging.cuh"
+#include "myriad/cuda/stop_line.cuh"
 #include "myriad/cuda/transfers.cuh"
 #include "myriad/host/backend/backend.hpp"
 
@@ -33,6 +34,7 @@ public:
         : device_(options.device), now_current_(std::in_place, options.device),
           launcher_(options.device, options, std::move(kernel)),
           scheduler_(options.schedule, launcher_.traits().costs_differ) {
+        launcher_.listen_to(stop_line_.word());
         now_current_.reset();
     }
     ~chunk_engine() override {
@@ -124,6 +126,7 @@ public:
             array = on_device;
         });
         prepare_sample_times(now.sample);
+        stop_line_.clear(stream_.get());
         MYRIAD_CUDA(cudaEventRecord(begun_.get(), stream_.get()));
         scheduler_.launch(launcher_, now, stream_.get());
         MYRIAD_CUDA(cudaEventRecord(done_.get(), stream_.get()));
@@ -212,6 +215,10 @@ public:
         if (status == cudaErrorNotReady) return false;
         check(status, "the integration on the GPU");
         return true;
+    }
+    void stop(detail::stop_request how) override {
+        const current_device here(device_);
+        stop_line_.ask(how);
     }
     void* mark() override {
         const current_device here(device_);
@@ -386,6 +393,7 @@ protected:
     device_memory memory_, records_, sample_times_, shared_;
     phase_scheduler<Kernel> scheduler_;
     stream stream_;
+    stop_line stop_line_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};
     little_transfer little_;
     std::unique_ptr<pooled_staging> fetching_;  // of the download in progress, if it is larger

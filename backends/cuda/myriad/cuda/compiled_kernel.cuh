@@ -59,6 +59,7 @@ public:
     void launch(place where, const arguments& ensemble, unsigned long long* queue, const launch_shape& how) {
         all_.ensemble = ensemble;
         all_.queue = queue;
+        all_.stop = how.stop;
         void* arguments[] = {&all_};
         // Not <<<>>>, which returns the status of the thread's last failure, whatever its cause.
         check(cudaLaunchKernel(function(where), dim3(how.blocks), dim3(how.threads), arguments, how.shared_bytes,

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "myriad/kernel/core/stop_request.hpp"
 #include "myriad/kernel/integrator/integrate.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -15,15 +16,51 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class Method>
 inline constexpr bool costs_differ = is_adaptive<Method> || has_events<Model> || has_after_step<Model>;
 
-/// A thread's source of one instance, that of the thread's number.
-class own_instance {
+/// What the host asks of a kernel that is running: a `stop_request` in device memory, or null.
+class request_of_host {
 public:
-    __device__ __forceinline__ own_instance(const std::int64_t size, const std::uint32_t*, unsigned long long*)
-        : index_(static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x) {
+    __device__ __forceinline__ explicit request_of_host(const std::uint32_t* stop) : stop_(stop) {}
+
+    /// Whether instances under way are to end.
+    __device__ __forceinline__ bool gives_up() const { return read() >= stop_request::end_now; }
+    /// The same between two phases of an instance, of which so many are left: asks after some.
+    __device__ __forceinline__ bool gives_up_before(std::int32_t phases_left) const {
+        constexpr std::int32_t now_and_then = 64;
+        return phases_left % now_and_then == 0 && gives_up();
+    }
+    /// Whether the instance given last is to be left as it is.
+    __device__ __forceinline__ bool is_over() const { return last_ == stop_request::end_all; }
+
+protected:
+    /// Whether instances may be given: to be begun, or to be left.
+    __device__ __forceinline__ bool gives_more() {
+        last_ = read();
+        return last_ == stop_request::none || last_ == stop_request::end_all;
+    }
+
+private:
+    __device__ __forceinline__ stop_request read() const {
+        const std::uint32_t* stop = stop_;
+        MYRIAD_FORGET(stop);  // else the address stays in registers through the loop
+        return stop != nullptr ? static_cast<stop_request>(*static_cast<const volatile std::uint32_t*>(stop))
+                               : stop_request::none;
+    }
+
+    const std::uint32_t* stop_;
+    stop_request last_ = stop_request::none;
+};
+
+/// A thread's source of one instance, that of the thread's number.
+class own_instance : public request_of_host {
+public:
+    __device__ __forceinline__ own_instance(const std::int64_t size, const std::uint32_t*, unsigned long long*,
+                                            const std::uint32_t* stop)
+        : request_of_host(stop), index_(static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x) {
         if (index_ >= size) index_ = -1;
     }
 
     __device__ __forceinline__ std::int64_t next() {
+        if (!gives_more()) return -1;
         const std::int64_t given = index_;
         index_ = -1;
         return given;
@@ -36,13 +73,14 @@ private:
 };
 
 /// A source of that instance and, if there is a queue, of further ones from the queue.
-class queued_instances {
+class queued_instances : public request_of_host {
 public:
     __device__ __forceinline__ queued_instances(std::int64_t size, const std::uint32_t* order,
-                                                unsigned long long* queue)
-        : size_(size), order_(order), queue_(queue) {}
+                                                unsigned long long* queue, const std::uint32_t* stop)
+        : request_of_host(stop), size_(size), order_(order), queue_(queue) {}
 
     __device__ __forceinline__ std::int64_t next() {
+        if (!gives_more()) return -1;
         std::int64_t block = blockIdx.x;
         MYRIAD_FORGET(block);  // else the address stays in registers through the loop
         std::int64_t place = block * blockDim.x + threadIdx.x;
@@ -85,11 +123,13 @@ template <class Model, class R, shared_placement placement>
 struct launch_arguments {
     kernel_arguments<Model, R> ensemble;
     unsigned long long* queue;  // number of instances taken beyond each thread's first one; null: no queue
+    const std::uint32_t* stop;  // what the host asks meanwhile; null: nothing
 };
 template <class Model, class R>
 struct launch_arguments<Model, R, shared_placement::constant_bank> {
     kernel_arguments<Model, R> ensemble;
     unsigned long long* queue;
+    const std::uint32_t* stop;
     R shared[at_least_one(n_shared<Model>)];
     std::int32_t shared_integer[at_least_one(n_shared_integer<Model>)];
 };
@@ -115,7 +155,7 @@ __device__ __forceinline__ void integrate_thread(const launch_arguments<Model, R
     if constexpr (placement == shared_placement::constant_bank) shared = {arguments.shared, arguments.shared_integer};
     if constexpr (placement == shared_placement::shared_memory) shared = detail::stage_shared<Model, R>(shared);
     using supply = std::conditional_t<costs_differ<Model, Method>, queued_instances, own_instance>;
-    supply instances(arguments.ensemble.size, arguments.ensemble.order, arguments.queue);
+    supply instances(arguments.ensemble.size, arguments.ensemble.order, arguments.queue, arguments.stop);
     detail::integrate<Model, Method, R>(arguments.ensemble, shared, instances);
 }
 

@@ -19,6 +19,7 @@ struct launch_shape {
     unsigned blocks, threads;
     std::size_t shared_bytes;
     cudaStream_t stream;
+    const std::uint32_t* stop;  // on the device: what the host asks of the kernel
 };
 
 /// Launches the kernels of one model, method and real type on the current device. A `Kernel` is `compiled_kernel`, or
@@ -57,6 +58,8 @@ public:
     /// Number of threads that gives every warp scheduler of the GPU one warp.
     std::int64_t least_threads() const { return std::int64_t{128} * multiprocessors_; }
     void note(schedule how) { facts_.schedule = how; }
+    /// Has later launches read there whether to stop.
+    void listen_to(const std::uint32_t* stop) { stop_ = stop; }
 
     /// Stores the shared parameters for launches from the constant bank; `shared` is on the host.
     void set_shared(const shared_parameters<R>& shared) { kernel_.set_shared(shared); }
@@ -67,8 +70,9 @@ public:
         const int block = facts_.block_size = block_for(arguments.size);
         auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
         if (queue != nullptr) blocks = std::min(blocks, blocks_at_once(block));
-        kernel_.launch(facts_.shared_placement, arguments, queue,
-                       {blocks, static_cast<unsigned>(block), static_cast<std::size_t>(facts_.shared_bytes), where});
+        kernel_.launch(
+            facts_.shared_placement, arguments, queue,
+            {blocks, static_cast<unsigned>(block), static_cast<std::size_t>(facts_.shared_bytes), where, stop_});
     }
 
 private:
@@ -129,6 +133,7 @@ private:
     Kernel kernel_;
     kernel_traits traits_;
     kernel_facts facts_;
+    const std::uint32_t* stop_ = nullptr;
     int multiprocessors_ = 1, chosen_block_ = 0;
     bool chosen_by_user_ = false;
 };

@@ -19,6 +19,7 @@ struct common_supply {
     std::atomic<std::int64_t> done{0};   // reported as done by the threads
     std::atomic<bool> stopped{false};    // the progress function returned false, or a function of the model threw
     std::atomic<bool> given_up{false};   // instances under way are to end, too
+    std::atomic<bool> over{false};       // those not begun are handed out to be left as they are
 
     /// Makes sure that none of the `size` instances is started any more.
     void stop(std::int64_t size) {
@@ -29,8 +30,12 @@ struct common_supply {
     void follow(const run_options& options, std::int64_t size) {
         const stop_request asked = options.stop(options.context);
         if (asked == stop_request::none) return;
-        stop(size);
-        if (asked == stop_request::end_now) given_up = true;
+        if (asked == stop_request::end_all) {
+            over = true;
+        } else {
+            stop(size);
+        }
+        if (asked != stop_request::begin_no_more) given_up = true;
     }
 };
 
@@ -60,6 +65,10 @@ public:
 
     /// Whether instances under way are to end as they are. The loop asks now and then, with its iterations so far.
     bool gives_up(std::int64_t iterations) { return iterations >= ask_at_ && ask(iterations); }
+    /// The same between two phases of an instance.
+    bool gives_up_before(std::int32_t) const { return all_.given_up.load(std::memory_order_relaxed); }
+    /// Whether the instance given last is to be left as it is.
+    bool is_over() const { return all_.over.load(std::memory_order_relaxed); }
 
 private:
     static constexpr std::int64_t ask_every = 1024;

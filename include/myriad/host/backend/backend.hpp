@@ -14,6 +14,7 @@
 #include "myriad/host/backend/facts.hpp"
 #include "myriad/host/core/weak.hpp"
 #include "myriad/host/options/schedule.hpp"
+#include "myriad/kernel/core/stop_request.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 #include "myriad/kernel/study/axis_rule.hpp"
 #include "myriad/kernel/study/reduced_values.hpp"
@@ -55,6 +56,8 @@ public:
     virtual void wait_for(work& other) = 0;
     /// Whether everything is done.
     virtual bool idle() = 0;
+    /// Has the kernels of the last `integrate` stop so far, soon: a later request goes further.
+    virtual void stop(detail::stop_request how) = 0;
     /// Seconds that the device took for the last `integrate`; waits for it.
     virtual double kernel_seconds() = 0;
     /// The same as begin and end on a clock that some engine of the device has started.
@@ -119,8 +122,9 @@ struct device_reduction {
 /// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and
 /// uploads of host memory that is not pinned, return before the work is done; work is done in the order of submission.
 /// Downloaded data are on the host after the next `wait`, not before. Only one thread at a time may use an engine, but
-/// another may call `idle` and `affordable` meanwhile. Arguments are the host's, for the whole ensemble; `first` and
-/// `count` select the instances. Errors of the device, including those of earlier work, are thrown as `error`.
+/// another may call `idle`, `stop` and `affordable` meanwhile. Arguments are the host's, for the whole ensemble;
+/// `first` and `count` select the instances. Errors of the device, including those of earlier work, are thrown as
+/// `error`.
 template <class Arguments>
 class engine_for : public any_engine {
 public:

@@ -8,17 +8,11 @@
 
 #include "myriad/host/core/instruction_set.hpp"
 #include "myriad/host/options/schedule.hpp"
+#include "myriad/kernel/core/stop_request.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::detail {
-
-/// How far a run is to stop.
-enum class stop_request : std::uint8_t {
-    none,
-    begin_no_more,  ///< of its instances
-    end_now,        ///< those under way end as `interrupted`
-};
 
 /// What a backend needs besides the kernel's arguments.
 struct run_options {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Passes progress from a backend to the user's function.
+// Passes progress from a backend to the user's function, and says when a call is to stop: when that function throws, or
+// its time is over.
 #pragma once
 
 #include <chrono>
@@ -16,7 +17,7 @@ namespace myriad::host::inline MYRIAD_ABI {
 struct progress_relay {
     using clock = std::chrono::steady_clock;
     /// Instances under way have that long to end once the function has thrown.
-    static constexpr auto patience = std::chrono::seconds(1);
+    static constexpr auto patience = std::chrono::milliseconds(500);
     static constexpr auto ask_every = std::chrono::milliseconds(20);
 
     const std::function<void(std::int64_t, std::int64_t)>& function;
@@ -24,6 +25,17 @@ struct progress_relay {
     std::exception_ptr failure;
     std::int64_t last_done = 0;
     clock::time_point last_call{}, failed_at{};
+    clock::time_point deadline = clock::time_point::max();
+    bool over = false;  // the deadline has passed with work left
+
+    /// When a call that begins now is to end; 0 seconds: never.
+    static clock::time_point deadline_in(double seconds) {
+        constexpr double never = 1e9;  // in three decades, and still far from where clocks overflow
+        if (!(seconds > 0 && seconds < never)) return clock::time_point::max();
+        return clock::now() + std::chrono::duration_cast<clock::duration>(std::chrono::duration<double>(seconds));
+    }
+    /// Whether anything can stop the call.
+    bool may_stop() const { return function || deadline != clock::time_point::max(); }
 
     /// `done` instances are done. False once the function has thrown: no further instance is to be begun.
     static bool call(void* context, std::int64_t done) {
@@ -44,6 +56,8 @@ struct progress_relay {
         auto& relay = *static_cast<progress_relay*>(context);
         const auto now = clock::now();
         if (!relay.failure && now - relay.last_call > ask_every) call(context, relay.last_done);
+        if (!relay.failure && now >= relay.deadline) relay.over = true;
+        if (relay.over) return detail::stop_request::end_all;
         if (!relay.failure) return detail::stop_request::none;
         return now - relay.failed_at > patience ? detail::stop_request::end_now : detail::stop_request::begin_no_more;
     }

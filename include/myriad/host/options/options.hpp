@@ -119,13 +119,18 @@ struct options {
                ///< four times the precision's epsilon, with a note in the report
     per_component absolute_tolerance = 1e-8;  ///< error per step, per component of the state, in its unit
 
-    double step =
-        std::numeric_limits<double>::quiet_NaN();  ///< fixed step (must be given), or first step (default 1e-2)
-    double minimum_step = 0;                       ///< smallest step size; 0: the resolution of t
+    /// Fixed step (must be given), or first step. Not given, the first step follows from the slope, the tolerances and
+    /// the domain, as in MATLAB's ode45. One below the resolution of t is lengthened to it.
+    double step = std::numeric_limits<double>::quiet_NaN();
+    double minimum_step = 0;                                        ///< smallest step size; 0: the resolution of t
     double maximum_step = std::numeric_limits<double>::infinity();  ///< largest step size; infinity: no limit
-    double growth_limit = 5;              ///< largest factor from one step to the next; rounded to single precision
-    double shrink_limit = 0.1;            ///< smallest factor from one step to the next, rounded in the same way
-    std::int64_t max_steps = 10'000'000;  ///< trial steps per phase; an instance that needs more ends as `max_steps`
+    double growth_limit = 5;             ///< largest factor from one step to the next; rounded to single precision
+    double shrink_limit = 0.1;           ///< smallest factor from one step to the next, rounded in the same way
+    std::int64_t max_steps = 1'000'000;  ///< trial steps per phase; an instance that needs more ends as `max_steps`
+    /// Seconds from the beginning of the call after which what is left ends as `interrupted`: instances under way where
+    /// they are, the others as they were. 0, or infinity: no limit. Solvers, which are asynchronous, and studies, which
+    /// go on where they were stopped, refuse it.
+    double time_limit = 0;
 
     /// Where a phase starts.
     myriad::phase_time phase_time = myriad::phase_time::restart;
@@ -156,8 +161,8 @@ struct options {
 
     /// Called by `solve` from time to time, in the calling thread, with the number of instances done, which never
     /// falls, and the number of all instances; with all done exactly once, at the end. An exception it throws ends the
-    /// work and reaches the caller of `solve`: no instance is begun any more, and on the CPU those that take more than
-    /// a second longer end as `interrupted`. A solver, which is asynchronous, refuses it.
+    /// work and reaches the caller of `solve`: no instance is begun any more, and those that take more than half a
+    /// second longer end as `interrupted`. A solver, which is asynchronous, refuses it.
     std::function<void(std::int64_t done, std::int64_t total)> progress = {};
 };
 

@@ -129,6 +129,10 @@ void add_note(std::vector<std::string>& notes, const stiffness& found);
 /// Adds a note if instances that have ended were given new inputs, which `invalid_instances::mark` allows.
 template <class R>
 void note_ended(report_of<R>& r, const ensemble_data<R>& e, std::int64_t count);
+/// Adds notes on instances that ended because of a limit, with what to do: `max_steps`, `time_limit`, or the resolution
+/// of time.
+template <class R>
+void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::int64_t count);
 /// Adds a note if a relative tolerance was below what the precision can reach.
 template <class R>
 void note_raised_tolerances(report_of<R>& r, const options& o);
@@ -137,11 +141,13 @@ extern template work_count counted_work(const ensemble_data<double>&, std::int64
 extern template void add_summary(const ensemble_data<double>&, report_of<double>&, std::int64_t, std::int64_t);
 extern template void summarise(const ensemble_data<double>&, report_of<double>&, std::int64_t);
 extern template void note_ended(report_of<double>&, const ensemble_data<double>&, std::int64_t);
+extern template void note_failures(report_of<double>&, const ensemble_data<double>&, const options&, std::int64_t);
 extern template void note_raised_tolerances(report_of<double>&, const options&);
 extern template work_count counted_work(const ensemble_data<float>&, std::int64_t, std::int64_t);
 extern template void add_summary(const ensemble_data<float>&, report_of<float>&, std::int64_t, std::int64_t);
 extern template void summarise(const ensemble_data<float>&, report_of<float>&, std::int64_t);
 extern template void note_ended(report_of<float>&, const ensemble_data<float>&, std::int64_t);
+extern template void note_failures(report_of<float>&, const ensemble_data<float>&, const options&, std::int64_t);
 extern template void note_raised_tolerances(report_of<float>&, const options&);
 
 }  // namespace host::inline MYRIAD_ABI

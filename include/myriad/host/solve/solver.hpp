@@ -232,6 +232,7 @@ public:
         host::summarise(host::ensemble_access::data(instances_), report_, count_);
         report_.notes.clear();
         host::note_ended(report_, host::ensemble_access::data(instances_), count_);
+        host::note_failures(report_, host::ensemble_access::data(instances_), options_, count_);
         host::note_tolerances<Method>(report_, options_);
         report_.device = where_.name();
         if (engine_) {
@@ -281,6 +282,10 @@ private:
         require(!o.progress,
                 "progress is given, but a solver is asynchronous and cannot report it: leave it out, "
                 "and call idle()");
+        require(
+            o.time_limit == 0,
+            "time_limit is given, but a solver is asynchronous, and nobody would watch the clock: leave it out, and "
+            "bound the steps of an instance by max_steps");
         host::check_options<Model, Method, R>(o);
         host::memory_need need = host::ensemble_data<R>::memory_of(host::shape_of<Model>, capacity);
         host::add_memory_of_call<Model, R>(need, capacity, nullptr, o, host::traits_of<Method>);

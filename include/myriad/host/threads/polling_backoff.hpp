@@ -22,12 +22,21 @@ class polling_backoff {
 public:
     template <class Future>
     bool is_over(const Future& awaited) {
-        const bool sleeps = std::chrono::steady_clock::now() - begin_ > std::chrono::milliseconds{5};
-        if (!sleeps) std::this_thread::yield();
-        return host::is_over(awaited, std::chrono::microseconds{sleeps ? 50 : 0});
+        if (!sleeps()) std::this_thread::yield();
+        return host::is_over(awaited, std::chrono::microseconds{sleeps() ? 50 : 0});
+    }
+    /// The pause alone.
+    void pause() const {
+        if (sleeps()) {
+            std::this_thread::sleep_for(std::chrono::microseconds{50});
+        } else {
+            std::this_thread::yield();
+        }
     }
 
 private:
+    bool sleeps() const { return std::chrono::steady_clock::now() - begin_ > std::chrono::milliseconds{5}; }
+
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 

@@ -37,18 +37,19 @@ struct adaptive_stepping {
     MYRIAD_FUNCTION void choose_step(int i, std::int32_t phase) {
         // A method with fixed steps leaves no step size to carry on with.
         const bool restart = !args.carry_step || phase == 0 || get_lane(s.data.h_next, i) == R(0);
-        if (restart) set_lane(s.data.h_next, i, args.step);
+        if (restart) set_lane(s.data.h_next, i, args.first_change > R(0) ? R(0) : args.step);
     }
     MYRIAD_FUNCTION void begin(int i, R t) {
-        if constexpr (chooses_first_step<Method>)
-            set_lane(s.control.first_step_open, i, get_lane(s.data.h_next, i) == R(0));
         if constexpr (remembers_errors<Method>) {
             set_lane(s.control.errors.last, i, 0);
             set_lane(s.control.errors.before, i, 0);
         }
-        set_lane(s.data.h_next, i, copysign(get_lane(s.data.h_next, i), get_lane(s.data.t_end, i) - t));
-        s.bound_step(args, i);
         set_lane(s.control.last_not_finite, i, false);
+        // Zero: to be chosen when the slope is known. A step that t does not resolve would be none.
+        const R h = abs(get_lane(s.data.h_next, i));
+        if (h == R(0)) return;
+        set_lane(s.data.h_next, i, copysign(max(h, resolved_roundings<R> * abs(t)), get_lane(s.data.t_end, i) - t));
+        s.bound_step(args, i);
     }
     MYRIAD_FUNCTION void move(int, R) {}
     MYRIAD_FUNCTION void resume(int i, R h) { set_lane(s.data.h_next, i, h); }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The first step of a phase if the user gave none: from the size of the slope and of its change.
+// The first step of a phase if the user gave none: from the slope, the tolerances and the domain; or, as an option,
+// from the change of the slope too.
 #pragma once
 
 #include "myriad/kernel/controller/fast_power.hpp"
@@ -8,15 +9,37 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Sets `data.h_next` of the lanes whose first step is open. Hairer, Norsett, Wanner, Solving ODE I, II.4, "Starting
-/// step size", in the maximum norm: an Euler step that changes y by a hundredth of its size shows how fast the slope
-/// changes; the leading error term of the first step is to be a hundredth of the tolerance.
+/// By the slope alone: no component changes by more than `args.first_change` of its size, which is at least atol /
+/// rtol. Shampine and Reichelt, SIAM J. Sci. Comput. 18 (1997) 1, and their code ode45. At most a tenth of the domain;
+/// in one without an end, and where the slope says nothing, at most `args.step`. A component that is zero and has no
+/// absolute tolerance has no size.
 template <class Model, class Method, class S>
-MYRIAD_FUNCTION void choose_first_step(const kernel_arguments<Model, real_of<S>>& args,
-                                       integration_state<Model, Method, S>& s, const mask_of<S>& open) {
+MYRIAD_FUNCTION S step_by_slope(const kernel_arguments<Model, real_of<S>>& args,
+                                const integration_state<Model, Method, S>& s, const vec<S, n_state<Model>>& slope) {
+    using R = real_of<S>;
+    S rate = S(R(0));  // of the fastest component, in parts of its size
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_state<Model>; ++c) {
+        const R rtol = args.relative_tolerance[c], atol = args.absolute_tolerance[c];
+        S tolerance = larger(S(rtol) * abs(s.data.y[c]), S(atol));
+        const S relative = S(rtol) * abs(slope[c]) / tolerance;
+        rate = select(tolerance > S(smallest_normal_of<R>), larger(relative, rate), rate);
+    }
+    const S usual = S(args.step), part = S(R(0.1)) * abs(s.data.t_end - s.data.t);
+    const S most = select(part <= S(largest_of<R>), part, S(R(100)) * usual);
+    const S h = S(args.first_change) / rate;
+    return smaller(select((rate > S(R(0))) & (h > S(R(0))), h, usual), most);
+}
+
+/// By the slope and its change. Hairer, Norsett, Wanner, Solving ODE I, II.4, "Starting step size", in the maximum
+/// norm: an Euler step that changes y by a hundredth of its size shows how fast the slope changes; the leading error
+/// term of the first step is to be a hundredth of the tolerance.
+template <class Model, class Method, class S>
+MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& args,
+                                    integration_state<Model, Method, S>& s, const mask_of<S>& open,
+                                    const vec<S, n_state<Model>>& slope0) {
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
-    const vec<S, n> slope0 = s.slopes.start(open, s.now(), s.data, s.extra_evaluations);
     const S direction = copysign(S(R(1)), s.data.t_end - s.data.t);
     S scale[n], d0 = S(R(0)), d1 = S(R(0)), d2 = S(R(0));
     MYRIAD_UNROLL
@@ -39,9 +62,24 @@ MYRIAD_FUNCTION void choose_first_step(const kernel_arguments<Model, real_of<S>>
     const S power = S(fast_power(S(R(0.01)) / most, S(R(1.0 / (estimate_order<Method> + 1)))));
     const S h1 = select(most <= S(R(1e-15)), larger(S(R(1e-6)), h0 * S(R(1e-3))), power);
     S h = smaller(S(R(100)) * h0, h1);
-    h = select(h > S(R(0)), h, S(R(1e-6)));  // the slope is NaN: the trial step will report it
+    return select(h > S(R(0)), h, S(R(1e-6)));  // the slope is NaN: the trial step will report it
+}
+
+/// Sets `data.h_next` of the lanes whose first step is open.
+template <class Model, class Method, class S>
+MYRIAD_FUNCTION void choose_first_step(const kernel_arguments<Model, real_of<S>>& args,
+                                       integration_state<Model, Method, S>& s, const mask_of<S>& open) {
+    using R = real_of<S>;
+    const vec<S, n_state<Model>> slope = s.slopes.start(open, s.now(), s.data, s.extra_evaluations);
+    S h;
+    if constexpr (chooses_first_step<Method>) {
+        h = detail::step_by_curvature(args, s, open, slope);
+    } else {
+        h = detail::step_by_slope(args, s, slope);
+    }
+    h = larger(h, S(resolved_roundings<R>) * abs(s.data.t));
     h = limited(h, S(args.minimum_step), S(args.maximum_step));
-    s.data.h_next = select(open, direction * h, s.data.h_next);
+    s.data.h_next = select(open, copysign(h, s.data.t_end - s.data.t), s.data.h_next);
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

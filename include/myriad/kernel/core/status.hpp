@@ -22,7 +22,7 @@ enum class status : std::uint8_t {
                          ///< counted: a bouncing ball comes to rest 2 v / (g (1 - e)) later (docs/numerics.md)
     singular_jacobian,   ///< a linear solve of an implicit method failed
     invalid_input,       ///< a state, parameter or time was not finite at the start
-    interrupted,         ///< the progress function ended the call more than a second before; t is how far it came
+    interrupted,         ///< the call ended before: by its time limit, or by the progress function, half a second ago
 };
 /// The number of statuses.
 inline constexpr int status_count = 11;

@@ -25,8 +25,9 @@ struct free_run {
     /// Takes steps up to the first lane's last step, in registers and with one check per block. A value that is not
     /// finite stays so: a block that ends with one is undone and halved, and the ordinary step that follows finds the
     /// lane at fault.
-    MYRIAD_FUNCTION void take_steps() {
-        constexpr iteration_number worthwhile = 4, longest_block = 128;
+    template <class Source>
+    MYRIAD_FUNCTION void take_steps(Source& source) {
+        constexpr iteration_number worthwhile = 4, longest_block = 128, asks_every = 1 << 14;
         // Not the last one, after which the watch is due.
         iteration_number run = phase_watch<Model, Method, S>{args, s}.iterations_left() - 1;
         R lane_step = R(0);
@@ -44,6 +45,12 @@ struct free_run {
         count done = s.steps.done;
         iteration_number taken = 0, block = longest_block;
         while (taken < run) {
+            if constexpr (!is_pack<S>) {  // which has no other check before the end
+                if (MYRIAD_UNLIKELY(taken % asks_every == 0) && gives_up(source, taken)) {
+                    s.end_lane(0, status::interrupted);
+                    break;
+                }
+            }
             block = block < run - taken ? block : run - taken;
             vec<S, n> now = y;
             MYRIAD_UNROLL_BY_FOUR
@@ -67,6 +74,19 @@ struct free_run {
         s.steps.left = s.steps.left - (done - s.steps.done);
         s.steps.done = done;
         s.iteration += taken;
+    }
+
+private:
+    /// Whether the host asks for the instance to end, after so many steps more than those counted.
+    template <class Source>
+    MYRIAD_FUNCTION bool gives_up(Source& source, iteration_number taken) {
+        if constexpr (requires { source.gives_up(std::int64_t{}); }) {
+            return source.gives_up(s.all_iterations_of(args) + taken);
+        } else if constexpr (requires { source.gives_up(); }) {
+            return source.gives_up();
+        } else {
+            return false;
+        }
     }
 };
 

@@ -52,7 +52,7 @@ struct integrator {
         }
         while (!(any(s.ended) || watch_type{args, s}.is_due()) || fill_lanes(source, locator)) {
             MYRIAD_REJOIN;
-            if constexpr (runs_freely<Model, Method>) free_run<Model, Method, S>{args, s}.take_steps();
+            if constexpr (runs_freely<Model, Method>) free_run<Model, Method, S>{args, s}.take_steps(source);
             trial_type trial;
             propose_step(locator);
             take_step(trial);
@@ -96,9 +96,10 @@ struct integrator {
     template <class Source>
     MYRIAD_FUNCTION bool fill_lanes(Source& source, event_locator_type& locator) {
         watch_type watch{args, s};
-        if (is_pack<S> || !any(s.ended)) watch.look();
-        const bool over = gives_up(source);
-        if (over) watch.interrupt();
+        if (is_pack<S> || !any(s.ended)) {
+            watch.look();
+            if (gives_up(source)) watch.interrupt();
+        }
         if (!any(s.ended)) {
             watch.plan();
             return true;
@@ -108,10 +109,9 @@ struct integrator {
             set_lane(begun, i, phase_driver<Model, Method, S>{args, s, locator.sides, o}.advance(i, source));
         });
         s.ended = mask(false);
-        if (over) watch.interrupt();  // those that have begun another phase
         watch.plan();
-        if constexpr (chooses_first_step<Method>) {
-            const mask open = begun & s.control.first_step_open;
+        if constexpr (is_adaptive<Method>) {
+            const mask open = begun & (s.data.h_next == S(R(0)));
             if (any(open)) detail::choose_first_step(args, s, open);
         }
         s.slopes.begin(begun, s.now(), s.data, s.extra_evaluations);
@@ -190,6 +190,8 @@ private:
     MYRIAD_FUNCTION bool gives_up(Source& source) {
         if constexpr (requires { source.gives_up(std::int64_t{}); }) {
             return source.gives_up(s.all_iterations_of(args));
+        } else if constexpr (requires { source.gives_up(); }) {
+            return source.gives_up();
         } else {
             return false;
         }
@@ -202,9 +204,11 @@ private:
 };
 
 /// Integrates all instances that `source.next()` returns (indices, then -1) on one pack of lanes of kind S. The source
-/// of a CUDA thread also says whether it `gives_only_one()`, that of a CPU's whether it `gives_up(iterations)`, which
-/// ends all instances. Returns the number of iterations of the loop, each a trial step in every lane. `shared` replaces
-/// `args.shared` where a backend has moved these parameters.
+/// of a CUDA thread also says whether it `gives_only_one()`. One that the host can stop says whether it `gives_up()`, a
+/// CPU's after so many iterations, and whether it `gives_up_before(phases left)`, which both end what is under way; and
+/// whether the call `is_over()` for the instance given last, which then stays as it is. Returns the number of
+/// iterations of the loop, each a trial step in every lane. `shared` replaces `args.shared` where a backend has moved
+/// these parameters.
 template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
                                        const shared_parameters<real_of<S>>& shared, Source& source) {

@@ -36,6 +36,9 @@ struct phase_driver {
                 return false;
             }
             end_phase(i);
+            if constexpr (requires { source.gives_up_before(s.phases_left[i]); }) {
+                if (s.phases_left[i] > 0 && source.gives_up_before(s.phases_left[i])) leave(i);
+            }
         }
         for (;;) {
             while (s.instance[i] < 0 || s.phases_left[i] == 0) {
@@ -45,7 +48,12 @@ struct phase_driver {
                     set_lane(s.active, i, false);
                     return false;
                 }
-                load(i);
+                if (is_over(source)) {
+                    leave(i);
+                    s.instance[i] = -1;  // not to be stored
+                } else {
+                    load(i);
+                }
             }
             if (begin_phase(i)) return true;
             end_phase(i);
@@ -69,6 +77,25 @@ private:
         } else {
             return false;
         }
+    }
+
+    /// Whether the call is over before the instance that the source has just given was begun.
+    template <class Source>
+    MYRIAD_FUNCTION bool is_over(const Source& source) const {
+        if constexpr (requires { source.is_over(); }) {
+            return source.is_over();
+        } else {
+            return false;
+        }
+    }
+    /// Ends the instance of lane i before its next phase.
+    MYRIAD_FUNCTION void leave(int i) {
+        const std::int64_t index = s.instance[i];
+        s.phases_left[i] = 0;
+        if (args.ended[index] != 0) return;
+        args.status[index] = status::interrupted;
+        args.ended[index] = 1;
+        if (args.phase[index] == 0) args.t[index] = args.t_begin != nullptr ? args.t_begin[index] : args.common_t_begin;
     }
 
     template <class T>

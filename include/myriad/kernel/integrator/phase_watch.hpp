@@ -14,8 +14,9 @@ struct phase_watch {
     using stepping_type = stepping<Model, Method, S>;
     using iteration_number = typename integration_state<Model, Method, S>::iteration_number;
     static constexpr std::int32_t look_interval = stepping_type::look_interval;
-    /// The most iterations of a pack without a check, so that a call can end.
+    /// The most iterations without a check, so that a call can end; a power of two.
     static constexpr std::int32_t longest_wait = 1 << 14;
+    static constexpr std::int32_t check_interval = look_interval > 0 ? look_interval : longest_wait;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
@@ -24,10 +25,8 @@ struct phase_watch {
     MYRIAD_FUNCTION bool is_due() const {
         if constexpr (is_pack<S>) {
             return s.iteration >= s.next_look;
-        } else if constexpr (look_interval > 0) {
-            return s.iteration % look_interval == 0;  // at zero, the limit, too
         } else {
-            return s.iteration >= 0;
+            return s.iteration % check_interval == 0;  // at zero, the limit, too
         }
     }
     /// Ends phases that have reached the limit of trial steps, and those that creep.
@@ -71,12 +70,9 @@ struct phase_watch {
 private:
     /// Iterations until the next check of a phase that has taken so many.
     MYRIAD_FUNCTION iteration_number left_after(iteration_number iterations) const {
-        iteration_number left = args.max_steps - iterations;
-        if constexpr (look_interval > 0) {
-            const iteration_number next = left % look_interval;
-            left = next > 0 ? next : left < look_interval ? left : look_interval;
-        }
-        return left;
+        const iteration_number left = args.max_steps - iterations, next = left % check_interval;
+        if constexpr (look_interval == 0 && !is_pack<S>) return left;  // a free run asks by itself
+        return next > 0 ? next : left < check_interval ? left : check_interval;
     }
 };
 

@@ -34,8 +34,8 @@ struct mixed_scale {
 };
 
 /// If options::step is not given, the first step of a phase is computed from the slope and its change over a short
-/// Euler step, with two evaluations, one of which the first step reuses. Hairer, Norsett, Wanner, Solving ODE I, II.4,
-/// "Starting step size".
+/// Euler step, and not from the slope alone, with two evaluations, one of which the first step reuses. Hairer, Norsett,
+/// Wanner, Solving ODE I, II.4, "Starting step size".
 struct automatic_first_step {
     static constexpr bool chooses_first_step = true;  ///< how a method that has this choice is recognised
 };

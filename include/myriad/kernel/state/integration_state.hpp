@@ -22,6 +22,10 @@ template <class Model, class Method, class R>
 inline constexpr bool keeps_time_low = has_events<Model> ||
                                        (is_adaptive<Method> ? std::is_same_v<R, float> : writes_time_domain<Model>);
 
+/// A step of so many times |t| at least is one that t resolves, however it is rounded and shortened a little.
+template <class R>
+inline constexpr R resolved_roundings = R(16) * epsilon_of<R>;
+
 /// Binary logarithms of error / tolerance of the last accepted step and of the one before, for controllers with memory.
 template <class Method, class S, bool remembers = remembers_errors<Method>>
 struct control_memory {};
@@ -35,7 +39,6 @@ template <class Method, class S>
 struct control_state {
     mask_of<S> last_not_finite;        // the lane's last rejection was due to a value that is not finite
     mask_of<S> last_singular;          // and that value to a singular matrix, if the method solves linear systems
-    mask_of<S> first_step_open;        // the phase's first step is yet to be chosen
     control_memory<Method, S> errors;  // of earlier steps
     S tolerance_scale;                 // of the instance, if the method has one
 };

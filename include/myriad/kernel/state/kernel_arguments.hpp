@@ -101,7 +101,8 @@ struct kernel_arguments : instance_range, instance_arrays<array_pointer, R> {
     bool carry_time;                  // a phase continues from the end of the last one, not from t_begin
     bool carry_step;                  // and with its step size
     std::int32_t max_steps;
-    R step;  // fixed step, or first step of an adaptive method
+    R step;          // fixed step, or first step of an adaptive method
+    R first_change;  // if positive, the first step is chosen by the change of the state in it: initial_step.hpp
     R minimum_step, maximum_step;
     float growth_limit, shrink_limit;  // in the precision of step-size control in CUDA threads
     R relative_tolerance[n_state<Model>];

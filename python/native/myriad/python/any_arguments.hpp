@@ -46,7 +46,7 @@ struct any_arguments : detail::instance_range, detail::instance_arrays<detail::a
     R phase_length, phases_per_time;
     bool carry_time, carry_step;
     std::int32_t max_steps;
-    R step, minimum_step, maximum_step;
+    R step, first_change, minimum_step, maximum_step;
     float growth_limit, shrink_limit;
     R *relative_tolerance, *absolute_tolerance;
     detail::event_arguments<R>* event;
@@ -63,7 +63,7 @@ struct model_facts {
     std::int32_t n_state, n_parameter, n_shared, n_shared_integer, n_accessory, n_integer_accessory, n_event;
     std::int32_t embedded_order;  ///< of the method, 0 for fixed steps
     bool writes_parameters, writes_time_domain, hooks_may_stop;
-    bool scales_tolerances, chooses_first_step, samples_trajectory;
+    bool scales_tolerances, samples_trajectory;
 };
 
 }  // namespace myriad::python

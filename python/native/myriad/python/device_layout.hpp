@@ -15,7 +15,7 @@ struct argument_layout {
     std::uint32_t relative_tolerance, absolute_tolerance, event, rising, falling, sub_samples, accumulation_limit;
     std::uint32_t record, record_columns[3];  ///< of states, accessories and integer accessories
     std::uint32_t sample, sample_columns;
-    std::uint32_t queue, shared, shared_integer;  ///< the last two of a kernel that has them in the constant bank
+    std::uint32_t queue, stop, shared, shared_integer;  ///< the last two of a kernel that has them in the constant bank
     std::uint32_t size;
 };
 

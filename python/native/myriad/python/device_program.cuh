@@ -44,6 +44,7 @@ __device__ __forceinline__ python::argument_layout layout_of(const void* memory)
     l.sample_head = at(one.sample.minimum_spacing) + sizeof one.sample.minimum_spacing - l.sample;
     l.sample_columns = at(one.sample.column);
     l.queue = at(all.queue);
+    l.stop = at(all.stop);
     if constexpr (placement == shared_placement::constant_bank) {
         l.shared = at(all.shared);
         l.shared_integer = at(all.shared_integer);

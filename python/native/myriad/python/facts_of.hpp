@@ -24,7 +24,6 @@ inline constexpr python::model_facts facts_of{
     .writes_time_domain = writes_time_domain<Model>,
     .hooks_may_stop = hooks_may_stop<Model, R>(),
     .scales_tolerances = scales_tolerances<Method>,
-    .chooses_first_step = chooses_first_step<Method>,
     .samples_trajectory = samples_trajectory<Method>,
 };
 
