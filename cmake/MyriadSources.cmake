@@ -25,7 +25,7 @@ function(myriad_add_study_sources target)
     target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
     set_target_properties(${target} ${target}_values PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
     # The library of JSON takes as long as all the rest.
-    set(with_json metadata study_plan)
+    set(with_json metadata records study_plan)
     list(TRANSFORM with_json REPLACE "(.+)" "${folder}/\\1.cpp")
     list(REMOVE_ITEM sources ${with_json})
     set_source_files_properties(${with_json} PROPERTIES UNITY_GROUP with_json)

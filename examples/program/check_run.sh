@@ -24,6 +24,12 @@ kill -9 $!
 wait $! 2>/dev/null || true
 "$program" info killed >facts
 grep -q '^done: .* of 96 chunks' facts || fail 'info says nothing of chunks'
+grep -q '^computed by: .*, g++ .*, Myriad .*, on ' facts || grep -q '^computed by: .*, Clang ' facts ||
+    fail 'info does not say what computed it'
+expect 1 'instances are not computed yet: nothing is written' \
+    "$program" export killed part.csv --require-complete
+[[ ! -e part.csv ]] || fail 'an incomplete study was exported'
+expect 0 'incomplete: .* of 1536 instances are not computed yet' "$program" export killed part.csv
 # stopped_by SIGNAL STATUS COUNT: ends with this status when so many chunks are done.
 stopped_by() {
     local status=0
@@ -40,5 +46,15 @@ rm study.toml # the folder alone suffices
 expect 0 '' "$program" resume killed --quiet
 "$program" export killed killed.csv
 cmp whole.csv killed.csv || fail 'the results differ'
+expect 0 '' "$program" info killed --verify
+"$program" resume killed --quiet >again
+grep -q '^1536 instances, all done before; ' again || fail 'a finished study says that nothing is done'
+expect 0 '' "$program" export killed k.npy --variable k
+
+# Files that are exchanged are not read in silence.
+cp killed/x/c.0.0 killed/x/c.1.0
+expect 1 'c\.1\.0 is damaged .its checksum is .* in the record' "$program" export killed wrong.csv
+expect 1 'damaged: chunk 1, x: ' "$program" info killed --verify
+expect 0 '' "$program" resume killed --checksums --quiet
 expect 0 '' "$program" info killed --verify
 echo 'All checks passed.'

@@ -11,5 +11,5 @@ data = xarray.open_dataset(FILE)
 print(data)
 print(data.x.sel(k=0.25, method="nearest").isel(phase=-1).values)
 flag = dict(zip(data.status.flag_meanings.split(), data.status.flag_values))
-print((data.status == flag["success"]).all().item(), data.attrs["options.relative_tolerance"])
+print((data.status == flag["success"]).all().item(), data.attrs["options_relative_tolerance"])
 # end of snippet

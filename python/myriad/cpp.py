@@ -5,7 +5,8 @@ import copy
 import itertools
 import re
 
-from .expression import condition, draws, integer, number_text, real, text, walk, write
+from .derivatives import dependencies, derivatives
+from .expression import as_number, condition, draws, integer, number_text, real, symbols_of, text, walk, write
 
 _columns = 116  # inside the struct
 _deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
@@ -14,6 +15,9 @@ _largest_literal = 1 << 24  # exact in single precision
 # and cosines, g++ 12, AVX-512, ns per evaluation: inlined 3.6, called 5.9 (two oscillators); 11.0 and 10.9 (four,
 # 192 instructions); 18.2 and 14.1 (six); 65 and 37 (twelve, which then compile in 7 s instead of 66).
 _largest_inlined = 150
+# Stiff methods keep dense factors of fewer states in registers, and have no other ones for more states.
+_sparse_states = range(7, 129)
+_most_derivatives = 1024  # beyond, the pattern alone is written, and the derivatives come from dual numbers
 
 _headers = {"time": "t", "step": "h", "next_step": "h_next", "phase": "phase", "instance": "index",
             "t_begin": "t_begin", "t_end": "t_end"}
@@ -297,7 +301,9 @@ class Writer:
             out.append("    static constexpr myriad::reduction reductions[] = {")
             out += [f"        {{{r.observed}, myriad::over_phase::{r.kind}, {r.accessory}}}," for r in model.reductions]
             out.append("    };")
-        blocks = [self.function("rhs", "n_state", model.rhs)]
+        pattern, jacobian = self.jacobian()
+        out += ["    " + line for line in pattern]
+        blocks = [self.function("rhs", "n_state", model.rhs)] + jacobian
         if model.events:
             blocks.append(self.function("events", "n_event", [e.function for e in model.events]))
         if model.observed:
@@ -327,6 +333,30 @@ class Writer:
         if work(model.rhs) > _largest_inlined:
             declared.append("large_rhs")
         return [f"static constexpr bool {name} = true;" for name in declared]
+
+    def jacobian(self):
+        """What stiff methods need of a large model: the pattern of its Jacobian, whether it depends on time, as lines,
+        and the derivatives, in a list of one function or none."""
+        model = self.model
+        if len(model.states) not in _sparse_states:
+            return [], []
+        states = [s for s in symbols_of(model.rhs) if s.value[0] == "state"]
+        by_name = {s.value[1]: s for s in states}
+        order = [by_name[name] for name in model.states if name in by_name]
+        column = {i: model.states.index(s.value[1]) for i, s in enumerate(order)}
+        found = derivatives(model.rhs, order)
+        rows = found if found is not None else dependencies(model.rhs, order)
+        entries = [(row, i) for row, columns in enumerate(rows) for i in sorted(columns)]
+        if not entries or len(entries) > len(model.states) ** 2 // 2 and len(entries) > _most_derivatives:
+            return [], []
+        lines = []
+        if all(s.value != ("built-in", "time") for s in symbols_of(model.rhs)):
+            lines.append("static constexpr bool autonomous = true;")
+        written = ", ".join(f"{{{model.states[row]}, {model.states[column[i]]}}}" for row, i in entries)
+        lines += _wrap(f"static constexpr myriad::jacobian_entry jacobian_pattern[] = {{{written}}};", 0)
+        if found is None or len(entries) > _most_derivatives:
+            return lines, []
+        return lines, [self.function("jacobian", len(entries), [as_number(found[row][i]) for row, i in entries])]
 
     # Functions of the state
 

@@ -233,7 +233,8 @@ class Study:
         self._core.note("kernel", "interpreted" if self._runs_interpreted else "compiled")
         self._core.set_run(devices, _whole(chunk or 0, "chunk", 1 << 62))
 
-    def run(self, store=None, *, device="auto", chunk=None, executor=None, check="sizes", expiry=60, progress=None):
+    def run(self, store=None, *, device="auto", chunk=None, executor=None, check="sizes", expiry=60, arithmetic="same",
+            progress=None):
         """Computes what is not there yet, and returns a `StudyResult`.
 
         store      a folder, in which the study goes on if it is run again, also by several processes at a time, each
@@ -245,6 +246,8 @@ class Study:
                    Parsl: its workers compute chunks, and send their values here, where they are kept
         check      what is looked at of a store that exists: "sizes" of files, or "checksums", for which all is read
         expiry     seconds after which chunks of a process on another machine that gives no sign of life are taken over
+        arithmetic "same": a store that another instruction set, compiler or library began is refused, since results
+                   differ in their last digits; "any": it is gone on with, and `warnings` says so
         progress   True for a bar, or a function of the numbers of instances done and of all
 
         A GPU that fails is left out with a warning, and its chunks are done by the other devices. GPUs of one kind give
@@ -256,6 +259,8 @@ class Study:
         done stays in the store, and of an executor's run `error.result` has it."""
         if check not in ("sizes", "checksums"):
             raise Error(f"check is {check!r}: give \"sizes\" or \"checksums\"")
+        if arithmetic not in ("same", "any"):
+            raise Error(f"arithmetic is {arithmetic!r}: give \"same\" or \"any\"")
         folder = "" if store is None else os.path.abspath(os.fspath(store))
         if device == "auto" and executor is not None:
             device = "cpu:1"
@@ -264,7 +269,7 @@ class Study:
         try:
             if not folder and self._has_store:  # from an earlier run
                 self._build(*self._given[:2], **self._given[2])
-            self._core.set_store(folder, float(expiry), check == "checksums")
+            self._core.set_store(folder, float(expiry), check == "checksums", arithmetic == "any")
             self._has_store = bool(folder)
             if executor is not None:
                 return _ExecutedRun(self, executor, devices, chunk, folder or None, show).run()

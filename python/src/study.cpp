@@ -118,6 +118,12 @@ public:
         });
         return made;
     }
+    studies::arithmetic arithmetic_on(const device& where) const override {
+        if (where.which() != device::kind::cpu) return studies::arithmetic::of_kernel("", "");
+        const kernel_library& kernel = kernel_for(where).kernel->cpu();
+        return studies::arithmetic::of_kernel(
+            host::name_of(static_cast<openmp::instruction_set>(kernel.instruction_set)), kernel.compiler);
+    }
     std::string generator() const override { return model_.generator; }
     bool generates_itself() const override { return !model_.generator.empty(); }
 
@@ -302,11 +308,12 @@ struct python_study {
         study.chunk = chunk;
         study.warning = [](const std::string&) {};  // the result has them
     }
-    void set_store(const std::string& folder, double expiry, bool checksums) {
+    void set_store(const std::string& folder, double expiry, bool checksums, bool any_arithmetic) {
         if (folder.empty()) return;
         studies::store_options how;
         how.expiry = std::chrono::milliseconds(std::llround(expiry * 1000));
         how.check = checksums ? studies::resume_check::checksums : studies::resume_check::sizes;
+        how.others = any_arithmetic ? studies::other_arithmetic::warn : studies::other_arithmetic::refuse;
         study.store(folder, how);
     }
     static nb::object result_of(study_result made) {
@@ -350,12 +357,15 @@ struct python_study {
         nb::list columns;
         for (const auto& [name, bytes] : made->columns)
             columns.append(nb::make_tuple(name, nb::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size())));
-        return nb::make_tuple(columns, made->record.device, made->record.seconds, made->record.statuses, made->notes);
+        const studies::arithmetic& by = made->record.computed_by;
+        return nb::make_tuple(columns, made->record.device, made->record.seconds, made->record.statuses, made->notes,
+                              nb::make_tuple(by.instruction_set, by.compiler, by.library, by.host));
     }
 };
 
 using sent_chunk = std::tuple<std::vector<std::pair<std::string, nb::bytes>>, std::string, double,
-                              std::vector<std::pair<std::string, std::int64_t>>, std::vector<std::string>>;
+                              std::vector<std::pair<std::string, std::int64_t>>, std::vector<std::string>,
+                              std::tuple<std::string, std::string, std::string, std::string>>;
 
 void commit(studies::handed_out_run& run, std::int64_t chunk, const sent_chunk& sent) {
     studies::computed_chunk values;
@@ -363,7 +373,9 @@ void commit(studies::handed_out_run& run, std::int64_t chunk, const sent_chunk& 
         const auto* const begin = reinterpret_cast<const std::byte*>(bytes.c_str());
         values.columns.emplace_back(name, std::vector<std::byte>(begin, begin + bytes.size()));
     }
-    values.record = {std::get<1>(sent), std::get<2>(sent), std::get<3>(sent)};
+    const auto& [instruction_set, compiler, math_library, host_name] = std::get<5>(sent);
+    values.record = {
+        std::get<1>(sent), std::get<2>(sent), std::get<3>(sent), {instruction_set, compiler, math_library, host_name}};
     values.notes = std::get<4>(sent);
     const nb::gil_scoped_release unlocked;
     run.commit(chunk, values);

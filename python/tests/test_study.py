@@ -244,6 +244,33 @@ def test_damage_is_found_and_mended(tmp_path):
     np.testing.assert_array_equal(mended["x_end"], expected)
 
 
+def test_files_that_are_exchanged_are_not_read_in_silence(tmp_path):
+    study = my.study(duffing(), grid(), keep=[x], **call)
+    expected = study.run(tmp_path / "store", chunk=10)
+    chunks = sorted(p for p in (tmp_path / "store" / "x_end").rglob("*") if p.is_file() and p.name != "zarr.json")
+    chunks[1].write_bytes(chunks[0].read_bytes())
+    for read in (lambda r: r["x_end"], lambda r: r.to_xarray().x_end.values):
+        with pytest.raises(my.Error, match="in the record"):
+            read(my.open_study(tmp_path / "store"))
+    axis = next(iter(expected.axes))
+    file = next(p for p in (tmp_path / "store" / axis).rglob("*") if p.is_file() and p.name != "zarr.json")
+    other = my.grid({k: my.linspace(0.5, 0.6, 25), x: [-0.5, 0.1, 0.2]}, {B: 0.3})
+    my.study(duffing(), other, keep=[x], **call).run(tmp_path / "other", chunk=10)
+    file.write_bytes((tmp_path / "other" / file.relative_to(tmp_path / "store")).read_bytes())
+    with pytest.raises(my.Error, match="in the record"):
+        my.open_study(tmp_path / "store")[axis]
+    assert {d.variable for d in my.verify(tmp_path / "store")} == {"x_end", axis}
+
+
+def test_a_store_says_what_computed_it(tmp_path):
+    my.study(duffing(), grid(), keep=[x], **call).run(tmp_path / "store", device="cpu", chunk=10)
+    record = json.loads((tmp_path / "store" / "myriad" / "chunks" / "0.json").read_text(encoding="utf-8"))
+    assert record["arithmetic"]["instruction set"] in ("avx512", "avx2", "sse2", "generic")
+    assert record["arithmetic"]["compiler"] and record["arithmetic"]["library"].startswith("Myriad ")
+    with pytest.raises(my.Error, match="arithmetic is 'other'"):
+        my.study(duffing(), grid(), **call).run(tmp_path / "store", arithmetic="other")
+
+
 def test_a_store_of_another_study_is_refused(tmp_path):
     my.study(duffing(), grid(), **call).run(tmp_path / "store")
     with pytest.raises(my.Error, match="options.rtol: .1e-09. in the store, .1e-08. here"):

@@ -211,7 +211,7 @@ struct run_request {
     std::string file, folder, model, header;
     std::vector<std::string> devices;
     std::string exported;
-    bool only_check = false, checksums = false, quiet = false;
+    bool only_check = false, checksums = false, any_arithmetic = false, quiet = false;
 };
 
 /// Files of the program in the folder of results.
@@ -233,6 +233,14 @@ model_source kept_source(const std::string& path) {
     return source;
 }
 
+/// Says how much of the results is not there yet. Throws `error` if all of it is asked for.
+void tell_missing(const studies::results& from, bool require_complete) {
+    const std::string missing = studies::missing_text(from);
+    if (missing.empty()) return;
+    if (require_complete) throw error(missing + ": nothing is written; `myriad resume` goes on with the study");
+    tell("incomplete: " + missing);
+}
+
 void export_results(const studies::results& from, const std::string& path, const std::string& variable) {
     const std::string kind = fs::path(path).extension().string();
     if (kind != ".npy" && !variable.empty())
@@ -241,7 +249,11 @@ void export_results(const studies::results& from, const std::string& path, const
     if (kind == ".csv") return export_csv(from, path);
     if (kind != ".npy") throw input_error(path + ": the name must end in .nc (netCDF), .csv or .npy");
     if (variable.empty()) throw input_error("an NPY file holds one variable: name it by --variable");
-    as_input([&] { return from.content().find(variable); });
+    as_input([&] {
+        for (const studies::coordinate& c : from.content().coordinates)
+            if (c.name == variable) return;
+        from.content().find(variable);
+    });
     export_npy(from, variable, path);
 }
 
@@ -260,6 +272,7 @@ int run_study(const run_request& asked, study_file& file, const std::string& tex
     if (header) study.note("source of the model", header->digest());
     studies::store_options options = file.store_options();
     if (asked.checksums) options.check = studies::resume_check::checksums;
+    if (asked.any_arithmetic) options.others = studies::other_arithmetic::warn;
     if (asked.only_check) {
         try {
             study.check();
@@ -405,7 +418,13 @@ int info(const std::string& folder, bool verify) {
               << message("done: ", now.chunks, " of ", now.all_chunks, " chunks, ", now.instances, " of ",
                          now.all_instances, " instances; ", now.seconds, " s of computing\n");
     for (const auto& [name, count] : now.statuses) std::cout << message("  ", name, ": ", count, '\n');
+    if (now.damaged > 0)
+        tell(message("damaged: the records of ", now.damaged, " chunks, which are not counted: --verify says which"));
+    if (there.format() == 1)
+        std::cout << "format 1, of an earlier version: its metadata, coordinates and final results have no checksums\n";
     for (const std::string& device : there.devices()) std::cout << "device: " << device << '\n';
+    for (const studies::arithmetic& a : there.arithmetics())
+        std::cout << message("computed by: ", a.text(), ", on ", a.host, '\n');
     std::cout << "variables:\n";
     for (const studies::variable& v : content.variables)
         if (v.extent != studies::along::chunks)
@@ -416,7 +435,7 @@ int info(const std::string& folder, bool verify) {
         if (text.size() > 200) text = text.substr(0, 200) + " ...";
         std::cout << message("  ", a.name, ": ", text, '\n');
     }
-    if (!verify) return 0;
+    if (!verify) return now.damaged > 0 ? 1 : 0;
     const std::vector<studies::damage> damaged = there.verify();
     for (const studies::damage& d : damaged)
         tell(message("damaged: ", d.chunk >= 0 ? message("chunk ", d.chunk, ", ") : "", d.variable, ": ", d.reason));
@@ -452,6 +471,7 @@ int plot(const plot_request& asked) {
         const std::string beside = is_folder ? source + ".png" : fs::path(source).replace_extension(".png").string();
         const std::string picture = asked.output.empty() ? beside : asked.output;
         std::vector<std::string> words{find_python(is_folder), "-B", script, source, picture};
+        words.push_back("--reader=" + fs::read_symlink("/proc/self/exe").string());
         for (const auto& [option, value] :
              {std::pair("--variable", asked.variable), {"--over", asked.over}, {"--value", asked.value}})
             if (!value.empty()) words.push_back(message(option, '=', value));
@@ -471,7 +491,7 @@ int parse_and_run(int argc, const char* const* argv) {
     plot_request picture;
     std::vector<std::string> files;
     std::string target, variable;
-    bool verify = false;
+    bool verify = false, require_complete = false;
     int status = 0;
 
     CLI::App* const list_command = app.add_subcommand("list", "Show models and their components");
@@ -485,6 +505,8 @@ int parse_and_run(int argc, const char* const* argv) {
             ->type_name("NAME");
         command->add_option("--export", asked.exported, "When all is done, write a file: .nc or .csv")
             ->type_name("FILE");
+        command->add_flag("--any-arithmetic", asked.any_arithmetic,
+                          "Go on where another instruction set, compiler or library began");
         command->add_flag("--quiet", asked.quiet, "Show no progress");
     };
     CLI::App* const run_command = app.add_subcommand("run", "Run a study, or go on with it");
@@ -512,7 +534,12 @@ int parse_and_run(int argc, const char* const* argv) {
     export_command->add_option("FOLDER", asked.folder, "Folder of the results")->required();
     export_command->add_option("FILE", target, "File to write: .nc (netCDF-4), .csv or .npy")->required();
     export_command->add_option("--variable", variable, "The variable of an NPY file")->type_name("NAME");
-    export_command->callback([&] { export_results(open_store(asked.folder), target, variable); });
+    export_command->add_flag("--require-complete", require_complete, "Write nothing unless all is computed");
+    export_command->callback([&] {
+        const store there = open_store(asked.folder);
+        tell_missing(there, require_complete);
+        export_results(there, target, variable);
+    });
 
     CLI::App* const plot_command = app.add_subcommand("plot", "Draw diagrams over one or two parameters");
     plot_command->add_option("RESULTS", picture.sources, "Folders of results, or netCDF files")->required();

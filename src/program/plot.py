@@ -3,6 +3,7 @@
 """Draws diagrams of a study over one or two of its parameters: what `myriad plot` runs.
 
 Usage: plot.py RESULTS PNG [--variable=NAME] [--over=AXIS[,AXIS]] [--at=AXIS=VALUE]... [--value=WHICH]
+               [--reader=PROGRAM]
 
 RESULTS is the folder of a study, or a netCDF file. Over one axis, every value is a dot: all phases, and all places of
 axes that --at does not fix. Over two, colours show one value for each place, of several the one that --value says.
@@ -11,20 +12,20 @@ axes that --at does not fix. Over two, colours show one value for each place, of
 import argparse
 import json
 import os
+import subprocess
 import sys
+import tempfile
 
 import figure as figures
 
 REDUCTIONS = ("last", "minimum", "maximum", "mean", "distinct")
-CHECKSUM_BYTES = 4
 
 
 class Folder:
-    """Results in a folder: arrays of Zarr, divided into files along their outermost dimension. Files that are not there
-    yet have the fill value."""
+    """Results in a folder. Values come from the program, which compares them with their checksums."""
 
-    def __init__(self, numpy, path):
-        self.numpy, self.path = numpy, path
+    def __init__(self, numpy, path, reader):
+        self.numpy, self.path, self.reader = numpy, path, reader
         try:
             with open(os.path.join(path, "zarr.json"), encoding="utf-8") as file:
                 group = json.load(file)
@@ -48,34 +49,21 @@ class Folder:
         return self.arrays[name].get("attributes", {})
 
     def read(self, name):
-        numpy, array = self.numpy, self.arrays[name]
-        shape, chunk = array["shape"], array["chunk_grid"]["configuration"]["chunk_shape"]
-        kind = numpy.dtype(array["data_type"])
-        fill = array["fill_value"]
-        values = numpy.full(shape, numpy.nan if fill == "NaN" else fill, kind)
-        separator = array["chunk_key_encoding"]["configuration"].get("separator", "/")
-        inner = separator.join(["0"] * (len(shape) - 1))
-        for number in range(-(-shape[0] // chunk[0]) if shape else 1):
-            key = separator.join(["c", str(number)] + ([inner] if inner else [])) if shape else "c"
-            path = os.path.join(self.path, name, key)
-            if not os.path.exists(path):
-                continue
-            stored = numpy.fromfile(path, numpy.uint8)[:-CHECKSUM_BYTES].view(kind)
-            if not shape:
-                return stored[0]
-            part = values[number * chunk[0]:(number + 1) * chunk[0]]
-            part[...] = stored.reshape(chunk)[:len(part)]
-        if (array.get("dimension_names") or [""])[0] == "instance":
-            values = values.reshape(list(self.dimensions.values()) + shape[1:])
-        return values
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "values.npy")
+            done = subprocess.run([self.reader, "export", self.path, path, "--variable", name], check=False,
+                                  capture_output=True, text=True)
+            if done.returncode != 0:
+                raise figures.PlotError(done.stderr.strip())
+            return self.numpy.load(path)
 
 
 class File:
     """Results in a netCDF file."""
 
-    def __init__(self, _numpy, path):
+    def __init__(self, _numpy, path, _reader):
         self.data = figures.open_netcdf(path, "myriad export", [])
-        dimensions = json.loads(getattr(self.data, "axes.dimensions", "[]"))
+        dimensions = json.loads(getattr(self.data, "axes_dimensions", "[]"))
         self.grid = [dimension["name"] for dimension in dimensions]
         self.aside = {place for variable in self.data.variables.values()
                       for place in getattr(variable, "coordinates", "").split()}
@@ -266,11 +254,12 @@ def main():
     parser.add_argument("--variable")
     parser.add_argument("--over")
     parser.add_argument("--at", action="append", default=[])
+    parser.add_argument("--reader", default="myriad", help="the program that reads folders")
     parser.add_argument("--value", choices=REDUCTIONS, default="last")
     asked = parser.parse_args()
     try:
         pyplot, numpy = figures.import_libraries()
-        data = (Folder if os.path.isdir(asked.results) else File)(numpy, asked.results)
+        data = (Folder if os.path.isdir(asked.results) else File)(numpy, asked.results, asked.reader)
         figures.save(draw(pyplot, numpy, data, asked), asked.picture, dpi=200)
     except figures.PlotError as error:
         print(error, file=sys.stderr)

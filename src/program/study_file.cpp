@@ -175,6 +175,8 @@ void study_file::read_store() {
     store_options_.expiry = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * expiry));
     from.read("check", store_options_.check,
               {{"sizes", studies::resume_check::sizes}, {"checksums", studies::resume_check::checksums}});
+    from.read("arithmetic", store_options_.others,
+              {{"same", studies::other_arithmetic::refuse}, {"any", studies::other_arithmetic::warn}});
     from.finish();
 }
 

@@ -44,7 +44,7 @@ void exact_sum::store(std::span<std::int64_t, digits> to) {
     std::copy(digit_.begin(), digit_.end(), to.begin());
 }
 
-double exact_sum::value() const {
+double exact_sum::value(int exponent) const {
     exact_sum sum = *this;
     sum.carry();
     const bool negative = sum.digit_[digits - 1] < 0;
@@ -56,7 +56,7 @@ double exact_sum::value() const {
     while (top > 0 && sum.digit_[top] == 0) --top;
     if (top < 2) {  // below 2^-1010, where 64 bits hold all
         const auto all = static_cast<std::uint64_t>(sum.digit_[1]) << 32 | static_cast<std::uint64_t>(sum.digit_[0]);
-        const double exact = std::ldexp(static_cast<double>(all), -1074);
+        const double exact = std::ldexp(static_cast<double>(all), exponent - 1074);
         return negative ? -exact : exact;
     }
     // The first 64 bits, the last of which stands for all that follow: one rounding, by the conversion.
@@ -77,7 +77,8 @@ double exact_sum::value() const {
         }
     }
     if (rest != 0) leading |= 1;
-    const double rounded = std::ldexp(static_cast<double>(leading), static_cast<int>(top) * 32 - zeros - 1074);
+    const double rounded =
+        std::ldexp(static_cast<double>(leading), static_cast<int>(top) * 32 - zeros - 1074 + exponent);
     return negative ? -rounded : rounded;
 }
 

@@ -20,6 +20,7 @@ void export_netcdf(const studies::results&, const std::string& path, const netcd
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -180,6 +181,27 @@ void put_attribute(const netcdf_file& file, int variable, attribute a, const ele
         a.value);
 }
 
+// CF recommends letters, digits and underscores alone in names. The attribute description has all names as they are.
+std::string global_name(std::string name) {
+    for (char& c : name) {
+        const bool kept = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        if (!kept) c = '_';
+    }
+    const bool begins_with_letter =
+        !name.empty() && name.front() != '_' && !(name.front() >= '0' && name.front() <= '9');
+    return begins_with_letter ? name : 'x' + name;
+}
+
+// As CF's attribute history has it.
+std::string time_now() {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    ::gmtime_r(&now, &parts);
+    char text[32] = {};
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return text;
+}
+
 // Calls f(start, count) for boxes that have the places [first, first + count) of a grid, in their order.
 void for_boxes(const std::vector<std::size_t>& lengths, std::size_t first, std::size_t count,
                const std::function<void(const std::vector<std::size_t>&, const std::vector<std::size_t>&)>& f) {
@@ -224,10 +246,7 @@ public:
     exporter(const results& from, netcdf_file& file, const netcdf_options& options)
         : from_(from), content_(from.content()), file_(file), options_(options) {
         for (std::int64_t chunk = 0; chunk < content_.chunks(); ++chunk)
-            if (!from_.done(chunk)) {
-                ++missing_chunks_;
-                missing_instances_ += range_of(content_, chunk).count;
-            }
+            if (!from_.done(chunk)) ++missing_chunks_;
         for (const dimension& axis : content_.axes) grid_.push_back(static_cast<std::size_t>(axis.length));
     }
 
@@ -347,15 +366,17 @@ private:
     void define_global() {
         put_attribute(file_, NC_GLOBAL, {"Conventions", "CF-1.10"});
         put_attribute(file_, NC_GLOBAL, {"source", "Myriad " MYRIAD_VERSION});
-        for (const attribute& a : attributes_of(content_.description)) put_attribute(file_, NC_GLOBAL, a);
+        for (attribute& a : attributes_of(content_.description)) {
+            a.name = global_name(a.name);
+            put_attribute(file_, NC_GLOBAL, a);
+        }
+        put_attribute(file_, NC_GLOBAL, {"history", message(time_now(), " exported by Myriad " MYRIAD_VERSION)});
         put_attribute(file_, NC_GLOBAL, {"description", content_.description});
         std::string devices;
         for (const std::string& name : from_.devices()) devices += (devices.empty() ? "" : ", ") + name;
         if (!devices.empty()) put_attribute(file_, NC_GLOBAL, {"devices", devices});
-        if (missing_chunks_ > 0)
-            put_attribute(file_, NC_GLOBAL,
-                          {"incomplete", message(missing_instances_, " of ", content_.instances(),
-                                                 " instances are not computed yet: they have _FillValue")});
+        const std::string missing = missing_text(from_);
+        if (!missing.empty()) put_attribute(file_, NC_GLOBAL, {"incomplete", missing + ": they have _FillValue"});
     }
 
     std::vector<dimension> dimensions_of(const variable& v) const {
@@ -417,7 +438,7 @@ private:
     netcdf_file& file_;
     netcdf_options options_;
     std::vector<std::size_t> grid_;
-    std::int64_t missing_chunks_ = 0, missing_instances_ = 0;
+    std::int64_t missing_chunks_ = 0;
     std::map<std::string, int> dimensions_, ids_;
     std::vector<std::byte> buffer_;
 };

@@ -10,6 +10,7 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/study/export.hpp"
 #include "myriad/study/file_system.hpp"
+#include "myriad/study/metadata.hpp"
 
 namespace myriad {
 
@@ -161,16 +162,13 @@ void write_csv(const results& from, new_file& file) {
     file.write(text);
 }
 
-void write_npy(const results& from, std::string_view name, new_file& file) {
-    const layout& content = from.content();
-    const variable& v = content.variables[content.find(name)];
-    std::vector<dimension> shape = v.inner;
-    if (v.extent == along::chunks) shape.insert(shape.begin(), {"chunk", content.chunks()});
-    if (v.extent == along::instances) shape.insert(shape.begin(), content.axes.begin(), content.axes.end());
+// What precedes the values in an NPY file, format 1.0: a magic string, the version, the length of the header, which
+// ends on a multiple of 64 bytes.
+std::string npy_header(element of, std::string_view name, const std::vector<dimension>& shape) {
     std::string lengths;
     for (const dimension& d : shape) lengths += message(d.length, ", ");
     const char* type = "";
-    switch (v.type) {
+    switch (of) {
         case element::f64:
             type = "<f8";
             break;
@@ -187,7 +185,6 @@ void write_npy(const results& from, std::string_view name, new_file& file) {
             type = "|u1";
             break;
     }
-    // Format 1.0: a magic string, the version, the length of the header, which ends on a multiple of 64 bytes.
     std::string header = message("{'descr': '", type, "', 'fortran_order': False, 'shape': (", lengths, "), }");
     header.append(63 - (10 + header.size()) % 64, ' ');
     header += '\n';
@@ -196,7 +193,29 @@ void write_npy(const results& from, std::string_view name, new_file& file) {
     begin += static_cast<char>(header.size() & 255);
     begin += static_cast<char>(header.size() >> 8);
 
-    file.write(begin + header);
+    return begin + header;
+}
+
+void write_npy(const coordinate& c, const layout& content, new_file& file) {
+    const array_shape shape = shape_of(content, c);
+    file.write(npy_header(element::f64, c.name, shape.dimensions));
+    std::vector<double> values;
+    for (std::int64_t first = 0; first < shape.items(); first += shape.chunk) {
+        values.resize(static_cast<std::size_t>(std::min(shape.chunk, shape.items() - first)));
+        c.values(first, values);
+        file.write(std::as_bytes(std::span(values)));
+    }
+}
+
+void write_npy(const results& from, std::string_view name, new_file& file) {
+    const layout& content = from.content();
+    for (const coordinate& c : content.coordinates)
+        if (c.name == name) return write_npy(c, content, file);
+    const variable& v = content.variables[content.find(name)];
+    std::vector<dimension> shape = v.inner;
+    if (v.extent == along::chunks) shape.insert(shape.begin(), {"chunk", content.chunks()});
+    if (v.extent == along::instances) shape.insert(shape.begin(), content.axes.begin(), content.axes.end());
+    file.write(npy_header(v.type, v.name, shape));
     std::vector<std::byte> values;
     const auto write = [&](std::int64_t first, std::int64_t count) {
         values.resize(static_cast<std::size_t>(count * v.values_per_item()) * size_of(v.type));

@@ -46,7 +46,13 @@ std::string study_advice(int code) {
         case ENAMETOOLONG:
             return ": give a folder with a shorter path";
         case ENOENT:
-            return ": a folder of the study was removed; start again, which makes it anew";
+            return ": a folder of the study was removed or moved; start again, which makes it anew";
+        case EISDIR:
+            return ": it is a folder, which belongs to no study; remove it, and start again";
+        case EMFILE:
+        case ENFILE:
+            return ": too many files are open; raise the limit (ulimit -n), or keep fewer variables, and start again. "
+                   "What was finished is kept";
         case EMLINK:
         case ENOTSUP:
             return ": give a folder on a file system with hard links, as those of Linux and NFS";
@@ -90,7 +96,11 @@ file_system& file_system::real() {
     return system;
 }
 
-int file_system::open(const std::string& path, int flags) { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); }
+int file_system::open(const std::string& path, int flags) {
+    // A pipe in the place of a file is empty, and nothing to wait for.
+    const int waiting = (flags & O_ACCMODE) == O_RDONLY ? O_NONBLOCK : 0;
+    return ::open(path.c_str(), flags | O_CLOEXEC | waiting, 0666);
+}
 ssize_t file_system::read(int file, void* data, std::size_t size) { return ::read(file, data, size); }
 ssize_t file_system::write(int file, const void* data, std::size_t size) { return ::write(file, data, size); }
 int file_system::fsync(int file) { return ::fsync(file); }
@@ -107,6 +117,7 @@ int file_system::facts(int file, file_facts& result) {
     if (::fstat(file, &status) < 0) return -1;
     result.size = status.st_size;
     result.modified = std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+    result.number = static_cast<std::int64_t>(status.st_ino);
     return 0;
 }
 
@@ -239,11 +250,18 @@ void make_folder(file_system& files, const std::string& folder) {
 }
 
 void make_folders(file_system& files, const std::string& folder) {
-    if (files.mkdir(folder) == 0 || errno == EEXIST) return;
     const std::string parent = folder_of(folder);
-    if (errno != ENOENT || parent == folder) throw file_error("making the folder", folder, errno);
-    make_folders(files, parent);
-    make_folder(files, folder);
+    if (files.mkdir(folder) < 0) {
+        if (errno == EEXIST) return;
+        if (errno != ENOENT || parent == folder) throw file_error("making the folder", folder, errno);
+        make_folders(files, parent);
+        make_folder(files, folder);
+    }
+    try {
+        sync_folder(files, parent);
+    } catch (const file_error& failure) {
+        if (failure.code() != EACCES) throw;  // one that may be written, and not be read
+    }
 }
 
 std::optional<std::vector<std::string>> names_in(file_system& files, const std::string& folder) {

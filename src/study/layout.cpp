@@ -193,4 +193,16 @@ chunk_range range_of(const layout& content, std::int64_t chunk) {
     return {first, std::min(content.chunk, content.instances() - first)};
 }
 
+std::string missing_text(const results& from) {
+    const layout& content = from.content();
+    std::int64_t missing = 0;
+    for (std::int64_t chunk = 0; chunk < content.chunks(); ++chunk)
+        if (!from.done(chunk)) missing += range_of(content, chunk).count;
+    if (missing > 0) return message(missing, " of ", content.instances(), " instances are not computed yet");
+    std::string names;
+    for (const variable& v : content.variables)
+        if (v.extent == along::nothing && !from.written(v.name)) names += (names.empty() ? "" : ", ") + v.name;
+    return names.empty() ? "" : message("the final results are not computed yet (", names, ')');
+}
+
 }  // namespace myriad::studies::inline MYRIAD_ABI

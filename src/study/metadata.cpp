@@ -8,27 +8,19 @@
 #include <numeric>
 #include <type_traits>
 
-#include <nlohmann/json.hpp>
-
+#include "json_numbers.hpp"
 #include "myriad/host/core/error.hpp"
+#include "myriad/study/sealed_text.hpp"
 #include "myriad/version.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
 namespace {
 
-// With keys in the order in which they are written, for those who read it.
-using json = nlohmann::ordered_json;
+using json = ordered_json;
 
 constexpr std::int64_t coordinate_chunk = std::int64_t{1} << 20;  // 8 MB
-constexpr int store_format = 1;
-
-// JSON has no NaN and no infinity: as Zarr writes them.
-json number(double value) {
-    if (std::isnan(value)) return "NaN";
-    if (std::isinf(value)) return value > 0 ? "Infinity" : "-Infinity";
-    return value;
-}
+constexpr int store_format = 2;  // 1: without checksums of metadata, coordinates and final results
 
 json fill_value(element type) {
     return with_type(type, [type]<class T>(T value) -> json {
@@ -59,15 +51,6 @@ json as_json(const std::vector<attribute>& attributes) {
             },
             a.value);
     return all;
-}
-
-// A number that may be written as text.
-bool is_number(const json& value) {
-    return value.is_number() || value == "NaN" || value == "Infinity" || value == "-Infinity";
-}
-double as_double(const json& value) {
-    if (value.is_number()) return value.get<double>();
-    return value == "NaN" ? std::nan("") : value == "Infinity" ? HUGE_VAL : -HUGE_VAL;
 }
 
 std::vector<attribute> attributes_from(const json& all) {
@@ -149,6 +132,9 @@ json array_metadata(const array_shape& shape, const std::vector<attribute>& attr
             {"dimension_names", names}};
 }
 
+constexpr const char* restore_advice =
+    "start the study again, which restores it from its copy myriad/group.json, or give another folder";
+
 bool all_objects(const json& list) {
     return list.is_array() && std::all_of(list.begin(), list.end(), [](const json& v) { return v.is_object(); });
 }
@@ -209,12 +195,6 @@ void flatten(const std::string& name, const json& value, json& flat) {
 
 bool is_json_object(std::string_view text) { return json::parse(text, nullptr, false).is_object(); }
 
-std::string hexadecimal(std::uint32_t value) {
-    char text[9];
-    std::snprintf(text, sizeof text, "%08x", value);
-    return text;
-}
-
 std::int64_t array_shape::items() const { return dimensions.empty() ? 1 : dimensions.front().length; }
 
 std::int64_t array_shape::item_bytes() const {
@@ -264,7 +244,10 @@ std::string array_json(const array_shape& shape, const std::vector<attribute>& a
     return array_metadata(shape, attributes).dump(1) + '\n';
 }
 
-std::string group_json(const layout& content) {
+namespace {
+
+// Of a store of any format, as the version that made it wrote it.
+json group_of_format(const layout& content, int format, const std::string& version) {
     json arrays = json::object(), variables = json::array(), coordinates = json::array();
     for (const coordinate& c : content.coordinates) {
         arrays[c.name] = array_metadata(shape_of(content, c), c.attributes);
@@ -279,32 +262,45 @@ std::string group_json(const layout& content) {
                              {"role", name_in(v.role, role_names)},
                              {"attributes", as_json(v.attributes)}});
     }
-    const json own = {{"format", store_format},
-                      {"version", MYRIAD_VERSION},
-                      {"axes", as_json(content.axes)},
-                      {"chunk", content.chunk},
-                      {"variables", variables},
-                      {"coordinates", coordinates},
-                      {"description", json::parse(content.description)}};
-    const json group = {
-        {"zarr_format", 3},
-        {"node_type", "group"},
-        {"attributes", {{"myriad", own}}},
-        {"consolidated_metadata", {{"kind", "inline"}, {"must_understand", false}, {"metadata", arrays}}}};
-    return group.dump(1) + '\n';
+    json own = {{"format", format},
+                {"version", version},
+                {"axes", as_json(content.axes)},
+                {"chunk", content.chunk},
+                {"variables", variables},
+                {"coordinates", coordinates},
+                {"description", json::parse(content.description)}};
+    if (format > 1) own[seal_key] = unsealed;
+    // The checksum at the end, after all names that users give.
+    return {{"zarr_format", 3},
+            {"node_type", "group"},
+            {"consolidated_metadata", {{"kind", "inline"}, {"must_understand", false}, {"metadata", arrays}}},
+            {"attributes", {{"myriad", own}}}};
 }
 
-layout layout_of(std::string_view group, const std::string& path) {
-    const json read = json::parse(group, nullptr, false);
-    require(!read.is_discarded(), path, " is no JSON, so it is damaged: restore it, or give another folder");
+}  // namespace
+
+std::string group_json(const layout& content) {
+    return sealed(group_of_format(content, store_format, MYRIAD_VERSION).dump(1) + '\n');
+}
+
+stored_group group_of(std::string_view text, const std::string& path) {
+    const json read = json::parse(text, nullptr, false);
+    require(!read.is_discarded(), path, " is no JSON, so it is damaged: ", restore_advice);
     require(read.is_object() && read.contains("attributes") && read.at("attributes").contains("myriad"), path,
             " is not from a study of Myriad: give another folder");
-    layout content;
+    stored_group group;
+    layout& content = group.content;
     try {
         const json& own = read.at("attributes").at("myriad");
-        require(own.at("format") == store_format, path, " has format ", own.at("format").dump(),
-                ", and this version of Myriad knows ", store_format, ": use the version that wrote it, ",
-                own.at("version").dump());
+        require(own.at("format") == store_format || own.at("format") == 1, path, " has format ",
+                own.at("format").dump(), ", and this version of Myriad knows 1 and ", store_format,
+                ": use the version that wrote it, ", own.at("version").dump());
+        const seal its = seal_of(text);
+        require(its.stored.empty() || its.is_right(), path, " is damaged (its checksum is ", its.computed,
+                " and should be ", its.stored, "): ", restore_advice);
+        group.format = own.at("format").get<int>();
+        require(group.format == 1 || its.is_right(), path, " is damaged (its checksum is missing): ", restore_advice);
+        if (group.format > 1) group.checksum = its.stored;
         content.axes = dimensions_from(own.at("axes"));
         content.chunk = own.at("chunk").get<std::int64_t>();
         content.description = own.at("description").dump();
@@ -317,10 +313,20 @@ layout layout_of(std::string_view group, const std::string& path) {
                                            [](std::int64_t, std::span<double>) {},
                                            attributes_from(c.at("attributes"))});
         content.check();
+        // Stores of format 1 have no checksum, but most of what they say twice.
+        const json again = group_of_format(content, group.format, own.at("version").get<std::string>());
+        const json& arrays = read.at("consolidated_metadata");
+        require(arrays == again.at("consolidated_metadata"), path,
+                " is damaged (it says different things of its arrays): ", restore_advice);
     } catch (const nlohmann::json::exception& failure) {
-        host::refuse({path, " is damaged (", failure.what(), "): restore the file, or give another folder"});
+        host::refuse({path, " is damaged (", failure.what(), "): ", restore_advice});
     }
-    return content;
+    return group;
+}
+
+bool same_json(std::string_view a, std::string_view b) {
+    const json read = json::parse(a, nullptr, false);
+    return !read.is_discarded() && read == json::parse(b, nullptr, false);
 }
 
 std::vector<std::string> differences(const layout& stored, const layout& here) {
@@ -339,42 +345,6 @@ std::vector<attribute> attributes_of(std::string_view description) {
     json flat = json::object();
     flatten("", json::parse(description), flat);
     return attributes_from(flat);
-}
-
-std::string record_json(const layout& content, std::int64_t chunk, const stored_chunk& stored) {
-    json files = json::object(), statuses = json::object();
-    std::size_t next = 0;
-    for (const variable& v : content.variables)
-        if (v.extent != along::nothing) files[v.name] = hexadecimal(stored.checksums.at(next++));
-    for (const auto& [name, count] : stored.record.statuses) statuses[name] = count;
-    const json all = {{"chunk", chunk},
-                      {"instances", range_of(content, chunk).count},
-                      {"device", stored.record.device},
-                      {"seconds", number(stored.record.seconds)},
-                      {"statuses", statuses},
-                      {"crc32c", files}};
-    return all.dump(1) + '\n';
-}
-
-stored_chunk record_of(std::string_view text, const layout& content, std::int64_t chunk) {
-    stored_chunk stored;
-    try {
-        const json read = json::parse(text);
-        require(read.at("chunk") == chunk, "it is that of another chunk");
-        stored.record.device = read.at("device").get<std::string>();
-        stored.record.seconds = as_double(read.at("seconds"));
-        for (const auto& [name, count] : read.at("statuses").items())
-            stored.record.statuses.emplace_back(name, count.get<std::int64_t>());
-        for (const variable& v : content.variables)
-            if (v.extent != along::nothing)
-                stored.checksums.push_back(static_cast<std::uint32_t>(
-                    std::stoul(read.at("crc32c").at(v.name).get<std::string>(), nullptr, 16)));
-    } catch (const nlohmann::json::exception& failure) {
-        host::refuse({"the record of chunk ", chunk, " is damaged: ", failure.what()});
-    } catch (const std::logic_error&) {
-        host::refuse({"the record of chunk ", chunk, " is damaged: a checksum is no number"});
-    }
-    return stored;
 }
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

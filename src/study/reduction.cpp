@@ -177,7 +177,11 @@ public:
     }
     std::vector<std::vector<double>> results() override {
         std::vector<double> mean(count_.size());
-        for (std::size_t j = 0; j < mean.size(); ++j) mean[j] = sum_[j].value() / count_[j];
+        for (std::size_t j = 0; j < mean.size(); ++j) {
+            mean[j] = sum_[j].value() / count_[j];
+            // The sum may be too large for a double, and the mean is not: a count has less than 64 bits.
+            if (std::isinf(mean[j])) mean[j] = std::ldexp(sum_[j].value(-64) / count_[j], 64);
+        }
         return {mean};
     }
 
@@ -232,10 +236,10 @@ ensemble_reduction one_value(std::string_view of, const char* what, std::int64_t
     made.name = message(of, '_', what);
     made.inputs = {std::string(of)};
     made.description = message(what, " of ", of);
-    made.plan = [=, name = made.name, of = std::string(of)](const inputs& in) {
+    made.plan = [=, name = made.name, description = made.description, of = std::string(of)](const inputs& in) {
         const std::int64_t size = in[0]->values_per_item();
         return reduction_plan{size * partial_values,
-                              {result(name, element::f64, in[0]->inner)},
+                              {result(name, element::f64, in[0]->inner, {{"long_name", description}})},
                               {},
                               [=] { return std::make_unique<State>(of, size, more...); },
                               cuda::device_reduction{on_device}};
@@ -267,9 +271,11 @@ ensemble_reduction histogram_of(std::string_view of, const axis_values& edges) {
         const std::string dimension = of + "_bin";
         return reduction_plan{
             bins + 3,
-            {result(of + "_histogram", element::i64, {{dimension, bins}}, {{"edges", all}}),
+            {result(of + "_histogram", element::i64, {{dimension, bins}},
+                    {{"long_name", "number of values of " + of + " in each bin"}, {"edges", all}}),
              result(of + "_outside", element::i64, {{of + "_side", 3}},
-                    {{"comment",
+                    {{"long_name", "number of values of " + of + " in no bin"},
+                     {"comment",
                       "how many values are below the first edge, above the last one, and not finite or "
                       "missing"}})},
             {studies::with_values(dimension, dimension, middles, {{"long_name", "middle of the bin"}})},
@@ -299,9 +305,10 @@ ensemble_reduction sum_of(std::string name, std::vector<std::string> of, std::in
     made.plan = [name, size, function = std::move(function)](const inputs&) {
         std::vector<studies::dimension> inner;
         if (size > 1) inner.push_back({name + "_number", size});
-        return reduction_plan{size * exact_sum::digits, {result(name, element::f64, inner)}, {}, [=] {
-                                  return std::make_unique<user_state>(function, size);
-                              }};
+        return reduction_plan{
+            size * exact_sum::digits, {result(name, element::f64, inner, {{"long_name", "sum of " + name}})}, {}, [=] {
+                return std::make_unique<user_state>(function, size);
+            }};
     };
     return ensemble_reduction(std::move(made));
 }

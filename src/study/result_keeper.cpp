@@ -163,6 +163,7 @@ public:
     void write(const column& values) override {
         if (!store_->written(values.variable)) store_->write(values);
     }
+    std::vector<std::string> warnings() const override { return store_->warnings(); }
     bool complete() override {
         if (!store_->complete()) store_->refresh();
         return store_->complete();

@@ -58,6 +58,7 @@ public:
     }
 
     run_outcome all() {
+        warnings_ = keeper_.warnings();
         if (!keeper_.complete()) run_threads();
         tell_warnings();
         show();
@@ -356,7 +357,7 @@ private:
                                                                           : reduced(plan_.reductions[r], range, all));
             columns.push_back(column_of(names.emplace_back(partial_name(plan_.asked.reductions[r])), found));
         }
-        chunk_record record{d.where.description(), seconds, {}};
+        chunk_record record{d.where.description(), seconds, {}, model_.arithmetic_on(d.where)};
         for (std::size_t s = 0; s < made.how.by_status.size(); ++s)
             if (made.how.by_status[s] > 0)
                 record.statuses.emplace_back(myriad::name_of(static_cast<myriad::status>(s)), made.how.by_status[s]);

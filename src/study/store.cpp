@@ -6,34 +6,19 @@
 #include <bit>
 #include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <mutex>
 #include <set>
-
-#include <fcntl.h>
+#include <thread>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/memory/memory_need.hpp"
-#include "myriad/study/crc32c.hpp"
-#include "myriad/study/file_system.hpp"
-#include "myriad/study/metadata.hpp"
+#include "myriad/study/store_files.hpp"
 #include "myriad/study/writer.hpp"
 
 namespace myriad {
-
-namespace studies::inline MYRIAD_ABI {
-
-// An array of a store, in a folder of its name.
-struct stored_array {
-    std::string name;
-    array_shape shape;
-    std::vector<attribute> attributes;
-};
-
-}  // namespace studies::inline MYRIAD_ABI
 
 using namespace studies;
 
@@ -41,94 +26,9 @@ static_assert(std::endian::native == std::endian::little, "stores hold little-en
 
 namespace {
 
-constexpr std::int64_t piece = std::int64_t{1} << 20;  // stays in a core's cache between its checksum and its copy
+constexpr const char* own_group = "{\"zarr_format\": 3, \"node_type\": \"group\"}\n";
 
 std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count); }
-
-// What reading a file showed: its checksum, and what is wrong with it, if anything.
-struct file_check {
-    std::uint32_t checksum = 0;
-    std::string damage;
-};
-
-// Reads a file of an array as a whole, since its checksum is about the whole, and copies the bytes from `begin` to
-// `end`.
-file_check read_array_file(file_system& files, const std::string& path, const array_shape& shape, std::int64_t begin,
-                           std::int64_t end, std::byte* to) {
-    const std::int64_t size = shape.file_bytes() - 4;
-    file_check check;
-    std::vector<std::byte> scratch(bytes_of(std::min(size, piece)));
-    try {
-        open_file file(files, path, O_RDONLY);
-        for (std::int64_t at = 0; at < size;) {
-            const bool wanted = begin <= at && at < end;
-            const std::int64_t until = at < begin ? begin : at < end ? end : size;
-            const std::int64_t part = std::min(until - at, piece);
-            const std::span<std::byte> into(wanted ? to + (at - begin) : scratch.data(), bytes_of(part));
-            if (file.read(into) != into.size()) {
-                check.damage = "it is too short";
-                return check;
-            }
-            check.checksum = crc32c(into, check.checksum);
-            at += part;
-        }
-        std::uint32_t stored = 0;
-        std::byte last[5];
-        if (file.read(last) != 4) {
-            check.damage = "it has not the length it should have";
-            return check;
-        }
-        std::memcpy(&stored, last, 4);
-        if (stored != check.checksum)
-            check.damage = "its checksum is " + hexadecimal(check.checksum) + " and should be " + hexadecimal(stored);
-    } catch (const file_error& failure) {
-        if (failure.code() != ENOENT) throw;
-        check.damage = "it is missing";
-    }
-    return check;
-}
-
-constexpr const char* repair_advice =
-    "): start the study again with the option check set to checksums, which reads all that is stored and does what is "
-    "damaged once more";
-
-// Writes a file of an array, filled up to its full length, to a temporary place.
-new_file write_array_file(file_system& files, const std::string& temporary, const array_shape& shape,
-                          std::span<const std::byte> bytes, std::uint32_t& checksum) {
-    new_file file(files, temporary);
-    checksum = 0;
-    const auto put = [&](std::span<const std::byte> part) {
-        checksum = crc32c(part, checksum);
-        file.write(part);
-    };
-    for (std::size_t at = 0; at < bytes.size(); at += bytes_of(piece))
-        put(bytes.subspan(at, std::min(bytes_of(piece), bytes.size() - at)));
-    std::int64_t missing = shape.file_bytes() - 4 - static_cast<std::int64_t>(bytes.size());
-    if (missing > 0) {
-        std::vector<std::byte> filler(bytes_of(std::min(missing, piece)));
-        fill(shape.type, filler.data(), filler.size() / size_of(shape.type));
-        for (; missing > 0; missing -= piece) put(std::span(filler).first(bytes_of(std::min(missing, piece))));
-    }
-    file.write(std::as_bytes(std::span(&checksum, 1)));
-    return file;
-}
-
-// Items [first, first + count) of a coordinate's array.
-void read_coordinate(file_system& files, const std::string& folder, const stored_array& array, std::int64_t first,
-                     std::span<double> values) {
-    const auto count = static_cast<std::int64_t>(values.size());
-    require(first >= 0 && first <= array.shape.items() - count, "coordinate ", array.name, " has ", array.shape.items(),
-            " values, and not those from ", first, " to ", first + count);
-    for (std::int64_t at = first; at < first + count;) {
-        const std::int64_t file = at / array.shape.chunk, begin = at - file * array.shape.chunk;
-        const std::int64_t end = std::min(array.shape.chunk, begin + first + count - at);
-        const std::string path = folder + '/' + array.name + '/' + array.shape.file_name(file);
-        const file_check check = read_array_file(files, path, array.shape, begin * 8, end * 8,
-                                                 reinterpret_cast<std::byte*>(values.data() + (at - first)));
-        require(check.damage.empty(), path, " is damaged (", check.damage, repair_advice);
-        at += end - begin;
-    }
-}
 
 // Where it is also after the process has gone to another folder.
 std::string absolute(const std::string& folder) {
@@ -138,18 +38,60 @@ std::string absolute(const std::string& folder) {
     return unknown ? folder : path.string();
 }
 
-// The layout of a folder with a store, or nothing if there is none yet. An error if there is something else.
-std::optional<layout> stored_layout(file_system& files, const std::string& folder) {
-    const std::string path = folder + "/zarr.json";
+// A group that was found in a folder, and what is wrong with its file, if it is known from its copy alone.
+struct found_group {
+    stored_group group;
+    std::string text, damage;
+};
+
+std::string group_path(const std::string& folder) { return folder + "/zarr.json"; }
+std::string copy_path(const std::string& folder) { return folder + "/myriad/group.json"; }
+
+// The copy of a group's file that stores of format 2 have.
+std::optional<found_group> copied_group(file_system& files, const std::string& folder, const std::string& damage) {
+    const std::optional<std::string> text = read_text(files, copy_path(folder));
+    if (!text) return std::nullopt;
+    try {
+        return found_group{group_of(*text, copy_path(folder)), *text, damage};
+    } catch (const file_error&) {
+        throw;
+    } catch (const error&) {
+        return std::nullopt;
+    }
+}
+
+// The group of a folder with a store, or nothing if there is none yet. An error if there is something else.
+std::optional<found_group> find_group(file_system& files, const std::string& folder) {
+    const std::string path = group_path(folder);
     // In this order, since another process may be about to make one.
     std::vector<std::string> names = names_in(files, folder).value_or(std::vector<std::string>{});
-    if (const std::optional<std::string> text = read_text(files, path)) return layout_of(*text, path);
+    if (const std::optional<std::string> text = read_text(files, path)) {
+        try {
+            return found_group{group_of(*text, path), *text, ""};
+        } catch (const file_error&) {
+            throw;
+        } catch (const error& failure) {
+            if (auto copy = copied_group(files, folder, failure.what())) return copy;
+            throw;
+        }
+    }
+    if (auto copy = copied_group(files, folder, path + " is missing")) return copy;
     // A start that was interrupted early leaves this.
     std::erase(names, "myriad");
     if (names.empty()) return std::nullopt;
     std::sort(names.begin(), names.end());
     host::refuse({"the folder ", folder, " is not empty and holds no study (it has ", names.front(),
                   names.size() > 1 ? " and others" : "", "): give a new folder"});
+}
+
+// For readers, who have nothing to restore it with.
+std::optional<found_group> whole_group(file_system& files, const std::string& folder) {
+    std::optional<found_group> found = find_group(files, folder);
+    if (found && !found->damage.empty())
+        host::refuse({found->damage, found->damage.ends_with("missing")
+                                         ? ": start the study again, which restores it from its copy myriad/group.json"
+                                         : ""});
+    return found;
 }
 
 void refuse_other(const layout& stored, const layout& here, const std::string& folder) {
@@ -162,47 +104,51 @@ void refuse_other(const layout& stored, const layout& here, const std::string& f
                   "\ngive another folder, or the same study"});
 }
 
+// Again if another process took this one for dead and removed its temporary files, as often as that happens; but not if
+// what is missing is something else, so that it may not be written.
+template <class F, class May>
+void repeat_if_lost(writer& self, F write, May may_write) {
+    constexpr int most_attempts = 1000;
+    for (int attempt = 0;; ++attempt) {
+        try {
+            return write();
+        } catch (const file_error& failure) {
+            if (failure.code() != ENOENT || attempt == most_attempts || !may_write()) throw;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(std::min(attempt, 50)));
+        self.appear();
+    }
+}
+
 }  // namespace
 
-struct store::implementation {
-    file_system& files;
-    std::string folder;
-    layout content;
-    std::vector<stored_array> variables, coordinates;
+struct store::implementation : store_files {
+    const std::string group_text;
     std::vector<coordinate> given;  // coordinates to write, only of a store that can be written
     std::unique_ptr<writer> self;   // null if opened for reading
 
-    mutable std::mutex mutex;  // of all that follows
-    std::vector<bool> finished, counted;
+    mutable std::mutex mutex;                      // of all that follows
+    std::vector<bool> finished, counted, spoiled;  // spoiled: with a damaged record
     std::int64_t finished_count = 0, counted_instances = 0;
     std::map<std::string, std::int64_t> statuses;
     std::set<std::string> device_names;
+    std::map<std::string, arithmetic> computed_by;  // by host and arithmetic
     double seconds = 0.0;
     std::vector<std::int64_t> committed;  // by this process, since the last look at the folder began
     std::vector<damage> found;
+    std::vector<std::string> warnings;
+    std::optional<arithmetic> begun_with;
+    other_arithmetic others = other_arithmetic::refuse;
 
     std::mutex claiming;  // of what follows
     std::int64_t next = 0;
-    std::chrono::steady_clock::time_point looked;
+    std::chrono::steady_clock::time_point looked, tidied;
+    std::chrono::milliseconds expiry{};
 
-    implementation(file_system& used, std::string where, layout stored)
-        : files(used), folder(std::move(where)), content(std::move(stored)) {
-        for (const variable& v : content.variables) variables.push_back({v.name, shape_of(content, v), v.attributes});
-        for (coordinate& c : content.coordinates) {
-            coordinates.push_back({c.name, shape_of(content, c), c.attributes});
-            c.values = [&f = files, place = folder, array = coordinates.back()](std::int64_t first,
-                                                                                std::span<double> values) {
-                read_coordinate(f, place, array, first, values);
-            };
-        }
+    implementation(file_system& used, std::string where, const found_group& of)
+        : store_files(used, std::move(where), of.group), group_text(of.text) {
         finished.assign(bytes_of(content.chunks()), false);
-        counted = finished;
-    }
-
-    std::string own(std::string_view name) const { return message(folder, "/myriad/", name); }
-    std::string record_path(std::int64_t chunk) const { return message(folder, "/myriad/chunks/", chunk, ".json"); }
-    std::string path_of(const stored_array& array, std::int64_t file) const {
-        return folder + '/' + array.name + '/' + array.shape.file_name(file);
+        spoiled = counted = finished;
     }
 
     void check_chunk(std::int64_t chunk) const { range_of(content, chunk); }
@@ -218,33 +164,66 @@ struct store::implementation {
     // Making
     // -----------------------------------------------------------------------------------------------------------------
 
-    void write_coordinate_file(std::size_t c, std::int64_t file) {
+    void write_own(const std::string& path, const std::string& text) {
+        write_text(files, self->temporary(), path, text);
+    }
+
+    const coordinate& given_for(std::size_t c) const {
+        const auto same = std::find_if(given.begin(), given.end(),
+                                       [&](const coordinate& g) { return g.name == coordinates[c].name; });
+        require(same != given.end(), "there are no values for coordinate ", coordinates[c].name);
+        return *same;
+    }
+
+    std::uint32_t write_coordinate_file(std::size_t c, std::int64_t file, bool replaces) {
         const array_shape& shape = coordinates[c].shape;
         const std::int64_t first = file * shape.chunk;
         std::vector<double> values(bytes_of(std::min(shape.chunk, shape.items() - first)));
-        given[c].values(first, values);
+        given_for(c).values(first, values);
         std::uint32_t checksum = 0;
         new_file made = write_array_file(files, self->temporary(), shape, std::as_bytes(std::span(values)), checksum);
         made.finish();
-        made.rename_to(path_of(coordinates[c], file));
+        if (replaces) {
+            made.rename_to(path_of(coordinates[c], file));
+        } else if (!made.link_to(path_of(coordinates[c], file))) {
+            // Another process was faster, perhaps with a library whose functions differ in the last digit: there is one
+            // record for both.
+            const file_check there = read_array_file(files, path_of(coordinates[c], file), shape);
+            if (!there.damage.empty()) return write_coordinate_file(c, file, true);
+            return there.checksum;
+        }
+        return checksum;
     }
 
     void begin_array(const stored_array& array) {
         const std::string place = folder + '/' + array.name;
         make_folder(files, place);
-        write_text(files, self->temporary(), place + "/zarr.json", array_json(array.shape, array.attributes));
+        write_own(place + "/zarr.json", array_json(array.shape, array.attributes));
+    }
+
+    void write_coordinates(bool replaces) {
+        coordinate_checksums checksums;
+        for (std::size_t c = 0; c < coordinates.size(); ++c) {
+            std::vector<std::uint32_t>& of_files = checksums[coordinates[c].name];
+            for (std::int64_t file = 0; file < coordinates[c].shape.files(); ++file)
+                of_files.push_back(write_coordinate_file(c, file, replaces));
+            sync_folder(files, folder + '/' + coordinates[c].name);
+        }
+        if (group.format > 1) write_own(places->record_path(), coordinates_json(group.checksum, checksums));
+        places->read_record();
     }
 
     // Everything but results. May be done by several processes at a time, with equal files.
     void write_arrays() {
         for (const stored_array& array : variables) begin_array(array);
-        for (std::size_t c = 0; c < coordinates.size(); ++c) {
-            begin_array(coordinates[c]);
-            for (std::int64_t file = 0; file < coordinates[c].shape.files(); ++file) write_coordinate_file(c, file);
-            sync_folder(files, folder + '/' + coordinates[c].name);
-        }
+        for (const stored_array& array : coordinates) begin_array(array);
+        write_coordinates(false);
         // A group of its own, so that readers which look at every folder know what it is.
-        write_text(files, self->temporary(), own("zarr.json"), "{\"zarr_format\": 3, \"node_type\": \"group\"}\n");
+        write_own(own("zarr.json"), own_group);
+        if (group.format > 1) {
+            write_own(copy_path(folder), group_text);
+            make_folder(files, own("results"));
+        }
         make_folder(files, own("claims"));
         sync_folder(files, folder);
         // The last, as the sign that all this is there.
@@ -252,28 +231,85 @@ struct store::implementation {
         sync_folder(files, own(""));
     }
 
-    // The folders that someone removed; `check_chunks` and `check_rest` find what is missing in them.
-    void restore_arrays() {
-        const auto restore = [&](const std::vector<stored_array>& arrays) {
-            for (const stored_array& array : arrays)
-                if (!exists(folder + '/' + array.name + "/zarr.json")) begin_array(array);
+    // What describes the results: compared with what it should be, and restored if it can be written.
+    void check_metadata(std::vector<damage>& problems) {
+        const auto restore = [&](const std::string& path, const std::string& name, const std::string& wanted,
+                                 bool to_the_byte) {
+            const std::optional<std::string> text = read_text(files, path);
+            if (text && (to_the_byte ? *text == wanted : same_json(*text, wanted))) return;
+            problems.push_back({-1, name, text ? "it is not what it should be" : "it is missing"});
+            if (!self) return;
+            make_folder(files, folder_of(path));
+            write_own(path, wanted);
         };
-        restore(variables);
-        restore(coordinates);
+        restore(group_path(folder), "zarr.json", group_text, true);
+        if (group.format > 1) restore(copy_path(folder), "myriad/group.json", group_text, true);
+        restore(own("zarr.json"), "myriad/zarr.json", own_group, false);
+        for (const std::vector<stored_array>* arrays : {&variables, &coordinates})
+            for (const stored_array& array : *arrays)
+                restore(folder + '/' + array.name + "/zarr.json", array.name + "/zarr.json",
+                        array_json(array.shape, array.attributes), false);
+        try {
+            if (const auto text = read_text(files, own("arithmetic.json"))) arithmetic_of(*text, group.checksum);
+        } catch (const file_error&) {
+            throw;
+        } catch (const error& failure) {
+            problems.push_back({-1, "myriad/arithmetic.json", failure.what()});
+            if (self) files.unlink(own("arithmetic.json"));
+        }
+        try {
+            places->read_record();
+        } catch (const file_error&) {
+            throw;
+        } catch (const error& failure) {
+            problems.push_back({-1, "myriad/coordinates.json", failure.what()});
+            if (self) write_coordinates(true);
+        }
+        if (!self) return;
         make_folder(files, own("claims"));
+        if (group.format > 1) make_folder(files, own("results"));
     }
 
-    bool exists(const std::string& path) const {
-        std::int64_t size = 0;
-        if (files.size(path, size) == 0) return true;
-        if (errno == ENOENT) return false;
-        throw file_error("looking for", path, errno);
+    // That which the store began with; nothing if it is not known.
+    std::optional<arithmetic> first_arithmetic() const {
+        try {
+            if (const auto text = read_text(files, own("arithmetic.json"))) return arithmetic_of(*text, group.checksum);
+        } catch (const file_error&) {
+            throw;
+        } catch (const error&) {  // `check_metadata` says so
+        }
+        return std::nullopt;
     }
-    bool has_length(const std::string& path, std::int64_t length) const {
-        std::int64_t size = 0;
-        if (files.size(path, size) == 0) return size == length;
-        if (errno == ENOENT) return false;
-        throw file_error("looking for", path, errno);
+
+    // Compares it with that of results, by the option.
+    void compare_arithmetic(const arithmetic& here) {
+        if (here.instruction_set.empty() || !begun_with || begun_with->same_as(here)) return;
+        const std::string differs = message("the study in ", folder, " was begun with ", begun_with->text(), " on ",
+                                            begun_with->host, ", and ", here.host, " has ", here.text(),
+                                            ": results differ in their last digits, and in more where the model is "
+                                            "chaotic");
+        require(others == other_arithmetic::warn, differs,
+                "; set MYRIAD_INSTRUCTION_SET to the same on all machines, and use the same compiler and libraries, or "
+                "allow this by the option others of the store");
+        const std::lock_guard lock(mutex);
+        if (std::find(warnings.begin(), warnings.end(), differs) == warnings.end()) warnings.push_back(differs);
+    }
+
+    // Compares it with this process', which is it if there is none yet.
+    void check_arithmetic(const store_options& options) {
+        const arithmetic& here = options.computed_by;
+        others = options.others;
+        if (here.instruction_set.empty() || finished_count == content.chunks()) return;
+        begun_with = first_arithmetic();
+        if (!begun_with && self) {
+            new_file made(files, self->temporary());
+            made.write(arithmetic_json(group.checksum, here));
+            made.finish();
+            // Another process may be faster.
+            begun_with = made.link_to(own("arithmetic.json")) ? here : first_arithmetic();
+            sync_folder(files, own(""));
+        }
+        compare_arithmetic(here);
     }
 
     // -----------------------------------------------------------------------------------------------------------------
@@ -297,6 +333,7 @@ struct store::implementation {
             now[bytes_of(chunk)] = true;
         }
         const std::lock_guard lock(mutex);
+        spoiled.assign(spoiled.size(), false);
         for (const std::int64_t chunk : committed) now[bytes_of(chunk)] = true;
         bool lost = false;  // put back by another process
         for (std::size_t i = 0; i < now.size() && !lost; ++i) lost = counted[i] && !now[i];
@@ -316,6 +353,7 @@ struct store::implementation {
         counted_instances = 0;
         statuses.clear();
         device_names.clear();
+        computed_by.clear();
         seconds = 0.0;
     }
 
@@ -325,38 +363,42 @@ struct store::implementation {
         counted_instances += range_of(content, chunk).count;
         for (const auto& [name, number] : record.statuses) statuses[name] += number;
         if (!record.device.empty()) device_names.insert(record.device);
+        const arithmetic& by = record.computed_by;
+        if (!by.library.empty()) computed_by.emplace(by.host + '\n' + by.text(), by);
         seconds += record.seconds;
     }
 
-    // Reads the records that were not read yet.
-    void count_all() {
+    // Reads the records that were not read yet; adds those that are damaged.
+    void count_all(std::vector<damage>* problems = nullptr) {
         std::vector<std::int64_t> missing;
         {
             const std::lock_guard lock(mutex);
             for (std::size_t i = 0; i < finished.size(); ++i)
-                if (finished[i] && !counted[i]) missing.push_back(static_cast<std::int64_t>(i));
+                if (finished[i] && !counted[i] && !spoiled[i]) missing.push_back(static_cast<std::int64_t>(i));
         }
         for (const std::int64_t chunk : missing) {
-            const std::optional<std::string> text = read_text(files, record_path(chunk));
-            chunk_record record;
-            bool good = text.has_value();
             try {
-                if (good) record = record_of(*text, content, chunk).record;
-            } catch (const error&) {
-                good = false;
+                const chunk_record record = read_record(chunk).record;
+                const std::lock_guard lock(mutex);
+                count(chunk, record);
+            } catch (const file_error&) {
+                throw;
+            } catch (const error& failure) {
+                if (problems != nullptr) problems->push_back({chunk, "", failure.what()});
+                if (self || !exists(record_path(chunk))) {
+                    put_back(chunk);
+                } else {  // for those who only read it is still there, and damaged
+                    const std::lock_guard lock(mutex);
+                    spoiled[bytes_of(chunk)] = true;
+                }
             }
-            if (!good) {
-                put_back(chunk);
-                continue;
-            }
-            const std::lock_guard lock(mutex);
-            count(chunk, record);
         }
     }
 
     void put_back(std::int64_t chunk) {
         if (self && files.unlink(record_path(chunk)) < 0 && errno != ENOENT)
             throw file_error("removing", record_path(chunk), errno);
+        forget(chunk);
         const std::lock_guard lock(mutex);
         if (finished[bytes_of(chunk)]) --finished_count;
         finished[bytes_of(chunk)] = false;
@@ -371,66 +413,58 @@ struct store::implementation {
         for (std::int64_t chunk = 0; chunk < content.chunks(); ++chunk) {
             if (!is_finished(chunk)) continue;
             const std::size_t before = problems.size();
-            std::optional<stored_chunk> record;
-            if (checksums) {
-                try {
-                    if (const auto text = read_text(files, record_path(chunk)))
-                        record = record_of(*text, content, chunk);
-                    else
-                        problems.push_back({chunk, "", "its record is missing"});
-                } catch (const file_error&) {
-                    throw;
-                } catch (const error& failure) {
-                    problems.push_back({chunk, "", failure.what()});
-                }
-            }
-            std::size_t place = 0;
-            for (std::size_t v = 0; v < variables.size(); ++v) {
-                if (content.variables[v].extent == along::nothing) continue;
-                const std::string path = path_of(variables[v], chunk);
-                file_check check;
-                if (!has_length(path, variables[v].shape.file_bytes())) {
-                    check.damage = exists(path) ? "it has not the length it should have" : "it is missing";
-                } else if (record) {
-                    check = read_array_file(files, path, variables[v].shape, 0, 0, nullptr);
-                    const std::uint32_t expected = record->checksums[place];
-                    if (check.damage.empty() && check.checksum != expected)
-                        check.damage = "its checksum is " + hexadecimal(check.checksum) + ", and " +
-                                       hexadecimal(expected) + " in the record";
-                }
-                if (!check.damage.empty()) problems.push_back({chunk, variables[v].name, check.damage});
-                ++place;
-            }
-            if (problems.size() > before) put_back(chunk);
+            store_files::check_chunk(chunk, checksums, problems);
+            if (problems.size() > before && (self || !exists(record_path(chunk)))) put_back(chunk);
         }
         if (self && !problems.empty()) sync_folder(files, own("chunks"));
     }
 
     void check_rest(bool checksums, std::vector<damage>& problems) {
-        const auto damage_of = [&](const stored_array& array, std::int64_t file) -> std::string {
-            const std::string path = path_of(array, file);
-            if (!has_length(path, array.shape.file_bytes()))
-                return exists(path) ? "it has not the length it should have" : "it is missing";
-            return checksums ? read_array_file(files, path, array.shape, 0, 0, nullptr).damage : "";
-        };
         for (std::size_t c = 0; c < coordinates.size(); ++c) {
-            bool anew = false;
-            for (std::int64_t file = 0; file < coordinates[c].shape.files(); ++file) {
-                const std::string reason = damage_of(coordinates[c], file);
+            const stored_array& array = coordinates[c];
+            bool whole = true;
+            for (std::int64_t file = 0; file < array.shape.files(); ++file) {
+                std::string reason;
+                if (checksums)
+                    reason = places->check(array, file);
+                else if (!has_length(path_of(array, file), array.shape.file_bytes()))
+                    reason = exists(path_of(array, file)) ? "it has not the length it should have" : "it is missing";
                 if (reason.empty()) continue;
-                problems.push_back({-1, coordinates[c].name, reason});
-                if (self) write_coordinate_file(c, file);
-                anew = true;
+                problems.push_back({-1, array.name, reason});
+                whole = false;
             }
-            if (self && anew) sync_folder(files, folder + '/' + coordinates[c].name);
+            if (self && !whole) write_coordinates(true);
         }
         for (std::size_t v = 0; v < variables.size(); ++v) {
-            if (content.variables[v].extent != along::nothing || !exists(path_of(variables[v], 0))) continue;
-            const std::string reason = damage_of(variables[v], 0);
+            if (content.variables[v].extent != along::nothing) continue;
+            const std::string reason = check_result(v, checksums);
             if (reason.empty()) continue;
             problems.push_back({-1, variables[v].name, reason});
-            if (self) files.unlink(path_of(variables[v], 0));
+            if (!self) continue;
+            files.unlink(result_record_path(v));
+            files.unlink(path_of(variables[v], 0));
         }
+    }
+
+    // Whether a chunk that another process may have written at the same time has the files of its record. With one
+    // arithmetic the bits are the same; else it is put back if the files are of both.
+    bool is_consistent(std::int64_t chunk) {
+        std::vector<damage> problems;
+        store_files::check_chunk(chunk, true, problems);
+        if (!problems.empty()) put_back(chunk);
+        return problems.empty();
+    }
+
+    // Whether there is nothing to write.
+    bool is_whole(resume_check check) {
+        if (finished_count != content.chunks()) return false;
+        std::vector<damage> problems;
+        check_chunks(check == resume_check::checksums, problems);
+        check_rest(check == resume_check::checksums, problems);
+        count_all(&problems);
+        for (std::size_t v = 0; v < variables.size(); ++v)
+            if (content.variables[v].extent == along::nothing && !has_result(v)) return false;
+        return problems.empty();
     }
 
     // Before anything is written, and again when chunks were put back.
@@ -457,7 +491,9 @@ struct store::implementation {
                 add(variables[v].shape.file_bytes(), 1);
         }
         add(1, missing);  // their records, of a block each
-        if (files.free_bytes(folder, free) < 0) throw file_error("asking for the free space of", folder, errno);
+        std::string place = folder;
+        while (!exists(place) && folder_of(place) != place) place = folder_of(place);
+        if (files.free_bytes(place, free) < 0) throw file_error("asking for the free space of", place, errno);
         const auto [need, have] = host::bytes_texts(static_cast<double>(left), static_cast<double>(free));
         require(left <= free, "the ", missing, " chunks ", coordinates_left ? "and the coordinates " : "",
                 "that are left take ", need, ", and the disk of ", folder, " has ", have,
@@ -506,18 +542,34 @@ struct store::implementation {
 
     void write_chunk(std::int64_t chunk, const std::vector<std::span<const std::byte>>& ordered,
                      const chunk_record& record) {
+        constexpr std::size_t most_open = 32;  // since a process may have no more than 1024 files open
         std::vector<std::pair<std::size_t, new_file>> written;
+        std::size_t finished_files = 0;
+        const auto finish_all = [&] {
+            for (; finished_files < written.size(); ++finished_files) written[finished_files].second.finish();
+        };
         stored_chunk stored{record, {}};
         for (std::size_t v = 0; v < variables.size(); ++v) {
             if (content.variables[v].extent == along::nothing) continue;
             written.emplace_back(v, write_array_file(files, self->temporary(), variables[v].shape, ordered[v],
                                                      stored.checksums.emplace_back()));
+            // After several were handed over, so that the disk has them together.
+            if (written.size() - finished_files == most_open) finish_all();
         }
-        // After all were handed over, so that the disk has them together.
-        for (auto& [v, file] : written) file.finish();
+        finish_all();
         for (auto& [v, file] : written) file.rename_to(path_of(variables[v], chunk));
         for (auto& [v, file] : written) sync_folder(files, folder + '/' + variables[v].name);
-        write_text(files, self->temporary(), record_path(chunk), record_json(content, chunk, stored));
+        write_own(record_path(chunk), record_json(content, group.checksum, chunk, stored));
+    }
+
+    void write_result(std::size_t v, std::span<const std::byte> bytes) {
+        std::uint32_t checksum = 0;
+        new_file made = write_array_file(files, self->temporary(), variables[v].shape, bytes, checksum);
+        made.finish();
+        made.rename_to(path_of(variables[v], 0));
+        sync_folder(files, folder + '/' + variables[v].name);
+        if (group.format > 1)
+            write_own(result_record_path(v), result_json(group.checksum, variables[v].name, checksum));
     }
 
     // Gives a claim back if another process had done the chunk before.
@@ -532,16 +584,32 @@ struct store::implementation {
         return false;
     }
 
-    // Once more if another process took this one for dead and removed its folder.
+    // Removes what dead processes of other machines left, which takes several looks.
+    void tidy() {
+        const auto now = std::chrono::steady_clock::now();
+        if (now - tidied < expiry / 4) return;
+        tidied = now;
+        self->remove_dead();
+    }
+
+    void require_same_study() const {
+        const std::optional<std::string> text = read_text(files, group_path(folder));
+        if (!text) throw file_error("looking for", group_path(folder), ENOENT);
+        require(*text == group_text, "the folder ", folder,
+                " holds something else than when this study began: give each study a folder of its own");
+    }
+
+    // Of a study that runs.
     template <class F>
     void with_writer(F write) {
-        try {
-            write();
-        } catch (const file_error& failure) {
-            if (failure.code() != ENOENT) throw;
-            self->appear();
-            write();
-        }
+        const auto may_write = [this] {
+            require_same_study();
+            for (const stored_array& array : variables)
+                if (!exists(folder + '/' + array.name)) return false;
+            return exists(own("chunks"));
+        };
+        require_same_study();
+        repeat_if_lost(*self, write, may_write);
     }
 };
 
@@ -556,44 +624,70 @@ store store::create_or_resume(const std::string& given, const layout& wanted, co
     require(options.expiry.count() > 0, "the expiry of claims is ", options.expiry.count(),
             " ms (must be positive): give seconds to minutes");
     file_system& files = options.files ? *options.files : file_system::real();
-    make_folders(files, folder);
-    std::optional<layout> stored = stored_layout(files, folder);
-    if (stored) refuse_other(*stored, wanted, folder);
-
-    layout content = wanted;
-    if (stored) content.chunk = stored->chunk;
-    {
-        implementation before(files, folder, content);
-        before.refresh();
-        before.check_space();
+    std::optional<found_group> there = find_group(files, folder);
+    const bool is_new = !there;
+    if (there) refuse_other(there->group.content, wanted, folder);
+    // All that can be refused before anything is written.
+    if (is_new) {
+        std::string text = group_json(wanted);
+        there = found_group{group_of(text, group_path(folder)), text, ""};
     }
-    make_folder(files, folder + "/myriad");
-    auto self = std::make_unique<writer>(files, folder + "/myriad", options.expiry);
-    if (!stored) {
-        new_file group(files, self->temporary());
-        group.write(group_json(wanted));
-        group.finish();
-        if (group.link_to(folder + "/zarr.json")) {
-            stored = wanted;
-        } else {  // another process was faster
-            stored = stored_layout(files, folder);
-            require(stored.has_value(), "the folder ", folder, " was removed while a study started there");
-            refuse_other(*stored, wanted, folder);
-        }
-        sync_folder(files, folder);
-    }
-    content.chunk = stored->chunk;
-    auto made = std::make_unique<implementation>(files, folder, content);
-    made->self = std::move(self);
-    made->given = wanted.coordinates;
-    if (made->exists(made->own("chunks")))
-        made->restore_arrays();
-    else
-        made->write_arrays();
-    made->self->remove_dead();
+    auto made = std::make_unique<implementation>(files, folder, *there);
     made->refresh();
-    made->check_chunks(options.check == resume_check::checksums, made->found);
-    made->check_rest(options.check == resume_check::checksums, made->found);
+    made->check_space();
+    made->check_arithmetic(options);
+    try {
+        make_folders(files, folder);
+        make_folder(files, folder + "/myriad");
+        made->self = std::make_unique<writer>(files, folder + "/myriad", options.expiry);
+    } catch (const file_error& failure) {
+        const bool forbidden = failure.code() == EROFS || failure.code() == EACCES || failure.code() == EPERM;
+        if (!forbidden || is_new || !made->is_whole(options.check)) throw;
+        return store(std::move(made));
+    }
+    const auto may_write = [&] { return made->exists(folder + "/myriad"); };
+    if (is_new) {
+        bool is_first = true;
+        repeat_if_lost(
+            *made->self,
+            [&] {
+                new_file group(files, made->self->temporary());
+                group.write(there->text);
+                group.finish();
+                is_first = group.link_to(group_path(folder));
+            },
+            may_write);
+        sync_folder(files, folder);
+        if (!is_first) {  // another process was faster
+            there = find_group(files, folder);
+            require(there.has_value(), "the folder ", folder, " was removed while a study started there");
+            refuse_other(there->group.content, wanted, folder);
+            auto self = std::move(made->self);
+            made = std::make_unique<implementation>(files, folder, *there);
+            made->self = std::move(self);
+        }
+    }
+    made->expiry = options.expiry;
+    made->given = wanted.coordinates;
+    made->content.description = wanted.description;  // the same, with its own line breaks
+    const auto begin = [&] {
+        made->found.clear();
+        if (!there->damage.empty()) made->write_own(group_path(folder), there->text);
+        if (made->exists(made->own("chunks")))
+            made->check_metadata(made->found);
+        else
+            made->write_arrays();
+        if (!there->damage.empty()) made->found.push_back({-1, "zarr.json", there->damage});
+        made->self->remove_dead();
+        made->refresh();
+        made->check_chunks(options.check == resume_check::checksums, made->found);
+        made->check_rest(options.check == resume_check::checksums, made->found);
+        made->count_all(&made->found);
+        made->check_arithmetic(options);
+    };
+    repeat_if_lost(*made->self, begin, may_write);
+    made->self->remove_claims(
+        [&](std::int64_t chunk) { return chunk >= 0 && chunk < made->content.chunks() && made->is_finished(chunk); });
     if (!made->found.empty()) made->check_space();
     return store(std::move(made));
 }
@@ -602,22 +696,23 @@ store store::open(const std::string& given, file_system* used) {
     const std::string folder = absolute(given);
     file_system& files = used ? *used : file_system::real();
     require(names_in(files, folder).has_value(), "there is no folder ", folder, ": give that of a study");
-    std::optional<layout> stored = stored_layout(files, folder);
-    require(stored.has_value(), "the folder ", folder, " is empty: give that of a study");
-    auto made = std::make_unique<implementation>(files, folder, std::move(*stored));
+    const std::optional<found_group> there = whole_group(files, folder);
+    require(there.has_value(), "the folder ", folder, " is empty: give that of a study");
+    auto made = std::make_unique<implementation>(files, folder, *there);
     made->refresh();
     return store(std::move(made));
 }
 
 std::optional<layout> store::content_of(const std::string& given) {
     const std::string folder = absolute(given);
-    std::optional<layout> stored = stored_layout(file_system::real(), folder);
-    if (!stored) return stored;
-    return implementation(file_system::real(), folder, std::move(*stored)).content;
+    const std::optional<found_group> there = whole_group(file_system::real(), folder);
+    if (!there) return std::nullopt;
+    return store_files(file_system::real(), folder, there->group).content;
 }
 
 const layout& store::content() const { return self_->content; }
 const std::string& store::folder() const { return self_->folder; }
+int store::format() const { return self_->group.format; }
 
 bool store::done(std::int64_t chunk) const {
     self_->check_chunk(chunk);
@@ -628,7 +723,7 @@ bool store::written(std::string_view variable) const {
     const std::size_t v = self_->content.find(variable);
     require(self_->content.variables[v].extent == along::nothing, "variable ", variable,
             " is written chunk by chunk: ask whether its chunks are done");
-    return self_->has_length(self_->path_of(self_->variables[v], 0), self_->variables[v].shape.file_bytes());
+    return self_->has_result(v);
 }
 
 bool store::complete() const {
@@ -649,11 +744,13 @@ store_progress store::progress() {
     now.all_instances = self_->content.instances();
     now.seconds = self_->seconds;
     now.statuses.assign(self_->statuses.begin(), self_->statuses.end());
+    now.damaged = std::count(self_->spoiled.begin(), self_->spoiled.end(), true);
     return now;
 }
 
 std::optional<std::int64_t> store::claim_next() {
     implementation& s = *self_;
+    if (complete()) return std::nullopt;
     s.require_writable();
     const std::lock_guard lock(s.claiming);
     const std::int64_t all = s.content.chunks();
@@ -672,6 +769,7 @@ std::optional<std::int64_t> store::claim_next() {
         }
     }
     s.refresh();
+    s.tidy();
     return std::nullopt;
 }
 
@@ -692,12 +790,19 @@ void store::commit(std::int64_t chunk, std::span<const column> columns, const ch
     s.check_chunk(chunk);
     try {
         const std::vector<std::span<const std::byte>> ordered = s.checked(chunk, columns);
+        s.compare_arithmetic(record.computed_by);
         // Another process took the chunk over and was faster: what it wrote stays.
         const bool is_first = !s.exists(s.record_path(chunk));
-        if (is_first) s.with_writer([&] { s.write_chunk(chunk, ordered, record); });
-        const std::lock_guard lock(s.mutex);
-        s.finish(chunk);
-        if (is_first) s.count(chunk, record);
+        bool is_done = true;
+        if (is_first) {
+            s.with_writer([&] { s.write_chunk(chunk, ordered, record); });
+            is_done = s.self->holds(chunk) || s.is_consistent(chunk);
+        }
+        if (is_done) {
+            const std::lock_guard lock(s.mutex);
+            s.finish(chunk);
+            if (is_first) s.count(chunk, record);
+        }
     } catch (...) {
         s.self->release(chunk);
         throw;
@@ -718,24 +823,23 @@ void store::write(const column& values) {
     require(s.content.variables[v].extent == along::nothing, "variable ", values.variable,
             " is written chunk by chunk: use store::commit");
     const std::span<const std::byte> bytes = s.bytes_for(v, std::span(&values, 1), s.variables[v].shape.items());
-    s.with_writer([&] {
-        std::uint32_t checksum = 0;
-        new_file made = write_array_file(s.files, s.self->temporary(), s.variables[v].shape, bytes, checksum);
-        made.finish();
-        made.rename_to(s.path_of(s.variables[v], 0));
-        sync_folder(s.files, s.folder + '/' + s.variables[v].name);
-    });
+    s.with_writer([&] { s.write_result(v, bytes); });
 }
 
 std::vector<damage> store::verify() {
     std::vector<damage> problems;
     self_->refresh();
+    self_->check_metadata(problems);
     self_->check_chunks(true, problems);
     self_->check_rest(true, problems);
     return problems;
 }
 
 const std::vector<damage>& store::put_back() const { return self_->found; }
+std::vector<std::string> store::warnings() const {
+    const std::lock_guard lock(self_->mutex);
+    return self_->warnings;
+}
 
 void store::read(std::string_view name, std::int64_t first, std::int64_t count, void* values) const {
     const implementation& s = *self_;
@@ -751,14 +855,12 @@ void store::read(std::string_view name, std::int64_t first, std::int64_t count, 
     for (std::int64_t at = first; at < first + count;) {
         const std::int64_t file = at / per_file, begin = at - file * per_file;
         const std::int64_t end = std::min(per_file, begin + first + count - at);
-        const bool there = extent == along::nothing ? written(name) : s.is_finished(file);
-        if (there) {
-            const std::string path = s.path_of(s.variables[v], file);
-            const file_check check = read_array_file(s.files, path, shape, begin * item, end * item, to);
-            require(check.damage.empty(), path, " is damaged (", check.damage, repair_advice);
-        } else {
+        if (!(extent == along::nothing ? s.has_result(v) : s.is_finished(file)))
             fill(shape.type, to, bytes_of((end - begin) * item) / size_of(shape.type));
-        }
+        else if (extent == along::nothing)
+            s.read_result(v, to);
+        else
+            s.read_chunk(v, file, begin * item, end * item, to);
         to += (end - begin) * item;
         at += end - begin;
     }
@@ -779,6 +881,14 @@ std::vector<std::string> store::devices() const {
     self_->count_all();
     const std::lock_guard lock(self_->mutex);
     return {self_->device_names.begin(), self_->device_names.end()};
+}
+
+std::vector<arithmetic> store::arithmetics() const {
+    self_->count_all();
+    const std::lock_guard lock(self_->mutex);
+    std::vector<arithmetic> all;
+    for (const auto& [key, by] : self_->computed_by) all.push_back(by);
+    return all;
 }
 
 }  // namespace myriad

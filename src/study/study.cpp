@@ -84,7 +84,11 @@ std::int64_t study_result::failed() const {
 }
 
 std::ostream& operator<<(std::ostream& stream, const study_result& r) {
-    std::string text = message(r.instances, " of ", r.content().instances(), " instances: ");
+    const std::int64_t all = r.content().instances();
+    std::string text = r.complete && r.instances == 0 ? message(all, " instances, all done before")
+                       : r.complete && r.instances < all
+                           ? message(r.instances, " of ", all, " instances, the others done before: ")
+                           : message(r.instances, " of ", all, " instances: ");
     bool first = true;
     for (int s = 0; s < status_count; ++s) {
         const std::int64_t count = r.count(static_cast<status>(s));
@@ -92,7 +96,8 @@ std::ostream& operator<<(std::ostream& stream, const study_result& r) {
         text += message(first ? "" : ", ", count, ' ', name_of(static_cast<status>(s)));
         first = false;
     }
-    text += message(first ? "" : "; ", r.seconds, " s", r.complete ? "" : "; stopped before all were done", '\n');
+    text += message(first && r.instances > 0 ? "" : "; ", r.seconds, " s",
+                    r.complete ? "" : "; stopped before all were done", '\n');
     for (const std::string& note : r.notes) text += message("note: ", note, '\n');
     for (const std::string& warning : r.warnings) text += message("warning: ", warning, '\n');
     return stream << text;
@@ -233,7 +238,10 @@ any_study::planned_run any_study::plan() const {
 }
 
 std::unique_ptr<studies::result_keeper> any_study::open_store(const planned_run& planned) const {
-    auto keeper = studies::keep_in_store(folder_, planned.plan.content, store_options_, chunk_counter);
+    studies::store_options options = store_options_;
+    for (const device& d : planned.settings.devices)
+        if (d.which() == device::kind::cpu) options.computed_by = model_->arithmetic_on(d);
+    auto keeper = studies::keep_in_store(folder_, planned.plan.content, options, chunk_counter);
     check_memory(planned.host_bytes, keeper->content(), planned.settings.devices,
                  "use fewer devices, or start the study in a new folder with a smaller chunk");
     return keeper;

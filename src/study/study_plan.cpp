@@ -190,6 +190,51 @@ std::string describe(const study_request& asked, const study_plan& plan) {
 // The variables
 // ---------------------------------------------------------------------------------------------------------------------
 
+/// "state x", or "state 3" without an enumerator.
+std::string text_of(const component& c) {
+    if (c.kind == t_begin) return "begin of the time domain";
+    if (c.kind == t_end) return "end of the time domain";
+    std::string kind(name_of(c.kind));
+    std::replace(kind.begin(), kind.end(), '_', ' ');
+    return message(kind, ' ', c.name.empty() ? std::to_string(c.number) : c.name);
+}
+std::string text_of_initial(const component& c) { return (c.kind == state ? "initial " : "") + text_of(c); }
+
+/// What a variable is, for people, as CF asks.
+std::string long_name(origin from, const component& what) {
+    switch (from) {
+        case origin::axis:
+            return text_of_initial(what);
+        case origin::record:
+            return text_of(what) + " at the end of each recorded phase";
+        case origin::record_time:
+            return "time at the end of each recorded phase";
+        case origin::sample:
+            return text_of(what) + " at each sample";
+        case origin::sample_time:
+            return "time of each sample";
+        case origin::samples_stored:
+            return "number of samples";
+        case origin::end:
+            return "last value of " + text_of(what);
+        case origin::end_time:
+            return "time at which the last phase ended";
+        case origin::status:
+            return "how the integration ended";
+        case origin::phases_done:
+            return "number of phases done";
+        case origin::accepted_steps:
+            return "number of accepted steps";
+        case origin::rejected_steps:
+            return "number of rejected steps";
+        case origin::located_steps:
+            return "number of steps that ended at a located event";
+        case origin::rhs_evaluations:
+            return "number of evaluations of the right-hand side";
+    }
+    return "";
+}
+
 class planner {
 public:
     explicit planner(study_plan& plan) : plan_(plan), asked_(plan.asked), names_(plan.asked.axes.names()) {}
@@ -264,6 +309,7 @@ private:
                   std::vector<attribute> attributes = {}, const component& what = {}) {
         for (const quantity& q : plan_.quantities)
             require(q.as.name != name, "two variables are called ", name, ": keep it once");
+        attributes.insert(attributes.begin(), {"long_name", long_name(from, what)});
         plan_.quantities.push_back(
             {from, what, {std::move(name), type, std::move(inner), std::move(attributes)}, stored});
         return plan_.quantities.back();
@@ -283,7 +329,9 @@ private:
             const auto write = [all = e.values](std::int64_t first, std::span<double> values) {
                 for (std::size_t i = 0; i < values.size(); ++i) values[i] = all[first + static_cast<std::int64_t>(i)];
             };
-            content.coordinates.push_back({name, along, write, unit_of(e.what)});
+            std::vector<attribute> attributes = unit_of(e.what);
+            attributes.insert(attributes.begin(), {"long_name", text_of_initial(e.what)});
+            content.coordinates.push_back({name, along, write, std::move(attributes)});
         }
     }
     /// A coordinate that counts.
@@ -292,7 +340,8 @@ private:
             for (std::size_t i = 0; i < values.size(); ++i)
                 values[i] = static_cast<double>(from + first + static_cast<std::int64_t>(i));
         };
-        plan_.content.coordinates.push_back({dimension, dimension, count, {}});
+        plan_.content.coordinates.push_back(
+            {dimension, dimension, count, {{"long_name", "number of the " + dimension}}});
     }
 
     void add_records() {

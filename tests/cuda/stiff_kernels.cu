@@ -12,8 +12,15 @@
 // limit: integrate_ensemble<chain<8>, rodas_5p> stack 2400
 // limit: integrate_ensemble<chain<32>, rosenbrock_23> stack 14000
 // limit: integrate_ensemble<chain<32>, rodas_5p> stack 14000
+// limit: integrate_ensemble<sparse_chain<8>, rosenbrock_23> stack 0 spill 0
+// limit: integrate_ensemble<sparse_chain<8>, rodas_5p> stack 0 spill 0
+// limit: integrate_ensemble<sparse_chain<32>, rosenbrock_23> stack 3000
+// limit: integrate_ensemble<sparse_chain<32>, rodas_5p> stack 4000
 // forbid: f64 in integrate_ensemble<chain<3>, rosenbrock_23>
 // forbid: f64 in integrate_ensemble<chain<3>, rodas_5p>
+
+#include <array>
+#include <cstddef>
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
@@ -34,16 +41,32 @@ struct chain {
     }
 };
 
+/// The same with the pattern of its Jacobian.
+template <int n>
+struct sparse_chain : chain<n> {
+    static constexpr bool autonomous = true;
+    static constexpr auto jacobian_pattern = [] {
+        std::array<myriad::jacobian_entry, 2 * n> entries{};
+        for (int i = 0; i < n; ++i) {
+            entries[static_cast<std::size_t>(2 * i)] = {i, i};
+            entries[static_cast<std::size_t>(2 * i + 1)] = {i, (i + 1) % n};
+        }
+        return entries;
+    }();
+};
+
 constexpr auto constant = myriad::shared_placement::constant_bank;
-#define INSTANTIATE(n, R)                                                                                      \
-    template __global__ void myriad::detail::integrate_ensemble<chain<n>, myriad::rosenbrock_23, R, constant>( \
-        const __grid_constant__ myriad::detail::launch_arguments<chain<n>, R, constant>);                      \
-    template __global__ void myriad::detail::integrate_ensemble<chain<n>, myriad::rodas_5p, R, constant>(      \
-        const __grid_constant__ myriad::detail::launch_arguments<chain<n>, R, constant>);
-INSTANTIATE(2, double)
-INSTANTIATE(3, float)
-INSTANTIATE(4, double)
-INSTANTIATE(6, double)
-INSTANTIATE(8, double)
-INSTANTIATE(16, double)
-INSTANTIATE(32, double)
+#define INSTANTIATE(model, R)                                                                               \
+    template __global__ void myriad::detail::integrate_ensemble<model, myriad::rosenbrock_23, R, constant>( \
+        const __grid_constant__ myriad::detail::launch_arguments<model, R, constant>);                      \
+    template __global__ void myriad::detail::integrate_ensemble<model, myriad::rodas_5p, R, constant>(      \
+        const __grid_constant__ myriad::detail::launch_arguments<model, R, constant>);
+INSTANTIATE(chain<2>, double)
+INSTANTIATE(chain<3>, float)
+INSTANTIATE(chain<4>, double)
+INSTANTIATE(chain<6>, double)
+INSTANTIATE(chain<8>, double)
+INSTANTIATE(chain<16>, double)
+INSTANTIATE(chain<32>, double)
+INSTANTIATE(sparse_chain<8>, double)
+INSTANTIATE(sparse_chain<32>, double)

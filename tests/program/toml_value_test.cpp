@@ -65,6 +65,12 @@ TEST_CASE("a place without a line is the file, and without a file nothing") {
     CHECK(position({}) == "");
 }
 
+TEST_CASE("keys that begin with # are errors, and do not end programs with assertions") {
+    for (const char* const text :
+         {"[#set]\na = 1\n", "[[#set]]\n", "[ #x]\n", "[a.#b]\n", "a.#b = 1\n", "[\n", "[a.\n"})
+        CHECK_THROWS_AS(parse(text), input_error);
+}
+
 TEST_CASE("what is no TOML is refused with its place") {
     CHECK_THROWS_WITH(parse("a = 1\nb = \n"), StartsWith("a.toml:2:"));
     CHECK_THROWS_WITH(parse("[s"), StartsWith("a.toml:1:"));

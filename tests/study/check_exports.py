@@ -74,8 +74,10 @@ def check_netcdf(folder):
         assert (data.step.values.reshape(35, 6)[:, 5] == 10 * numpy.arange(35) + 5).all()
         assert list(data.status.attrs["flag_values"]) == [0, 1]
         assert data.status.attrs["flag_values"].dtype == "uint8"
-        assert data.attrs["options.relative_tolerance"] == 1e-9 and data.attrs["seed"] == 7
+        assert data.attrs["options_relative_tolerance"] == 1e-9 and data.attrs["seed"] == 7
         assert json.loads(data.attrs["description"])["model"] == "synthetic"
+        assert not [name for name in data.attrs if not name.replace("_", "").isalnum()], data.attrs
+        assert data.attrs["history"].endswith("exported by Myriad " + data.attrs["source"].removeprefix("Myriad "))
         assert float(data.total.sum()) == 35 and float(data.t_end) == 12.5
         x = data.x.values.reshape(35)
     with xarray.open_dataset(folder / "part.nc") as data:

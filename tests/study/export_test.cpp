@@ -144,7 +144,7 @@ TEST_CASE("a netCDF file has the grid's dimensions, coordinates, values and attr
     CHECK(file.text("", "Conventions") == "CF-1.10");
     CHECK(file.text("", "model") == "synthetic");
     CHECK(file.number("", "seed") == 7);
-    CHECK(file.number("", "options.relative_tolerance") == 1e-9);
+    CHECK(file.number("", "options_relative_tolerance") == 1e-9);
     CHECK(file.text("", "devices") == "simulated device");
     CHECK(file.text("", "incomplete").empty());
     CHECK_THAT(file.text("", "description"), Contains("\"relative_tolerance\":1e-09"));

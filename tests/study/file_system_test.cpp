@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <map>
 
 #include <fcntl.h>
 
@@ -55,6 +56,38 @@ TEST_CASE("texts are read as a whole, and what there is not is nothing") {
     auto names = names_in(disk(), folder / "a/b").value();
     std::sort(names.begin(), names.end());
     CHECK(names == std::vector<std::string>{"c", "d"});
+}
+
+TEST_CASE("the folders above a new one are durable, and one that cannot be read is no obstacle") {
+    class watched final : public file_system {
+    public:
+        int open(const std::string& p, int flags) override {
+            if (p == secret && (flags & O_DIRECTORY) != 0) {
+                errno = EACCES;
+                return -1;
+            }
+            const int file = file_system::open(p, flags);
+            opened[file] = p;
+            return file;
+        }
+        int fsync(int file) override {
+            synced.push_back(opened[file]);
+            return file_system::fsync(file);
+        }
+        std::map<int, std::string> opened;
+        std::vector<std::string> synced;
+        std::string secret;
+    } files;
+    tests::temporary_folder folder;
+    make_folders(files, folder / "a/b/c");
+    const std::string top = folder / "";
+    CHECK(files.synced == std::vector<std::string>{top.substr(0, top.size() - 1), folder / "a", folder / "a/b"});
+    files.synced.clear();
+    make_folders(files, folder / "a/b/c");  // is there
+    CHECK(files.synced.empty());
+    files.secret = folder / "a";
+    CHECK_NOTHROW(make_folders(files, folder / "a/d"));
+    CHECK(std::filesystem::exists(folder / "a/d"));
 }
 
 TEST_CASE("the folder of a path is known without asking the disk") {

@@ -84,6 +84,15 @@ TEST_CASE("Extrema and means are of each phase, and leave failed instances and N
     CHECK(std::isnan(data.first_of(minimum_of("x"))[0]));
     CHECK(std::isnan(data.first_of(mean_of("x"))[1]));
 }
+TEST_CASE("A mean near the largest number is finite, where the sum is not", "[reduction]") {
+    constexpr double largest = std::numeric_limits<double>::max();
+    CHECK(made_up({largest, largest, largest}).first_of(mean_of("x")) == std::vector<double>{largest});
+    CHECK(made_up({-largest, -largest}).first_of(mean_of("x")) == std::vector<double>{-largest});
+    CHECK(made_up({1e308, 1.2e308, 1.4e308}).first_of(mean_of("x"))[0] == Approx(1.2e308));
+    // What the sum's overflow may not change: the mean of small ones.
+    CHECK(made_up({5e-324, 5e-324}).first_of(mean_of("x")) == std::vector<double>{5e-324});
+}
+
 TEST_CASE("Integers of phases that an instance did not reach are reduced as missing, not as 0", "[reduction]") {
     const studies::variable n{.name = "n", .type = studies::element::i32, .inner = {{"phase", 2}}};
     const studies::variable status{.name = "status", .type = studies::element::u8};

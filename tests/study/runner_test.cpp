@@ -36,6 +36,7 @@ public:
     element real() const override { return element::f64; }
     void check(const device&, const options&) const override {}
     double bytes_per_instance(const options&) const override { return 16; }
+    arithmetic arithmetic_on(const device&) const override { return {}; }
     std::string generator() const override { return {}; }
     std::unique_ptr<chunk_solver> make_solver(const study_plan& plan, const device&) const override {
         struct solver final : chunk_solver {

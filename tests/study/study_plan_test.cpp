@@ -52,8 +52,10 @@ TEST_CASE("A study keeps records, last values and statuses along its axes", "[st
     CHECK(content.variables[0].role == role::coordinate);
     const variable& x = content.variables[content.find("x")];
     CHECK(x.inner == std::vector<dimension>{{"phase", 4}});
-    CHECK(x.attributes == std::vector<attribute>{{"units", "m"}});
-    CHECK(content.variables[content.find("t_last")].attributes == std::vector<attribute>{{"units", "s"}});
+    CHECK(x.attributes ==
+          std::vector<attribute>{{"long_name", "state x at the end of each recorded phase"}, {"units", "m"}});
+    CHECK(content.variables[content.find("t_last")].attributes ==
+          std::vector<attribute>{{"long_name", "time at which the last phase ended"}, {"units", "s"}});
 
     std::vector<std::string> coordinates;
     for (const coordinate& c : content.coordinates) coordinates.push_back(c.name + '(' + c.dimension + ')');

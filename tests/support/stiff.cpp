@@ -5,6 +5,7 @@
 #include <myriad/instantiate.hpp>
 
 #include "tests/support/faulty.hpp"
+#include "tests/support/sparse.hpp"
 
 MYRIAD_INSTANTIATE(stiff::van_der_pol, myriad::rosenbrock_23, myriad::rodas_5p, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(stiff::draining, myriad::rodas_5p)
@@ -13,3 +14,6 @@ MYRIAD_INSTANTIATE_FLOAT(stiff::ball, myriad::rodas_5p)
 MYRIAD_INSTANTIATE(faulty::clock_fault, myriad::rosenbrock_23)
 MYRIAD_INSTANTIATE(faulty::cliff, myriad::rosenbrock_23, myriad::rodas_5p)
 MYRIAD_INSTANTIATE(stiff::relay, myriad::dense<myriad::rodas_5p>)
+MYRIAD_INSTANTIATE(sparse::dense_ring<8>, myriad::rodas_5p)
+MYRIAD_INSTANTIATE(sparse::ring<8>, myriad::rosenbrock_23, myriad::rodas_5p)
+MYRIAD_INSTANTIATE_FLOAT(sparse::ring<8>, myriad::rodas_5p)

@@ -4,6 +4,7 @@
 #include <myriad/instantiate.hpp>
 
 #include "tests/support/problems.hpp"
+#include "tests/support/sparse.hpp"
 #include "tests/support/stiff.hpp"
 
 #define STIFF_METHODS myriad::rosenbrock_23, myriad::rodas_5p
@@ -22,3 +23,7 @@ MYRIAD_INSTANTIATE(stiff::rod<7>, myriad::rodas_5p, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(stiff::rod<32>, myriad::rodas_5p)
 MYRIAD_INSTANTIATE_FLOAT(stiff::rod<32>, myriad::rosenbrock_23)
 MYRIAD_INSTANTIATE(stiff::relay, myriad::dense<myriad::rosenbrock_23>)
+MYRIAD_INSTANTIATE(sparse::dense_ring<32>, myriad::rodas_5p)
+MYRIAD_INSTANTIATE(sparse::ring<32>, myriad::rodas_5p)
+MYRIAD_INSTANTIATE(sparse::growth_among_decays, myriad::rosenbrock_23, myriad::rodas_5p)
+MYRIAD_INSTANTIATE(sparse::ring_with_a_gap<8>, myriad::rodas_5p)

@@ -20,6 +20,7 @@
 #include "myriad/host/report/report_of.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/status.hpp"
+#include "myriad/study/store.hpp"
 #include "myriad/study/study_plan.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
@@ -190,6 +191,8 @@ public:
                                                              const device& /*where*/) const {
         return nullptr;
     }
+    /// What the last digits depend on there.
+    virtual arithmetic arithmetic_on(const device& where) const = 0;
     /// What stands for the generator of instances; empty if there is none.
     virtual std::string generator() const = 0;
     /// Whether that is the model's own.

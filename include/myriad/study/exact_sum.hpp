@@ -27,8 +27,8 @@ public:
     void add(stored other);
     /// Stores the sum; equal sums are stored equally.
     void store(std::span<std::int64_t, digits> to);
-    /// The sum, rounded once, to nearest.
-    double value() const;
+    /// The sum times 2^exponent, rounded once, to nearest: with a negative exponent it does not overflow.
+    double value(int exponent = 0) const;
 
 private:
     void carry();

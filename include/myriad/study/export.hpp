@@ -21,8 +21,8 @@ struct netcdf_options {
 /// name, or that a symbolic link of that name points to, and refuses to replace anything else, as a device; so do the
 /// others.
 ///
-/// Global attributes are the entries of the study's description, with dots in their names
-/// ("options.relative_tolerance"), the description as a whole as JSON, and the devices. Throws `error` if data is
+/// Global attributes are the entries of the study's description ("options_relative_tolerance"), the description as a
+/// whole as JSON, the devices, and CF's `history`: when it was exported. Throws `error` if data is
 /// damaged or the file cannot be written.
 void export_netcdf(const studies::results& from, const std::string& path, const netcdf_options& options = {});
 
@@ -32,7 +32,7 @@ void export_netcdf(const studies::results& from, const std::string& path, const 
 /// values, named as "x[0][3]". What is not done, or is NaN, is "nan".
 void export_csv(const studies::results& from, const std::string& path);
 
-/// Writes one variable as an array of NumPy (numpy.load), with the same shape as `export_netcdf`.
+/// Writes one variable or coordinate as an array of NumPy (numpy.load), with the same shape as `export_netcdf`.
 void export_npy(const studies::results& from, std::string_view variable, const std::string& path);
 
 }  // namespace myriad

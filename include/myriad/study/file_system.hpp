@@ -22,6 +22,7 @@ namespace myriad::studies::inline MYRIAD_ABI {
 struct file_facts {
     std::int64_t size = 0;
     std::int64_t modified = 0;  ///< nanoseconds, by the clock of the disk's machine
+    std::int64_t number = 0;    ///< of the file or folder on its disk
 };
 
 /// Functions of the operating system: like those of POSIX of the same name, they return -1 and set errno if they fail.
@@ -116,7 +117,7 @@ private:
 void sync_folder(file_system& files, const std::string& folder);
 /// Makes a folder that may be there already.
 void make_folder(file_system& files, const std::string& folder);
-/// The same with the folders that it is in.
+/// The same with the folders that it is in, durably.
 void make_folders(file_system& files, const std::string& folder);
 /// The names in a folder, unsorted; nothing if there is no such folder.
 std::optional<std::vector<std::string>> names_in(file_system& files, const std::string& folder);

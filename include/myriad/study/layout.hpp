@@ -170,4 +170,7 @@ public:
     virtual std::vector<std::string> devices() const { return {}; }
 };
 
+/// "31 of 35 instances are not computed yet", or which final results are not; empty if all is there.
+std::string missing_text(const results& from);
+
 }  // namespace myriad::studies::inline MYRIAD_ABI

@@ -10,7 +10,6 @@
 
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/layout.hpp"
-#include "myriad/study/store.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
@@ -37,13 +36,21 @@ bool is_json_object(std::string_view text);
 array_shape shape_of(const layout& content, const variable& v);
 array_shape shape_of(const layout& content, const coordinate& c);
 
-/// The file zarr.json of the group, with the metadata of all arrays, so that readers need not look for them.
+/// The file zarr.json of the group, with the metadata of all arrays, so that readers need not look for them, and a
+/// checksum of itself.
 std::string group_json(const layout& content);
 /// The file zarr.json of one array.
 std::string array_json(const array_shape& shape, const std::vector<attribute>& attributes);
-/// The layout that `group_json` was made of, with coordinates without values. Throws `error` that begins with `path` if
-/// it is something else.
-layout layout_of(std::string_view group, const std::string& path);
+/// What the file of a group says.
+struct stored_group {
+    layout content;        ///< with coordinates without values
+    int format = 0;        ///< of the store
+    std::string checksum;  ///< of the file, by which records name it; empty in format 1
+};
+/// Throws `error` that begins with `path` if the text is none of `group_json`, or is damaged.
+stored_group group_of(std::string_view text, const std::string& path);
+/// Whether two texts are JSON, and equal.
+bool same_json(std::string_view a, std::string_view b);
 
 /// What differs between the layout in a store and another, as "options.relative_tolerance: 1e-09 in the store, 1e-08
 /// here". Chunk sizes and attributes may differ.
@@ -51,17 +58,5 @@ std::vector<std::string> differences(const layout& stored, const layout& here);
 
 /// The global attributes that an exported file gets: the entries of the description, with dots in their names.
 std::vector<attribute> attributes_of(std::string_view description);
-
-/// A checksum as records have it: "1f2e3d4c".
-std::string hexadecimal(std::uint32_t value);
-
-/// What the record of a chunk holds.
-struct stored_chunk {
-    chunk_record record;
-    std::vector<std::uint32_t> checksums;  ///< of the variables with items for it, in the order of the layout
-};
-std::string record_json(const layout& content, std::int64_t chunk, const stored_chunk& stored);
-/// Throws `error` if the text is no such record of this chunk.
-stored_chunk record_of(std::string_view text, const layout& content, std::int64_t chunk);
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "myriad/host/backend/backend.hpp"
+#include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/core/declarations.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/memory/memory_need.hpp"
@@ -47,6 +48,13 @@ component_names names_of_components() {
     return {std::string(host::enumeration_name<Model>()), std::move(all)};
 }
 
+/// The compiler of a program, which is that of its models.
+#if defined(__clang__)
+inline constexpr const char* compiler_name = __VERSION__;
+#else
+inline constexpr const char* compiler_name = "g++ " __VERSION__;
+#endif
+
 template <class Model, class Method, class R>
 class model_of final : public any_model {
 public:
@@ -75,6 +83,10 @@ public:
             plan, generate_->calls_model, [&plan, where, generate = generate_](std::int64_t few) {
                 return std::make_unique<instances_on_device<Model, Method, R>>(few, where, plan, generate);
             });
+    }
+    arithmetic arithmetic_on(const device& where) const override {
+        if (where.which() != device::kind::cpu) return arithmetic::of_kernel("", compiler_name);
+        return arithmetic::of_kernel(host::name_of(host::choose_cpu_kernel<Model, Method, R>().set), compiler_name);
     }
     std::string generator() const override { return generate_->name; }
     bool generates_itself() const override { return generate_->calls_model; }

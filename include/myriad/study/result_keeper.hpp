@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/layout.hpp"
@@ -25,6 +26,8 @@ public:
     virtual void release(std::int64_t chunk) = 0;
     virtual void write(const column& values) = 0;
     virtual bool complete() = 0;
+    /// What may be wrong with what is there.
+    virtual std::vector<std::string> warnings() const { return {}; }
     /// Instances whose chunks are done, by whichever process.
     virtual std::int64_t instances_done() = 0;
     /// The results; the keeper need not outlive them.

@@ -39,18 +39,37 @@ column column_of(std::string_view variable, const std::vector<T>& values) {
     return column_of(variable, std::span<const T>(values));
 }
 
+/// What the last digits of results depend on, beside the study's description: on the CPU, kernels for other instruction
+/// sets, other compilers and other libraries of mathematical functions round differently.
+struct arithmetic {
+    std::string instruction_set;  ///< of the CPU's kernel, as "avx2"; empty if the CPU computes nothing
+    std::string compiler;         ///< of the kernel
+    std::string library;          ///< of mathematical functions, and this one
+    std::string host;             ///< where; two hosts may have the same arithmetic
+
+    /// This process', for a kernel.
+    static arithmetic of_kernel(std::string instruction_set, std::string compiler);
+    /// Whether results have the same bits.
+    bool same_as(const arithmetic& other) const {
+        return instruction_set == other.instruction_set && compiler == other.compiler && library == other.library;
+    }
+    /// "avx2, g++ 12.2.0, Myriad 0.1.0, glibc 2.36".
+    std::string text() const;
+};
+
 /// How a chunk was computed; kept in its record.
 struct chunk_record {
     std::string device;                                               ///< the device's description
     double seconds = 0.0;                                             ///< that it took
     std::vector<std::pair<std::string, std::int64_t>> statuses = {};  ///< instances with each status, by its name
+    arithmetic computed_by = {};
 };
 
 /// Something wrong with stored data.
 struct damage {
-    std::int64_t chunk = -1;  ///< -1: a coordinate or a final result
-    std::string variable;
-    std::string reason;  ///< as "checksum 1f2e3d4c, 00000000 recorded"
+    std::int64_t chunk = -1;  ///< -1: something that belongs to no chunk
+    std::string variable;     ///< or coordinate, or a file as "zarr.json"; empty: the record of the chunk
+    std::string reason;       ///< as "checksum 1f2e3d4c, 00000000 recorded"
 };
 
 /// How much of a study is done.
@@ -61,6 +80,7 @@ struct store_progress {
     std::int64_t all_instances = 0;                                   ///< that there are
     double seconds = 0.0;                                             ///< sum over chunks of what they took to compute
     std::vector<std::pair<std::string, std::int64_t>> statuses = {};  ///< instances with each status, sorted by name
+    std::int64_t damaged = 0;  ///< chunks whose records are damaged, which the counts of instances leave out
 };
 
 /// What is checked of the chunks that are done when a study goes on.
@@ -69,12 +89,20 @@ enum class resume_check {
     checksums,  ///< everything that is stored is read: `store::verify`
 };
 
+/// What is done where another arithmetic computed what is there.
+enum class other_arithmetic {
+    refuse,  ///< the study is not gone on with
+    warn,    ///< `store::warnings` says so
+};
+
 /// Options of a store.
 struct store_options {
-    /// A process that has given no sign of life for so long has lost its chunks to others. Matters only for processes
-    /// of other machines: that one of this machine is dead is seen at once.
+    /// A process of another machine that has given no sign of life for so long, as this one's clock tells, has lost its
+    /// chunks to others. That one of this machine is dead is seen at once, and one that lives keeps them.
     std::chrono::milliseconds expiry = std::chrono::seconds(60);
     resume_check check = resume_check::sizes;
+    arithmetic computed_by = {};  ///< this process'; compared if it has an instruction set and chunks are left
+    other_arithmetic others = other_arithmetic::refuse;
     /// For tests: what files are written and read by; null: the operating system.
     file_system* files = nullptr;
 };
@@ -91,10 +119,12 @@ class store final : public studies::results {
 public:
     /// Makes a new store in a folder that is empty or does not exist, or goes on with the one that is there if it is of
     /// the same study. Removes what processes that were killed left behind, and puts chunks with damaged files back to
-    /// be done again (`put_back`). The chunk size of a store that exists stays (`content().chunk`).
+    /// be done again (`put_back`). The chunk size of a store that exists stays (`content().chunk`). A store that is
+    /// complete is opened for reading where nothing can be written.
     ///
     /// Throws `error` if the folder holds another study, with what differs; if it holds other files; if the layout is
-    /// not consistent; and if the disk has less free space than what is left to be written takes.
+    /// not consistent; if the disk has less free space than what is left to be written takes; and if another arithmetic
+    /// computed what is there, unless the options allow that.
     static store create_or_resume(const std::string& folder, const studies::layout& content,
                                   const studies::store_options& options = {});
     /// Opens a store for reading, by anyone who may read the folder, also while a study runs. Throws `error` if there
@@ -115,6 +145,9 @@ public:
     const studies::layout& content() const override;
     /// The folder, as an absolute path.
     const std::string& folder() const;
+    /// The format: 2, or 1 for a store of an earlier version, which has no checksums of its metadata, coordinates and
+    /// final results.
+    int format() const;
 
     /// Whether a chunk is done, as far as this process has seen: `claim_next` and `refresh` look at the folder.
     bool done(std::int64_t chunk) const override;
@@ -149,8 +182,10 @@ public:
     std::vector<studies::damage> verify();
     /// What `create_or_resume` found damaged.
     const std::vector<studies::damage>& put_back() const;
+    /// What `create_or_resume` allowed, by the options, that may be wrong.
+    std::vector<std::string> warnings() const;
 
-    /// See `studies::results`. Checksums are compared.
+    /// See `studies::results`. Checksums are compared, with those of records.
     void read(std::string_view variable, std::int64_t first, std::int64_t count, void* values) const override;
     /// The values of items [first, first + count) of a variable of this type. Throws `error` if it has another one.
     template <class T>
@@ -161,6 +196,8 @@ public:
     }
     /// The devices that computed it, sorted.
     std::vector<std::string> devices() const override;
+    /// The arithmetics that computed it, one for each host.
+    std::vector<studies::arithmetic> arithmetics() const;
 
 private:
     struct implementation;

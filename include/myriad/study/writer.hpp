@@ -2,15 +2,17 @@
 // One process among those that fill a store: the sign that it is alive, its temporary files, and its claims on chunks.
 //
 // In the folder, all in myriad/:
-//   writers/<id>/alive   its time of modification is renewed by a thread; the id says which process it is
+//   writers/<id>/alive   a thread changes its time of modification again and again; the id says which process it is
 //   writers/<id>/...     temporary files, before they get their names
 //   claims/<chunk>       a hard link to a writer's file alive, so made by one atomic call, and renewed with it
-// A claim of a process that is dead is renamed to a name of the one who takes it over, which only one can do.
+// A claim of a process that is dead is renamed to a name of the one who takes it over, which only one can do. Who was
+// taken for dead and is not makes its folder anew.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -20,26 +22,10 @@
 
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/file_system.hpp"
+#include "myriad/study/process_identity.hpp"
+#include "myriad/study/signs_of_life.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
-
-/// Which process a writer is.
-struct process_identity {
-    std::string id;     ///< all of it, and a random number: the name of the writer's folder, and the text of its file
-    std::string host;   ///< the name of the machine
-    std::string boot;   ///< changes when it starts anew
-    std::string space;  ///< among whom numbers of processes mean something: a container has its own
-    std::int64_t process = 0;
-    std::int64_t start = 0;  ///< of the process, in the system's ticks
-
-    /// This process, as a new writer.
-    static process_identity own();
-    /// From its id; empty if the text is none.
-    static process_identity of(std::string_view id);
-    /// Whether it ran on this machine and does no longer, or is a writer that this process had before. False if that
-    /// cannot be known.
-    bool ended_here() const;
-};
 
 /// This process as a writer to a store. Functions may be called by several threads at a time.
 class writer {
@@ -55,6 +41,8 @@ public:
     std::string temporary();
     /// Is there again if another process took this one for dead, after which its temporary files are lost.
     void appear();
+    /// Whether this writer has the claim on a chunk in the folder.
+    bool holds(std::int64_t chunk) const;
 
     /// Takes a chunk, if need be from a dead process. False if another has it.
     bool claim(std::int64_t chunk);
@@ -63,9 +51,12 @@ public:
     void release(std::int64_t chunk) noexcept;
     /// Removes writers that are dead, with their temporary files and claims.
     void remove_dead();
+    /// Removes the claims on chunks that are done, whosever they are.
+    void remove_claims(const std::function<bool(std::int64_t chunk)>& is_done);
 
 private:
     std::string path_of(std::int64_t chunk) const;
+    std::string alive() const;
     bool is_dead(const std::string& path, process_identity* who = nullptr);
     bool take_away(const std::string& claim);
     void remove_writer(const std::string& id) noexcept;
@@ -76,6 +67,7 @@ private:
     std::string folder_;
     std::chrono::milliseconds expiry_;
     process_identity self_;
+    signs_of_life others_;
     std::int64_t owner_;  // the number of the process that made it
 
     std::mutex mutex_;

@@ -7,6 +7,7 @@
 #include "myriad/model.hpp"
 #include "tests/catch.hpp"
 #include "tests/host/ensemble/models.hpp"
+#include "tests/support/sparse.hpp"
 
 namespace {
 
@@ -111,6 +112,8 @@ TEST_CASE("what stiff methods make of a model is described", "[describe]") {
     CHECK(has(describe<with_jacobian>(), "hooks: rhs, jacobian\n"));
     CHECK(has(describe<with_jacobian>(), "stiff methods: the model's Jacobian, LU factors on GPUs in registers\n"));
     CHECK(has(describe<large>(), "stiff methods: Jacobian by dual numbers, LU factors on GPUs in local memory\n"));
+    CHECK(has(describe<sparse::ring<8>>(), "declares: autonomous, jacobian_pattern\n"));
+    CHECK(has(describe<sparse::arrow<9>>(), "LU factors of 25 entries instead of 81, for 25 of the Jacobian\n"));
 }
 
 TEST_CASE("a model with events alone is described with them", "[describe]") {

@@ -13,10 +13,12 @@
 
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
+#include "tests/host/ensemble/refusal.hpp"
 #include "tests/properties/pack_sizes.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/faulty.hpp"
+#include "tests/support/sparse.hpp"
 
 namespace {
 
@@ -39,18 +41,18 @@ R singular_rate(R h) {
     return R(1) / h * static_cast<R>(1 / Method::tableau().gamma);
 }
 
-template <class Method, class R = double>
+template <class Method, class R = double, class Model = growth>
 void check_singular() {
     const R h = R(0.125);
     options o;
     o.step = static_cast<double>(h);
     o.relative_tolerance = o.absolute_tolerance = 1e-2;
     for (const bool may_shorten : {false, true}) {
-        ensemble<growth, R> e(40);
-        e.state(growth::x) = R(1e-3);
-        e.state(growth::y) = R(1);
+        ensemble<Model, R> e(40);
+        for (int c = 0; c < Model::n_state; ++c) e.state(c) = R(1);
+        e.state(Model::x) = R(1e-3);
         for (std::int64_t i = 0; i < e.size(); ++i)
-            e.parameter(growth::rate)[i] = i % 3 == 1 ? singular_rate<Method, R>(h) : R(-1);
+            e.parameter(Model::rate)[i] = i % 3 == 1 ? singular_rate<Method, R>(h) : R(-1);
         e.time_domain(R(0), R(1));
         o.minimum_step = may_shorten ? 0 : static_cast<double>(h);
         solve<Method>(tests::test_device(1), e, o);
@@ -63,7 +65,7 @@ void check_singular() {
             } else {
                 CHECK(e.status(i) == status::singular_jacobian);
                 CHECK(e.t()[i] == 0);
-                CHECK(e.state(growth::x)[i] == R(1e-3));
+                CHECK(e.state(Model::x)[i] == R(1e-3));
                 CHECK(e.rejected_steps()[i] == 1);
             }
         }
@@ -204,12 +206,58 @@ void check_order_of_instances() {
         CHECK(compare::difference(shuffled, static_cast<std::int64_t>(at), straight, order[at]).empty());
 }
 
+/// Rings of oscillators at random, with damping from 50 to 150.
+template <class Model, class R = double>
+ensemble<Model, R> rings(std::int64_t size) {
+    ensemble<Model, R> e(size);
+    std::mt19937 engine(7);
+    std::uniform_real_distribution<double> draws(-2, 2);
+    for (std::int64_t i = 0; i < size; ++i) {
+        e.parameter(0)[i] = static_cast<R>(100 + 25 * draws(engine));
+        for (int c = 0; c < Model::n_state; ++c) e.state(c)[i] = static_cast<R>(draws(engine));
+    }
+    e.time_domain(R(0), R(0.5));
+    return e;
+}
+
+/// The two Jacobians differ by rounding, which a tenth of the tolerance bounds with room to spare; nothing in these
+/// rings amplifies it.
+template <int n, int size>
+void check_pattern() {
+    auto with = rings<sparse::ring<n>>(size);
+    auto without = rings<sparse::dense_ring<n>>(size);
+    const auto o = compare::with_tolerance(1e-6, 1e-4);
+    solve<rodas_5p>(tests::test_device(1), with, o);
+    solve<rodas_5p>(tests::test_device(1), without, o);
+    for (std::int64_t i = 0; i < size; ++i) {
+        CAPTURE(i);
+        CHECK(with.status(i) == status::success);
+        CHECK(with.accepted_steps()[i] == without.accepted_steps()[i]);
+        CHECK(with.rejected_steps()[i] == without.rejected_steps()[i]);
+        for (int c = 0; c < n; ++c) CHECK(std::abs(with.state(c)[i] - without.state(c)[i]) <= 1e-7);
+    }
+}
+
 }  // namespace
 
 TEST_CASE("a step with a singular matrix is shortened, and ends as singular_jacobian where it may not be") {
     check_singular<rosenbrock_23>();
     check_singular<rodas_5p>();
     check_singular<rodas_5p, float>();
+    check_singular<rosenbrock_23, double, sparse::growth_among_decays>();
+    check_singular<rodas_5p, double, sparse::growth_among_decays>();
+}
+
+TEST_CASE("a network with its Jacobian's pattern takes the steps of the dense one, to the same states") {
+    check_pattern<8, 40>();
+    check_pattern<32, 5>();
+}
+
+TEST_CASE("a pattern without an entry is refused, with the entry") {
+    auto e = rings<sparse::ring_with_a_gap<8>>(20);
+    refused([&] { solve<rodas_5p>(tests::test_device(1), e, compare::with_tolerance(1e-6, 1e-4)); },
+            {"jacobian_pattern has no entry {7, 0}", "by state 0 at the start of instance 0 is 10",
+             "add the entry, or leave out jacobian_pattern"});
 }
 
 TEST_CASE(

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Compares a model's own Jacobian with the one by dual numbers. Host code; it calls the model on some initial states.
+// Compares a model's own Jacobian, and its pattern, with the one by dual numbers. Host code; it calls the model on some
+// initial states.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/ensemble/inputs_of.hpp"
@@ -42,6 +44,40 @@ void check_jacobian(ensemble<Model, R>& e, std::int64_t count) {
                 }
             }
         });
+    }
+}
+
+/// Throws `error` if a derivative of `rhs` that the model's `jacobian_pattern` leaves out is not zero. Looks at some
+/// initial states and, as derivatives may vanish there, at states beside them. Not for models with `initialise`.
+template <class Model, class R>
+void check_jacobian_pattern(ensemble<Model, R>& e, std::int64_t count) {
+    if constexpr (has_jacobian_pattern<Model> && !has_initialise<Model>) {
+        constexpr int n = n_state<Model>;
+        const std::int64_t stride = std::max<std::int64_t>(count / 8, 1);
+        const auto matrix_of = std::make_unique<matrix<R, n>>();
+        auto& dual = *matrix_of;
+        bool declared[n][n]{};
+        for (const jacobian_entry& entry : Model::jacobian_pattern) declared[entry.row][entry.column] = true;
+        for (std::int64_t i = 0; i < count; i += stride) {
+            if (e.ended(i)) continue;
+            const auto p = inputs_of(e, i);
+            for (const bool beside : {false, true}) {
+                vec<R, n> y;
+                for (int c = 0; c < n; ++c) {
+                    y[c] = e.state(c)[i];
+                    if (beside) y[c] += (std::abs(y[c]) + 1) * static_cast<R>(c + 1) / static_cast<R>(4 * n);
+                }
+                detail::dual_jacobian<Model>(e.t_begin_of(i), y, p, dual);
+                for (int row = 0; row < n; ++row) {
+                    for (int j = 0; j < n; ++j) {
+                        require(declared[row][j] || dual[row][j] == 0 || !std::isfinite(dual[row][j]),
+                                "jacobian_pattern has no entry {", row, ", ", j, "}, but the derivative of component ",
+                                row, " by state ", j, beside ? " beside" : " at", " the start of instance ", i, " is ",
+                                dual[row][j], ": add the entry, or leave out jacobian_pattern");
+                    }
+                }
+            }
+        }
     }
 }
 

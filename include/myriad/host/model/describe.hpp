@@ -5,11 +5,30 @@
 #include <string>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/model/hooks.hpp"
 #include "myriad/kernel/scalar/matrix_loop.hpp"
+#include "myriad/kernel/stepper/sparse_lu.hpp"
 
 namespace myriad {
+
+namespace host::inline MYRIAD_ABI {
+
+/// Where stiff methods keep a model's LU factors, and how many entries they have.
+template <class Model>
+std::string lu_factors_of() {
+    if constexpr (factorises_sparsely<Model>) {
+        constexpr int n = n_state<Model>;
+        const auto& symbolic = symbolic_lu_of<Model>;
+        return message("of ", n + symbolic.lower + symbolic.upper, " entries instead of ", n * n, ", for ",
+                       n_jacobian_entry<Model>, " of the Jacobian");
+    } else {
+        return matrix_loop<double, n_state<Model>>::unrolled ? "on GPUs in registers" : "on GPUs in local memory";
+    }
+}
+
+}  // namespace host::inline MYRIAD_ABI
 
 /// A few lines of text: the model's numbers of components, its hooks, its declarations, and how methods for stiff
 /// systems treat it.
@@ -36,14 +55,15 @@ template <class Model>
     add(declares, detail::scalar_only<Model>, "scalar_only");
     add(declares, detail::rare_events<Model>, "rare_events");
     add(declares, detail::large_rhs<Model>, "large_rhs");
+    add(declares, detail::autonomous<Model>, "autonomous");
+    add(declares, detail::has_jacobian_pattern<Model>, "jacobian_pattern");
     return message(
         "components: ", detail::n_state<Model>, " state, ", detail::n_parameter<Model>, " parameter, ",
         detail::n_shared<Model>, " shared, ", detail::n_shared_integer<Model>, " shared integer, ",
         detail::n_accessory<Model>, " accessory, ", detail::n_integer_accessory<Model>, " integer accessory, ",
         detail::n_event<Model>, " event\nhooks: ", hooks, "\ndeclares: ", declares.empty() ? "nothing" : declares,
         "\nstiff methods: ", detail::gives_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers",
-        ", LU factors on GPUs in ",
-        detail::matrix_loop<double, detail::n_state<Model>>::unrolled ? "registers" : "local memory", '\n');
+        ", LU factors ", host::lu_factors_of<Model>(), '\n');
 }
 
 }  // namespace myriad

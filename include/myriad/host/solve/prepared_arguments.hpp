@@ -111,6 +111,7 @@ functions_within_tolerance<Model> check_uses(ensemble<Model, R>& instances, cons
     check_scales(data, scales_tolerances<Method>);
     check_sample_times(data, o, count);
     check_event_tolerances(instances, o, count);
+    if constexpr (rosenbrock_method<Method>) check_jacobian_pattern(instances, count);
 #if !defined(NDEBUG)
     check_jacobian(instances, count);
 #endif

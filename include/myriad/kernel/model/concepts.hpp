@@ -113,6 +113,8 @@ MYRIAD_MODEL_DECLARATION(scalar_only)
 MYRIAD_MODEL_DECLARATION(rare_events)
 /// The right-hand side is so long that on the CPU a copy in every stage would only make the kernel larger.
 MYRIAD_MODEL_DECLARATION(large_rhs)
+/// The right-hand side does not depend on t, so that stiff methods need no derivative by it.
+MYRIAD_MODEL_DECLARATION(autonomous)
 #undef MYRIAD_MODEL_DECLARATION
 
 // Whether a model has a member of that name, whatever its signature: a class that inherits the name twice finds it

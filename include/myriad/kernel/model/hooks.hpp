@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "myriad/kernel/core/status.hpp"
+#include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/model/reductions.hpp"
 #include "myriad/kernel/scalar/matrix_loop.hpp"
@@ -55,7 +56,14 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
             "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
             "rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
     }
-    if constexpr (gives_jacobian<Model>) {
+    if constexpr (gives_jacobian<Model> && has_jacobian_pattern<Model>) {
+        using derivatives = vec<R, n_jacobian_entry<Model>>;
+        MYRIAD_CHECK_CALL(
+            (Model::template jacobian<R>(R{}, *y, *p)), std::same_as<derivatives>,
+            "jacobian has a wrong signature: in a model with a jacobian_pattern it must be `template <class R> "
+            "MYRIAD_FUNCTION static myriad::vec<R, std::size(jacobian_pattern)> jacobian(auto t, const myriad::vec<R, "
+            "n_state>& y, const auto& p)`, the derivatives in the order of the pattern, and public")
+    } else if constexpr (gives_jacobian<Model>) {
         MYRIAD_CHECK_CALL(
             (Model::template jacobian<R>(R{}, *y, *p)), std::same_as<square>,
             "jacobian has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::matrix<R, "

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/matrix_loop.hpp"
@@ -50,11 +51,43 @@ MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, 
     });
 }
 
+/// Calls `put(e, derivative)` for the entries e of the declared pattern: the model's own derivatives if it has them,
+/// else those by dual numbers, by one evaluation of rhs for each group of columns. `Loop` is a table_loop.
+template <class Model, class Loop, class S, class Put>
+MYRIAD_FUNCTION void for_each_jacobian_entry(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
+                                             Put&& put) {
+    using R = real_of<S>;
+    using groups = std::remove_cv_t<decltype(jacobian_groups_of<Model>)>;
+    constexpr int entries = n_jacobian_entry<Model>;
+    if constexpr (gives_jacobian<Model>) {
+        const vec<S, entries> own = Model::template jacobian<S>(t, y, p);
+        Loop::template range<0, entries>([&](auto e) MYRIAD_LAMBDA { put(e, own[e]); });
+    } else {
+        Loop::template range<0, jacobian_groups_of<Model>.count>([&](auto group) MYRIAD_LAMBDA {
+            auto seeded = constants(y);
+            Loop::template range<0, n_state<Model>>([&](auto j) MYRIAD_LAMBDA {
+                const int its = Loop::template at<jacobian_groups_of<Model>, &groups::group_of_column>(j);
+                seeded[j].derivative = S(its == group ? R(1) : R(0));
+            });
+            const auto columns = detail::directional_derivative<Model>(dual<S>(t), seeded, p);
+            Loop::template range<0, entries>([&](auto e) MYRIAD_LAMBDA {
+                if (Loop::template at<jacobian_groups_of<Model>, &groups::group>(e) == group)
+                    put(e, columns[Loop::template at<jacobian_groups_of<Model>, &groups::row>(e)]);
+            });
+        });
+    }
+}
+
 /// The model's own Jacobian if it has one, else that by dual numbers.
 template <class Model, class S>
 MYRIAD_FUNCTION void evaluate_jacobian(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                        matrix<S, n_state<Model>>& jacobian) {
-    if constexpr (gives_jacobian<Model>) {
+    if constexpr (gives_jacobian<Model> && has_jacobian_pattern<Model>) {
+        const auto own = Model::template jacobian<S>(t, y, p);
+        jacobian = {};
+        for (int e = 0; e < n_jacobian_entry<Model>; ++e)
+            jacobian[Model::jacobian_pattern[e].row][Model::jacobian_pattern[e].column] = own[e];
+    } else if constexpr (gives_jacobian<Model>) {
         jacobian = Model::template jacobian<S>(t, y, p);
     } else {
         detail::dual_jacobian<Model>(t, y, p, jacobian);

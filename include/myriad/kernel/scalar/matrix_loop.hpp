@@ -24,6 +24,15 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class S>
 inline constexpr int largest_matrix_in_registers = lanes_of<S> == 1 ? 6 : 3;
 
+/// A loop over 0 <= i < n that is written out.
+template <int n>
+struct unrolled_loop {
+    template <class F>
+    static MYRIAD_FUNCTION void all(F&& f) {
+        static_for<0, n>(f);
+    }
+};
+
 /// Loops over 0 <= i < n, for numbers of kind S. `f` gets the index as a `constant_index` if the loop is unrolled, else
 /// as an int.
 template <class S, int n>

@@ -11,6 +11,7 @@
 #include "myriad/kernel/scalar/select.hpp"
 #include "myriad/kernel/stepper/explicit_rk.hpp"
 #include "myriad/kernel/stepper/lu.hpp"
+#include "myriad/kernel/stepper/sparse_lu.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -185,6 +186,37 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
     return factorise(lu);
 }
 
+/// The same for a matrix of the model's declared pattern.
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
+                                                  const inputs<Model, S>& p, sparse_lu_factors<Model, S>& lu) {
+    using lu_type = sparse_lu_factors<Model, S>;
+    using tables = typename lu_type::tables;
+    using loop = typename lu_type::loop;
+    const S shift = per_h * S(reciprocal_gamma<Method, real_of<S>>);
+    loop::template range<0, tables::n_entry>([&](auto e) MYRIAD_LAMBDA { lu.a[e] = S(real_of<S>(0)); });
+    loop::template range<0, n_state<Model>>([&](auto i) MYRIAD_LAMBDA {
+        lu.a[lu_type::template at<&tables::diagonal>(i)] = shift;
+        lu.size[i] = abs(shift);
+    });
+    detail::for_each_jacobian_entry<Model, loop>(t, y, p, [&](auto e, const S& derivative) MYRIAD_LAMBDA {
+        const auto place = lu_type::template at<&tables::position>(e);
+        const auto row = lu_type::template at<&tables::pivot_row>(e);
+        lu.a[place] = lu.a[place] - derivative;
+        if (row >= 0) lu.size[row] = lu.size[row] + abs(derivative);
+    });
+    return factorise(lu);
+}
+template <class Model, class S>
+using stage_factors =
+    std::conditional_t<factorises_sparsely<Model>, sparse_lu_factors<Model, S>, lu_factors<S, n_state<Model>>>;
+
+/// Loops over the components of a state: written out where the factors are, as one index that is no constant puts an
+/// array into a GPU's local memory.
+template <class Model, class S>
+using component_loop = std::conditional_t<factorises_sparsely<Model> && lanes_of<S> == 1, unrolled_loop<n_state<Model>>,
+                                          matrix_loop<S, n_state<Model>>>;
+
 /// Steps from (t, y) by h to t1; `trial.k[0]`, the slope at the start, must be set. As in an explicit step, a last
 /// stage that is the first of the next step is evaluated at t1.
 template <class Method, class Model, class S>
@@ -192,13 +224,14 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
                                      const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
-    using loop = matrix_loop<S, n>;
+    using loop = component_loop<Model, S>;
     // Steps to an event may be as short as 1e-320. If 1 / (h gamma) would overflow, the matrix of a slightly longer
     // step is used, over which nothing changes either.
     const S per_h = copysign(S(R(1)) / max(abs(h), S(R(16) / largest_of<R>)), h);
-    lu_factors<S, n> lu;
+    stage_factors<Model, S> lu;
     trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
-    const vec<S, n> slope_t = detail::time_derivative<Model>(t, y, p);
+    vec<S, n> slope_t;
+    if constexpr (!autonomous<Model>) slope_t = detail::time_derivative<Model>(t, y, p);
 
     vec<S, n> increment, slope = trial.k[0];
     // Writes the argument of stage `row`, or the new state, to trial.y.
@@ -227,7 +260,7 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
             S right = slope[c];
             if constexpr (i > 0)
                 right = fma(per_h, detail::sum_stages<Method, rosenbrock_row::coupling, i, i>(trial.u, c), right);
-            if constexpr (time_weight != R(0)) right = fma(h * S(time_weight), slope_t[c], right);
+            if constexpr (!autonomous<Model> && time_weight != R(0)) right = fma(h * S(time_weight), slope_t[c], right);
             trial.u[stage][c] = right;
         });
         solve_factorised(lu, trial.u[stage]);

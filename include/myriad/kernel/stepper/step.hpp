@@ -4,6 +4,7 @@
 
 #include "myriad/kernel/stepper/explicit_rk.hpp"
 #include "myriad/kernel/stepper/rosenbrock.hpp"
+#include "myriad/kernel/stepper/rosenbrock_loop.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -15,7 +16,11 @@ MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const 
         static_assert(n_tangent<Model> == 0,
                       "stiff methods do not take with_tangents: their Jacobian would need second "
                       "derivatives of rhs; use an explicit method");
-        detail::rosenbrock_step<Method, Model>(t, h, t1, y, p, trial);
+        if constexpr (loops_over_stages<Method, Model, S>) {
+            detail::rosenbrock_step_in_a_loop<Method, Model>(t, h, t1, y, p, trial);
+        } else {
+            detail::rosenbrock_step<Method, Model>(t, h, t1, y, p, trial);
+        }
     } else {
         detail::explicit_rk_step<Method, Model>(t, h, t1, y, p, trial);
     }

@@ -24,6 +24,7 @@ struct kernel_library {
     /// Calls the model's `generate` for instances [begin, end) of a study; null for a model that has none. Of the
     /// `any_arguments` it takes the range, the arrays and the shared parameters.
     void (*generate)(const void* arguments, std::uint64_t seed, std::int64_t begin, std::int64_t end);
+    const char* compiler = __VERSION__;  ///< of the file that makes this
 };
 
 /// The one function that a library exports, under this name.

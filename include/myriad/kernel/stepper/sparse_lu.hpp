@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// LU factorisation of a matrix whose pattern is known at compile time: pivots on the diagonal, in an order that keeps
+// the factors sparse, and no operation with an entry that is always zero.
+#pragma once
+
+#include "myriad/kernel/core/table_loop.hpp"
+#include "myriad/kernel/core/vec.hpp"
+#include "myriad/kernel/model/jacobian_pattern.hpp"
+#include "myriad/kernel/scalar/math.hpp"
+#include "myriad/kernel/scalar/select.hpp"
+
+namespace myriad::detail {
+
+/// The pattern of the factors of a matrix with the given entries and a full diagonal, and the order of its pivots: in
+/// each step the one of least Markowitz count, (entries of its row - 1) (entries of its column - 1), among those left
+/// (Markowitz, Management Science 3, 1957, 255; Duff, Erisman and Reid, Direct Methods for Sparse Matrices, 7.2).
+template <int n>
+struct symbolic_lu {
+    int pivot[n]{};          // the row and column that are eliminated in each step
+    number_set<n> right[n];  // of each step: the columns right of the pivot
+    number_set<n> below[n];  // and the rows below it
+    int lower = 0;           // entries below the diagonal of the factors
+    int upper = 0;           // and above it
+    int updates = 0;         // multiplications and subtractions of the factorisation
+
+    template <class Entries>
+    constexpr symbolic_lu(const Entries& entries, int length) {
+        number_set<n> row[n]{}, column[n]{};
+        for (int e = 0; e < length; ++e) {
+            if (entries[e].row == entries[e].column) continue;
+            row[entries[e].row].insert(entries[e].column);
+            column[entries[e].column].insert(entries[e].row);
+        }
+        bool done[n]{};
+        for (int step = 0; step < n; ++step) {
+            int best = -1, least = 0;
+            for (int k = 0; k < n; ++k) {
+                if (done[k]) continue;
+                const int count = row[k].size() * column[k].size();
+                if (best < 0 || count < least) best = k, least = count;
+            }
+            done[best] = true;
+            pivot[step] = best;
+            right[step] = row[best];
+            below[step] = column[best];
+            lower += below[step].size();
+            upper += right[step].size();
+            updates += least;
+            for (int k = 0; k < n; ++k) {
+                if (below[step].contains(k)) {
+                    row[k].insert(row[best]);
+                    row[k].erase(k), row[k].erase(best);
+                }
+                if (right[step].contains(k)) {
+                    column[k].insert(column[best]);
+                    column[k].erase(k), column[k].erase(best);
+                }
+            }
+        }
+    }
+};
+
+/// What a factorisation and its solves do, as tables. Entries of the factors are numbered in the order of steps; an
+/// update subtracts from an entry the product of one below a pivot and one right of it.
+template <int n, int n_lower, int n_upper, int n_update, int n_given>
+struct lu_tables {
+    static constexpr int n_entry = n + n_lower + n_upper;
+    int pivot[n]{};                                  // the row of each step
+    int diagonal[n]{};                               // the entry of each row's pivot
+    int lower_begin[n + 1]{}, upper_begin[n + 1]{};  // of each step, in the following
+    int lower_entry[n_lower + 1]{}, lower_row[n_lower + 1]{};
+    int upper_entry[n_upper + 1]{}, upper_column[n_upper + 1]{};
+    int first_update[n_lower + 1]{};  // of each lower entry, less the number of its step's first upper one
+    int target[n_update + 1]{};       // the entry that each update changes
+    int target_row[n_update + 1]{};   // its row if it is a pivot, else -1
+    int position[n_given]{};          // of the entries that are given
+    int pivot_row[n_given]{};         // the row of those on the diagonal, else -1
+
+    template <class Entries>
+    constexpr lu_tables(const symbolic_lu<n>& symbolic, const Entries& entries) {
+        short number[n][n]{};
+        int next = 0;
+        for (int s = 0; s < n; ++s) {
+            const int k = symbolic.pivot[s];
+            pivot[s] = k;
+            diagonal[k] = number[k][k] = static_cast<short>(next++);
+            lower_begin[s + 1] = lower_begin[s];
+            upper_begin[s + 1] = upper_begin[s];
+            for (int j = 0; j < n; ++j) {
+                if (!symbolic.right[s].contains(j)) continue;
+                upper_column[upper_begin[s + 1]] = j;
+                upper_entry[upper_begin[s + 1]++] = number[k][j] = static_cast<short>(next++);
+            }
+            for (int i = 0; i < n; ++i) {
+                if (!symbolic.below[s].contains(i)) continue;
+                lower_row[lower_begin[s + 1]] = i;
+                lower_entry[lower_begin[s + 1]++] = number[i][k] = static_cast<short>(next++);
+            }
+        }
+        int q = 0;
+        for (int s = 0; s < n; ++s) {
+            for (int l = lower_begin[s]; l < lower_begin[s + 1]; ++l) {
+                first_update[l] = q - upper_begin[s];
+                for (int u = upper_begin[s]; u < upper_begin[s + 1]; ++u, ++q) {
+                    target[q] = number[lower_row[l]][upper_column[u]];
+                    target_row[q] = lower_row[l] == upper_column[u] ? lower_row[l] : -1;
+                }
+            }
+        }
+        for (int e = 0; e < n_given; ++e) {
+            position[e] = number[entries[e].row][entries[e].column];
+            pivot_row[e] = entries[e].row == entries[e].column ? entries[e].row : -1;
+        }
+    }
+};
+
+template <class Model>
+inline constexpr symbolic_lu<n_state<Model>> symbolic_lu_of{Model::jacobian_pattern, n_jacobian_entry<Model>};
+template <class Model>
+inline constexpr lu_tables<n_state<Model>, symbolic_lu_of<Model>.lower, symbolic_lu_of<Model>.upper,
+                           symbolic_lu_of<Model>.updates, n_jacobian_entry<Model>>
+    lu_tables_of{symbolic_lu_of<Model>, Model::jacobian_pattern};
+
+/// Most updates for which a GPU's code is written out.
+inline constexpr int most_updates = 4096;
+
+/// Whether stiff methods use the declared pattern: beyond the sizes whose dense, pivoted factors stay in registers, and
+/// as long as the code that is written out does not become too long.
+template <class Model>
+constexpr bool factorises_sparsely_of() {
+    if constexpr (has_jacobian_pattern<Model> && n_state < Model >> 6) {
+        return symbolic_lu_of<Model>.updates <= most_updates;
+    } else {
+        return false;
+    }
+}
+template <class Model>
+inline constexpr bool factorises_sparsely = factorises_sparsely_of<Model>();
+
+}  // namespace myriad::detail
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// The matrix, replaced by its factors in `factorise`: the multipliers below the pivots, the reciprocals of the pivots,
+/// and what is right of them.
+template <class Model, class S>
+struct sparse_lu_factors {
+    using tables = std::remove_cv_t<decltype(lu_tables_of<Model>)>;
+    /// For one lane the numbers lie in registers or at fixed places of a GPU's local memory. Those of a pack are cache
+    /// lines each, which loops cost nothing beside.
+    using loop = table_loop<lanes_of<S> == 1>;
+    /// Element i of a table.
+    template <auto table, class I>
+    static MYRIAD_FUNCTION auto at(I i) {
+        return loop::template at<lu_tables_of<Model>, table>(i);
+    }
+    /// The elements of step s in a table.
+    template <auto begin, class I, class F>
+    static MYRIAD_FUNCTION void of_step(I s, F&& f) {
+        loop::template between<lu_tables_of<Model>, begin>(s, f);
+    }
+
+    S a[tables::n_entry];
+    S size[n_state<Model>];  // of each pivot's row: the sum of the sizes of the terms that add up to the pivot
+};
+
+/// The part of its terms that must be left of a pivot: with less, rounding errors of the terms are a larger part of the
+/// pivot than the root of the resolution.
+template <class R>
+inline constexpr R least_pivot = std::is_same_v<R, float> ? R(0x1p-11) : R(0x1p-26);
+
+/// Factorises `lu.a`. Returns false in lanes with a pivot that is not finite or that cancellation has made too small:
+/// a test that scaling a state does not change.
+template <class Model, class S>
+MYRIAD_FUNCTION mask_of<S> factorise(sparse_lu_factors<Model, S>& lu) {
+    using R = real_of<S>;
+    using lu_type = sparse_lu_factors<Model, S>;
+    using tables = typename lu_type::tables;
+    using loop = typename lu_type::loop;
+    auto& a = lu.a;
+    mask_of<S> regular = mask_of<S>(true);
+    loop::template range<0, n_state<Model>>([&](auto s) MYRIAD_LAMBDA {
+        const auto row = lu_type::template at<&tables::pivot>(s);
+        const auto d = lu_type::template at<&tables::diagonal>(row);
+        const S pivot_size = abs(a[d]);
+        regular = regular & (pivot_size > S(least_pivot<R>) * lu.size[row]) & (pivot_size <= S(largest_of<R>));
+        const S reciprocal = S(R(1)) / a[d];
+        a[d] = reciprocal;
+        lu_type::template of_step<&tables::lower_begin>(s, [&](auto l) MYRIAD_LAMBDA {
+            const auto entry = lu_type::template at<&tables::lower_entry>(l);
+            const S multiplier = a[entry] * reciprocal;
+            a[entry] = multiplier;
+            lu_type::template of_step<&tables::upper_begin>(s, [&](auto u) MYRIAD_LAMBDA {
+                const auto update = loop::sum(lu_type::template at<&tables::first_update>(l), u);
+                const auto target = lu_type::template at<&tables::target>(update);
+                const auto target_row = lu_type::template at<&tables::target_row>(update);
+                const S right = a[lu_type::template at<&tables::upper_entry>(u)];
+                a[target] = fma(-multiplier, right, a[target]);
+                if (target_row >= 0) lu.size[target_row] = fma(abs(multiplier), abs(right), lu.size[target_row]);
+            });
+        });
+    });
+    return regular;
+}
+
+/// Solves A x = b with the factors of A; x replaces b.
+template <class Model, class S>
+MYRIAD_FUNCTION void solve_factorised(const sparse_lu_factors<Model, S>& lu, vec<S, n_state<Model>>& b) {
+    using lu_type = sparse_lu_factors<Model, S>;
+    using tables = typename lu_type::tables;
+    using loop = typename lu_type::loop;
+    const auto& a = lu.a;
+    loop::template range<0, n_state<Model>>([&](auto s) MYRIAD_LAMBDA {
+        const S x = b[lu_type::template at<&tables::pivot>(s)];
+        lu_type::template of_step<&tables::lower_begin>(s, [&](auto l) MYRIAD_LAMBDA {
+            const auto row = lu_type::template at<&tables::lower_row>(l);
+            b[row] = fma(-a[lu_type::template at<&tables::lower_entry>(l)], x, b[row]);
+        });
+    });
+    loop::template range_backwards<0, n_state<Model>>([&](auto s) MYRIAD_LAMBDA {
+        const auto row = lu_type::template at<&tables::pivot>(s);
+        S x = b[row];
+        lu_type::template of_step<&tables::upper_begin>(s, [&](auto u) MYRIAD_LAMBDA {
+            const auto column = lu_type::template at<&tables::upper_column>(u);
+            x = fma(-a[lu_type::template at<&tables::upper_entry>(u)], b[column], x);
+        });
+        b[row] = x * a[lu_type::template at<&tables::diagonal>(row)];
+    });
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

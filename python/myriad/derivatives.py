@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: MIT
+"""Derivatives of recorded expressions by symbols, as expressions: the Jacobian that stiff methods use. Entries that are
+always zero are left out."""
+
+from . import expression as ex
+
+_ln2, _ln10 = 0.6931471805599453, 2.302585092994046
+
+
+# The partial derivatives of an operation by its arguments: None where it does not depend on one, a condition where the
+# argument is passed on if it holds.
+_partials = {
+    "add": lambda f, a, b: (1, 1),
+    "subtract": lambda f, a, b: (1, -1),
+    "multiply": lambda f, a, b: (b, a),
+    "divide": lambda f, a, b: (1 / b, -f / b),
+    "negate": lambda f, a: (-1,),
+    "fma": lambda f, a, b, c: (b, a, 1),
+    "reciprocal": lambda f, a: (-f * f,),
+    "sqrt": lambda f, a: (0.5 / f,),
+    "cbrt": lambda f, a: (1 / (3 * f * f),),
+    "abs": lambda f, a: (ex.copysign(1.0, a),),
+    "floor": lambda f, a: (None,),
+    "round": lambda f, a: (None,),
+    "sin": lambda f, a: (ex.cos(a),),
+    "cos": lambda f, a: (-ex.sin(a),),
+    "sinpi": lambda f, a: (ex.pi * ex.cospi(a),),
+    "cospi": lambda f, a: (-ex.pi * ex.sinpi(a),),
+    "sincos.sine": lambda f, a: (ex.sincos(a)[1],),
+    "sincos.cosine": lambda f, a: (-ex.sincos(a)[0],),
+    "sincospi.sine": lambda f, a: (ex.pi * ex.sincospi(a)[1],),
+    "sincospi.cosine": lambda f, a: (-ex.pi * ex.sincospi(a)[0],),
+    "tan": lambda f, a: (1 + f * f,),
+    "asin": lambda f, a: (1 / ex.sqrt(1 - a * a),),
+    "acos": lambda f, a: (-1 / ex.sqrt(1 - a * a),),
+    "atan": lambda f, a: (1 / (1 + a * a),),
+    "sinh": lambda f, a: (ex.cosh(a),),
+    "cosh": lambda f, a: (ex.sinh(a),),
+    "tanh": lambda f, a: (1 - f * f,),
+    "exp": lambda f, a: (f,),
+    "exp2": lambda f, a: (_ln2 * f,),
+    "log": lambda f, a: (1 / a,),
+    "log2": lambda f, a: (1 / (_ln2 * a),),
+    "log10": lambda f, a: (1 / (_ln10 * a),),
+    "hypot": lambda f, a, b: (a / f, b / f),
+    "atan2": lambda f, a, b: (b / (a * a + b * b), -a / (a * a + b * b)),
+    "copysign": lambda f, a, b: (ex.copysign(1.0, a) * ex.copysign(1.0, b), None),
+    "select": lambda f, chosen, a, b: (None, chosen, ~chosen),
+    "min": lambda f, a, b: (a <= b, ~(a <= b)),
+    "max": lambda f, a, b: (a >= b, ~(a >= b)),
+    "pow": lambda f, a, b: _of_power(f, a, b, ex.pow),
+    "powr": lambda f, a, b: _of_power(f, a, b, ex.powr),
+    "dot": lambda f, *vector: [ex.make("element", value=(f.value[0], f.value[1] + j)) for j in range(len(vector))],
+    "find_interval": lambda f, *_: (None,),
+}
+
+
+def _of_power(f, base, exponent, power):
+    by_exponent = f * ex.log(base) if exponent.op != "constant" else None
+    return exponent * power(base, exponent - 1), by_exponent
+
+
+def _times(partial, derivative):
+    """A product in which a condition chooses between the derivative and zero."""
+    if isinstance(partial, ex.Condition):
+        return ex.where(partial, derivative, 0.0)
+    if isinstance(partial, int):
+        return derivative if partial == 1 else -derivative
+    if derivative.op == "constant" and derivative.value == 1:
+        return ex.as_number(partial)
+    return partial * derivative
+
+
+def dependencies(roots, symbols):
+    """For each root the numbers of the symbols that it depends on, in order."""
+    bit = {id(s): 1 << i for i, s in enumerate(symbols)}
+    masks = {}
+    for node in ex.walk(roots):
+        mask = bit.get(id(node), 0)
+        for argument in node.args:
+            mask |= masks[id(argument)]
+        masks[id(node)] = mask
+    return [[i for i in range(len(symbols)) if masks[id(root)] >> i & 1] for root in roots]
+
+
+def derivatives(roots, symbols):
+    """For each root {number of a symbol: derivative by it}, or None if an operation has no rule here, as the lookup in
+    a table. Derivatives of steps, as those of `floor`, are zero and left out."""
+    one = ex.constant(1.0)
+    number = {id(s): i for i, s in enumerate(symbols)}
+    found = {}
+    for node in ex.walk(roots):
+        total = {}
+        if id(node) in number:
+            total[number[id(node)]] = one
+        elif node.type == ex.real and any(found[id(a)] for a in node.args):
+            rule = _partials.get(node.op)
+            if rule is None:
+                return None
+            for partial, argument in zip(rule(node, *node.args), node.args):
+                if partial is None:
+                    continue
+                for i, derivative in found[id(argument)].items():
+                    term = _times(partial, derivative)
+                    total[i] = total[i] + term if i in total else term
+        found[id(node)] = total
+    return [found[id(root)] for root in roots]

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""Derivatives of traced models by symbols, and the pattern of the Jacobian, which stiff methods use."""
+
+import re
+
+import numpy as np
+import pytest
+
+import myriad as my
+from myriad.derivatives import dependencies, derivatives
+from myriad.expression import evaluate
+
+x, y, z = my.states("x y z")
+k = my.parameter("k")
+at = {x: 0.6, y: -0.35, z: 1.7, k: 1.3}
+
+smooth = {
+    "sum": x + y - z, "product": x * y * k, "quotient": x / (z * y), "fma": my.fma(x, y, z), "negative": -(x * y),
+    "reciprocal": my.reciprocal(x * z), "sqrt": my.sqrt(x * z), "cbrt": my.cbrt(z * x), "abs": abs(x * y),
+    "sin": my.sin(x * y), "cos": my.cos(x * y), "tan": my.tan(x * y), "asin": my.asin(x * y), "acos": my.acos(x * y),
+    "atan": my.atan(x * y), "sinpi": my.sinpi(x * y), "cospi": my.cospi(x * y), "sinh": my.sinh(x * y),
+    "cosh": my.cosh(x * y), "tanh": my.tanh(x * y), "exp": my.exp(x * y), "exp2": my.exp2(x * y),
+    "log": my.log(x * z), "log2": my.log2(x * z), "log10": my.log10(x * z), "hypot": my.hypot(x, y * z),
+    "atan2": my.atan2(x, y * z), "copysign": my.copysign(x * z, y), "pow": (x * z) ** (z + k), "power": (x * z) ** 1.7,
+    "whole power": (x * y) ** 3, "powr": my.powr(x * z, y), "sincos": my.sincos(x * y)[0] + my.sincos(x * z)[1],
+    "sincospi": my.sincospi(x * y)[0] + my.sincospi(x * z)[1],
+    "where": my.where(x > y, x * x, y * z) + my.where(x < y, x * x, y * z),
+    "extremes": my.minimum(x * x, y) + my.maximum(x * x, z),
+}
+
+
+def by_differences(expression, symbol):
+    """Fourth-order central differences: exact to about eps^(4/5)."""
+    h = 1e-3
+    value = [float(evaluate([expression], {**at, symbol: at[symbol] + j * h})[0]) for j in (-2, -1, 1, 2)]
+    return (value[0] - 8 * value[1] + 8 * value[2] - value[3]) / (12 * h)
+
+
+@pytest.mark.parametrize("name", smooth)
+def test_derivatives_are_those_of_differences(name):
+    (found,) = derivatives([smooth[name]], [x, y, z])
+    for i, symbol in enumerate((x, y, z)):
+        value = float(evaluate([my.sin(0.0) + found[i]], at)[0]) if i in found else 0.0
+        assert value == pytest.approx(by_differences(smooth[name], symbol), rel=2e-9, abs=2e-9)
+
+
+def test_steps_have_no_derivatives_and_linear_terms_constant_ones():
+    found = derivatives([my.floor(x) + 2.0 * y, my.round(x), z], [x, y, z])
+    assert [set(row) for row in found] == [{1}, set(), {2}]
+
+
+def test_an_operation_without_a_rule_leaves_the_pattern():
+    forced = my.interpolate(x, np.linspace(0.0, 1.0, 8), np.linspace(0.0, 1.0, 8) ** 2)
+    assert derivatives([forced * y], [x, y, z]) is None
+    assert dependencies([forced * y, z], [x, y, z]) == [[0, 1], [2]]
+
+
+def chain(n):
+    """A chain of reactions, each state fed by the one before it."""
+    states = my.states(" ".join(f"s{i}" for i in range(n)))
+    rates = [10.0 ** (i % 5) for i in range(n)]
+    flows = [r * s * (1 + s) for r, s in zip(rates, states)]
+    return my.model({s: -flows[i] + (flows[i - 1] if i else k) for i, s in enumerate(states)}), states
+
+
+def test_the_pattern_has_the_entries_that_may_differ_from_zero():
+    model, states = chain(9)
+    written = re.search(r"jacobian_pattern\[\] = \{(.*?)\};", model.cpp(), re.S)[1]
+    entries = {tuple(e.split(", ")) for e in re.findall(r"\{(\w+,\s+\w+)\}", " ".join(written.split()))}
+    assert entries == {(f"s{i}", f"s{j}") for i in range(9) for j in (i - 1, i) if j >= 0}
+    assert "autonomous" in model.cpp()
+    small, _ = chain(6)
+    assert "jacobian" not in small.cpp()  # dense factors stay in registers
+
+
+def test_a_sparse_network_takes_the_steps_of_the_dense_one():
+    model, states = chain(9)
+    text = model.cpp()
+    dense = re.sub(r"    static constexpr myriad::jacobian_entry.*?;\n|    static constexpr bool autonomous = true;\n|"
+                   r"    template <class R>\n    MYRIAD_FUNCTION static myriad::vec<R, \d+> jacobian\(.*?\n    }\n", "",
+                   text, flags=re.S)
+    assert "jacobian" in text and "jacobian" not in dense
+    name = re.search(r"struct (\w+) \{", text)[1]
+    names = " ".join(f"s{i}" for i in range(9))
+    runs = [my.solve(my.CppModel(source, name, names, "k"), {"k": np.linspace(1.0, 3.0, 20)},
+                     start={f"s{i}": 0.5 for i in range(9)}, time=(0.0, 10.0), method="rodas_5p", rtol=1e-7, atol=1e-9)
+            for source in (text, dense)]
+    assert runs[0].report.accepted_steps == runs[1].report.accepted_steps
+    for i in range(9):
+        # the Jacobians differ by rounding alone, and the chain damps all differences
+        np.testing.assert_allclose(runs[0][f"s{i}"], runs[1][f"s{i}"], rtol=1e-9)
