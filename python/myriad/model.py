@@ -19,7 +19,7 @@ from .whole_numbers import check_constants
 __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
            "integral"]
 
-_directions = ("rising", "falling", "either")
+_directions = ("rising", "falling", "either", "none")
 
 
 class Reduction:
@@ -68,14 +68,14 @@ class Event:
 
 
 def event(function, *, name=None, direction="either", tolerance=None, stop_after=0, do=None):
-    """An event of a model: `function` changes its sign, "rising", "falling" or "either". Every change between the ends
-    of steps is found; `tolerance` is the largest value of the function at which it counts as located (default, or 0: as
+    """An event of a model: `function` changes its sign, "rising", "falling" or "either" ("none": switched off). Every
+    change between the ends of steps is found; `tolerance` is the largest value of the function at which it counts as located (default, or 0: as
     close as time and state resolve). After `stop_after` detections the phase ends (0: never). `do` are assignments at
     the event: {v: -r * v, myriad.end_phase: count == 5}.
     """
     if direction not in _directions:
-        raise Error(f"the direction of an event is {direction!r}{at(users_line())}: choose \"rising\", \"falling\" or "
-                    "\"either\"")
+        raise Error(f"the direction of an event is {direction!r}{at(users_line())}: choose \"rising\", \"falling\", "
+                    "\"either\" or \"none\"")
     if isinstance(stop_after, bool) or not isinstance(stop_after, (int, np.integer)) or stop_after < 0:
         raise Error(f"stop_after is {stop_after!r}{at(users_line())}: give the number of detections after which the "
                     "phase ends, 0 for never")

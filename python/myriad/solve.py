@@ -18,7 +18,7 @@ from .grid import Sweep, as_numbers
 from .methods import default, fixed_step, method_type
 from .run import Interrupted, Run
 
-_directions = {"falling": -1, "either": 0, "rising": 1}
+_directions = {"falling": -1, "either": 0, "rising": 1, "none": 2}
 _default_event_tolerance = 0.0  # as close as t and the state resolve
 _schedules = {"automatic": 0, "in_order": 1, "dynamic": 2, "by_cost": 3}
 # How the core's messages, which are the C++ library's, say things in Python.

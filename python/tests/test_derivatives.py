@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import myriad as my
+from myriad.derivatives import _partials as derivative_rules
 from myriad.derivatives import dependencies, derivatives
 from myriad.expression import evaluate
 
@@ -51,10 +52,16 @@ def test_steps_have_no_derivatives_and_linear_terms_constant_ones():
     assert [set(row) for row in found] == [{1}, set(), {2}]
 
 
-def test_an_operation_without_a_rule_leaves_the_pattern():
-    forced = my.interpolate(x, np.linspace(0.0, 1.0, 8), np.linspace(0.0, 1.0, 8) ** 2)
-    assert derivatives([forced * y], [x, y, z]) is None
-    assert dependencies([forced * y, z], [x, y, z]) == [[0, 1], [2]]
+def test_an_operation_without_a_rule_leaves_the_pattern(monkeypatch):
+    monkeypatch.delitem(derivative_rules, "sin")
+    assert derivatives([my.sin(x) * y, z], [x, y, z]) is None
+    assert dependencies([my.sin(x) * y, z], [x, y, z]) == [[0, 1], [2]]
+
+
+def test_interpolation_has_the_derivative_of_its_interval():
+    forced = my.interpolate(x, np.array([0.0, 1.0, 2.0]), np.array([0.0, 3.0, 4.0]))
+    (found,) = derivatives([forced], [x])
+    assert float(evaluate([found[0]], at)[0]) == pytest.approx(3.0) and list(found) == [0]
 
 
 def chain(n):

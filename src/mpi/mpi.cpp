@@ -182,7 +182,7 @@ private:
 
 std::vector<std::string> all_processes(MPI_Comm ranks, int size) {
     constexpr std::size_t length = 512;
-    std::string own = studies::process_identity::own().id;
+    std::string own = studies::process_identity::own(studies::file_system::real(), "/").id;
     own.resize(length);
     std::string all(length * static_cast<std::size_t>(size), '\0');
     check(MPI_Allgather(own.data(), length, MPI_CHAR, all.data(), length, MPI_CHAR, ranks), "naming the processes");
@@ -304,9 +304,13 @@ study_result mpi_ranks::run(any_study& s) {
         failure = std::current_exception();
     }
     const bool complete = result && result->complete;
+    const auto own = studies::process_identity::of(processes_[static_cast<std::size_t>(rank_)]);
+    const auto has_ended = [&](std::size_t r) {
+        return own.state_of(studies::process_identity::of(processes_[r])) == studies::process_state::ended;
+    };
     lost_ = !chunks->leave([&](clock::duration waited) {
         for (std::size_t r = 0; r < processes_.size(); ++r)
-            if (std::cmp_not_equal(r, rank_) && studies::process_identity::of(processes_[r]).ended_here()) return true;
+            if (std::cmp_not_equal(r, rank_) && has_ended(r)) return true;
         return complete && waited > last_wait;
     });
     if (failure) std::rethrow_exception(failure);

@@ -79,7 +79,8 @@ double error_of_reference(const std::vector<double>& start) {
 myriad::options fixed_steps(double h) {
     myriad::options o;
     o.step = o.minimum_step = o.maximum_step = h;
-    o.relative_tolerance = o.absolute_tolerance = 1e30;
+    o.relative_tolerance = 0;
+    o.absolute_tolerance = 1e30;
     return o;
 }
 

@@ -74,9 +74,9 @@ void for_each_in_parallel(std::size_t count, F&& f) {
     if (failure) std::rethrow_exception(failure);
 }
 
-/// The problem with event functions that never leave their tolerance, so that no step is shortened.
+/// The problem with its events switched off, so that no step is shortened.
 inline problem without_events(problem p) {
-    for (auto& e : p.events) e.tolerance = 1e300;
+    for (auto& e : p.events) e.direction = myriad::direction::none;
     return p;
 }
 
@@ -84,7 +84,8 @@ inline problem without_events(problem p) {
 inline myriad::options fixed_steps(const problem& p, double h) {
     myriad::options o;
     o.step = o.minimum_step = o.maximum_step = h;
-    o.relative_tolerance = o.absolute_tolerance = 1e30;
+    o.relative_tolerance = 0;
+    o.absolute_tolerance = 1e30;
     o.events = p.events;
     return o;
 }

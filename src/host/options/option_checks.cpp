@@ -175,7 +175,7 @@ void option_limits::check(const options& o) const {
         check_kept("event tolerance", e.tolerance);
         check_count("stop_after", e.stop_after, 0, 2'000'000'000);
         const int d = static_cast<int>(e.direction);
-        require(d >= -1 && d <= 1, "event direction is ", d, " (must be falling, either or rising)");
+        require(d >= -1 && d <= 2, "event direction is ", d, " (must be falling, either, rising or none)");
     }
     check_count("sub_samples", o.sub_samples, 1, 10'000);
     check_choice("schedule", o.schedule, 4, "automatic, in_order, dynamic or by_cost");

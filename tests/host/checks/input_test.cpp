@@ -407,7 +407,7 @@ TEST_CASE("an event direction that does not exist is refused", "[input]") {
     o.events.resize(1);
     o.events[0].direction = static_cast<myriad::direction>(7);
     auto e = good_oscillators();
-    input_refused(e, {"event direction is 7", "falling, either or rising"}, o);
+    input_refused(e, {"event direction is 7", "falling, either, rising or none"}, o);
 }
 
 TEST_CASE("a choice that does not exist is refused, for every option that is one", "[input]") {

@@ -184,14 +184,14 @@ TEST_CASE("the next step is not above the maximum step") {
     CHECK(first_trial<cash_karp>(o).next_step == 0.02);
 }
 TEST_CASE("the first step is not above the maximum step") {
-    options o = tolerance(1, 1);
+    options o = tolerance(0.5, 1);
     o.step = 1;
     o.maximum_step = 0.125;
     CHECK(steps_of<cash_karp, log_circle>(o, 10).front().h == 0.125);
     CHECK(steps_of<tsitouras_5, log_circle>(o, 10).front().h == 0.125);
 }
 TEST_CASE("the first step is not below the minimum step") {
-    options o = tolerance(1, 1);
+    options o = tolerance(0.5, 1);
     o.step = 1e-6;
     o.minimum_step = o.maximum_step = 0.125;
     CHECK(steps_of<cash_karp, log_circle>(o, 10).front().h == 0.125);

@@ -513,3 +513,11 @@ TEST_CASE("a float ball that accumulates never passes the floor") {
         }
     }
 }
+
+TEST_CASE("an event of direction none is switched off") {
+    auto e = ensemble_of(sine, {position(), never(), never()}, 0, 13);
+    const auto report = solve<myriad::cash_karp>(e, options_for(1e-10, spring_step, direction::none));
+    CHECK(report.count(myriad::status::success) == 1);
+    CHECK(times_of(e).empty());
+    CHECK((e.located_steps() == 0).all());
+}

@@ -3,7 +3,6 @@
 // ball between walls that its event function indicates only by its sign; and a state that settles at its event.
 #pragma once
 
-#include <limits>
 
 #include <myriad/model.hpp>
 
@@ -54,7 +53,7 @@ struct gate {
     template <class R>
     MYRIAD_FUNCTION static R value(int code) {
         using real = myriad::real_of<R>;
-        return R(code == no_number ? std::numeric_limits<real>::quiet_NaN() : static_cast<real>(code));
+        return R(code == no_number ? myriad::nan_of<real> : static_cast<real>(code));
     }
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto t, const myriad::vec<R, n_state>&, const auto& p) {

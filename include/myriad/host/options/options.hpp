@@ -38,6 +38,7 @@ enum class direction {
     falling = -1,  ///< from positive to negative
     either = 0,    ///< both
     rising = 1,    ///< from negative to positive
+    none = 2,      ///< neither: the event is switched off
 };
 
 /// How one event is detected.

@@ -55,8 +55,9 @@ void describe_options(Arguments& a, int n_state, int n_event, const options& o, 
     for (std::size_t j = 0; j < static_cast<std::size_t>(n_event); ++j) {
         const event_options e = o.events.empty() ? event_options{} : o.events[j];
         a.event[j] = {static_cast<R>(e.tolerance), static_cast<std::int32_t>(e.stop_after)};
-        if (e.direction != direction::falling) a.rising[j / 32] |= std::uint32_t{1} << (j % 32);
-        if (e.direction != direction::rising) a.falling[j / 32] |= std::uint32_t{1} << (j % 32);
+        const auto asks_for = [&](direction d) { return e.direction == d || e.direction == direction::either; };
+        if (asks_for(direction::rising)) a.rising[j / 32] |= std::uint32_t{1} << (j % 32);
+        if (asks_for(direction::falling)) a.falling[j / 32] |= std::uint32_t{1} << (j % 32);
     }
     a.sub_samples = static_cast<std::int32_t>(o.sub_samples);
     a.accumulation_limit = static_cast<std::int32_t>(o.accumulation_limit);

@@ -2,8 +2,7 @@
 // A model's event functions, and their slopes along the solution.
 #pragma once
 
-#include <limits>
-
+#include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/math.hpp"
@@ -32,10 +31,11 @@ MYRIAD_FUNCTION vec<S, n_event<Model>> event_slopes(const S& t, const vec<S, n_s
 }
 
 /// The weight of component c in `event_roundings`: between 1 and 2, no two alike.
-constexpr double rounding_weight(int c) {
+template <int c, class R>
+inline constexpr R rounding_weight = [] {
     const double turns = 0.61803398874989485 * c;
-    return 1 + (turns - static_cast<double>(static_cast<long long>(turns)));
-}
+    return static_cast<R>(1 + (turns - static_cast<double>(static_cast<long long>(turns))));
+}();
 
 /// How far rounding may put the event functions at (t, y) from their values, as far as that shows: nothing can be told
 /// from values closer to zero. A few roundings of t and of states of the given sizes, times the derivatives. One
@@ -45,10 +45,12 @@ constexpr double rounding_weight(int c) {
 template <class Model, class R>
 MYRIAD_FUNCTION vec<R, n_event<Model>> event_roundings(const R& t, const vec<R, n_state<Model>>& y,
                                                        const vec<R, n_state<Model>>& size, const inputs<Model, R>& p) {
-    constexpr R least = std::numeric_limits<R>::min() / epsilon_of<R>;
+    constexpr R least = smallest_normal_of<R> / epsilon_of<R>;
     vec<dual<R>, n_state<Model>> y_dual;
-    MYRIAD_UNROLL
-    for (int c = 0; c < n_state<Model>; ++c) y_dual[c] = dual<R>(y[c], R(rounding_weight(c)) * (size[c] + least));
+    static_for<0, n_state<Model>>([&](auto c) MYRIAD_LAMBDA {
+        constexpr R weight = rounding_weight<decltype(c)::value, R>;  // as device code may call no host function
+        y_dual[c] = dual<R>(y[c], weight * (size[c] + least));
+    });
     const auto g = Model::template events<dual<R>>(dual<R>(t, R(0.5) * t), y_dual, p);
     vec<R, n_event<Model>> rounding;
     MYRIAD_UNROLL
