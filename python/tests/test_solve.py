@@ -211,6 +211,11 @@ def test_notes_say_what_ended_instances(oscillator):
                for note in coarse.report.notes)
 
 
+def test_the_default_first_step_follows_from_the_slope(oscillator):
+    run = my.solve(oscillator, {"w": 100}, start=start, time=(0, 10), max_steps=1)
+    np.testing.assert_allclose(run.t, 2 * 1e-8**0.2 / 1e4)  # of v, whose slope is -10 000
+
+
 def test_the_default_first_step_is_one_that_time_resolves(oscillator):
     for begin, precision in ((1e6, "float"), (-1e6, "float"), (1e15, "double")):
         run = my.solve(oscillator, {"w": 1e-3}, start=start, time=(begin, begin + 1000), precision=precision, rtol=1e-5)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A driver of GPUs, libcuda.so.1, that computes on this CPU: device memory is the host's, streams do their work at
-// once, except for kernels, which run in a thread while other streams work, and programs are shared objects of
+// once, except for kernels, which run in a thread until their stream is used again, and programs are shared objects of
 // device.hpp, whose threads are run one block at a time, each with a stack of its own. MYRIAD_SIMULATED_GPUS says how
 // many devices there are, MYRIAD_SIMULATED_CAPABILITY which, MYRIAD_SIMULATED_MEGABYTES what memory each has, and
 // MYRIAD_SIMULATED_LAUNCHES how many kernels the last one runs before it fails.

@@ -10,7 +10,7 @@
 namespace myriad::python {
 
 /// Changes with anything in this header and in those that include it.
-inline constexpr std::uint32_t interface_version = 5;
+inline constexpr std::uint32_t interface_version = 6;
 
 /// `record_arguments` with pointers to as many columns as the model has components.
 template <class R>

@@ -31,7 +31,8 @@ kernel_arguments<Model, R> arguments_of(const python::any_arguments<R>& from) {
     a.phase_length = from.phase_length, a.phases_per_time = from.phases_per_time;
     a.carry_time = from.carry_time, a.carry_step = from.carry_step;
     a.max_steps = from.max_steps;
-    a.step = from.step, a.minimum_step = from.minimum_step, a.maximum_step = from.maximum_step;
+    a.step = from.step, a.first_change = from.first_change, a.minimum_step = from.minimum_step,
+    a.maximum_step = from.maximum_step;
     a.growth_limit = from.growth_limit, a.shrink_limit = from.shrink_limit;
     std::copy_n(from.relative_tolerance, n_state<Model>, a.relative_tolerance);
     std::copy_n(from.absolute_tolerance, n_state<Model>, a.absolute_tolerance);
