@@ -26,6 +26,7 @@ struct event_memory {
     bool locating;                           // the next trial is redone, to end at an event
     flags open;                              // on the surface, side not yet known
     flags held;                              // so, unless the state was moved: then it is the side noted
+    flags fired_last;                        // the event fired where the last phase ended
     flags fresh;                             // the event fired at the committed state
     flags at_jump;                           // and its function has a jump there
     flags on_jump;  // the event fired right before a jump that no step has passed yet; the side is the one beyond it

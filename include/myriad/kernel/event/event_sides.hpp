@@ -9,14 +9,31 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// How a phase left an event function, for the next phase, in `kernel_arguments::side`; negative if the side is below
-/// zero.
-enum class kept_side : std::int8_t {
+/// How a phase left an event function, for the next phase.
+enum class kept_side : std::uint8_t {
     unknown = 0,  // where the function is when the next phase begins
     within = 1,   // zero up to rounding, reached from this side
     beyond = 2,   // its sign: if the next phase begins on the surface, a hook or the host moved the state there
     on_jump = 3,  // it fired right before a jump: the next phase must find out on which side it begins
     fired = 4,    // it fired: the next phase takes the side that the function is heading for
+};
+
+/// What a phase keeps of an event function for the next, in the two bytes of `kernel_arguments::side`. Zero is nothing.
+class kept_event {
+public:
+    MYRIAD_FUNCTION explicit kept_event(std::int16_t code) : code_(code) {}
+    /// `lingered` is the number of actions in a row after which the function has not left the surface.
+    MYRIAD_FUNCTION kept_event(bool above, kept_side kind, std::int32_t lingered)
+        : code_((above ? 1 : 0) + 2 * static_cast<int>(kind) + 16 * (lingered < most ? lingered : most)) {}
+
+    MYRIAD_FUNCTION std::int16_t code() const { return static_cast<std::int16_t>(code_); }
+    MYRIAD_FUNCTION bool above() const { return code_ % 2 != 0; }
+    MYRIAD_FUNCTION kept_side kind() const { return static_cast<kept_side>(code_ / 2 % 8); }
+    MYRIAD_FUNCTION std::int32_t lingered() const { return code_ / 16; }
+
+private:
+    static constexpr std::int32_t most = 2047;  // a larger number is kept as this
+    int code_;
 };
 
 /// What every step of a pack compares its event functions with. What few steps need is in event_memory.

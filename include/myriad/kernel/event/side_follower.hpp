@@ -72,13 +72,14 @@ struct side_follower {
             kept_side kept = side * g[j] > rounding[j] ? kept_side::beyond : kept_side::within;
             if (is_fresh(j, i)) kept = kept_side::fired;
             if (!e.left.get(j, i) && own.on_jump[j]) kept = kept_side::on_jump;
-            kept_at(j, i) = static_cast<std::int8_t>(static_cast<int>(side) * static_cast<int>(kept));
+            if (side == R(0)) kept = kept_side::unknown;
+            kept_at(j, i) = kept_event(side > R(0), kept, e.left.get(j, i) ? 0 : own.lingered[j]).code();
         }
     }
     /// Makes the next phase of lane i begin with all sides unknown.
     MYRIAD_FUNCTION void forget(int i) const {
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) kept_at(j, i) = static_cast<std::int8_t>(kept_side::unknown);
+        for (int j = 0; j < m; ++j) kept_at(j, i) = 0;
     }
 
     /// Updates the sides after a hook changed inputs of event functions, whose values were `before`. A function that
@@ -98,7 +99,7 @@ struct side_follower {
                 if (events.which.get(j, i) || own.on_jump[j] || now == then) continue;
                 const bool is_there = abs(now) <= rounding[j], was_there = abs(then) <= rounding[j];
                 // Right after its event a function that a hook hardly moves is as good as on the surface.
-                const bool keeps = is_there ? was_there : is_fresh(j, i) && abs(now) <= R(2) * abs(then);
+                const bool keeps = is_there ? was_there : !e.left.get(j, i) && abs(now) <= R(2) * abs(then);
                 if (!keeps) put_side(j, i, is_there ? R(0) : sign_of(now));
             }
             e.flags.set(e.undefined, i, undefined);
@@ -166,16 +167,20 @@ struct side_follower {
     MYRIAD_FUNCTION bool crosses(int j, R side, R g, R past) const { return is_asked(j, side) && side * g < -past; }
 
     /// Sets open sides to where the functions are heading, or to where they are if they are not on the surface, as
-    /// after the host moved the state.
+    /// after the host moved the state. The side that a phase has kept for one on the surface stands, unless its event
+    /// fired there: then the host may have turned the flow round, which shows in a slope that is not rounding itself.
     MYRIAD_FUNCTION void settle_open_sides(int i, const step_ends<Model, R>& step, const reals& rounding) {
-        const flags open = memory_of(i).open, held = memory_of(i).held;
+        const auto& own = memory_of(i);
+        const flags open = own.open, held = own.held, fired_last = own.fired_last;
         if (!open.any_of()) return;
         const reals slope = step.slopes();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             if (!open[j]) continue;
             const bool on_surface = abs(step.g[j]) <= max(args.event[j].tolerance, rounding[j]);
-            const R heading = held[j] ? (e.above.get(j, i) ? R(1) : R(-1)) : sign_of(slope[j]) * sign_of(step.h);
+            const bool turns = fired_last[j] && abs(slope[j] * step.h) > rounding[j];
+            const R heading =
+                held[j] && !turns ? (e.above.get(j, i) ? R(1) : R(-1)) : sign_of(slope[j]) * sign_of(step.h);
             put_side(j, i, on_surface ? heading : sign_of(step.g[j]));
         }
     }
@@ -201,14 +206,14 @@ struct side_follower {
         for (int j = 0; j < m; ++j) {
             if (is_at_jump(j, i, step.h)) continue;  // after the trial it is still at the jump where it fired
             own.on_jump.set(j, false);
-            own.fresh.set(j, own.fresh[j] && timeless);
+            own.fresh.set(j, false);
             put_side(j, i, abs(step.g1[j]) > own.near.past[j] ? sign_of(step.g1[j]) : side[j]);
             e.left.set(j, i, e.left.get(j, i) || (abs(step.g1[j]) > own.near.band[j] && !timeless));
         }
     }
 
 private:
-    MYRIAD_FUNCTION std::int8_t& kept_at(int j, int i) const {
+    MYRIAD_FUNCTION std::int16_t& kept_at(int j, int i) const {
         return args.side[static_cast<std::int64_t>(j) * args.size + s.instance[i]];
     }
     MYRIAD_FUNCTION bool fires_at_jump(int j, int i, const fired& events) const {
@@ -310,19 +315,22 @@ private:
         at_jump.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const int kept = kept_at(j, i);
-            const auto kind = static_cast<kept_side>(kept < 0 ? -kept : kept);
+            const kept_event kept(kept_at(j, i));
+            const kept_side kind = kept.kind();
             const bool beyond = abs(g[j]) > rounding[j] && kind != kept_side::fired;
             undefined = undefined || g[j] != g[j];
             at_jump.set(j, beyond && kind == kept_side::on_jump);
-            e.left.set(j, i, true);
+            // Flights that accumulate may do so over many phases that another event ends.
+            const bool away = abs(g[j]) > max(args.event[j].tolerance, rounding[j]);
+            own.lingered[j] = away ? 0 : kept.lingered();
+            e.left.set(j, i, own.lingered[j] == 0);
             put_side(j, i, beyond ? sign_of(g[j]) : R(0));
-            if (kind == kept_side::within) {
-                e.above.set(j, i, kept > 0);
+            own.fired_last.set(j, kind == kept_side::fired);
+            if (kind == kept_side::within || kind == kept_side::fired) {
+                e.above.set(j, i, kept.above());
                 own.open.set(j, true);
                 own.held.set(j, true);
             }
-            own.lingered[j] = 0;
         }
         e.flags.set(e.undefined, i, undefined);
         own.on_jump.clear();
