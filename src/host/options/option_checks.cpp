@@ -117,11 +117,18 @@ void option_limits::check(const options& o) const {
     const auto n_state = static_cast<std::size_t>(components.state.count);
     check_tolerance_count("relative_tolerance", o.relative_tolerance, n_state);
     check_tolerance_count("absolute_tolerance", o.absolute_tolerance, n_state);
-    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c)
-        require(o.relative_tolerance[c] >= 0 && o.relative_tolerance[c] < 1, "relative_tolerance is ",
+    bool controls = false;
+    for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
+        require(o.relative_tolerance[c] >= 0 && std::isfinite(o.relative_tolerance[c]), "relative_tolerance is ",
                 o.relative_tolerance[c],
-                " (must be at least 0 and less than 1, an error as large as the solution): give the error you accept "
-                "per step, such as 1e-9, or 0 for that of absolute_tolerance alone");
+                " (must be at least 0, and finite): give the error you accept per step, such as 1e-9, or 0 for that of "
+                "absolute_tolerance alone");
+        controls = controls || o.relative_tolerance[c] < 1;
+    }
+    // Components may be left out of the error test, as by `without_tangents`, but not all of them.
+    require(controls, "relative_tolerance is ", o.relative_tolerance[0],
+            " (must be less than 1, an error as large as the solution): give the error you accept per step, such as "
+            "1e-9, or a large absolute_tolerance");
     for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c)
         require(o.absolute_tolerance[c] >= 0 && std::isfinite(o.absolute_tolerance[c]), "absolute_tolerance is ",
                 o.absolute_tolerance[c],

@@ -281,6 +281,7 @@ TEST_CASE("a decay of a float model that comes within the tolerance of zero at t
             auto e = settling_to(rest, t_end);
             auto o = one_event(1e-5, 0.01);
             o.relative_tolerance = o.absolute_tolerance = 1e-6;
+            o.max_steps = 16'000'000;
             myriad::solve<myriad::cash_karp>(tests::test_device(1), e, o);
             CHECK(e.status(0) == myriad::status::success);
             CHECK(e.integer_accessory(settling::fired)[0] == 0);
