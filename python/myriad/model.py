@@ -69,9 +69,9 @@ class Event:
 
 def event(function, *, name=None, direction="either", tolerance=None, stop_after=0, do=None):
     """An event of a model: `function` changes its sign, "rising", "falling" or "either" ("none": switched off). Every
-    change between the ends of steps is found; `tolerance` is the largest value of the function at which it counts as located (default, or 0: as
-    close as time and state resolve). After `stop_after` detections the phase ends (0: never). `do` are assignments at
-    the event: {v: -r * v, myriad.end_phase: count == 5}.
+    change between the ends of steps is found; `tolerance` is the largest value of the function at which it counts as
+    located (default, or 0: as close as time and state resolve). After `stop_after` detections the phase ends (0:
+    never). `do` are assignments at the event: {v: -r * v, myriad.end_phase: count == 5}.
     """
     if direction not in _directions:
         raise Error(f"the direction of an event is {direction!r}{at(users_line())}: choose \"rising\", \"falling\", "

@@ -313,7 +313,10 @@ event_options event_in(const toml_value& v, const std::string& path) {
     event_options made;
     section from(v, path);
     from.read("direction", made.direction,
-              {{"falling", direction::falling}, {"either", direction::either}, {"rising", direction::rising}, {"none", direction::none}});
+              {{"falling", direction::falling},
+               {"either", direction::either},
+               {"rising", direction::rising},
+               {"none", direction::none}});
     from.read("tolerance", made.tolerance);
     from.read("stop_after", made.stop_after);
     from.finish();

@@ -3,7 +3,6 @@
 // ball between walls that its event function indicates only by its sign; and a state that settles at its event.
 #pragma once
 
-
 #include <myriad/model.hpp>
 
 /// The record that the models of this file keep of their actions: their number and the times of the first few.

@@ -405,7 +405,8 @@ std::pair<double, double> errors_of_samples(double rate, double maximum_step) {
         e.state(stiff::prothero_robinson::y0) = 0;
         e.parameter(stiff::prothero_robinson::rate) = rate;
         e.time_domain(0, 10);
-        myriad::options o{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-6, .step = 1e-2, .maximum_step = maximum_step};
+        myriad::options o{
+            .relative_tolerance = 1e-6, .absolute_tolerance = 1e-6, .step = 1e-2, .maximum_step = maximum_step};
         o.samples = {.states = {stiff::prothero_robinson::y0}, .capacity = capacity, .evenly = evenly, .every = every};
         myriad::solve<myriad::dense<Method>>(tests::test_device(), e, o);
         const auto stored = e.samples().stored()[0];
