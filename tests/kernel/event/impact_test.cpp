@@ -87,6 +87,25 @@ TEMPLATE_TEST_CASE("the limit of impacts is announced early by the flights that 
     }
 }
 
+TEMPLATE_TEST_CASE("impacts that accumulate over phases that end at maxima do not let the ball through the floor", "",
+                   ALL_METHODS) {
+    for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
+        for (const bool one_call : {true, false}) {
+            CAPTURE(tolerance, one_call);
+            auto e = ensemble_of(motion{.x = height, .a = -gravity}, {position(0, watch::bounce), velocity(), never()},
+                                 0, 20, 0.8);
+            auto o = options_for(tolerance, 0.01, myriad::direction::falling);
+            o.events[1].stop_after = 1;
+            o.phase_time = myriad::phase_time::carry_on;
+            o.phases = one_call ? 300 : 1;
+            for (int call = 0; call < (one_call ? 1 : 300); ++call) solve<TestType>(e, o);
+            CHECK(e.status(0) == myriad::status::event_accumulation);
+            CHECK(e.accessory(watch::smallest_x)[0] >= -tolerance);
+            CHECK(std::abs(e.t()[0] - std::sqrt(2 * height / gravity) * 1.8 / 0.2) <= 10 * std::sqrt(tolerance));
+        }
+    }
+}
+
 TEMPLATE_TEST_CASE("the limit of accumulating impacts is an option", "", ALL_METHODS) {
     std::vector<int> counts;
     for (const std::int64_t limit : {1, 2, 50, 100}) {
