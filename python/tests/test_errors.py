@@ -26,7 +26,7 @@ CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
     (dict(sweep={3: 3}), "3 is no component"),
     (dict(time=3), "time is 3: give begin and end"),
     (dict(rtol=0, atol=0), "rtol and atol are 0: give the error"),
-    (dict(rtol=-1), "rtol is -1 .must not be negative"),
+    (dict(rtol=-1), "rtol is -1 .must be at least 0"),
     (dict(method="RK45"), "no method 'RK45': use \"dormand_prince_5\", or another of"),
     (dict(method="BDF"), "no method 'BDF': use \"rodas_5p\""),
     (dict(t_eval=[0, 1]), "solve has no option 't_eval' .*: give samples=times"),
