@@ -23,10 +23,10 @@ ON_CPUS = NUMERICS + ["backends/openmp"]
 # What needs a GPU may be older, as CI has none.
 REPORTS = {
     "docs/validation.md": (r"^\* sources: (\w+)", NUMERICS, 12, "scripts/validate.sh"),
-    "docs/methods.md": (r"The figures are for commit (\w+)", ON_GPUS, 20, "scripts/method_registers.py"),
+    "docs/methods.md": (r"The figures are for commit (\w+)", ON_GPUS, 40, "scripts/method_registers.py"),
     "validation/gpu/results.csv": (r"^# sources: (\w+)", ON_GPUS, 30, "scripts/validate.sh --device cuda"),
     "benchmarks/results/h200.csv": (r"^# commit: (\w+)", ON_GPUS, 40, "scripts/gpu.sh --bench"),
-    "benchmarks/results/cpu.csv": (r"^# commit: (\w+)", ON_CPUS, 40, "scripts/bench.sh"),
+    "benchmarks/results/cpu.csv": (r"^# commit: (\w+)", ON_CPUS, 60, "scripts/bench.sh"),
 }
 CODE = re.compile(r"\.(hpp|cuh)$")
 
