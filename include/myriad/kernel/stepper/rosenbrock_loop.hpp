@@ -9,8 +9,8 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Bytes of stages up to which they are written out. Beyond, they lie in local memory anyway, and code that is as long
-/// as all stages together takes longer to fetch than to execute. NVIDIA H200, rodas_5p, blocks of 64, ms for
+/// Bytes of stages up to which they are written out. Larger ones lie in local memory either way, and a loop has less
+/// code and spills less. NVIDIA H200, rodas_5p, blocks of 64, ms for
 /// written-out stages and for the loop: 8 states 4.3 and 14.5 (512 bytes), pollution with 20 states in single precision
 /// 0.35 and 0.97 (640), in double precision 4.0 and 3.3 (1280), ring of 32 states 80 and 77 (2048), of 64 states 654
 /// and 250 (4096).
