@@ -43,7 +43,7 @@ def read(numpy, path, program, columns):
         comments = (f"x(0) = {data['x_begin'][...]}, v(0) = {data['v_begin'][...]}\n"
                     f"linspace({k[0]}, {k[-1]}, {k.size})\n"
                     f"{int(phases[0])} transient, {phases.size} recorded\n"
-                    f"absolute tolerance {numpy.max(data.getncattr('options.absolute_tolerance'))}")
+                    f"absolute tolerance {numpy.max(data.getncattr('options_absolute_tolerance'))}")
     figures.check_finite(numpy, [table[name] for name in names])
     return table, comments
 

@@ -4,7 +4,7 @@
 import builtins as _builtins
 import sys as _sys
 
-from . import _core, cache, plots, reduce
+from . import _core, cache, numpy_functions, plots, reduce
 from .axes import *  # noqa: F403
 from .cpp_model import CppModel
 from .errors import Error

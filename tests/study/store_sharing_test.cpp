@@ -28,9 +28,15 @@ using tests::synthetic_layout;
 namespace fs = std::filesystem;
 
 // A process that takes so long for each chunk, on a machine of its own if `files` is one.
-pid_t start(const std::string& folder, const layout& content, milliseconds each, const store_options& options) {
+enum class when { now, continued };  // at once, or at SIGCONT
+pid_t start(const std::string& folder, const layout& content, milliseconds each, const store_options& options,
+            when begin = when::now) {
     const pid_t child = ::fork();
-    if (child != 0) return child;
+    if (child != 0) {
+        if (begin == when::continued) ::waitpid(child, nullptr, WUNTRACED);
+        return child;
+    }
+    if (begin == when::continued) ::raise(SIGSTOP);
     int status = 0;
     try {
         store mine = store::create_or_resume(folder, content, options);
@@ -141,11 +147,14 @@ TEST_CASE("a store that is copied while it runs can be gone on with, and leaves 
     const layout content = synthetic_layout(20, 4);
     tests::temporary_folder folder;
     const std::string run = folder / "run";
+    // Before this process has threads, of which a child might begin none under ThreadSanitizer.
+    const pid_t child =
+        start(folder / "copy", content, milliseconds(0), {.expiry = milliseconds(200)}, when::continued);
     store running = store::create_or_resume(run, content);
     for (int i = 0; i < 5; ++i) commit_synthetic(running, running.claim_next().value());
     const std::int64_t under_way = running.claim_next().value();
     fs::copy(run, folder / "copy", fs::copy_options::recursive);
-    const pid_t child = start(folder / "copy", content, milliseconds(0), {.expiry = milliseconds(200)});
+    ::kill(child, SIGCONT);
     CHECK(status_of(child) == 0);
     CHECK(store::open(folder / "copy").complete());
     CHECK(store::open(folder / "copy").verify().empty());

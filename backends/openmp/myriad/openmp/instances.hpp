@@ -65,8 +65,14 @@ public:
 
     /// Whether instances under way are to end as they are. The loop asks now and then, with its iterations so far.
     bool gives_up(std::int64_t iterations) { return iterations >= ask_at_ && ask(iterations); }
-    /// The same between two phases of an instance.
-    bool gives_up_before(std::int32_t) const { return all_.given_up.load(std::memory_order_relaxed); }
+    /// The same between two phases of an instance, of which many may be too short for `gives_up` to be asked.
+    bool gives_up_before(std::int32_t) {
+        if (options_.stop != nullptr && --phases_before_asking_ == 0) {
+            phases_before_asking_ = ask_every;
+            return ask(ask_at_ - ask_every);
+        }
+        return all_.given_up.load(std::memory_order_relaxed);
+    }
     /// Whether the instance given last is to be left as it is.
     bool is_over() const { return all_.over.load(std::memory_order_relaxed); }
 
@@ -100,6 +106,7 @@ private:
     std::int64_t told_ = 0;  // instances already added to the shared count
     std::int64_t tell_at_;
     std::int64_t ask_at_;  // iterations
+    std::int64_t phases_before_asking_ = ask_every;
     std::int64_t next_ = 0, end_ = 0;
 };
 

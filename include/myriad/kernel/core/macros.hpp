@@ -9,7 +9,7 @@
 
 #if defined(__CUDACC__)
 // A function without MYRIAD_FUNCTION is host code: nvcc would only warn if a kernel calls it, and leave the call out.
-#pragma nv_diag_error 20011, 20014
+#pragma nv_diag_error 20011, 20013, 20014, 20015
 /// A function of the kernel body: device code under nvcc, inlined host code elsewhere. Required for a model's functions
 /// and the helpers they call, so that files compiled for different instruction sets share no copy of them.
 #define MYRIAD_FUNCTION __host__ __device__ __forceinline__

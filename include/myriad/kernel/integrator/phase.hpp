@@ -30,17 +30,18 @@ struct phase_driver {
     template <class Source>
     MYRIAD_FUNCTION bool advance(int i, Source& source) {
         MYRIAD_FORGET(s.instance[i]);
-        if (s.instance[i] >= 0) {
-            if (is_last(i, source)) {
-                set_lane(s.active, i, false);
-                return false;
-            }
-            end_phase(i);
-            if constexpr (requires { source.gives_up_before(s.phases_left[i]); }) {
-                if (s.phases_left[i] > 0 && source.gives_up_before(s.phases_left[i])) leave(i);
-            }
+        bool in_phase = s.instance[i] >= 0;
+        if (in_phase && is_last(i, source)) {
+            set_lane(s.active, i, false);
+            return false;
         }
         for (;;) {
+            if (in_phase) {
+                end_phase(i);
+                if constexpr (requires { source.gives_up_before(s.phases_left[i]); }) {
+                    if (s.phases_left[i] > 0 && source.gives_up_before(s.phases_left[i])) leave(i);
+                }
+            }
             while (s.instance[i] < 0 || s.phases_left[i] == 0) {
                 if (s.instance[i] >= 0) store(i);
                 s.instance[i] = source.next();
@@ -56,7 +57,7 @@ struct phase_driver {
                 }
             }
             if (begin_phase(i)) return true;
-            end_phase(i);
+            in_phase = true;
         }
     }
 
