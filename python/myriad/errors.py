@@ -14,6 +14,35 @@ class Error(ValueError):
     """Something in a model, a sweep or the options of a call is wrong; the message says what and what to do."""
 
 
+_options = {
+    "relative_tolerance": "rtol", "absolute_tolerance": "atol", "options.relative_tolerance": "options.rtol",
+    "options.absolute_tolerance": "options.atol", "repeat": "draws="}
+_phrases = {
+    "ensemble": "the sweep", "mark_invalid": "give invalid=\"mark\"", "set_shared": "give it a value in the sweep",
+    "set_parameter": "give it a value in the sweep", "set_state": "give it a value in start=",
+    "set_t_begin": "give it in time=", "set_t_end": "give it in time=", "name_in_record": "name it in record=",
+    "name_in_samples": "name it in samples=", "give_step": "give step=", "use_doubles": "give precision=\"double\"",
+    "smaller_parts": "integrate the sweep in smaller parts", "fewer_instances": "integrate the sweep in smaller parts",
+    "smaller_chunk": "make chunk= smaller", "new_folder": "give another store= and a smaller chunk="}
+
+
+def in_python(text, marks):
+    """An error of the core in Python's words. `marks` are the stretches of its text that have others here: where each
+    begins and how long it is, in bytes, whether it is a phrase or else a name, and its key, maybe with a number."""
+    written, made, at = text.encode(), b"", 0
+    for begin, size, is_phrase, key in marks:
+        said = written[begin:begin + size].decode()
+        if not is_phrase:
+            meant = said.replace("samples.", "samples ") if key.startswith("samples.") else _options.get(key, said)
+        elif key.startswith("fewer_instances "):
+            meant = f"integrate the sweep in parts of at most {key.split()[1]} instances"
+        else:
+            meant = _phrases.get(key, said)
+        made += written[at:begin] + meant.encode()
+        at = begin + size
+    return Error((made + written[at:]).decode())
+
+
 class UnknownOption(Error, TypeError):
     """A call names an option that does not exist."""
 

@@ -199,11 +199,11 @@ def kernel(header, struct, method, real, shared, device, generates=False):
     begin = time.perf_counter()
     _, capability, shared_bytes = _core.gpu(device)
     place = placement(shared[0] * (8 if real == "double" else 4) + shared[1] * 4, shared_bytes)
-    asked = (header, struct, method, real, place, capability, os.environ.get("MYRIAD_NVRTC"))
+    source = source_of(header, struct, method, real, place, generates)
+    asked = (source, capability, os.environ.get("MYRIAD_NVRTC"))
     if asked in _loaded:
         return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
-    obtained = _cached(source_of(header, struct, method, real, place, generates), capability,
-                       lambda made: _core.Library(made.read_bytes(), device))
+    obtained = _cached(source, capability, lambda made: _core.Library(made.read_bytes(), device))
     _loaded[asked] = obtained.loaded
     origin = "cache" if obtained.hit else f"compiled by NVRTC {library().version}"
     if obtained.unusable is not None:

@@ -4,7 +4,6 @@
 import inspect
 import itertools
 import math
-import re
 import time as clock
 
 import numpy as np
@@ -22,23 +21,6 @@ _directions = {"falling": -1, "either": 0, "rising": 1, "none": 2}
 _default_event_tolerance = 0.0  # as close as t and the state resolve
 _schedules = {"automatic": 0, "in_order": 1, "dynamic": 2, "by_cost": 3}
 # How the core's messages, which are the C++ library's, say things in Python.
-_in_python = (
-    ("set invalid_instances = invalid_instances::mark", "give invalid=\"mark\""),
-    ("set it with ensemble.shared(...) before solving", "give it a value in the sweep"),
-    ("name it in options::record", "name it in record="),
-    ("give options::step", "give step="),
-    ("set it with ensemble.t_begin() = ... before solving", "give it in time="),
-    ("set it with ensemble.t_end() = ... before solving", "give it in time="),
-    ("samples.", "samples "),
-    ("integrate fewer instances at a time: a smaller options::chunk_size or solver capacity",
-     "integrate the sweep in smaller parts"),
-    ("use an ensemble of doubles", "give precision=\"double\""),
-    ("relative_tolerance", "rtol"),
-    ("absolute_tolerance", "atol"),
-    ("the ensemble", "the sweep"),
-)
-
-
 class _Along:
     """Values of a grid along one of its axes, as an array of one value per instance that is not made until needed."""
 
@@ -54,15 +36,6 @@ class _Along:
 
     def __array__(self, dtype=None, copy=None):
         return self._sweep.values(self._name).astype(dtype or self.dtype, copy=False)
-def in_python(error, changes=_in_python):
-    """An error of the core in Python's terms."""
-    text = str(error)
-    for said, meant in changes:
-        text = text.replace(said, meant)
-    return Error(re.sub(r"integrate fewer instances at a time, with .* an options::chunk_size of at most (\d+)",
-                        r"integrate the sweep in parts of at most \1 instances", text))
-
-
 def _numbers(value, name):
     """A number, or an array of one dimension, of real numbers; arrays on a GPU stay there."""
     if isinstance(value, _Along):
@@ -367,14 +340,7 @@ def _device_name(device, interpreted):
     if forked:
         raise Error(f"device {device!r} is not available, as this process was forked from one that has looked for "
                     "GPUs: fork before that, start processes by \"spawn\", or use \"cpu\"")
-    try:
-        return _core.check_device(device), None
-    except Error as error:
-        text = str(error)
-        if "is unknown" in text:
-            raise Error(f"device {device!r} is unknown: use \"auto\", \"cpu\", \"cpu:4\" for four threads, \"cuda\", "
-                        "or \"cuda:1\" for the second GPU") from None
-        raise Error(text.replace("the device has", f"device {device!r} has")) from None
+    return _core.check_device(device), None
 
 
 def _positive_infinity(value):
@@ -550,8 +516,6 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
             ensemble.array("tolerance_scale")[...] = scale
         report, failure = _core.solve([(k.library, d) for (k, _), d in zip(kernels, devices)], ensemble, options,
                                       function)
-    except Error as error:
-        raise in_python(error) from None
     finally:
         finish()
     run = Run(components, ensemble, report, kernel, sweep, _inputs(components, given), recorded, sampled,

@@ -22,7 +22,7 @@ from .grid import Sweep
 from .methods import default, fixed_step, method_type
 from .reduce import Reduction
 from .run import Interrupted
-from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, device_names, ends_of, in_python,
+from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, device_names, ends_of,
                     kernel_for, make_options, refuse_missing)
 from .study_result import StudyResult
 from .symbols import t_begin, t_end, time as time_symbol
@@ -31,19 +31,6 @@ from .whole_numbers import check_whole_numbers
 __all__ = ["Study", "study"]
 
 _keep_choices = ("end", "records", "samples", "random", "status", "work")
-_terms = (
-    ("options.record", "record="),
-    ("options.samples", "samples="),
-    ("start the study in a new folder with a smaller chunk", "give another store= and a smaller chunk="),
-    ("make chunk smaller", "make chunk= smaller"),
-    ("repeat is given", "draws= is given"),
-)
-
-
-def _in_terms(error):
-    return in_python(in_python(error), _terms)
-
-
 def _time_name(key):
     """The names of the ends of the time domain, or None."""
     return {t_begin: "t_begin", t_end: "t_end"}.get(key) if isinstance(key, Node) else None
@@ -82,35 +69,32 @@ class Study:
         self._interpreted, self._kernels = interpreted, {}
         self._kernel_for = lambda device: kernel_for(device, model, components, method, control, samples is not None,
                                                      precision, self._interpreted)
-        try:
-            made = self._core = _core.Study(
-                [list(n) for n in components.names], list(components.tables.values()),
-                getattr(model, "generator", ""), "float64" if precision == "double" else "float32",
-                getattr(model, "name", None) or "model",
-                method_type(method, control, samples is not None).replace("myriad::", ""))
-            made.options(options)
-            self._set_instances(made, components, sweep, start, time, draws)
-            self._looks_at_domains = bool(samples is not None or others["phase_length"] or others["carry_on"])
-            if draws is not None:
-                made.repeat(_whole(draws, "draws", 1 << 62), "draw")
-            made.seed(_whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
-            check_whole_numbers(getattr(model, "generate", ()), made.size, self._shared_integers)
-            self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
-            for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
-                if not isinstance(reduction, Reduction):
-                    raise Error(f"reduce= has {reduction!r}: give reductions, as in "
-                                "[myriad.reduce.mean(\"x_end\")]")
-                made.reduce(reduction.core())
-            for key, unit in _by_name(units, "units", "units={x: \"m\"}").items():
-                made.unit("t" if key is time_symbol else self._full_name(key), unit)
-            if title:
-                made.title(title)
-            values = np.array(list(components.tables.values()), float)
-            made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
-            for key, text in _by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
-                made.note(f"user.{key}", str(text))
-        except Error as error:
-            raise _in_terms(error) from None
+        made = self._core = _core.Study(
+            [list(n) for n in components.names], list(components.tables.values()),
+            getattr(model, "generator", ""), "float64" if precision == "double" else "float32",
+            getattr(model, "name", None) or "model",
+            method_type(method, control, samples is not None).replace("myriad::", ""))
+        made.options(options)
+        self._set_instances(made, components, sweep, start, time, draws)
+        self._looks_at_domains = bool(samples is not None or others["phase_length"] or others["carry_on"])
+        if draws is not None:
+            made.repeat(_whole(draws, "draws", 1 << 62), "draw")
+        made.seed(_whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
+        check_whole_numbers(getattr(model, "generate", ()), made.size, self._shared_integers)
+        self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
+        for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
+            if not isinstance(reduction, Reduction):
+                raise Error(f"reduce= has {reduction!r}: give reductions, as in "
+                            "[myriad.reduce.mean(\"x_end\")]")
+            made.reduce(reduction.core())
+        for key, unit in _by_name(units, "units", "units={x: \"m\"}").items():
+            made.unit("t" if key is time_symbol else self._full_name(key), unit)
+        if title:
+            made.title(title)
+        values = np.array(list(components.tables.values()), float)
+        made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
+        for key, text in _by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
+            made.note(f"user.{key}", str(text))
 
     def _full_name(self, key):
         """The core's name of a component."""
@@ -285,10 +269,6 @@ class Study:
                     raise Interrupted(result) from None
                 raise failure
             return result
-        except Error as error:
-            changed = _in_terms(error)
-            changed.result = getattr(error, "result", None)
-            raise changed from error.__cause__
         finally:
             show.close()
 

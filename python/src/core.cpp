@@ -372,7 +372,11 @@ NB_MODULE(_core, m) {
             try {
                 std::rethrow_exception(thrown);
             } catch (const error& e) {
-                PyErr_SetString(nb::module_::import_("myriad.errors").attr("Error").ptr(), e.what());
+                const nb::object errors = nb::module_::import_("myriad.errors");
+                nb::list marks;
+                for (const mark& m : e.marks())
+                    marks.append(nb::make_tuple(m.begin, m.size, m.what == mark_role::phrase, m.key));
+                PyErr_SetObject(errors.attr("Error").ptr(), errors.attr("in_python")(e.what(), marks).ptr());
             }
         },
         nullptr);

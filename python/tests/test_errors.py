@@ -48,7 +48,7 @@ CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
     (dict(samples=dict(every=2)), "need capacity="),
     (dict(samples=[0.5, 2.0]), "sample"),
     (dict(device="cuda:999"), "is not available: .*use .cpu.|does not exist"),
-    (dict(device="tpu"), "device 'tpu' is unknown"),
+    (dict(device="tpu"), 'device "tpu" is unknown'),
     (dict(invalid="ignore"), "give \"refuse\" or \"mark\""),
     (dict(precision="half"), "give \"double\" or \"float\""),
     (dict(size=3), "'w' has 2 values and 'size' has 3"),
@@ -65,7 +65,7 @@ CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
     (dict(samples=0), "samples= asks for no samples"),
     (dict(samples=[]), "samples= asks for no samples"),
     (dict(samples=10**10), "samples evenly is 10000000000: give a number up to"),
-    (dict(device="cpu:9999"), "device 'cpu:9999' has 9999 threads .must be from 1 to 4096"),
+    (dict(device="cpu:9999"), 'device "cpu:9999" has 9999 threads .must be from 1 to 4096'),
 ])
 def test_message(oscillator, change, message):
     with pytest.raises(my.Error, match=message):

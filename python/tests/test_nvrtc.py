@@ -14,7 +14,7 @@ import pytest
 import example_models
 import myriad as my
 import test_cpp
-from myriad import _core, nvrtc
+from myriad import _core, cache, nvrtc
 from myriad.methods import method_type, methods
 
 pytestmark = pytest.mark.skipif(nvrtc.find() is None, reason="there is no NVRTC")
@@ -230,3 +230,18 @@ def test_without_a_driver_the_message_says_so():
     with pytest.raises(my.Error, match="device \"cuda\" is not available: .*; use \"cpu\" or \"auto\""):
         my.solve(my.model({x: -x}), start={x: 1}, time=(0, 1), device="cuda")
     assert my.solve(my.model({x: -x}), start={x: 1}, time=(0, 1), device="auto").report.device == "cpu"
+
+
+def test_a_kernel_that_generates_is_not_taken_for_one_that_does_not(monkeypatch):
+    """The kernels in memory are told apart by all that their file has."""
+    class Core:
+        gpu = staticmethod(lambda device: ("a GPU", 90, 1 << 17))
+
+    compiled = []
+    monkeypatch.setattr(nvrtc, "_core", Core)
+    monkeypatch.setattr(nvrtc, "_loaded", {})
+    monkeypatch.setattr(nvrtc, "_cached", lambda source, *_: compiled.append(source) or cache.Obtained(source, True))
+    asked = ("struct decay {};", "decay", "myriad::cash_karp", "double", (0, 0), 0)
+    for generates in (False, True, False, True):
+        assert ("GENERATE" in nvrtc.kernel(*asked, generates).library) == generates
+    assert len(compiled) == 2

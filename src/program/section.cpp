@@ -69,7 +69,7 @@ std::string quoted(std::string_view text) { return message('"', text, '"'); }
 
 }  // namespace
 
-std::string suggestion(std::string_view name, const std::vector<std::string>& choices) {
+std::string nearest_of(std::string_view name, const std::vector<std::string>& choices) {
     const std::string* nearest = nullptr;
     std::size_t least = std::max<std::size_t>(name.size() / 2, 1) + 1;
     for (const std::string& choice : choices) {
@@ -79,8 +79,12 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ch
             nearest = &choice;
         }
     }
-    if (nearest != nullptr) return message(": did you mean \"", *nearest, "\"?");
-    if (choices.empty()) return "";
+    return nearest != nullptr ? message(": did you mean \"", *nearest, "\"?") : "";
+}
+
+std::string suggestion(std::string_view name, const std::vector<std::string>& choices) {
+    std::string nearest = nearest_of(name, choices);
+    if (!nearest.empty() || choices.empty()) return nearest;
     std::string all;
     for (const std::string& choice : choices) all += (all.empty() ? "" : ", ") + choice;
     return ": there are " + all;

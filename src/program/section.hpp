@@ -15,6 +15,9 @@
 
 namespace myriad::programs {
 
+/// `: did you mean "relative_tolerance"?`: the choice that is most like a name, as the end of a message; empty if none
+/// is like it at all.
+std::string nearest_of(std::string_view name, const std::vector<std::string>& choices);
 /// `"relativ_tolerance": did you mean "relative_tolerance"?`: the choice that is most like a name, as the end of a
 /// message; without one that is at all like it, all choices.
 std::string suggestion(std::string_view name, const std::vector<std::string>& choices);

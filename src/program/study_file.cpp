@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
 #include "myriad/host/backend/device.hpp"
@@ -110,15 +109,13 @@ std::vector<std::string> names_of(const component_names& all, std::initializer_l
 /// Calls a function that looks for a component, and says which one may have been meant.
 void with_component(const component_names& all, const std::string& name, const toml_value& v, const std::string& key,
                     std::initializer_list<component_kind> kinds, const std::function<void()>& function) {
-    try {
-        placed(v, key, function);
-    } catch (const input_error& e) {
-        const std::string text = e.what();
-        if (text.find("is no component of") == std::string::npos) throw;
-        const std::string meant = suggestion(name, names_of(all, kinds));
-        if (meant.find("did you mean") == std::string::npos) throw;
-        throw input_error(text + meant);
-    }
+    placed(v, key, [&] {
+        try {
+            function();
+        } catch (const studies::unknown_component& e) {
+            throw error(message(e.what(), nearest_of(name, names_of(all, kinds))));
+        }
+    });
 }
 
 /// The numbers of components of one kind.
@@ -259,8 +256,12 @@ void study_file::read_dimension(any_study& study, const toml_value& table, const
     try {
         study.zip(paired);
     } catch (const error& e) {
-        std::size_t i = paired.size() - 1;  // the last one that the message is about
-        while (i > 0 && std::string_view(e.what()).find(full_names[i] + ' ') == std::string_view::npos) --i;
+        std::size_t i = 0;  // the last one that the message names
+        for (const mark& m : e.marks())
+            if (m.what == mark_role::component)
+                i = static_cast<std::size_t>(std::find(full_names.begin(), full_names.end(), m.key) -
+                                             full_names.begin());
+        if (i == full_names.size()) i = 0;
         throw wrong(*places[i].first, places[i].second, e.what());
     }
 }
@@ -507,28 +508,16 @@ const toml_value* follow(const toml_value& from, std::string_view path) {
 }  // namespace
 
 input_error study_file::placed_error(const error& found) const {
-    const std::string text = found.what();
-    const auto is_part = [&](std::size_t i) {
-        return std::isalnum(static_cast<unsigned char>(text[i])) != 0 || text[i] == '_' || text[i] == '.';
-    };
-    constexpr std::string_view differs = "differs in";
-    const bool of_store = text.find(differs) != std::string::npos;
-    const bool is_of_folder =
-        !of_store && (text.starts_with("the folder") || text.find("the disk of") != std::string::npos);
-    const toml_value* key = is_of_folder ? entry_of(document_, "store") : nullptr;
-    // The first word of the message that is a key. Words that are keys by accident come later than what it is about.
-    for (std::size_t at = of_store ? text.find(differs) : 0; at < text.size() && key == nullptr && !is_of_folder;) {
-        std::size_t end = at;
-        while (end < text.size() && is_part(end)) ++end;
-        const std::string_view path(text.data() + at, end - at);
+    // The first option that the message names and the file gives.
+    const toml_value* key = nullptr;
+    for (const mark& m : found.marks()) {
+        if (m.what != mark_role::option || key != nullptr) continue;
         for (const std::string_view table : {"options", "keep", ""}) {
             const toml_value* const from = table.empty() ? &document_ : entry_of(document_, table);
-            if (key == nullptr && from != nullptr && path != "model" && path != "store") key = follow(*from, path);
+            if (key == nullptr && from != nullptr) key = follow(*from, m.key);
         }
-        at = end + 1;
     }
-    if (key == nullptr && of_store) key = entry_of(document_, "store");
-    return input_error(position(key != nullptr ? key->place : text_place{path_, 0, 0}) + text);
+    return input_error(position(key != nullptr ? key->place : text_place{path_, 0, 0}) + found.what());
 }
 
 }  // namespace myriad::programs

@@ -38,7 +38,7 @@ double axis_values::operator[](std::int64_t i) const { return detail::value_on_a
 namespace {
 
 void check_size(const char* function, std::int64_t size) {
-    require(size > 0, function, " is given ", size, " values (must be positive)");
+    require(size > 0, host::named_option(function), " is given ", size, " values (must be positive)");
 }
 void check_finite(const char* function, double value) {
     require(std::isfinite(value), function, " is given ", value, ", and needs finite values");
@@ -110,7 +110,7 @@ const component& axes::find_free(std::string_view name) const {
     const component& c =
         names_.find(name, {state, parameter, accessory, integer_accessory, shared, shared_integer, t_begin, t_end});
     for (const entry& e : entries_)
-        require(!(e.what == c), c.full_name(), " is given twice: give it one axis or one value");
+        require(!(e.what == c), host::named_component(c.full_name()), " is given twice: give it one axis or one value");
     require(!is_shared(c.kind), c.full_name(),
             " is the same in all instances of a call, so it has no axis: make it a parameter of the model, or set it");
     return c;
@@ -145,12 +145,14 @@ void axes::zip(const std::vector<std::pair<std::string, axis_values>>& paired) {
     for (const auto& [name, all] : paired) {
         const component& c = find_free(name);
         check_values(c, all);
-        require(!all.random(), c.full_name(), " is random, and so cannot be paired: give it by itself");
+        require(!all.random(), host::named_component(c.full_name()),
+                " is random, and so cannot be paired: give it by itself");
         const axis_values& first = paired.front().second;
-        require(all.size() == first.size(),
-                "paired axes have different lengths: ", made.empty() ? c.full_name() : made[0].what.full_name(),
-                " has ", first.size(), " values, ", c.full_name(), " has ", all.size());
-        for (const entry& e : made) require(!(e.what == c), c.full_name(), " is given twice: give it one axis");
+        require(all.size() == first.size(), "paired axes have different lengths: ",
+                host::named_component(made.empty() ? c.full_name() : made[0].what.full_name()), " has ", first.size(),
+                " values, ", host::named_component(c.full_name()), " has ", all.size());
+        for (const entry& e : made)
+            require(!(e.what == c), host::named_component(c.full_name()), " is given twice: give it one axis");
         joined += message(joined.empty() ? "" : "_", names_.initial_variable(c));
         made.push_back({c, all, static_cast<int>(dimensions_.size())});
     }

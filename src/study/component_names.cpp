@@ -58,8 +58,9 @@ const component& component_names::find(std::string_view name, std::initializer_l
     }
     // A component of a model may be called t_end too.
     if (found.size() > 1 && is_time(found.back()->kind)) found = {found.back()};
-    require(!found.empty(), '"', name, "\" is no component of ", model_, " that can be given here: there are ",
-            choices(kinds));
+    if (found.empty())
+        throw unknown_component(message('"', name, "\" is no component of ", model_,
+                                        " that can be given here: there are ", choices(kinds)));
     if (found.size() > 1) {
         std::string all;
         for (const component* c : found) all += message(all.empty() ? "" : " or ", c->full_name());

@@ -381,8 +381,10 @@ private:
     void halve(std::int64_t& piece, std::int64_t count, chunk_solver& solver, const std::string& why) {
         solver.clear();
         if (count == 1)
-            throw out_of_memory(message("there is not enough memory for the values of chunks of ", content().chunk,
-                                        " instances: make chunk smaller, keep less, or use fewer devices (", why, ')'));
+            throw out_of_memory(marked_message("there is not enough memory for the values of chunks of ",
+                                               content().chunk,
+                                               " instances: ", host::phrase("smaller_chunk", "make chunk smaller"),
+                                               ", keep less, or use fewer devices (", why, ')'));
         piece = (count + 1) / 2;
         warn(message("memory is short, so ", piece, " instances are integrated at a time: ", why));
     }

@@ -33,7 +33,7 @@ std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count
 
 // Where it is also after the process has gone to another folder.
 std::string absolute(const std::string& folder) {
-    require(!folder.empty(), "the folder of a study has no name: give one");
+    require(!folder.empty(), host::named_option("store", "the folder"), " of a study has no name: give one");
     std::error_code unknown;
     const std::filesystem::path path = std::filesystem::absolute(folder, unknown);
     return unknown ? folder : path.string();
@@ -81,8 +81,8 @@ std::optional<found_group> find_group(file_system& files, const std::string& fol
     std::erase(names, "myriad");
     if (names.empty()) return std::nullopt;
     std::sort(names.begin(), names.end());
-    host::refuse({"the folder ", folder, " is not empty and holds no study (it has ", names.front(),
-                  names.size() > 1 ? " and others" : "", "): give a new folder"});
+    host::refuse({host::named_option("store", "the folder"), " ", folder, " is not empty and holds no study (it has ",
+                  names.front(), names.size() > 1 ? " and others" : "", "): give a new folder"});
 }
 
 // For readers, who have nothing to restore it with.
@@ -98,11 +98,14 @@ std::optional<found_group> whole_group(file_system& files, const std::string& fo
 void refuse_other(const layout& stored, const layout& here, const std::string& folder) {
     const std::vector<std::string> found = differences(stored, here);
     if (found.empty()) return;
-    std::string text;
-    for (std::size_t i = 0; i < found.size() && i < 10; ++i) text += "\n  " + found[i];
-    if (found.size() > 10) text += message("\n  and ", found.size() - 10, " more");
-    host::refuse({"the folder ", folder, " holds the results of another study, which differs in", text,
-                  "\ngive another folder, or the same study"});
+    // The first difference is the subject, in which a study's file or call is to be corrected.
+    const std::string key = found[0].substr(0, found[0].find(':'));
+    std::string others;
+    for (std::size_t i = 1; i < found.size() && i < 10; ++i) others += "\n  " + found[i];
+    if (found.size() > 10) others += message("\n  and ", found.size() - 10, " more");
+    host::refuse({"the folder ", folder, " holds the results of another study, which differs in\n  ",
+                  host::named_option(key), found[0].substr(key.size()), others, "\ngive another ",
+                  host::named_option("store", "folder"), ", or the same study"});
 }
 
 // Again if another process took this one for dead and removed its temporary files, as often as that happens; but not if
@@ -497,7 +500,7 @@ struct store::implementation : store_files {
         if (files.free_bytes(place, free) < 0) throw file_error("asking for the free space of", place, errno);
         const auto [need, have] = host::bytes_texts(static_cast<double>(left), static_cast<double>(free));
         require(left <= free, "the ", missing, " chunks ", coordinates_left ? "and the coordinates " : "",
-                "that are left take ", need, ", and the disk of ", folder, " has ", have,
+                "that are left take ", need, ", and the disk of ", host::named_option("store", folder), " has ", have,
                 " free: free space, give a folder on a larger disk, or keep less");
     }
 
@@ -595,7 +598,7 @@ struct store::implementation : store_files {
     void require_same_study() const {
         const std::optional<std::string> text = read_text(files, group_path(folder));
         if (!text) throw file_error("looking for", group_path(folder), ENOENT);
-        require(*text == group_text, "the folder ", folder,
+        require(*text == group_text, host::named_option("store", "the folder"), " ", folder,
                 " holds something else than when this study began: give each study a folder of its own");
     }
 
@@ -660,7 +663,8 @@ store store::create_or_resume(const std::string& given, const layout& wanted, co
         sync_folder(files, folder);
         if (!is_first) {  // another process was faster
             there = find_group(files, folder);
-            require(there.has_value(), "the folder ", folder, " was removed while a study started there");
+            require(there.has_value(), host::named_option("store", "the folder"), " ", folder,
+                    " was removed while a study started there");
             refuse_other(there->group.content, wanted, folder);
             auto self = std::move(made->self);
             made = std::make_unique<implementation>(files, folder, *there);
@@ -697,7 +701,8 @@ store store::open(const std::string& given, file_system* used) {
     file_system& files = used ? *used : file_system::real();
     require(names_in(files, folder).has_value(), "there is no folder ", folder, ": give that of a study");
     const std::optional<found_group> there = whole_group(files, folder);
-    require(there.has_value(), "the folder ", folder, " is empty: give that of a study");
+    require(there.has_value(), host::named_option("store", "the folder"), " ", folder,
+            " is empty: give that of a study");
     auto made = std::make_unique<implementation>(files, folder, *there);
     made->refresh();
     return store(std::move(made));

@@ -65,8 +65,10 @@ chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_p
 
 /// Refuses chunks whose values alone do not fit: they are in memory as a whole, however few instances are integrated at
 /// a time.
+const host::message_part smaller_chunk = host::phrase("smaller_chunk", "make chunk smaller");
+
 void check_memory(double bytes_per_instance, const studies::layout& content, const std::vector<device>& devices,
-                  const char* advice) {
+                  const host::message_part& advice) {
     host::memory_need need;
     need.add("values", bytes_per_instance * static_cast<double>(content.chunk));
     const std::int64_t at_once = std::min(2 * static_cast<std::int64_t>(devices.size()), content.chunks());
@@ -191,14 +193,14 @@ void any_study::unit(std::string_view component, std::string unit) {
 }
 
 void any_study::store(std::string folder, const studies::store_options& how) {
-    require(!folder.empty(), "the folder of a study has no name");
+    require(!folder.empty(), host::named_option("store", "the folder"), " of a study has no name");
     folder_ = std::move(folder);
     store_options_ = how;
 }
 
 studies::study_request any_study::request() const {
     require(!options.progress, "options.progress is for solve: set the study's own progress instead");
-    require(chunk >= 0, "chunk is ", chunk, " (must be positive, or 0 for a choice by memory)");
+    require(chunk >= 0, host::named_option("chunk"), " is ", chunk, " (must be positive, or 0 for a choice by memory)");
     myriad::options how = options;
     how.invalid_instances = invalid_instances::mark;
     return {.method = model_->method(),
@@ -233,7 +235,7 @@ any_study::planned_run any_study::plan() const {
     settings.piece = sizes.piece;
     const auto bytes = static_cast<double>(on_devices(*model_, made, settings.devices) ? made.bytes_needed_on_host()
                                                                                        : made.bytes_per_instance());
-    check_memory(bytes, made.content, settings.devices, "make chunk smaller, or keep less");
+    check_memory(bytes, made.content, settings.devices, marked_message(smaller_chunk, ", or keep less"));
     return {std::move(settings), std::move(made), bytes};
 }
 
@@ -243,7 +245,8 @@ std::unique_ptr<studies::result_keeper> any_study::open_store(const planned_run&
         if (d.which() == device::kind::cpu) options.computed_by = model_->arithmetic_on(d);
     auto keeper = studies::keep_in_store(folder_, planned.plan.content, options, chunk_counter);
     check_memory(planned.host_bytes, keeper->content(), planned.settings.devices,
-                 "use fewer devices, or start the study in a new folder with a smaller chunk");
+                 marked_message("use fewer devices, or ",
+                                host::phrase("new_folder", "start the study in a new folder with a smaller chunk")));
     return keeper;
 }
 
@@ -294,7 +297,7 @@ std::optional<studies::computed_chunk> any_study::compute(std::int64_t number, s
     plan.content.chunk = chunk_size;
     require(number >= 0 && number < plan.content.chunks(), "there is no chunk ", number, " in a study of ",
             plan.content.chunks());
-    check_memory(host_bytes, plan.content, settings.devices, "use fewer devices, or make chunk smaller");
+    check_memory(host_bytes, plan.content, settings.devices, marked_message("use fewer devices, or ", smaller_chunk));
     studies::one_chunk_keeper keeper(plan.content, number);
     settings.stops = [&] { return stopped_ || keeper.done(); };
     studies::run_outcome outcome = studies::run_study(*model_, plan, keeper, settings);

@@ -279,11 +279,11 @@ private:
     }
     /// What every instance must have, unless a generator gives it.
     void check_inputs() const {
-        require(asked_.options.samples.times_of_instances.empty(),
-                "samples.times_of_instances has times for each instance of one call: a study has none, give times or "
+        require(asked_.options.samples.times_of_instances.empty(), host::named_option("samples.times_of_instances"),
+                " has times for each instance of one call: a study has none, give times or "
                 "evenly");
-        require(asked_.options.time_limit == 0,
-                "time_limit is given, but a study keeps what it has done and goes on where it was stopped: leave it "
+        require(asked_.options.time_limit == 0, host::named_option("time_limit"),
+                " is given, but a study keeps what it has done and goes on where it was stopped: leave it "
                 "out, stop the run when it is time, or bound the steps of an instance by max_steps");
         if (!asked_.generator.empty()) return;
         for (const component& c : names_.all()) {

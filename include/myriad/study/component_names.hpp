@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "myriad/host/core/error.hpp"
 #include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
@@ -38,6 +39,12 @@ struct component {
     bool operator==(const component& other) const { return kind == other.kind && number == other.number; }
     /// "parameter.k", or "parameter.3" without an enumerator.
     std::string full_name() const;
+};
+
+/// Thrown for a name that no component has.
+class unknown_component : public error {
+public:
+    using error::error;
 };
 
 /// All components of one model.

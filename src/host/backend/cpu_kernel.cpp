@@ -41,7 +41,8 @@ run_statistics run_by_cost(const any_run& all, const run_options& options) {
     memory_need need;
     need.add("costs", static_cast<double>(all.size + count) * sizeof(std::uint32_t));
     need.check(message("sorting ", count, " instances by cost"),
-               "take another schedule, or integrate the ensemble in smaller parts");
+               marked_message("take another schedule, or ",
+                              phrase("smaller_parts", "integrate the ensemble in smaller parts")));
     std::vector<std::uint32_t> cost(static_cast<std::size_t>(all.size));
     run_options silent = options;  // no instance is done after its first phase
     silent.progress = nullptr;

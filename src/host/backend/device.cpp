@@ -28,7 +28,7 @@ int number_after(std::string_view name, std::size_t from) {
 }  // namespace
 
 device device::cpu(int threads) {
-    require(threads >= 0 && threads <= 4096, "the device has ", threads,
+    require(threads >= 0 && threads <= 4096, "device \"cpu:", threads, "\" has ", threads,
             " threads (must be from 1 to 4096, or 0 for all cores)");
     return device(kind::cpu, threads);
 }
@@ -52,7 +52,7 @@ device device::parse(std::string_view name) {
         require(number >= 0, "device \"", name, "\" has no valid number: write cuda:0 for the first GPU");
         return found_gpu(number, name);
     }
-    throw error(message("device \"", name, "\" is unknown: use auto, cpu, cpu:THREADS, cuda or cuda:NUMBER"));
+    host::refuse({"device \"", name, "\" is unknown: use auto, cpu, cpu:THREADS, cuda or cuda:NUMBER"});
 }
 
 std::string device::name() const {

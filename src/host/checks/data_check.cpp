@@ -17,6 +17,12 @@
 
 namespace myriad::host::inline MYRIAD_ABI {
 
+namespace {
+
+const message_part mark_invalid = phrase("mark_invalid", "set invalid_instances = invalid_instances::mark");
+
+}  // namespace
+
 bool events_may_stop(const options& o) {
     return std::any_of(o.events.begin(), o.events.end(), [](const event_options& e) { return e.stop_after > 0; });
 }
@@ -74,7 +80,7 @@ phases_left find_phases_left(const ensemble_data<R>& e, const options& o, std::i
             const double far = std::max(
                 from, std::min(std::abs(static_cast<double>(t_end)), from + length * static_cast<double>(o.phases)));
             const double least = 64 * static_cast<double>(std::numeric_limits<R>::epsilon()) * far;
-            require(length >= least, "phase_length is ", length,
+            require(length >= least, named_option("phase_length"), " is ", length,
                     ", of which rounding leaves next to nothing in instance ", i, ", where |t| gets to ", far,
                     ": give phases of ", least, " or more, or shift t");
         }
@@ -178,8 +184,8 @@ void data_check<R>::run() {
     const model_shape& shape = *data_.shape;
     for (int c = 0; c < shape.n_shared; ++c)
         require(std::isfinite(data_.shared.data()[c]), shape.shared(shape, c), " is ", data_.shared.data()[c],
-                std::isnan(data_.shared.data()[c]) ? " (never set, or set to NaN)" : "",
-                ": set it with ensemble.shared(...) before solving");
+                std::isnan(data_.shared.data()[c]) ? " (never set, or set to NaN)" : "", ": ",
+                phrase("set_shared", "set it with ensemble.shared(...) before solving"));
     for (int c = 0; c < shape.n_state; ++c) check(shape.state(shape, c), data_.state.component(c));
     for (int c = 0; c < shape.n_parameter; ++c) check(shape.parameter(shape, c), data_.parameter.component(c));
     if (data_.scales_tolerances()) check_positive_scales();
@@ -224,18 +230,19 @@ void data_check<R>::check(const component_label& label, const R* values, limit m
         const std::string component = label.number < 0           ? std::string()
                                       : label.enumerator.empty() ? message(label.number)
                                                                  : std::string(label.enumerator);
-        throw error(message(label, " is NaN in all ", bad,
-                            " instances: it was never set, or set to NaN; set it with "
-                            "ensemble.",
-                            label.what, '(', component, ") = ... before solving"));
+        const std::string advice =
+            message("set it with ensemble.", label.what, '(', component, ") = ... before solving");
+        refuse({label, " is NaN in all ", bad, " instances: it was never set, or set to NaN; ",
+                phrase(message("set_", label.what), advice)});
     }
-    const char* advice =
-        std::isinf(values[first]) && most == limit::end
-            ? ": an infinite time needs a phase_length, an event with stop_after, or a hook that returns "
-              "whether to end the phase"
-            : ": correct the inputs, or set invalid_instances = invalid_instances::mark to run the others";
-    throw error(message(label, " is not finite in ", bad, " of ", count_, " instances, first in instance ", first, " (",
-                        values[first], ")", advice));
+    const bool endless = std::isinf(values[first]) && most == limit::end;
+    const marked_text advice =
+        endless ? marked_message(
+                      "an infinite time needs a phase_length, an event with stop_after, or a hook that "
+                      "returns whether to end the phase")
+                : marked_message("correct the inputs, or ", mark_invalid, " to run the others");
+    refuse({label, " is not finite in ", bad, " of ", count_, " instances, first in instance ", first, " (",
+            values[first], "): ", advice});
 }
 
 template <class R>
@@ -246,10 +253,10 @@ void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_
     const std::vector<double>& own = samples.times_of_instances;
     const auto size = static_cast<std::size_t>(std::int64_t{e.size}), per_instance = own.size() / size;
     if (!own.empty()) {
-        require(own.size() % size == 0, "samples.times_of_instances has ", own.size(), " times for ", size,
-                " instances: give as many for each, those of instance 0 first");
+        require(own.size() % size == 0, named_option("samples.times_of_instances"), " has ", own.size(), " times for ",
+                size, " instances: give as many for each, those of instance 0 first");
         require(samples.capacity >= static_cast<std::int64_t>(per_instance) * (o.phases - samples.from_phase),
-                "samples.capacity is ", samples.capacity, ", but the chosen times give ",
+                named_option("samples.capacity"), " is ", samples.capacity, ", but the chosen times give ",
                 static_cast<std::int64_t>(per_instance) * (o.phases - samples.from_phase),
                 " samples per instance in this call: raise the capacity");
     }
@@ -286,15 +293,16 @@ void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_
         if (e.ended.data()[i] != 0 || std::isnan(begin) || std::isnan(end)) continue;
         if (o.invalid_instances == invalid_instances::mark && !std::isfinite(end - begin)) continue;
         if (times.empty()) {
-            require(std::isfinite(end - begin), "samples.evenly divides the domain, but instance ", i,
-                    " is integrated from ", begin, " to ", end, ": give samples.times, or a finite t_end");
+            require(std::isfinite(end - begin), named_option("samples.evenly"), " divides the domain, but instance ", i,
+                    " is integrated from ", begin, " to ", end, ": give ", named_option("samples.times"),
+                    ", or a finite t_end");
             continue;
         }
         const auto from = static_cast<double>(times.front()), to = static_cast<double>(times.back());
         const bool inside =
             end >= begin ? begin <= from && from <= to && to <= end : begin >= from && from >= to && to >= end;
-        require(inside, own.empty() ? "samples.times go from " : "samples.times_of_instances go from ", from, " to ",
-                to, ", but instance ", i, " is integrated from ", begin, " to ", end,
+        require(inside, named_option(own.empty() ? "samples.times" : "samples.times_of_instances"), " go from ", from,
+                " to ", to, ", but instance ", i, " is integrated from ", begin, " to ", end,
                 ": give times within the domain, in the order in which the integration reaches them");
     }
 }
@@ -314,8 +322,8 @@ void check_ended(const ensemble_data<R>& instances, const options& o, std::int64
                 name_of(instances.status_of(e.index)),
                 ") and takes no further part, but its state or parameters were set anew since",
                 anew == 1 ? std::string() : message(", as were those of ", anew - 1, anew == 2 ? " other" : " others"),
-                ": call restart() to start all instances again, or set invalid_instances = invalid_instances::mark to "
-                "leave those that have ended as they are");
+                ": call restart() to start all instances again, or ", mark_invalid,
+                " to leave those that have ended as they are");
 }
 
 template <class R>

@@ -34,7 +34,8 @@ std::mutex& made_by_readers() {
 
 template <class R>
 std::int64_t checked(const model_shape& shape, std::int64_t size) {
-    require(size > 0, "the ensemble has ", size, " instances (must be positive): there is nothing to integrate");
+    require(size > 0, phrase("ensemble", "the ensemble"), " has ", size,
+            " instances (must be positive): there is nothing to integrate");
     ensemble_data<R>::memory_of(shape, size)
         .check(message("an ensemble of ", size, " instances"), "integrate it in smaller parts, one after the other");
     return size;
@@ -163,7 +164,8 @@ void ensemble_data<R>::describe_domain(instance_arrays<array_pointer, R>& pointe
 template <class R>
 myriad::status ensemble_data<R>::status_of(std::int64_t i) const {
     require_present();
-    require(i >= 0 && i < size, "instance ", i, " does not exist: the ensemble has ", std::int64_t{size}, " instances");
+    require(i >= 0 && i < size, "instance ", i, " does not exist: ", phrase("ensemble", "the ensemble"), " has ",
+            std::int64_t{size}, " instances");
     return this->status.data()[i];
 }
 

@@ -121,7 +121,7 @@ void memory_need::add(const char* part, double bytes) {
     parts_.emplace_back(part, bytes);
 }
 
-void memory_need::check(const std::string& who, const char* advice, memory_left (*available)()) const {
+void memory_need::check(const std::string& who, const message_part& advice, memory_left (*available)()) const {
     constexpr double worth_asking = 64e6;
     if (bytes() < worth_asking) return;
     const memory_left left = available();
@@ -129,9 +129,9 @@ void memory_need::check(const std::string& who, const char* advice, memory_left 
     const auto [needed, there] = bytes_texts(bytes(), left.bytes);
     std::string parts;
     for (const auto& [part, size] : parts_) parts += message(parts.empty() ? "" : ", ", part, ' ', bytes_text(size));
-    throw out_of_memory(message("out of memory: ", who, " would take ", needed,
-                                parts_.size() > 1 ? " (" + parts + ')' : std::string(), ", and ", there, " of ",
-                                left.of, " are left: ", advice));
+    throw out_of_memory(marked_message("out of memory: ", who, " would take ", needed,
+                                       parts_.size() > 1 ? " (" + parts + ')' : std::string(), ", and ", there, " of ",
+                                       left.of, " are left: ", advice));
 }
 
 }  // namespace myriad::host::inline MYRIAD_ABI

@@ -11,33 +11,36 @@
 namespace myriad::host::inline MYRIAD_ABI {
 
 void check_count(const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
-    require(value >= least && value <= most, name, " is ", value, " (must be from ", least, " to ", most, ")");
+    require(value >= least && value <= most, named_option(name), " is ", value, " (must be from ", least, " to ", most,
+            ")");
 }
 
 namespace {
 
 void check_positive(const char* name, double value, const char* advice) {
-    require(value > 0 && std::isfinite(value), name, " is ", value, " (must be positive and finite): ", advice);
+    require(value > 0 && std::isfinite(value), named_option(name), " is ", value,
+            " (must be positive and finite): ", advice);
 }
 void check_tolerance_count(const char* name, const per_component& t, std::size_t components) {
-    require(t.size() == 1 || t.size() == components, name, " has ", t.size(), " values, but the model has ", components,
-            " state components: give one value for all, or one for each");
+    require(t.size() == 1 || t.size() == components, named_option(name), " has ", t.size(),
+            " values, but the model has ", components, " state components: give one value for all, or one for each");
 }
 /// Checks an option that is an enumeration of `count` choices, numbered from 0.
 template <class Choice>
 void check_choice(const char* name, Choice chosen, int count, const char* choices) {
     const int number = static_cast<int>(chosen);
-    require(number >= 0 && number < count, name, " is ", number, ", which is none: choose ", choices);
+    require(number >= 0 && number < count, named_option(name), " is ", number, ", which is none: choose ", choices);
 }
 
 void check_samples(const sample_options& s, const options& o) {
     const int ways = (s.evenly != 0) + !s.times.empty() + !s.times_of_instances.empty() + (s.every != 0);
-    require(ways == 1, "samples names ", ways, " of evenly, times, times_of_instances and every: choose exactly one");
-    require(s.capacity > 0 && s.capacity < 2'000'000'000, "samples.capacity is ", s.capacity,
+    require(ways == 1, named_option("samples"), " names ", ways,
+            " of evenly, times, times_of_instances and every: choose exactly one");
+    require(s.capacity > 0 && s.capacity < 2'000'000'000, named_option("samples.capacity"), " is ", s.capacity,
             " (must be positive): give the number of samples to keep per instance");
-    require(s.from_phase >= 0 && s.from_phase < o.phases, "samples.from_phase is ", s.from_phase, ", but the call has ",
-            o.phases, " phases (counted from 0): nothing would be sampled");
-    require(s.minimum_spacing >= 0 && std::isfinite(s.minimum_spacing), "samples.minimum_spacing is ",
+    require(s.from_phase >= 0 && s.from_phase < o.phases, named_option("samples.from_phase"), " is ", s.from_phase,
+            ", but the call has ", o.phases, " phases (counted from 0): nothing would be sampled");
+    require(s.minimum_spacing >= 0 && std::isfinite(s.minimum_spacing), named_option("samples.minimum_spacing"), " is ",
             s.minimum_spacing, " (must not be negative)");
     if (s.every != 0) {
         check_count("samples.every", s.every, 1, 2'000'000'000);
@@ -46,12 +49,14 @@ void check_samples(const sample_options& s, const options& o) {
     if (s.evenly != 0) check_count("samples.evenly", s.evenly, 2, 2'000'000'000);
     bool rising = true, falling = true;
     for (std::size_t k = 0; k < s.times.size(); ++k) {
-        require(std::isfinite(s.times[k]), "samples.times[", k, "] is ", s.times[k], " (must be finite)");
+        require(std::isfinite(s.times[k]), named_option("samples.times"), "[", k, "] is ", s.times[k],
+                " (must be finite)");
         if (k == 0) continue;
         rising = rising && s.times[k] > s.times[k - 1];
         falling = falling && s.times[k] < s.times[k - 1];
-        require(rising || falling, "samples.times are not in order at number ", k, " (", s.times[k], " after ",
-                s.times[k - 1], "): give each time once, in the order in which the integration reaches them");
+        require(rising || falling, named_option("samples.times"), " are not in order at number ", k, " (", s.times[k],
+                " after ", s.times[k - 1],
+                "): give each time once, in the order in which the integration reaches them");
     }
     if (!s.times_of_instances.empty()) return;  // checked where the ensemble's size is known
     const std::int64_t phases = o.phases - s.from_phase;
@@ -59,8 +64,8 @@ void check_samples(const sample_options& s, const options& o) {
     const std::int64_t wanted = s.evenly != 0
                                     ? s.evenly * phases
                                     : static_cast<std::int64_t>(s.times.size()) * (o.phase_length > 0 ? 1 : phases);
-    require(s.capacity >= wanted, "samples.capacity is ", s.capacity, ", but the chosen times give ", wanted,
-            " samples per instance in this call: raise the capacity");
+    require(s.capacity >= wanted, named_option("samples.capacity"), " is ", s.capacity, ", but the chosen times give ",
+            wanted, " samples per instance in this call: raise the capacity");
 }
 
 /// Refuses sample options without states: they would be ignored.
@@ -73,14 +78,16 @@ void check_no_samples(const sample_options& s) {
     if (s.every != 0) given = "every";
     if (!(s.minimum_spacing == 0)) given = "minimum_spacing";
     if (s.from_phase != 0) given = "from_phase";
-    require(given == nullptr, "samples.", given,
-            " is given, but samples.states names no state, so that nothing would be "
-            "sampled: name the states to sample, or leave out all of samples");
+    if (given == nullptr) return;
+    const std::string key = message("samples.", given);
+    require(
+        false, named_option(key), " is given, but ", named_option("samples.states"),
+        " names no state, so that nothing would be sampled: name the states to sample, or leave out all of samples");
 }
 
 /// The same for records.
 void check_no_records(const record_options& r) {
-    require(r.from_phase == 0, "record.from_phase is ", r.from_phase,
+    require(r.from_phase == 0, named_option("record.from_phase"), " is ", r.from_phase,
             ", but record names nothing to record: name states, accessories or the time, or leave out all of record");
 }
 
@@ -95,21 +102,26 @@ void model_components::check(const char* what, const component_list& chosen, con
         const bool fits =
             of.empty() || of == kind.enumeration ||
             (kind.enumeration.empty() && std::find(enumerations.begin(), enumerations.end(), of) == enumerations.end());
-        require(fits, what, " names component ", c, " by an enumerator of ", of, ", which numbers other components",
+        require(fits, named_option(what), " names component ", c, " by an enumerator of ", of,
+                ", which numbers other components",
                 kind.enumeration.empty() ? std::string() : message(" than ", kind.enumeration),
                 ": give enumerators of the components that are meant, or numbers");
-        require(c >= 0 && c < kind.count, what, " names component ", c, ", but the model has ", kind.count,
-                " (numbered from 0): use the model's enumerators");
-        require(!seen[static_cast<std::size_t>(c)], what, " names component ", c, " twice: name each component once");
+        require(c >= 0 && c < kind.count, named_option(what), " names component ", c, ", but the model has ",
+                kind.count, " (numbered from 0): use the model's enumerators");
+        require(!seen[static_cast<std::size_t>(c)], named_option(what), " names component ", c,
+                " twice: name each component once");
         seen[static_cast<std::size_t>(c)] = true;
     }
 }
 
-void option_limits::check_kept(const char* name, double value) const {
-    require(value == 0 || rounded(value) != 0, name, " is ", value,
-            ", which is zero in single precision: give a larger value or use an ensemble of doubles");
-    require(std::isinf(value) || std::isfinite(rounded(value)), name, " is ", value,
-            ", which is infinite in single precision: give a smaller value or use an ensemble of doubles");
+void option_limits::check_kept(const char* key, double value, const char* name) const {
+    if (name == nullptr) name = key;
+    require(value == 0 || rounded(value) != 0, named_option(key, name), " is ", value,
+            ", which is zero in single precision: give a larger value or ",
+            phrase("use_doubles", "use an ensemble of doubles"));
+    require(std::isinf(value) || std::isfinite(rounded(value)), named_option(key, name), " is ", value,
+            ", which is infinite in single precision: give a smaller value or ",
+            phrase("use_doubles", "use an ensemble of doubles"));
 }
 void option_limits::check(const options& o) const {
     require(computes_as_written(), "the library ", not_as_written);
@@ -119,29 +131,33 @@ void option_limits::check(const options& o) const {
     check_tolerance_count("absolute_tolerance", o.absolute_tolerance, n_state);
     bool controls = false;
     for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
-        require(o.relative_tolerance[c] >= 0 && std::isfinite(o.relative_tolerance[c]), "relative_tolerance is ",
-                o.relative_tolerance[c],
-                " (must be at least 0, and finite): give the error you accept per step, such as 1e-9, or 0 for that of "
-                "absolute_tolerance alone");
+        require(
+            o.relative_tolerance[c] >= 0 && std::isfinite(o.relative_tolerance[c]), named_option("relative_tolerance"),
+            " is ", o.relative_tolerance[c],
+            " (must be at least 0, and finite): give the error you accept per step, such as 1e-9, or 0 for that of ",
+            named_option("absolute_tolerance"), " alone");
         controls = controls || o.relative_tolerance[c] < 1;
     }
     // Components may be left out of the error test, as by `without_tangents`, but not all of them.
-    require(controls, "relative_tolerance is ", o.relative_tolerance[0],
+    require(controls, named_option("relative_tolerance"), " is ", o.relative_tolerance[0],
             " (must be less than 1, an error as large as the solution): give the error you accept per step, such as "
-            "1e-9, or a large absolute_tolerance");
+            "1e-9, or a large ",
+            named_option("absolute_tolerance"));
     for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c)
-        require(o.absolute_tolerance[c] >= 0 && std::isfinite(o.absolute_tolerance[c]), "absolute_tolerance is ",
-                o.absolute_tolerance[c],
+        require(o.absolute_tolerance[c] >= 0 && std::isfinite(o.absolute_tolerance[c]),
+                named_option("absolute_tolerance"), " is ", o.absolute_tolerance[c],
                 " (must not be negative, and finite): give the error you accept per step, such as "
-                "1e-9, or 0 for that of relative_tolerance alone");
+                "1e-9, or 0 for that of ",
+                named_option("relative_tolerance"), " alone");
     for (std::size_t c = 0; c < n_state; ++c)
-        require(o.relative_tolerance[c] > 0 || o.absolute_tolerance[c] > 0,
-                "relative_tolerance and absolute_tolerance are 0: give the error you accept per step, such as 1e-9");
+        require(o.relative_tolerance[c] > 0 || o.absolute_tolerance[c] > 0, named_option("relative_tolerance"), " and ",
+                named_option("absolute_tolerance"), " are 0: give the error you accept per step, such as 1e-9");
     if (adaptive) {
-        require(std::isnan(o.step) || (o.step > 0 && std::isfinite(o.step)), "step is ", o.step,
+        require(std::isnan(o.step) || (o.step > 0 && std::isfinite(o.step)), named_option("step"), " is ", o.step,
                 " (must be positive and finite): give the length of the first step to try");
     } else {
-        require(!std::isnan(o.step), "step is not set, but the method takes fixed steps: give options::step");
+        require(!std::isnan(o.step), named_option("step"),
+                " is not set, but the method takes fixed steps: ", phrase("give_step", "give options::step"));
         check_positive("step", o.step, "give the length of the fixed step; the direction follows from t_end");
     }
     if (!std::isnan(o.step)) check_kept("step", o.step);
@@ -151,47 +167,51 @@ void option_limits::check(const options& o) const {
     for (std::size_t c = 0; adaptive && c < o.absolute_tolerance.size(); ++c) {
         check_kept("absolute_tolerance", o.absolute_tolerance[c]);
         const double least = std::ldexp(1.0, digits > 24 ? -1022 : -126);
-        require(o.absolute_tolerance[c] == 0 || rounded(o.absolute_tolerance[c]) >= least, "absolute_tolerance is ",
-                o.absolute_tolerance[c], ", below the smallest normal number, ", least,
-                ", where a ratio of error to tolerance has no meaning: give at least that, or 0 for that of "
-                "relative_tolerance alone");
+        require(o.absolute_tolerance[c] == 0 || rounded(o.absolute_tolerance[c]) >= least,
+                named_option("absolute_tolerance"), " is ", o.absolute_tolerance[c],
+                ", below the smallest normal number, ", least,
+                ", where a ratio of error to tolerance has no meaning: give at least that, or 0 for that of ",
+                named_option("relative_tolerance"), " alone");
     }
-    require(o.minimum_step >= 0 && std::isfinite(o.minimum_step), "minimum_step is ", o.minimum_step,
+    require(o.minimum_step >= 0 && std::isfinite(o.minimum_step), named_option("minimum_step"), " is ", o.minimum_step,
             " (must not be negative): give 0 for the resolution of t");
     check_kept("minimum_step", o.minimum_step);
-    require(o.maximum_step > 0, "maximum_step is ", o.maximum_step, " (must be positive)");
+    require(o.maximum_step > 0, named_option("maximum_step"), " is ", o.maximum_step, " (must be positive)");
     check_kept("maximum_step", o.maximum_step);
-    require(o.minimum_step <= o.maximum_step, "minimum_step ", o.minimum_step, " is above maximum_step ",
-            o.maximum_step, ": no step size is left; exchange them");
-    require(o.growth_limit >= 1 && std::isfinite(o.growth_limit), "growth_limit is ", o.growth_limit,
+    require(o.minimum_step <= o.maximum_step, named_option("minimum_step"), " ", o.minimum_step, " is above ",
+            named_option("maximum_step"), " ", o.maximum_step, ": no step size is left; exchange them");
+    require(o.growth_limit >= 1 && std::isfinite(o.growth_limit), named_option("growth_limit"), " is ", o.growth_limit,
             " (must be at least 1): give the largest factor from one step to the next, such as 5");
-    require(o.shrink_limit > 0 && o.shrink_limit < 1, "shrink_limit is ", o.shrink_limit,
+    require(o.shrink_limit > 0 && o.shrink_limit < 1, named_option("shrink_limit"), " is ", o.shrink_limit,
             " (must be between 0 and 1): give the smallest factor from one step to the next, such as 0.1");
-    require(static_cast<float>(o.shrink_limit) < 1, "shrink_limit is ", o.shrink_limit,
+    require(static_cast<float>(o.shrink_limit) < 1, named_option("shrink_limit"), " is ", o.shrink_limit,
             ", which is 1 in single precision, that of step-size control: give a smaller value, such as 0.1");
     // Fixed steps are counted in the state's real type, exact up to its mantissa.
     check_count("max_steps", o.max_steps, 1, digits > 31 ? 2'000'000'000 : 16'000'000);
-    require(o.time_limit >= 0, "time_limit is ", o.time_limit,
+    require(o.time_limit >= 0, named_option("time_limit"), " is ", o.time_limit,
             " (must not be negative): give the seconds that the call may take, or 0 for no limit");
-    require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), "events has ", o.events.size(),
-            " entries, but the model has ", n_event, " event functions: give one entry for each, or none for defaults");
+    require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), named_option("events"), " has ",
+            o.events.size(), " entries, but the model has ", n_event,
+            " event functions: give one entry for each, or none for defaults");
     for (const event_options& e : o.events) {
-        require(e.tolerance >= 0 && std::isfinite(e.tolerance), "event tolerance is ", e.tolerance,
+        require(e.tolerance >= 0 && std::isfinite(e.tolerance), named_option("events.tolerance", "event tolerance"),
+                " is ", e.tolerance,
                 " (must not be negative, and finite): give the |g| at which an event counts as located, such as 1e-6, "
                 "or 0 for as close as t and the state resolve");
-        check_kept("event tolerance", e.tolerance);
+        check_kept("events.tolerance", e.tolerance, "event tolerance");
         check_count("stop_after", e.stop_after, 0, 2'000'000'000);
         const int d = static_cast<int>(e.direction);
-        require(d >= -1 && d <= 2, "event direction is ", d, " (must be falling, either, rising or none)");
+        require(d >= -1 && d <= 2, named_option("events.direction", "event direction"), " is ", d,
+                " (must be falling, either, rising or none)");
     }
     check_count("sub_samples", o.sub_samples, 1, 10'000);
     check_choice("schedule", o.schedule, 4, "automatic, in_order, dynamic or by_cost");
     check_choice("phase_time", o.phase_time, 2, "restart or carry_on");
-    require(o.phase_length >= 0 && std::isfinite(o.phase_length), "phase_length is ", o.phase_length,
+    require(o.phase_length >= 0 && std::isfinite(o.phase_length), named_option("phase_length"), " is ", o.phase_length,
             " (must not be negative, and finite): give the length of a phase, whose direction follows "
             "from t_end, or 0 for phases that go to t_end");
     check_kept("phase_length", o.phase_length);
-    require(o.phase_length == 0 || !writes_times, "phase_length is ", o.phase_length,
+    require(o.phase_length == 0 || !writes_times, named_option("phase_length"), " is ", o.phase_length,
             ", but the model declares writes_time_domain, so that its hooks say where phases end: leave "
             "out phase_length, and set t_end in initialise");
     check_choice("phase_step", o.phase_step, 2, "restart or carry_on");
@@ -200,26 +220,27 @@ void option_limits::check(const options& o) const {
     check_choice("invalid_instances", o.invalid_instances, 2, "refuse or mark");
     check_choice("shared_placement", o.shared_placement, 4, "automatic, constant_bank, shared_memory or cache");
     check_count("accumulation_limit", o.accumulation_limit, 1, 1'000'000'000);
-    require(o.block_size >= 0 && o.block_size <= 1024 && o.block_size % 32 == 0, "block_size is ", o.block_size,
-            " (must be a multiple of 32 up to 1024, or 0 for an automatic choice)");
-    require(o.chunk_size >= 0, "chunk_size is ", o.chunk_size,
+    require(o.block_size >= 0 && o.block_size <= 1024 && o.block_size % 32 == 0, named_option("block_size"), " is ",
+            o.block_size, " (must be a multiple of 32 up to 1024, or 0 for an automatic choice)");
+    require(o.chunk_size >= 0, named_option("chunk_size"), " is ", o.chunk_size,
             " (must not be negative): give 0 for what the memory allows");
     if (!o.samples.empty()) {
-        require(samples_trajectory,
-                "samples are requested, but the method has no dense output: use dense<Method>, in solve and in "
+        require(samples_trajectory, named_option("samples"),
+                " are requested, but the method has no dense output: use dense<Method>, in solve and in "
                 "MYRIAD_INSTANTIATE");
         components.check("samples.states", o.samples.states, components.state);
         check_samples(o.samples, o);
         const std::vector<double>& times = o.samples.times;
         for (std::size_t k = 1; k < times.size(); ++k)
-            require(rounded(times[k]) != rounded(times[k - 1]), "samples.times[", k, "] is ", times[k],
-                    ", which is the same as the time before it in single precision: give times further apart or use an "
-                    "ensemble of doubles");
+            require(rounded(times[k]) != rounded(times[k - 1]), named_option("samples.times"), "[", k, "] is ",
+                    times[k],
+                    ", which is the same as the time before it in single precision: give times further apart or ",
+                    phrase("use_doubles", "use an ensemble of doubles"));
     } else {
         check_no_samples(o.samples);
     }
     if (!o.record.empty()) {
-        require(o.record.from_phase >= 0 && o.record.from_phase < o.phases, "record.from_phase is ",
+        require(o.record.from_phase >= 0 && o.record.from_phase < o.phases, named_option("record.from_phase"), " is ",
                 o.record.from_phase, ", but the call has ", o.phases,
                 " phases (counted from 0): nothing would be recorded");
         components.check("record.states", o.record.states, components.state);

@@ -98,7 +98,7 @@ template <class R>
 int record_data<R>::find(const std::vector<std::int16_t>& columns, std::int64_t c, const char* what) const {
     require(size > 0 || !recorded, "these records were moved away: ask those that they were moved to");
     require(c >= 0 && c < static_cast<std::int64_t>(columns.size()) && columns[static_cast<std::size_t>(c)] >= 0, what,
-            " ", c, " was not recorded: name it in options::record");
+            " ", c, " was not recorded: ", phrase("name_in_record", "name it in options::record"));
     return columns[static_cast<std::size_t>(c)];
 }
 template <class R>

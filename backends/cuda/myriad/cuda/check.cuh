@@ -13,14 +13,16 @@
 
 namespace myriad::cuda {
 
-inline const char* advice_for(cudaError_t status) {
+inline host::message_part advice_for(cudaError_t status) {
     switch (status) {
         case cudaErrorNoDevice:
         case cudaErrorInsufficientDriver:
         case cudaErrorInitializationError:
             return "check the driver with nvidia-smi, or use the device \"cpu\"";
         case cudaErrorMemoryAllocation:
-            return "integrate fewer instances at a time: a smaller options::chunk_size or solver capacity";
+            return host::phrase(
+                "fewer_instances",
+                "integrate fewer instances at a time: a smaller options::chunk_size or solver capacity");
         case cudaErrorNoKernelImageForDevice:
         case cudaErrorInvalidDeviceFunction:
         case cudaErrorUnsupportedPtxVersion:
@@ -44,8 +46,8 @@ inline const char* advice_for(cudaError_t status) {
 inline void check(cudaError_t status, const char* call) {
     if (status == cudaSuccess) return;
     cudaGetLastError();  // so that the next call does not report this error, if non-sticky, again
-    const std::string text = message(call, " failed: ", cudaGetErrorString(status), " (", cudaGetErrorName(status),
-                                     "): ", advice_for(status));
+    const marked_text text = marked_message(call, " failed: ", cudaGetErrorString(status), " (",
+                                            cudaGetErrorName(status), "): ", advice_for(status));
     if (status == cudaErrorMemoryAllocation) throw out_of_memory(text);
     throw error(text);
 }

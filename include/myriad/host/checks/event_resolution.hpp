@@ -74,11 +74,14 @@ void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_
         });
         for (int j = 0; j < n_event<Model>; ++j) {
             require(
-                2 * too_fine[j].instances <= looked_at, "the tolerance of event ", j, " is ", tolerance_of(j),
-                ", but rounding changes its function by ", too_fine[j].least, " in instance ", too_fine[j].worst,
+                2 * too_fine[j].instances <= looked_at, "the ", named_option("events.tolerance", "tolerance"),
+                " of event ", j, " is ", tolerance_of(j), ", but rounding changes its function by ", too_fine[j].least,
+                " in instance ", too_fine[j].worst,
                 ", and by more than the tolerance in most instances: raise the tolerance, leave it out for as close as "
                 "t and the state resolve, scale or shift the function or t",
-                std::numeric_limits<R>::digits < 53 ? ", or use an ensemble of doubles" : "");
+                std::numeric_limits<R>::digits < 53
+                    ? marked_message(", or ", phrase("use_doubles", "use an ensemble of doubles"))
+                    : marked_text());
         }
     }
 }

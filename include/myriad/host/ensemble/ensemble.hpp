@@ -292,7 +292,7 @@ private:
         if (o.empty()) return;
         if (samples_.empty()) samples_ = trajectory_samples<Model, R>(o, data_.size);
         if (pinned()) samples_.pin(data_.pinned_for);
-        require(samples_.fits(o), "samples has other states or another capacity (", o.capacity,
+        require(samples_.fits(o), host::named_option("samples"), " has other states or another capacity (", o.capacity,
                 ") than the existing samples (", samples_.capacity(),
                 "): use the same in all calls, or a new ensemble");
         samples_.describe(a);

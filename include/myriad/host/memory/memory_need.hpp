@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "myriad/host/core/error.hpp"
 #include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
@@ -64,7 +65,8 @@ public:
     }
     /// Throws `error` unless that much is available; not checked for a few megabytes. `who` allocates it; `advice` says
     /// what to do.
-    void check(const std::string& who, const char* advice, memory_left (*available)() = &available_memory) const;
+    void check(const std::string& who, const message_part& advice,
+               memory_left (*available)() = &available_memory) const;
 
 private:
     std::vector<std::pair<const char*, double>> parts_;

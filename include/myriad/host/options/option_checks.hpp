@@ -52,8 +52,9 @@ struct option_limits {
     int digits;                 ///< of the real type's mantissa
     double (*rounded)(double);  ///< a number rounded to the real type
 
-    /// Refuses numbers that turn into zero or infinity in the ensemble's real type.
-    void check_kept(const char* name, double value) const;
+    /// Refuses numbers that turn into zero or infinity in the ensemble's real type. `name`: what messages call the
+    /// option, if not by its key.
+    void check_kept(const char* key, double value, const char* name = nullptr) const;
     /// Throws `error`. One function for all models and methods, to save compiling it for each.
     void check(const options& o) const;
 };

@@ -91,7 +91,8 @@ private:
         memory_need need;
         add_memory_of_call(need, instances.size(), &instances, o, method);
         need.check(message("this call for ", instances.size(), " instances"),
-                   "ask for fewer phases, components or samples at a time, or integrate the ensemble in smaller parts");
+                   marked_message("ask for fewer phases, components or samples at a time, or ",
+                                  phrase("smaller_parts", "integrate the ensemble in smaller parts")));
         return o;
     }
 

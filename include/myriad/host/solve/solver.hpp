@@ -282,10 +282,9 @@ private:
         require(!o.progress,
                 "progress is given, but a solver is asynchronous and cannot report it: leave it out, "
                 "and call idle()");
-        require(
-            o.time_limit == 0,
-            "time_limit is given, but a solver is asynchronous, and nobody would watch the clock: leave it out, and "
-            "bound the steps of an instance by max_steps");
+        require(o.time_limit == 0, host::named_option("time_limit"),
+                " is given, but a solver is asynchronous, and nobody would watch the clock: leave it out, and "
+                "bound the steps of an instance by max_steps");
         host::check_options<Model, Method, R>(o);
         host::memory_need need = host::ensemble_data<R>::memory_of(host::shape_of<Model>, capacity);
         host::add_memory_of_call<Model, R>(need, capacity, nullptr, o, host::traits_of<Method>);
