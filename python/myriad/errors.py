@@ -3,6 +3,7 @@
 
 import difflib
 import os
+import re
 import sys
 
 import numpy as np
@@ -16,6 +17,35 @@ class Error(ValueError):
 
 class UnknownOption(Error, TypeError):
     """A call names an option that does not exist."""
+
+
+# How the core's messages, which are the C++ library's, say things in Python.
+_in_python = (
+    ("set invalid_instances = invalid_instances::mark", "give invalid=\"mark\""),
+    ("set it with ensemble.shared(...) before solving", "give it a value in the sweep"),
+    ("name it in options::record", "name it in record="),
+    ("give options::step", "give step="),
+    ("set it with ensemble.t_begin() = ... before solving", "give it in time="),
+    ("set it with ensemble.t_end() = ... before solving", "give it in time="),
+    ("samples.", "samples "),
+    ("integrate fewer instances at a time: a smaller options::chunk_size or solver capacity",
+     "integrate the sweep in smaller parts"),
+    ("use an ensemble of doubles", "give precision=\"double\""),
+    ("relative_tolerance", "rtol"),
+    ("absolute_tolerance", "atol"),
+    ("the ensemble", "the sweep"),
+)
+
+
+def in_python(text, events=()):
+    """A message of the core, which is the C++ library's, in Python's terms, with the names of events for their
+    numbers."""
+    text = re.sub(r"\bevent (\d+)\b", lambda m: f"event '{events[int(m[1])]}'" if int(m[1]) < len(events) else m[0],
+                  str(text))
+    for said, meant in _in_python:
+        text = text.replace(said, meant)
+    return re.sub(r"integrate fewer instances at a time, with .* an options::chunk_size of at most (\d+)",
+                  r"integrate the sweep in parts of at most \1 instances", text)
 
 
 def users_line():

@@ -4,7 +4,6 @@
 import inspect
 import itertools
 import math
-import re
 import time as clock
 
 import numpy as np
@@ -13,7 +12,7 @@ from . import _core, compiler, nvrtc, tape
 from .components import Components, name_of, unknown
 from .device import DeviceInput, is_on_gpu
 from .empty import EmptyEnsemble, EmptyReport, kernel as no_kernel
-from .errors import Error, refuse_masked, refuse_options
+from .errors import Error, in_python, refuse_masked, refuse_options
 from .grid import Sweep, as_numbers
 from .methods import default, fixed_step, method_type
 from .run import Interrupted, Run
@@ -21,22 +20,6 @@ from .run import Interrupted, Run
 _directions = {"falling": -1, "either": 0, "rising": 1, "none": 2}
 _default_event_tolerance = 0.0  # as close as t and the state resolve
 _schedules = {"automatic": 0, "in_order": 1, "dynamic": 2, "by_cost": 3}
-# How the core's messages, which are the C++ library's, say things in Python.
-_in_python = (
-    ("set invalid_instances = invalid_instances::mark", "give invalid=\"mark\""),
-    ("set it with ensemble.shared(...) before solving", "give it a value in the sweep"),
-    ("name it in options::record", "name it in record="),
-    ("give options::step", "give step="),
-    ("set it with ensemble.t_begin() = ... before solving", "give it in time="),
-    ("set it with ensemble.t_end() = ... before solving", "give it in time="),
-    ("samples.", "samples "),
-    ("integrate fewer instances at a time: a smaller options::chunk_size or solver capacity",
-     "integrate the sweep in smaller parts"),
-    ("use an ensemble of doubles", "give precision=\"double\""),
-    ("relative_tolerance", "rtol"),
-    ("absolute_tolerance", "atol"),
-    ("the ensemble", "the sweep"),
-)
 
 
 class _Along:
@@ -54,13 +37,6 @@ class _Along:
 
     def __array__(self, dtype=None, copy=None):
         return self._sweep.values(self._name).astype(dtype or self.dtype, copy=False)
-def in_python(error, changes=_in_python):
-    """An error of the core in Python's terms."""
-    text = str(error)
-    for said, meant in changes:
-        text = text.replace(said, meant)
-    return Error(re.sub(r"integrate fewer instances at a time, with .* an options::chunk_size of at most (\d+)",
-                        r"integrate the sweep in parts of at most \1 instances", text))
 
 
 def _numbers(value, name):
@@ -383,7 +359,7 @@ def _positive_infinity(value):
 
 def make_options(components, size, *, phases, record, samples, step, minimum_step, maximum_step, growth_limit,
                  shrink_limit, max_steps, time_limit, phase_length, carry_on, carry_on_step, sub_samples,
-                 accumulation_limit, schedule):
+                 accumulation_limit, schedule, advice):
     """The core's options, but for tolerances and events, and the places of what is recorded and sampled, by name."""
     options = _core.Options()
     options.phases = _whole(phases, "phases")
@@ -398,6 +374,8 @@ def make_options(components, size, *, phases, record, samples, step, minimum_ste
     options.carry_on(bool(carry_on), bool(carry_on_step))
     options.sub_samples = _whole(sub_samples, "sub_samples")
     options.accumulation_limit = _whole(accumulation_limit, "accumulation_limit")
+    if not advice:
+        options.without_advice()
     if schedule not in _schedules:
         raise Error(f"there is no schedule {schedule!r}: choose one of {', '.join(_schedules)}")
     options.set_schedule(_schedules[schedule])
@@ -453,7 +431,7 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
           rtol=1e-8, atol=1e-8, step=None, minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1,
           max_steps=1_000_000, time_limit=None, phase_length=0, carry_on=False, carry_on_step=False, events=None,
           sub_samples=1, accumulation_limit=50, tolerance_scale=None, invalid="refuse", schedule="automatic", size=None,
-          precision="double", device="auto", interpreted=None, progress=None, **unknown):
+          precision="double", device="auto", interpreted=None, advice=True, progress=None, **unknown):
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
     model             from `myriad.model(...)`
@@ -489,6 +467,8 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
                       instances among them, with the bits that one of them has
     interpreted       True runs the model without compiling it, several times slower; None does so only where there
                       is no compiler, which the report tells
+    advice            False leaves out the notes of the report that take some work: whether stability limits the steps
+                      of an explicit method, and whether phases are too long for the smallest Lyapunov exponent
     progress          True for a bar, or a function of the numbers of instances done and of all
 
     Raises `myriad.Error` if something is missing or does not fit, before any work. Ctrl-C raises
@@ -516,7 +496,8 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
         components, count, phases=phases, record=record, samples=samples, step=step, minimum_step=minimum_step,
         maximum_step=maximum_step, growth_limit=growth_limit, shrink_limit=shrink_limit, max_steps=max_steps,
         time_limit=time_limit, phase_length=phase_length, carry_on=carry_on, carry_on_step=carry_on_step,
-        sub_samples=sub_samples, accumulation_limit=accumulation_limit, schedule=schedule)
+        sub_samples=sub_samples, accumulation_limit=accumulation_limit, schedule=schedule,
+        advice=advice)
     if invalid == "mark":
         options.mark_invalid()
     elif invalid != "refuse":
@@ -551,7 +532,7 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
         report, failure = _core.solve([(k.library, d) for (k, _), d in zip(kernels, devices)], ensemble, options,
                                       function)
     except Error as error:
-        raise in_python(error) from None
+        raise Error(in_python(error, components.event_names)) from None
     finally:
         finish()
     run = Run(components, ensemble, report, kernel, sweep, _inputs(components, given), recorded, sampled,

@@ -16,14 +16,14 @@ import numpy as np
 from . import _core, nvrtc
 from .axes import Axis, Random
 from .components import Components, name_of, unknown
-from .errors import Error, refuse_options
+from .errors import Error, in_python, refuse_options
 from .expression import Node
 from .grid import Sweep
 from .methods import default, fixed_step, method_type
 from .reduce import Reduction
 from .run import Interrupted
-from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, device_names, ends_of, in_python,
-                    kernel_for, make_options, refuse_missing)
+from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, device_names, ends_of, kernel_for,
+                    make_options, refuse_missing)
 from .study_result import StudyResult
 from .symbols import t_begin, t_end, time as time_symbol
 from .whole_numbers import check_whole_numbers
@@ -40,8 +40,11 @@ _terms = (
 )
 
 
-def _in_terms(error):
-    return in_python(in_python(error), _terms)
+def _in_terms(error, components):
+    text = in_python(error, components.event_names)
+    for said, meant in _terms:
+        text = text.replace(said, meant)
+    return Error(text)
 
 
 def _time_name(key):
@@ -110,7 +113,7 @@ class Study:
             for key, text in _by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
                 made.note(f"user.{key}", str(text))
         except Error as error:
-            raise _in_terms(error) from None
+            raise _in_terms(error, components) from None
 
     def _full_name(self, key):
         """The core's name of a component."""
@@ -278,7 +281,7 @@ class Study:
                 return _ExecutedRun(self, executor, devices, chunk, folder or None, show).run()
             self._use(devices, chunk)
             (results, facts), failure = self._core.run(show)
-            facts["notes"] += [no_gpu] if no_gpu else []
+            facts["notes"] = [*map(in_python, facts["notes"]), *([no_gpu] if no_gpu else [])]
             result = self._result(results, facts, folder or None)
             if failure is not None:
                 if isinstance(failure, KeyboardInterrupt):
@@ -286,7 +289,7 @@ class Study:
                 raise failure
             return result
         except Error as error:
-            changed = _in_terms(error)
+            changed = _in_terms(error, self._components)
             changed.result = getattr(error, "result", None)
             raise changed from error.__cause__
         finally:
@@ -457,7 +460,7 @@ def study(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
           step=None,
           minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1, max_steps=1_000_000, phase_length=0,
           carry_on=False, carry_on_step=False, events=None, sub_samples=1, accumulation_limit=50,
-          schedule="automatic", precision="double", interpreted=None, **unknown):
+          schedule="automatic", precision="double", interpreted=None, advice=True, **unknown):
     """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
     What `generate=` of the model sets is given neither in the sweep nor in start.
 
@@ -489,4 +492,4 @@ def study(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
         step=step, minimum_step=minimum_step, maximum_step=maximum_step, growth_limit=growth_limit,
         shrink_limit=shrink_limit, max_steps=max_steps, time_limit=None, phase_length=phase_length, carry_on=carry_on,
         carry_on_step=carry_on_step, events=events, sub_samples=sub_samples, accumulation_limit=accumulation_limit,
-        schedule=schedule, precision=precision, interpreted=interpreted))
+        schedule=schedule, precision=precision, interpreted=interpreted, advice=advice))
