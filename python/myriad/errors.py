@@ -23,10 +23,10 @@ class UnknownOption(Error, TypeError):
 _in_python = (
     ("set invalid_instances = invalid_instances::mark", "give invalid=\"mark\""),
     ("set it with ensemble.shared(...) before solving", "give it a value in the sweep"),
+    ("use controlled<Method, tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE",
+     "give control=\"tolerance_per_instance\""),
     ("name it in options::record", "name it in record="),
     ("give options::step", "give step="),
-    ("set it with ensemble.t_begin() = ... before solving", "give it in time="),
-    ("set it with ensemble.t_end() = ... before solving", "give it in time="),
     ("samples.", "samples "),
     ("integrate fewer instances at a time: a smaller options::chunk_size or solver capacity",
      "integrate the sweep in smaller parts"),
@@ -37,11 +37,17 @@ _in_python = (
 )
 
 
+# Where values are given that the core calls by these names; others are in the sweep.
+_given_in = {"t_begin": "time=", "t_end": "time=", "state": "start=", "tolerance_scale": "tolerance_scale="}
+
+
 def in_python(text, events=()):
     """A message of the core, which is the C++ library's, in Python's terms, with the names of events for their
     numbers."""
     text = re.sub(r"\bevent (\d+)\b", lambda m: f"event '{events[int(m[1])]}'" if int(m[1]) < len(events) else m[0],
                   str(text))
+    text = re.sub(r"set it with ensemble\.(\w+)\([^)]*\) = \.\.\. before solving",
+                  lambda m: f"give it in {_given_in.get(m[1], 'the sweep')}", text)
     for said, meant in _in_python:
         text = text.replace(said, meant)
     return re.sub(r"integrate fewer instances at a time, with .* an options::chunk_size of at most (\d+)",

@@ -40,7 +40,12 @@ class Report:
         self.total_seconds = seconds  #: of the whole call
 
     def __getattr__(self, name):
+        if name == "_report":  # of one that was made without __init__, as by `copy`
+            raise AttributeError(name)
         return getattr(self._report, name)
+
+    def __reduce__(self):
+        raise Error("a report cannot be pickled or copied: keep str(report), or the numbers that you need")
 
     @property
     def by_status(self):

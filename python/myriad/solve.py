@@ -9,7 +9,7 @@ import time as clock
 import numpy as np
 
 from . import _core, compiler, nvrtc, tape
-from .components import Components, name_of, unknown
+from .components import Components, by_component, unknown
 from .device import DeviceInput, is_on_gpu
 from .empty import EmptyEnsemble, EmptyReport, kernel as no_kernel
 from .errors import Error, in_python, refuse_masked, refuse_options
@@ -73,7 +73,7 @@ def _sweep_values(sweep):
     if isinstance(sweep, Sweep):
         return {**{name: _Along(sweep, name) for name in sweep.coordinates}, **sweep.constants}
     if hasattr(sweep, "items"):
-        return {name_of(key): value for key, value in sweep.items()}
+        return by_component(sweep, "the sweep")
     raise Error(f"the sweep is a {type(sweep).__name__}: give a dict, as in {{k: np.linspace(0, 1, 100)}}, or "
                 "myriad.grid(k=..., B=...)")
 
@@ -103,7 +103,7 @@ def refuse_missing(components, given):
 def _gather(components, sweep, start, time, size):
     """All inputs by name, and the number of instances."""
     given = {}
-    initial = {name_of(k): v for k, v in _by_name(start, "start", "start={x: 1, v: 0}").items()}
+    initial = by_component(_by_name(start, "start", "start={x: 1, v: 0}"), "start=")
     for source, values, kinds in (("the sweep", _sweep_values(sweep), None),
                                   ("start=", initial, ("state", "accessory", "integer_accessory"))):
         for name, value in values.items():
@@ -172,8 +172,7 @@ def _per_state(value, components, name, count):
     default. For `count` states, of which those beyond the model's are not used."""
     if hasattr(value, "items"):
         values = [1e-8] * len(components.states)
-        for key, tolerance in value.items():
-            state = name_of(key)
+        for state, tolerance in by_component(value, name).items():
             if state not in components.states:
                 raise unknown(state, components.states, "state of the model")
             values[components.states.index(state)] = _real(tolerance, f"{name} of '{state}'")
@@ -295,7 +294,7 @@ def _set_events(options, events, components, count):
     for event in components.events:
         of_call = changed.get(event.name, {})
         direction = of_call.get("direction", event.direction)
-        if direction not in _directions:
+        if not isinstance(direction, str) or direction not in _directions:
             raise Error(f"the direction of event '{event.name}' is {direction!r}: give \"falling\", \"rising\" or "
                         "\"either\"")
         tolerance = of_call.get("tolerance", event.tolerance)
@@ -376,7 +375,7 @@ def make_options(components, size, *, phases, record, samples, step, minimum_ste
     options.accumulation_limit = _whole(accumulation_limit, "accumulation_limit")
     if not advice:
         options.without_advice()
-    if schedule not in _schedules:
+    if not isinstance(schedule, str) or schedule not in _schedules:
         raise Error(f"there is no schedule {schedule!r}: choose one of {', '.join(_schedules)}")
     options.set_schedule(_schedules[schedule])
     recorded = _set_records(options, record, components)
@@ -386,7 +385,12 @@ def make_options(components, size, *, phases, record, samples, step, minimum_ste
 
 def device_names(device, interpreted):
     """The names of one device or of several, each once, as the core knows them, and why "auto" takes no GPU."""
-    found = [_device_name(d, interpreted) for d in ([device] if isinstance(device, str) else device)]
+    named = [device] if isinstance(device, str) else list(device) if isinstance(device, (list, tuple)) else [device]
+    for one in named:
+        if not isinstance(one, str):
+            raise Error(f"device {one!r} is unknown: use \"auto\", \"cpu\", \"cuda\", \"cuda:1\" for the second GPU, "
+                        "or a list of such names")
+    found = [_device_name(d, interpreted) for d in named]
     if not found:
         raise Error("device= names no device: leave it out, or give \"cpu\"")
     return list(dict.fromkeys(name for name, _ in found)), next((why for _, why in found if why), None)
@@ -483,7 +487,7 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
     if len(devices) > 1 and not all(d.startswith("cuda") for d in devices):
         raise Error(f"device is {device!r}, and several devices of a call must be GPUs: name GPUs alone, or use "
                     "myriad.study, which uses CPU and GPUs together")
-    if not hasattr(model, "source"):
+    if isinstance(model, type) or not hasattr(model, "source"):
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
     method = default if method is None else method

@@ -127,10 +127,19 @@ class Study:
         known = [n for n in self._components.place if n not in self._components.tables]
         raise unknown(name, known, "component of the model")
 
+    def _refuse_twice(self, given, what):
+        """Refuses a component that is given by its symbol and by its name; returns the names of all."""
+        names = [self._full_name(key) for key in given]
+        for name in names:
+            if names.count(name) > 1:
+                raise Error(f"'{name.partition('.')[2] or name}' is given twice in {what}: give it once")
+        return set(names)
+
     def _set_instances(self, made, components, sweep, start, time, draws):
         """Axes, random values and values for all instances."""
         begin, end = ends_of(time)
         given = dict(_by_name(start, "start", "start={x: 1, v: 0}"))
+        self._refuse_twice(given, "start=")
         for name, value in (("t_begin", begin), ("t_end", end)):
             if value is not None:
                 given[t_begin if name == "t_begin" else t_end] = value
@@ -141,7 +150,13 @@ class Study:
                 on_grid.append([(n, v) for n, (a, v) in sweep.coordinates.items() if a == axis])
             constants.update(sweep.constants)
         else:
-            given = {**_by_name(sweep, "the sweep", "{k: myriad.linspace(0, 1, 100)}"), **given}
+            swept = _by_name(sweep, "the sweep", "{k: myriad.linspace(0, 1, 100)}")
+            twice = self._refuse_twice(swept, "the sweep") & self._refuse_twice(given, "start=")
+            for name in twice & {"t_begin", "t_end"}:
+                raise Error(f"'{name}' is given in the sweep and in time=: give None there")
+            for name in twice:
+                raise Error(f"'{name.partition('.')[2]}' is given in the sweep and in start=: give it once")
+            given = {**swept, **given}
         together = []
         for key, value in given.items():
             name = _time_name(key) or name_of(key)
