@@ -59,10 +59,12 @@ def _numbers(value, name):
 
 def _whole_numbers(array, name):
     """The values of an integer component: whole numbers of 32 bits."""
-    wrong = np.flatnonzero((array != np.floor(array)) | ~(np.abs(array.astype(float)) < 1 << 31))
+    least, largest = -(1 << 31), (1 << 31) - 1
+    values = array.astype(float)
+    wrong = np.flatnonzero((array != np.floor(array)) | ~((values >= least) & (values <= largest)))
     if wrong.size:
         raise Error(f"'{name}' is an integer and has the value {array.flat[wrong[0]]}: give whole numbers between "
-                    f"{1 - (1 << 31)} and {(1 << 31) - 1}")
+                    f"{least} and {largest}")
     return array.astype(np.int32)
 
 

@@ -2,6 +2,7 @@
 """Inputs that contradict themselves, or are of the wrong kind: refused with a message that says what to write."""
 
 import copy
+import fractions
 import pickle
 
 import numpy as np
@@ -78,3 +79,24 @@ def test_a_copied_report_ends_in_endless_recursion():
         with pytest.raises(my.Error, match="a report cannot be pickled or copied: keep str"):
             attempt(report)
     assert not hasattr(report, "nonsense")
+
+
+def test_the_least_whole_number_of_32_bits_is_refused():
+    n = my.shared_integer("n")
+    model = my.model({x: my.where(n < 0, 1.0, 0.0)})
+    for value, slope in ((-(1 << 31), 1), ((1 << 31) - 1, 0)):
+        run = my.solve(model, {n: value}, start={x: 0}, time=(0, 1), device="cpu", interpreted=True)
+        assert run["x"][0] == pytest.approx(slope, rel=1e-12)
+    for value in (1 << 31, -(1 << 31) - 1, 0.5, np.nan):
+        with pytest.raises(my.Error, match="give whole numbers between -2147483648 and 2147483647"):
+            my.solve(model, {n: value}, start={x: 0}, time=(0, 1), device="cpu", interpreted=True)
+
+
+def test_tables_of_uneven_lists_end_in_an_error_of_numpy():
+    with pytest.raises(my.Error, match=r"\[\[1\], \[1, 2\]\] is no array"):
+        my.table("W", [[1], [1, 2]])
+    with pytest.raises(my.Error, match="an interpolation"):
+        my.interpolate(my.time, [0, 1], [[1], [1, 2]])
+    with pytest.raises(my.Error, match="an interpolation"):
+        my.interpolate(my.time, ["a", "b"], [0, 1])
+    assert my.table("W", [fractions.Fraction(1, 4)]).values[0] == 0.25
