@@ -242,6 +242,16 @@ def _shrink(folder, keep):
             total -= size
 
 
+def prepare():
+    """Has the compiler prepare the library's headers now, as after an installation or while an image of a container is
+    made, so that the very first model compiles as fast as later ones. Returns False where the compiler prepares none.
+    Raises `Error` if there is no compiler, or if the folder of the cache cannot be used."""
+    from . import compiler  # which is above this file
+    if (problem := _problem_of(directory())) is not None:
+        raise Error(f"the cache {directory()} cannot be used: {problem}: set MYRIAD_CACHE_DIR to another folder")
+    return compiler.prepare()
+
+
 def clear():
     """Removes all compiled models from the cache; returns how many."""
     folder = directory()

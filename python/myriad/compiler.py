@@ -183,14 +183,26 @@ class Kernel:
 _loaded = {}
 
 
+def _instruction_set():
+    chosen = os.environ.get("MYRIAD_INSTRUCTION_SET") or _core.instruction_set()
+    if chosen not in _architectures:
+        raise Error(f"MYRIAD_INSTRUCTION_SET is {chosen!r}: name one of {', '.join(_architectures)}, or unset the "
+                    "variable")
+    return chosen
+
+
+def prepare():
+    """Has the compiler of this process prepare the library's headers; returns whether it can."""
+    by = compiler()
+    flags = by.flags(_instruction_set())
+    return precompiled.prepare(precompiled.key_of(by, flags, _core.headers), by, flags, _include)
+
+
 def kernel(header, struct, method, real):
     """The kernel of a model, which is C++ source with a struct of that name, for a method and a real type, both as C++
     types. Raises `Error` if there is no compiler, or with its first message if it refuses the model."""
     begin = time.perf_counter()
-    instruction_set = os.environ.get("MYRIAD_INSTRUCTION_SET") or _core.instruction_set()
-    if instruction_set not in _architectures:
-        raise Error(f"MYRIAD_INSTRUCTION_SET is {instruction_set!r}: name one of {', '.join(_architectures)}, or unset "
-                    "the variable")
+    instruction_set = _instruction_set()
     asked = (header, struct, method, real, instruction_set, os.environ.get("MYRIAD_CXX"),
              os.environ.get("CXX"))
     if asked in _loaded:

@@ -20,6 +20,17 @@ def name_of(key):
     raise Error(f"{key!r} is no component of a model: give a symbol, such as x, or its name, such as \"x\"")
 
 
+def by_component(values, what):
+    """Values by the names of components; refuses one that is given by its symbol and by its name."""
+    named = {}
+    for key, value in values.items():
+        name = name_of(key)
+        if name in named:
+            raise Error(f"'{name}' is given twice in {what}: give it once")
+        named[name] = value
+    return named
+
+
 def unknown(name, known, what):
     """The error of a name that is none of the known ones."""
     near = [k for k in known if k.lower() == name.lower()] or difflib.get_close_matches(name, known, 1)

@@ -3,6 +3,7 @@
 
 import difflib
 import os
+import re
 import sys
 
 import numpy as np
@@ -14,33 +15,60 @@ class Error(ValueError):
     """Something in a model, a sweep or the options of a call is wrong; the message says what and what to do."""
 
 
+# How the core's messages, which are the C++ library's, say things in Python: options, and phrases by their keys.
 _options = {
     "relative_tolerance": "rtol", "absolute_tolerance": "atol", "options.relative_tolerance": "options.rtol",
     "options.absolute_tolerance": "options.atol", "repeat": "draws="}
 _phrases = {
     "ensemble": "the sweep", "mark_invalid": "give invalid=\"mark\"", "set_shared": "give it a value in the sweep",
-    "set_parameter": "give it a value in the sweep", "set_state": "give it a value in start=",
-    "set_t_begin": "give it in time=", "set_t_end": "give it in time=", "name_in_record": "name it in record=",
-    "name_in_samples": "name it in samples=", "give_step": "give step=", "use_doubles": "give precision=\"double\"",
-    "smaller_parts": "integrate the sweep in smaller parts", "fewer_instances": "integrate the sweep in smaller parts",
-    "smaller_chunk": "make chunk= smaller", "new_folder": "give another store= and a smaller chunk="}
+    "name_in_record": "name it in record=", "name_in_samples": "name it in samples=", "give_step": "give step=",
+    "use_doubles": "give precision=\"double\"", "smaller_parts": "integrate the sweep in smaller parts",
+    "fewer_instances": "integrate the sweep in smaller parts", "smaller_chunk": "make chunk= smaller",
+    "new_folder": "give another store= and a smaller chunk=",
+    "scale_tolerances": "give control=\"tolerance_per_instance\""}
+# Where values are given that the core calls by these names; others are in the sweep.
+_given_in = {"t_begin": "time=", "t_end": "time=", "state": "start=", "tolerance_scale": "tolerance_scale="}
 
 
-def in_python(text, marks):
+def _in_python(said, is_phrase, key, events):
+    what, _, number = key.partition(" ")
+    if not is_phrase:
+        return said.replace("samples.", "samples ") if key.startswith("samples.") else _options.get(key, said)
+    if what == "event" and int(number) < len(events):
+        return f"event {events[int(number)]!r}"
+    if what == "fewer_instances" and number:
+        return f"integrate the sweep in parts of at most {number} instances"
+    if what == "set" and number:
+        return f"give it in {_given_in.get(number, 'the sweep')}"
+    return _phrases.get(key, said)
+
+
+def in_python(text, marks, events=()):
     """An error of the core in Python's words. `marks` are the stretches of its text that have others here: where each
-    begins and how long it is, in bytes, whether it is a phrase or else a name, and its key, maybe with a number."""
+    begins and how long it is, in bytes, whether it is a phrase or else a name, and its key, maybe with a number or a
+    name; `events`: the names of the model's events."""
     written, made, at = text.encode(), b"", 0
     for begin, size, is_phrase, key in marks:
         said = written[begin:begin + size].decode()
-        if not is_phrase:
-            meant = said.replace("samples.", "samples ") if key.startswith("samples.") else _options.get(key, said)
-        elif key.startswith("fewer_instances "):
-            meant = f"integrate the sweep in parts of at most {key.split()[1]} instances"
-        else:
-            meant = _phrases.get(key, said)
-        made += written[at:begin] + meant.encode()
+        made += written[at:begin] + _in_python(said, is_phrase, key, events).encode()
         at = begin + size
-    return Error((made + written[at:]).decode())
+    error = Error((made + written[at:]).decode())
+    error.of_core = text, marks
+    return error
+
+
+def with_event_names(error, events):
+    """The same error with the names of the model's events, where the core had their numbers."""
+    if not hasattr(error, "of_core"):
+        return error
+    named = in_python(*error.of_core, events)
+    named.__dict__.update({**error.__dict__, **named.__dict__})
+    return named
+
+
+def note_in_python(text):
+    """A note of the core with Python's names of options."""
+    return re.sub(r"\b(relative|absolute)_tolerance\b", lambda m: _options[m[0]], text)
 
 
 class UnknownOption(Error, TypeError):

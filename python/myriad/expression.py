@@ -776,7 +776,9 @@ def evaluate(roots, values):
     with np.errstate(all="ignore"):
         for node in walk(roots):
             if node.op == "symbol":
-                known[id(node)] = np.asarray(values[node]) + 0
+                given = np.asarray(values[node])
+                is_whole = node.type == real and given.dtype.kind in "biu"
+                known[id(node)] = (given.astype(float) if is_whole else given)[()]
             elif node.op in ("constant", "truth"):
                 known[id(node)] = node.value
             elif node.op == "element":

@@ -4,6 +4,7 @@ axes, the last one varying fastest; a zip takes the values of equally long array
 """
 
 import decimal
+import math
 import numbers
 
 import numpy as np
@@ -28,7 +29,10 @@ def _name(key, line):
 
 def as_numbers(values):
     """What users give as numbers, as an array; also objects that are real numbers, as those of `fractions`."""
-    array = np.asarray(values)
+    try:
+        array = np.asarray(values)
+    except ValueError as why:  # lists of different lengths
+        raise Error(f"{values!r} is no array{at(users_line())}: {why}") from None
     if array.dtype == object and all(isinstance(x, (numbers.Real, decimal.Decimal)) for x in array.flat):
         try:
             array = array.astype(float)
@@ -70,7 +74,10 @@ class Sweep:
     def __init__(self, axes, coordinates, constants):
         self.axes, self.coordinates, self.constants = axes, coordinates, constants
         self.shape = tuple(len(values) for _, values in axes)
-        self.size = int(np.prod(self.shape, dtype=np.int64))
+        self.size = math.prod(self.shape)
+        if self.size >= 1 << 62:
+            raise Error(f"the sweep has {self.size} instances{at(users_line())}, and numbers of instances end at 2^62: "
+                        "make its axes shorter")
         self.names = [*coordinates, *constants]
 
     def values(self, name):
@@ -91,7 +98,7 @@ class Sweep:
         `values[i // repeat % len(values)]`."""
         axis, values = self.coordinates[name]
         place = [a for a, _ in self.axes].index(axis)
-        return np.asarray(values), int(np.prod(self.shape[place + 1:], dtype=np.int64))
+        return np.asarray(values), math.prod(self.shape[place + 1:])
 
     def unstack(self, values):
         """An array with a row per instance as one with the axes of the sweep: (size, ...) to shape + (...)."""

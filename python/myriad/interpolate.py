@@ -28,7 +28,10 @@ def interpolate(t, times, values, kind="linear", outside="hold", name="forcing")
     line = at(users_line())
     refuse_masked(times, "times of an interpolation")
     refuse_masked(values, "values of an interpolation")
-    times, values = np.asarray(times, float), np.asarray(values, float)
+    try:
+        times, values = np.asarray(times, float), np.asarray(values, float)
+    except (TypeError, ValueError) as why:
+        raise Error(f"the data of an interpolation are no numbers{line}: {why}") from None
     if times.ndim != 1 or times.shape != values.shape or times.size < 2:
         raise Error(f"the interpolation has times of shape {times.shape} and values of shape {values.shape}{line}: "
                     "give one value for each of two times or more")

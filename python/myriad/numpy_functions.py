@@ -100,7 +100,8 @@ def _table():
 
 def _inverse_sinh(x):
     size = abs(x)
-    return ex.copysign(ex.log1p(size + size * size / (1 + ex.sqrt(1 + size * size))), x)
+    small = ex.log1p(size + size * size / (1 + ex.sqrt(1 + size * size)))
+    return ex.copysign(ex.where(size > 1e150, ex.log(size) + 0.6931471805599453, small), x)  # where squares overflow
 
 
 def _clip(x, low=None, high=None, out=None, **by_name):

@@ -52,6 +52,13 @@ def begin(key, by, flags, include):
     threading.Thread(target=_make, args=(_path(key, by), by, flags, include)).start()
 
 
+def prepare(key, by, flags, include):
+    """Makes them now, unless they are there; returns whether they are."""
+    if by.kind in _suffixes and not _is_ours(_path(key, by)):
+        _make(_path(key, by), by, flags, include)
+    return bool(arguments(key, by))
+
+
 def _make(path, by, flags, include):
     with contextlib.suppress(OSError, subprocess.SubprocessError), tempfile.TemporaryDirectory(
             prefix=path.name + ".", dir=path.parent) as workplace:

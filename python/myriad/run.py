@@ -8,7 +8,7 @@ import numpy as np
 from . import _core
 from .components import name_of
 from .device import DeviceInput, DeviceResults
-from .errors import Error
+from .errors import Error, note_in_python
 from .grid import Sweep
 from .symbols import time
 
@@ -32,7 +32,7 @@ class Report:
 
     def __init__(self, report, kernel, seconds, notes=()):
         self._report = report
-        self.notes = [*report.notes, *notes]  #: what else to know
+        self.notes = [*map(note_in_python, report.notes), *notes]  #: what else to know
         #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
         #: with a note if the cache cannot be used
         self.kernel = kernel.origin
@@ -40,7 +40,12 @@ class Report:
         self.total_seconds = seconds  #: of the whole call
 
     def __getattr__(self, name):
+        if name == "_report":  # of one that was made without __init__, as by `copy`
+            raise AttributeError(name)
         return getattr(self._report, name)
+
+    def __reduce__(self):
+        raise Error("a report cannot be pickled or copied: keep str(report), or the numbers that you need")
 
     @property
     def by_status(self):
@@ -48,8 +53,9 @@ class Report:
         return {name: count for name, count in zip(status_names, self._report.by_status) if count}
 
     def __str__(self):
-        text = "\n".join([str(self._report).rstrip("\n"),
-                          *(f"note: {note}" for note in self.notes[len(self._report.notes):])])
+        told = str(self._report).rstrip("\n").splitlines()
+        text = "\n".join([*(line for line in told if not line.startswith("note: ")),
+                          *(f"note: {note}" for note in self.notes)])
         origin = f"from {self.kernel}" if self.kernel in ("cache", "memory") else self.kernel
         if not self.kernel.startswith("interpreted"):
             origin += f" in {self.compile_seconds:.3g} s"

@@ -9,10 +9,10 @@ import time as clock
 import numpy as np
 
 from . import _core, compiler, nvrtc, tape
-from .components import Components, name_of, unknown
+from .components import Components, by_component, unknown
 from .device import DeviceInput, is_on_gpu
 from .empty import EmptyEnsemble, EmptyReport, kernel as no_kernel
-from .errors import Error, refuse_masked, refuse_options
+from .errors import Error, refuse_masked, refuse_options, with_event_names
 from .grid import Sweep, as_numbers
 from .methods import default, fixed_step, method_type
 from .run import Interrupted, Run
@@ -20,7 +20,8 @@ from .run import Interrupted, Run
 _directions = {"falling": -1, "either": 0, "rising": 1, "none": 2}
 _default_event_tolerance = 0.0  # as close as t and the state resolve
 _schedules = {"automatic": 0, "in_order": 1, "dynamic": 2, "by_cost": 3}
-# How the core's messages, which are the C++ library's, say things in Python.
+
+
 class _Along:
     """Values of a grid along one of its axes, as an array of one value per instance that is not made until needed."""
 
@@ -36,6 +37,8 @@ class _Along:
 
     def __array__(self, dtype=None, copy=None):
         return self._sweep.values(self._name).astype(dtype or self.dtype, copy=False)
+
+
 def _numbers(value, name):
     """A number, or an array of one dimension, of real numbers; arrays on a GPU stay there."""
     if isinstance(value, _Along):
@@ -56,10 +59,12 @@ def _numbers(value, name):
 
 def _whole_numbers(array, name):
     """The values of an integer component: whole numbers of 32 bits."""
-    wrong = np.flatnonzero((array != np.floor(array)) | ~(np.abs(array.astype(float)) < 1 << 31))
+    least, largest = -(1 << 31), (1 << 31) - 1
+    values = array.astype(float)
+    wrong = np.flatnonzero((array != np.floor(array)) | ~((values >= least) & (values <= largest)))
     if wrong.size:
         raise Error(f"'{name}' is an integer and has the value {array.flat[wrong[0]]}: give whole numbers between "
-                    f"{1 - (1 << 31)} and {(1 << 31) - 1}")
+                    f"{least} and {largest}")
     return array.astype(np.int32)
 
 
@@ -70,7 +75,7 @@ def _sweep_values(sweep):
     if isinstance(sweep, Sweep):
         return {**{name: _Along(sweep, name) for name in sweep.coordinates}, **sweep.constants}
     if hasattr(sweep, "items"):
-        return {name_of(key): value for key, value in sweep.items()}
+        return by_component(sweep, "the sweep")
     raise Error(f"the sweep is a {type(sweep).__name__}: give a dict, as in {{k: np.linspace(0, 1, 100)}}, or "
                 "myriad.grid(k=..., B=...)")
 
@@ -100,7 +105,7 @@ def refuse_missing(components, given):
 def _gather(components, sweep, start, time, size):
     """All inputs by name, and the number of instances."""
     given = {}
-    initial = {name_of(k): v for k, v in _by_name(start, "start", "start={x: 1, v: 0}").items()}
+    initial = by_component(_by_name(start, "start", "start={x: 1, v: 0}"), "start=")
     for source, values, kinds in (("the sweep", _sweep_values(sweep), None),
                                   ("start=", initial, ("state", "accessory", "integer_accessory"))):
         for name, value in values.items():
@@ -169,8 +174,7 @@ def _per_state(value, components, name, count):
     default. For `count` states, of which those beyond the model's are not used."""
     if hasattr(value, "items"):
         values = [1e-8] * len(components.states)
-        for key, tolerance in value.items():
-            state = name_of(key)
+        for state, tolerance in by_component(value, name).items():
             if state not in components.states:
                 raise unknown(state, components.states, "state of the model")
             values[components.states.index(state)] = _real(tolerance, f"{name} of '{state}'")
@@ -292,7 +296,7 @@ def _set_events(options, events, components, count):
     for event in components.events:
         of_call = changed.get(event.name, {})
         direction = of_call.get("direction", event.direction)
-        if direction not in _directions:
+        if not isinstance(direction, str) or direction not in _directions:
             raise Error(f"the direction of event '{event.name}' is {direction!r}: give \"falling\", \"rising\" or "
                         "\"either\"")
         tolerance = of_call.get("tolerance", event.tolerance)
@@ -349,7 +353,7 @@ def _positive_infinity(value):
 
 def make_options(components, size, *, phases, record, samples, step, minimum_step, maximum_step, growth_limit,
                  shrink_limit, max_steps, time_limit, phase_length, carry_on, carry_on_step, sub_samples,
-                 accumulation_limit, schedule):
+                 accumulation_limit, schedule, advice):
     """The core's options, but for tolerances and events, and the places of what is recorded and sampled, by name."""
     options = _core.Options()
     options.phases = _whole(phases, "phases")
@@ -364,7 +368,9 @@ def make_options(components, size, *, phases, record, samples, step, minimum_ste
     options.carry_on(bool(carry_on), bool(carry_on_step))
     options.sub_samples = _whole(sub_samples, "sub_samples")
     options.accumulation_limit = _whole(accumulation_limit, "accumulation_limit")
-    if schedule not in _schedules:
+    if not advice:
+        options.without_advice()
+    if not isinstance(schedule, str) or schedule not in _schedules:
         raise Error(f"there is no schedule {schedule!r}: choose one of {', '.join(_schedules)}")
     options.set_schedule(_schedules[schedule])
     recorded = _set_records(options, record, components)
@@ -374,7 +380,12 @@ def make_options(components, size, *, phases, record, samples, step, minimum_ste
 
 def device_names(device, interpreted):
     """The names of one device or of several, each once, as the core knows them, and why "auto" takes no GPU."""
-    found = [_device_name(d, interpreted) for d in ([device] if isinstance(device, str) else device)]
+    named = [device] if isinstance(device, str) else list(device) if isinstance(device, (list, tuple)) else [device]
+    for one in named:
+        if not isinstance(one, str):
+            raise Error(f"device {one!r} is unknown: use \"auto\", \"cpu\", \"cuda\", \"cuda:1\" for the second GPU, "
+                        "or a list of such names")
+    found = [_device_name(d, interpreted) for d in named]
     if not found:
         raise Error("device= names no device: leave it out, or give \"cpu\"")
     return list(dict.fromkeys(name for name, _ in found)), next((why for _, why in found if why), None)
@@ -419,7 +430,7 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
           rtol=1e-8, atol=1e-8, step=None, minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1,
           max_steps=1_000_000, time_limit=None, phase_length=0, carry_on=False, carry_on_step=False, events=None,
           sub_samples=1, accumulation_limit=50, tolerance_scale=None, invalid="refuse", schedule="automatic", size=None,
-          precision="double", device="auto", interpreted=None, progress=None, **unknown):
+          precision="double", device="auto", interpreted=None, advice=True, progress=None, **unknown):
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
     model             from `myriad.model(...)`
@@ -455,6 +466,8 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
                       instances among them, with the bits that one of them has
     interpreted       True runs the model without compiling it, several times slower; None does so only where there
                       is no compiler, which the report tells
+    advice            False leaves out the notes of the report that take some work: whether stability limits the steps
+                      of an explicit method, and whether phases are too long for the smallest Lyapunov exponent
     progress          True for a bar, or a function of the numbers of instances done and of all
 
     Raises `myriad.Error` if something is missing or does not fit, before any work. Ctrl-C raises
@@ -469,7 +482,7 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
     if len(devices) > 1 and not all(d.startswith("cuda") for d in devices):
         raise Error(f"device is {device!r}, and several devices of a call must be GPUs: name GPUs alone, or use "
                     "myriad.study, which uses CPU and GPUs together")
-    if not hasattr(model, "source"):
+    if isinstance(model, type) or not hasattr(model, "source"):
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
     method = default if method is None else method
@@ -482,7 +495,8 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
         components, count, phases=phases, record=record, samples=samples, step=step, minimum_step=minimum_step,
         maximum_step=maximum_step, growth_limit=growth_limit, shrink_limit=shrink_limit, max_steps=max_steps,
         time_limit=time_limit, phase_length=phase_length, carry_on=carry_on, carry_on_step=carry_on_step,
-        sub_samples=sub_samples, accumulation_limit=accumulation_limit, schedule=schedule)
+        sub_samples=sub_samples, accumulation_limit=accumulation_limit, schedule=schedule,
+        advice=advice)
     if invalid == "mark":
         options.mark_invalid()
     elif invalid != "refuse":
@@ -516,6 +530,8 @@ def solve(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
             ensemble.array("tolerance_scale")[...] = scale
         report, failure = _core.solve([(k.library, d) for (k, _), d in zip(kernels, devices)], ensemble, options,
                                       function)
+    except Error as error:
+        raise with_event_names(error, components.event_names) from None
     finally:
         finish()
     run = Run(components, ensemble, report, kernel, sweep, _inputs(components, given), recorded, sampled,

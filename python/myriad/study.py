@@ -16,14 +16,14 @@ import numpy as np
 from . import _core, nvrtc
 from .axes import Axis, Random
 from .components import Components, name_of, unknown
-from .errors import Error, refuse_options
+from .errors import Error, note_in_python, refuse_options, with_event_names
 from .expression import Node
 from .grid import Sweep
 from .methods import default, fixed_step, method_type
 from .reduce import Reduction
 from .run import Interrupted
-from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, device_names, ends_of,
-                    kernel_for, make_options, refuse_missing)
+from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, device_names, ends_of, kernel_for,
+                    make_options, refuse_missing)
 from .study_result import StudyResult
 from .symbols import t_begin, t_end, time as time_symbol
 from .whole_numbers import check_whole_numbers
@@ -31,6 +31,8 @@ from .whole_numbers import check_whole_numbers
 __all__ = ["Study", "study"]
 
 _keep_choices = ("end", "records", "samples", "random", "status", "work")
+
+
 def _time_name(key):
     """The names of the ends of the time domain, or None."""
     return {t_begin: "t_begin", t_end: "t_end"}.get(key) if isinstance(key, Node) else None
@@ -69,32 +71,35 @@ class Study:
         self._interpreted, self._kernels = interpreted, {}
         self._kernel_for = lambda device: kernel_for(device, model, components, method, control, samples is not None,
                                                      precision, self._interpreted)
-        made = self._core = _core.Study(
-            [list(n) for n in components.names], list(components.tables.values()),
-            getattr(model, "generator", ""), "float64" if precision == "double" else "float32",
-            getattr(model, "name", None) or "model",
-            method_type(method, control, samples is not None).replace("myriad::", ""))
-        made.options(options)
-        self._set_instances(made, components, sweep, start, time, draws)
-        self._looks_at_domains = bool(samples is not None or others["phase_length"] or others["carry_on"])
-        if draws is not None:
-            made.repeat(_whole(draws, "draws", 1 << 62), "draw")
-        made.seed(_whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
-        check_whole_numbers(getattr(model, "generate", ()), made.size, self._shared_integers)
-        self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
-        for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
-            if not isinstance(reduction, Reduction):
-                raise Error(f"reduce= has {reduction!r}: give reductions, as in "
-                            "[myriad.reduce.mean(\"x_end\")]")
-            made.reduce(reduction.core())
-        for key, unit in _by_name(units, "units", "units={x: \"m\"}").items():
-            made.unit("t" if key is time_symbol else self._full_name(key), unit)
-        if title:
-            made.title(title)
-        values = np.array(list(components.tables.values()), float)
-        made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
-        for key, text in _by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
-            made.note(f"user.{key}", str(text))
+        try:
+            made = self._core = _core.Study(
+                [list(n) for n in components.names], list(components.tables.values()),
+                getattr(model, "generator", ""), "float64" if precision == "double" else "float32",
+                getattr(model, "name", None) or "model",
+                method_type(method, control, samples is not None).replace("myriad::", ""))
+            made.options(options)
+            self._set_instances(made, components, sweep, start, time, draws)
+            self._looks_at_domains = bool(samples is not None or others["phase_length"] or others["carry_on"])
+            if draws is not None:
+                made.repeat(_whole(draws, "draws", 1 << 62), "draw")
+            made.seed(_whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
+            check_whole_numbers(getattr(model, "generate", ()), made.size, self._shared_integers)
+            self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
+            for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
+                if not isinstance(reduction, Reduction):
+                    raise Error(f"reduce= has {reduction!r}: give reductions, as in "
+                                "[myriad.reduce.mean(\"x_end\")]")
+                made.reduce(reduction.core())
+            for key, unit in _by_name(units, "units", "units={x: \"m\"}").items():
+                made.unit("t" if key is time_symbol else self._full_name(key), unit)
+            if title:
+                made.title(title)
+            values = np.array(list(components.tables.values()), float)
+            made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
+            for key, text in _by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
+                made.note(f"user.{key}", str(text))
+        except Error as error:
+            raise with_event_names(error, components.event_names) from None
 
     def _full_name(self, key):
         """The core's name of a component."""
@@ -108,10 +113,19 @@ class Study:
         known = [n for n in self._components.place if n not in self._components.tables]
         raise unknown(name, known, "component of the model")
 
+    def _refuse_twice(self, given, what):
+        """Refuses a component that is given by its symbol and by its name; returns the names of all."""
+        names = [self._full_name(key) for key in given]
+        for name in names:
+            if names.count(name) > 1:
+                raise Error(f"'{name.partition('.')[2] or name}' is given twice in {what}: give it once")
+        return set(names)
+
     def _set_instances(self, made, components, sweep, start, time, draws):
         """Axes, random values and values for all instances."""
         begin, end = ends_of(time)
         given = dict(_by_name(start, "start", "start={x: 1, v: 0}"))
+        self._refuse_twice(given, "start=")
         for name, value in (("t_begin", begin), ("t_end", end)):
             if value is not None:
                 given[t_begin if name == "t_begin" else t_end] = value
@@ -122,7 +136,13 @@ class Study:
                 on_grid.append([(n, v) for n, (a, v) in sweep.coordinates.items() if a == axis])
             constants.update(sweep.constants)
         else:
-            given = {**_by_name(sweep, "the sweep", "{k: myriad.linspace(0, 1, 100)}"), **given}
+            swept = _by_name(sweep, "the sweep", "{k: myriad.linspace(0, 1, 100)}")
+            twice = self._refuse_twice(swept, "the sweep") & self._refuse_twice(given, "start=")
+            for name in twice & {"t_begin", "t_end"}:
+                raise Error(f"'{name}' is given in the sweep and in time=: give None there")
+            for name in twice:
+                raise Error(f"'{name.partition('.')[2]}' is given in the sweep and in start=: give it once")
+            given = {**swept, **given}
         together = []
         for key, value in given.items():
             name = _time_name(key) or name_of(key)
@@ -262,13 +282,15 @@ class Study:
                 return _ExecutedRun(self, executor, devices, chunk, folder or None, show).run()
             self._use(devices, chunk)
             (results, facts), failure = self._core.run(show)
-            facts["notes"] += [no_gpu] if no_gpu else []
+            facts["notes"] = [*map(note_in_python, facts["notes"]), *([no_gpu] if no_gpu else [])]
             result = self._result(results, facts, folder or None)
             if failure is not None:
                 if isinstance(failure, KeyboardInterrupt):
                     raise Interrupted(result) from None
                 raise failure
             return result
+        except Error as error:
+            raise with_event_names(error, self._components.event_names) from error.__cause__
         finally:
             show.close()
 
@@ -437,7 +459,7 @@ def study(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
           step=None,
           minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1, max_steps=1_000_000, phase_length=0,
           carry_on=False, carry_on_step=False, events=None, sub_samples=1, accumulation_limit=50,
-          schedule="automatic", precision="double", interpreted=None, **unknown):
+          schedule="automatic", precision="double", interpreted=None, advice=True, **unknown):
     """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
     What `generate=` of the model sets is given neither in the sweep nor in start.
 
@@ -469,4 +491,4 @@ def study(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
         step=step, minimum_step=minimum_step, maximum_step=maximum_step, growth_limit=growth_limit,
         shrink_limit=shrink_limit, max_steps=max_steps, time_limit=None, phase_length=phase_length, carry_on=carry_on,
         carry_on_step=carry_on_step, events=events, sub_samples=sub_samples, accumulation_limit=accumulation_limit,
-        schedule=schedule, precision=precision, interpreted=interpreted))
+        schedule=schedule, precision=precision, interpreted=interpreted, advice=advice))

@@ -7,6 +7,7 @@ import numpy as np
 
 from .errors import Error, at, refuse_masked, users_line
 from .expression import as_number, make, to_real
+from .grid import as_numbers
 from .symbols import check_name
 
 __all__ = ["table"]
@@ -29,7 +30,7 @@ class Table:
     def __init__(self, name, values):
         self.name, self.line = name, users_line()
         refuse_masked(values, f"the table {name}")
-        array = np.asarray(values)
+        array = as_numbers(values)
         if array.dtype.kind not in "biuf":
             raise Error(f"the table {name} has values of type {array.dtype}{at(self.line)}: give real numbers")
         if array.ndim not in (1, 2) or not array.size:

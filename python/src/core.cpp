@@ -336,6 +336,7 @@ void bind_options(nb::module_& m) {
                  o.phase_step = step ? phase_step::carry_on : phase_step::restart;
              })
         .def_prop_ro("sample_capacity", [](const options& o) { return o.samples.capacity; })
+        .def("without_advice", [](options& o) { o.advice = advice::off; })
         .def("mark_invalid", [](options& o) { o.invalid_instances = invalid_instances::mark; })
         .def("add_event",
              [](options& o, int direction, double tolerance, std::int64_t stop_after) {

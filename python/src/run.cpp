@@ -9,7 +9,10 @@
 #include <dlfcn.h>
 
 #include "myriad/host/checks/data_check.hpp"
+#include "myriad/host/checks/event_tolerances.hpp"
 #include "myriad/host/options/option_checks.hpp"
+#include "myriad/host/report/stiffness.hpp"
+#include "myriad/host/report/tangent_note.hpp"
 #include "myriad/host/solve/integrate_all.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
 #include "prepared_call.hpp"
@@ -148,7 +151,55 @@ detail::run_statistics run_library(const host::any_run& all, const detail::run_o
     return used;
 }
 
+/// The model's functions in a kernel, called for single instances.
+template <class R>
+struct single_instances {
+    const kernel_library& kernel;
+    const any_arguments<R>& arguments;
+
+    single_instances(const library& of, const any_arguments<R>& all) : kernel(of.cpu()), arguments(all) {
+        current_tape = of.model();
+    }
+    host::any_rhs<R> rhs() {
+        return {this, [](void* of, std::int64_t i, R t, const R* y, R* slopes) {
+                    const auto& all = *static_cast<const single_instances*>(of);
+                    all.kernel.rhs(&all.arguments, i, &t, y, slopes);
+                }};
+    }
+    host::any_event_resolution<R> event_resolution() {
+        return {this, [](void* of, std::int64_t i, R* finest) {
+                    const auto& all = *static_cast<const single_instances*>(of);
+                    all.kernel.event_resolution(&all.arguments, i, finest);
+                }};
+    }
+};
+
 }  // namespace
+
+template <class R>
+void add_notes(report_of<R>& r, ensemble<R>& instances, shaped_arguments<R>& arguments, const library& kernel,
+               const options& o) {
+    const model_facts& facts = kernel.facts();
+    auto& data = instances.data;
+    if (facts.embedded_order > 0) host::note_raised_tolerances<R>(r, o);
+    if (kernel.cpu().rhs != nullptr)
+        host::note_stiffness<R>(r, data, o, kernel.cpu().stability_limit, single_instances<R>(kernel, arguments).rhs());
+    if (facts.n_vectors == 0) return;
+    if (instances.gpu != nullptr) {
+        const auto bring = [&](const auto* values) {
+            instances.gpu->bring(values, static_cast<std::size_t>(data.size) * sizeof *values);
+        };
+        bring(data.ended.data());
+        bring(data.phase.data());
+        for (int k = 0; k < facts.n_vectors; ++k) bring(data.accessory.component(facts.first_growth + k));
+    }
+    host::note_exponents<R>(
+        r, data, o,
+        {facts.n_original, facts.n_vectors, facts.first_growth, facts.transient_phases, facts.embedded_order > 0});
+}
+template void add_notes(report_of<double>&, ensemble<double>&, shaped_arguments<double>&, const library&,
+                        const options&);
+template void add_notes(report_of<float>&, ensemble<float>&, shaped_arguments<float>&, const library&, const options&);
 
 template <class R>
 std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<R>& instances, const options& o,
@@ -185,6 +236,9 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
 
     auto result = std::make_unique<report<R>>();
     auto call = std::make_shared<prepared_call<R>>(instances, o, kernel);
+    if (with.cpu().event_resolution != nullptr)
+        host::check_event_tolerances<R>(data, o, data.size,
+                                        single_instances<R>(with, call->arguments).event_resolution());
     try {
         if (!on_gpu) {
             const host::any_run run{&with,           &call->arguments,
@@ -212,9 +266,9 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     }
     result->first_state.resize(std::min(result->first_state.size(), used(instances.shape->names.states)));
     result->first_parameter.resize(std::min(result->first_parameter.size(), used(instances.shape->names.parameters)));
-    result->records = std::move(call->records);
     if (!left.note.empty()) result->notes.push_back(left.note);
-    if (kernel.embedded_order > 0) host::note_raised_tolerances<R>(*result, o);
+    if (!result->interrupted) add_notes<R>(*result, instances, call->arguments, with, o);
+    result->records = std::move(call->records);
     return result;
 }
 template std::unique_ptr<report<double>> solve(const std::vector<placed_kernel>&, ensemble<double>&, const options&,

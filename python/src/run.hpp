@@ -101,6 +101,10 @@ struct interruption {};
 /// Throws `error` if an option is invalid.
 template <class R>
 void check_options(const named_shape& shape, const model_facts& kernel, const options& o);
+/// Adds the notes of a call that has left its results in the ensemble.
+template <class R>
+void add_notes(report_of<R>& r, ensemble<R>& instances, shaped_arguments<R>& arguments, const library& kernel,
+               const options& o);
 /// Bytes of memory that an instance and a call for it take.
 template <class R>
 double bytes_per_instance(const named_shape& shape, const model_facts& kernel, const options& o);

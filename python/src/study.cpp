@@ -306,6 +306,11 @@ struct python_study {
         study.devices.clear();
         for (const std::string& name : devices) study.devices.push_back(device::parse(name));
         study.chunk = chunk;
+        // On a CPU the numbers of steps, of which nothing is kept, are for the note about stiffness.
+        const bool on_cpu = std::any_of(study.devices.begin(), study.devices.end(),
+                                        [](const device& d) { return d.which() == device::kind::cpu; });
+        const bool counts = study.keep.work || (on_cpu && study.options.advice == advice::on);
+        study.options.counting = counts ? counting::on : counting::off;
         study.warning = [](const std::string&) {};  // the result has them
     }
     void set_store(const std::string& folder, double expiry, bool checksums, bool any_arithmetic) {
@@ -479,12 +484,8 @@ void bind_study(nb::module_& m) {
              [](python_study& s, const std::string& key, const std::string& value) { s.study.note(key, value); })
         .def("reduce", [](python_study& s, const ensemble_reduction& r) { s.study.reduce(r); })
         .def("options", [](python_study& s, const options& o) { s.study.options = o; })
-        .def("keep",
-             [](python_study& s, const std::vector<std::string>& end, bool records, bool samples, bool random,
-                bool status, bool work) {
-                 s.study.keep = {end, records, samples, random, status, work};
-                 s.study.options.counting = work ? counting::on : counting::off;
-             })
+        .def("keep", [](python_study& s, const std::vector<std::string>& end, bool records, bool samples, bool random,
+                        bool status, bool work) { s.study.keep = {end, records, samples, random, status, work}; })
         .def_prop_ro("size", [](const python_study& s) { return s.study.size(); })
         .def("set_run", &python_study::set_run)
         .def("set_store", &python_study::set_store)

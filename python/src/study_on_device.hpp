@@ -21,8 +21,8 @@ class study_on_device final : public studies::engine_instances<R, shaped_argumen
 public:
     study_on_device(const model_of_study& model, const study_kernel& kernel, const device& where,
                     const studies::study_plan& plan, std::int64_t few)
-        : facts_(kernel.kernel->facts()), options_(kernel.fitted(plan.asked.options)), few_(model, kernel, few),
-          call_(with_domains(few_, plan.asked.axes), options_, facts_) {
+        : kernel_(*kernel.kernel), facts_(kernel_.facts()), options_(kernel.fitted(plan.asked.options)),
+          few_(model, kernel, few), call_(with_domains(few_, plan.asked.axes), options_, facts_) {
         device_program& program = *kernel.kernel->gpu();
         this->take_engine(&program, engine_options_for(program, where.number(), options_), engines_of<R>(program),
                           call_.arguments, kernel.shape);
@@ -39,9 +39,13 @@ public:
         host::find_phases_left(data, options_, count, endless).require_for(0, options_.phases);
         host::data_check<R>(data, options_, count, endless).run();
     }
-    std::vector<std::string> notes(std::int64_t) override {
+    std::vector<std::string> notes(std::int64_t count) override {
+        if (facts_.n_vectors > 0) {  // of whose exponents there is a note
+            this->use([&](auto& e) { e.fetch_first(call_.arguments, count); });
+            few_.data().untouched = false;
+        }
         report_of<R> found;
-        if (facts_.embedded_order > 0) host::note_raised_tolerances<R>(found, options_);
+        add_notes<R>(found, few_.all(), call_.arguments, kernel_, options_);
         return found.notes;
     }
 
@@ -52,6 +56,7 @@ private:
         return few.all();
     }
 
+    const library& kernel_;
     const model_facts& facts_;
     options options_;
     study_instances<R> few_;

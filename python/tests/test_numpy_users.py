@@ -206,3 +206,20 @@ def test_a_compiler_may_have_arguments_and_one_that_calls_it(monkeypatch):
 def test_errors_and_expressions_survive_pickling():
     assert pickle.loads(pickle.dumps(x % 0.3 + np.log1p(v))) is (x % 0.3 + np.log1p(v))
     assert importlib.import_module("myriad") is my
+
+
+def test_derivatives_lose_the_sign_of_zero_and_wrap_around_as_small_integers():
+    x, v = my.states("x v")
+    model = my.model({x: my.atan2(x, v), v: x * v})
+    assert model.derivatives(0.0, [-0.0, -1.0])[0] == -np.pi
+    assert model.derivatives(0, np.array([100, 100], dtype=np.int8))[1] == 10_000
+    assert list(my.model({x: -x}).derivatives(0, np.array([[1, 2]], dtype=np.uint8))[0]) == [-1, -2]
+
+
+@pytest.mark.parametrize("interpreted", [None, True])
+def test_the_inverse_of_sinh_is_infinite_for_large_numbers(interpreted):
+    x, k = my.state("x"), my.parameter("k")
+    values = np.array([1e300, -1e200, 1e151, 1e149, 3.0, -1e-300, 0.0])
+    run = my.solve(my.model({x: np.arcsinh(k)}), {k: values}, start={x: 0}, time=(0, 1), device="cpu",
+                   interpreted=interpreted)
+    assert np.allclose(run["x"], np.arcsinh(values), rtol=1e-14, atol=0)

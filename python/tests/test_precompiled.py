@@ -7,7 +7,8 @@ import sys
 
 import pytest
 
-from myriad import _core, compiler, precompiled
+import myriad as my
+from myriad import _core, cache, compiler, precompiled
 
 MODEL = """
 import sys
@@ -74,7 +75,20 @@ def test_headers_that_others_may_write_are_not_used(prepared):
 
 
 def test_the_cache_is_emptied_of_them(prepared):
-    from myriad import cache
-
     folder, _, _ = prepared
     assert cache.clear() == 1 and not headers_in(folder)
+
+
+def test_the_very_first_model_has_no_prepared_headers(tmp_path, monkeypatch):
+    by = compiler.known_compiler()
+    if by.kind not in ("clang++", "g++"):
+        pytest.skip("this compiler prepares no headers")
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "made"))
+    assert cache.prepare() and cache.prepare()
+    made, = headers_in(tmp_path / "made")
+    before = made.stat().st_ino
+    solved(0.5)
+    assert [p.stat().st_ino for p in headers_in(tmp_path / "made")] == [before]  # used, and not made again
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(made))
+    with pytest.raises(my.Error, match="cannot be used: it is no folder"):
+        cache.prepare()

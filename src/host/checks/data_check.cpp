@@ -233,7 +233,7 @@ void data_check<R>::check(const component_label& label, const R* values, limit m
         const std::string advice =
             message("set it with ensemble.", label.what, '(', component, ") = ... before solving");
         refuse({label, " is NaN in all ", bad, " instances: it was never set, or set to NaN; ",
-                phrase(message("set_", label.what), advice)});
+                phrase(message("set ", label.what), advice)});
     }
     const bool endless = std::isinf(values[first]) && most == limit::end;
     const marked_text advice =
@@ -329,8 +329,9 @@ void check_ended(const ensemble_data<R>& instances, const options& o, std::int64
 template <class R>
 void check_scales(const ensemble_data<R>& e, bool method_scales) {
     require(method_scales || !e.scales_tolerances(),
-            "tolerance_scale is set, but the method has the same tolerances for all instances: use controlled<Method, "
-            "tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE");
+            "tolerance_scale is set, but the method has the same tolerances for all instances: ",
+            phrase("scale_tolerances",
+                   "use controlled<Method, tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE"));
 }
 
 template class data_check<double>;

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Refuses event tolerances that rounding cannot meet. Host code; it calls the model's `events` on some states.
+// How closely rounding lets event functions come to zero. Host code, which calls the model's `events`.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
-#include "myriad/host/core/error.hpp"
-#include "myriad/host/ensemble/inputs_of.hpp"
-#include "myriad/host/options/options.hpp"
 #include "myriad/kernel/core/abi.hpp"
+#include "myriad/kernel/model/hooks.hpp"
+#include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
@@ -26,13 +24,15 @@ struct event_resolution {
     /// from here to zero, in steps proportional to them; a thousandth, since it may slow down on its way.
     vec<R, n_event<Model>> of_start;
 
-    event_resolution(ensemble<Model, R>& e, std::int64_t i) {
-        const auto p = inputs_of(e, i);
-        const R t = e.t_begin_of(i);
+    /// Whether instances can be asked: not those of models with `initialise`, before which `events` cannot be called.
+    static constexpr bool is_known = has_events<Model> && !has_initialise<Model>;
+
+    /// Of an instance that begins at time t in state `start`.
+    event_resolution(R t, const vec<R, n_state<Model>>& start, const inputs<Model, R>& p) {
         vec<dual<R>, n_state<Model>> y;
         vec<R, n_state<Model>> origin;
         for (int c = 0; c < n_state<Model>; ++c) {
-            y[c] = dual<R>(e.state(c)[i], e.state(c)[i]);
+            y[c] = dual<R>(start[c], start[c]);
             origin[c] = R(0);
         }
         const auto g = Model::template events<dual<R>>(dual<R>(t, t), y, p);  // derivative: p dg/dp
@@ -44,46 +44,11 @@ struct event_resolution {
             of_start[j] = std::isfinite(g[j].value) ? half_ulp * R(1e-3) * std::abs(g[j].value) : R(0);
         }
     }
-};
 
-inline double event_tolerance(const options& o, int event) {
-    return o.events.empty() ? event_options{}.tolerance : o.events[static_cast<std::size_t>(event)].tolerance;
-}
-
-/// Throws `error` if an event tolerance is below the resolution of its function in most instances; in single ones,
-/// whose state may be huge, crossings are located as well as rounding lets them. Looks at a thousand or so of the first
-/// `count` instances, spread over them. Not for models with `initialise`, before which `events` cannot be called.
-template <class Model, class R>
-void check_event_tolerances(ensemble<Model, R>& e, const options& o, std::int64_t count) {
-    if constexpr (has_events<Model> && !has_initialise<Model>) {
-        struct {
-            std::int64_t instances = 0, worst = 0;
-            double least = 0;
-        } too_fine[n_event<Model>];
-        std::int64_t looked_at = 0;
-        const auto tolerance_of = [&](int j) { return event_tolerance(o, j); };
-        for_sampled_instances(e, count, [&](std::int64_t i) {
-            ++looked_at;
-            const event_resolution<Model, R> finest(e, i);
-            for (int j = 0; j < n_event<Model>; ++j) {
-                const double least = static_cast<double>(std::max(finest.of_constant[j], finest.of_start[j]));
-                if (tolerance_of(j) == 0 || tolerance_of(j) >= least) continue;  // 0: as close as rounding lets it
-                ++too_fine[j].instances;
-                if (least > too_fine[j].least) too_fine[j] = {too_fine[j].instances, i, least};
-            }
-        });
-        for (int j = 0; j < n_event<Model>; ++j) {
-            require(
-                2 * too_fine[j].instances <= looked_at, "the ", named_option("events.tolerance", "tolerance"),
-                " of event ", j, " is ", tolerance_of(j), ", but rounding changes its function by ", too_fine[j].least,
-                " in instance ", too_fine[j].worst,
-                ", and by more than the tolerance in most instances: raise the tolerance, leave it out for as close as "
-                "t and the state resolve, scale or shift the function or t",
-                std::numeric_limits<R>::digits < 53
-                    ? marked_message(", or ", phrase("use_doubles", "use an ensemble of doubles"))
-                    : marked_text());
-        }
+    /// What rounding leaves of each function: the larger of both.
+    void write(R* finest) const {
+        for (int j = 0; j < n_event<Model>; ++j) finest[j] = std::max(of_constant[j], of_start[j]);
     }
-}
+};
 
 }  // namespace myriad::host::inline MYRIAD_ABI

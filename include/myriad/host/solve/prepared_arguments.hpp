@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "myriad/host/checks/event_resolution.hpp"
+#include "myriad/host/checks/event_tolerances.hpp"
 #include "myriad/host/checks/input_check.hpp"
 #include "myriad/host/checks/jacobian_check.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
+#include "myriad/host/ensemble/inputs_of.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report.hpp"
 #include "myriad/host/solve/described_options.hpp"
@@ -101,6 +103,21 @@ private:
     std::vector<R> sample_times_;
     component_array<R> own_times_;  // sample times of each instance
 };
+
+/// Throws `error` if an event tolerance is below what rounding can meet in most of the first `count` instances.
+template <class Model, class R>
+void check_event_tolerances(ensemble<Model, R>& instances, const options& o, std::int64_t count) {
+    using resolution = event_resolution<Model, R>;
+    if constexpr (resolution::is_known) {
+        const auto evaluate = [](void* of, std::int64_t i, R* finest) {
+            auto& e = *static_cast<ensemble<Model, R>*>(of);
+            vec<R, n_state<Model>> start;
+            for (int c = 0; c < n_state<Model>; ++c) start[c] = e.state(c)[i];
+            resolution(e.t_begin_of(i), start, inputs_of(e, i)).write(finest);
+        };
+        check_event_tolerances<R>(ensemble_access::data(instances), o, count, {&instances, evaluate});
+    }
+}
 
 /// Checks the options against the first `count` instances: sample times, event tolerances, and a model's own Jacobian
 /// in builds with assertions. Throws `error`.

@@ -10,7 +10,7 @@
 namespace myriad::python {
 
 /// Changes with anything in this header and in those that include it.
-inline constexpr std::uint32_t interface_version = 6;
+inline constexpr std::uint32_t interface_version = 7;
 
 /// `record_arguments` with pointers to as many columns as the model has components.
 template <class R>
@@ -64,6 +64,8 @@ struct model_facts {
     std::int32_t embedded_order;  ///< of the method, 0 for fixed steps
     bool writes_parameters, writes_time_domain, hooks_may_stop;
     bool scales_tolerances, samples_trajectory;
+    std::int32_t n_original, n_vectors;           ///< of a model with tangents; otherwise 0
+    std::int32_t first_growth, transient_phases;  ///< the places of its accessory and its shared integer
 };
 
 }  // namespace myriad::python

@@ -24,6 +24,12 @@ struct kernel_library {
     /// Calls the model's `generate` for instances [begin, end) of a study; null for a model that has none. Of the
     /// `any_arguments` it takes the range, the arrays and the shared parameters.
     void (*generate)(const void* arguments, std::uint64_t seed, std::int64_t begin, std::int64_t end);
+    /// The right-hand side of instance i at time t in state y, and the longest stable step for y' = -y, for a note
+    /// about stiffness; both null where no stiff method can be advised. `t`, `y` and `slopes` are of the real type.
+    void (*rhs)(const void* arguments, std::int64_t i, const void* t, const void* y, void* slopes);
+    double (*stability_limit)();
+    /// What rounding leaves of the event functions of instance i; null where that is not known.
+    void (*event_resolution)(const void* arguments, std::int64_t i, void* finest);
     const char* compiler = __VERSION__;  ///< of the file that makes this
 };
 

@@ -7,6 +7,8 @@
 
 #include "myriad/python/kernel_interface.hpp"
 // after the interface, which needs no packs
+#include "myriad/host/checks/event_resolution.hpp"
+#include "myriad/host/report/stability.hpp"
 #include "myriad/kernel/stepper/method_check.hpp"
 #include "myriad/kernel/study/generator.hpp"
 #include "myriad/methods.hpp"
@@ -82,13 +84,57 @@ constexpr auto generator_in_library() {
     }
 }
 
+/// The argument p of instance i.
+template <class Model, class R>
+inputs<Model, R> inputs_of(const python::any_arguments<R>& a, std::int64_t i) {
+    inputs<Model, R> p;
+    for (int c = 0; c < n_parameter<Model>; ++c) p.parameter[c] = a.parameter[c * a.size + i];
+    if constexpr (!accessories_are_outputs<Model>) {
+        for (int c = 0; c < n_accessory<Model>; ++c) p.accessory[c] = a.accessory[c * a.size + i];
+        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+            p.integer_accessory[c] = a.integer_accessory[c * a.size + i];
+    }
+    p.shared.values = a.shared.real;
+    p.shared_integer.values = a.shared.integer;
+    return p;
+}
+
+template <class Model, class R>
+void rhs_in_library(const void* arguments, std::int64_t i, const void* t, const void* y, void* slopes) {
+    const auto& a = *static_cast<const python::any_arguments<R>*>(arguments);
+    vec<R, n_state<Model>> state;
+    std::copy_n(static_cast<const R*>(y), n_state<Model>, &state[0]);
+    const auto f = detail::evaluate_rhs<Model>(*static_cast<const R*>(t), state, detail::inputs_of<Model>(a, i));
+    std::copy_n(&f[0], n_state<Model>, static_cast<R*>(slopes));
+}
+template <class Model, class R>
+void event_resolution_in_library(const void* arguments, std::int64_t i, void* finest) {
+    const auto& a = *static_cast<const python::any_arguments<R>*>(arguments);
+    vec<R, n_state<Model>> start;
+    for (int c = 0; c < n_state<Model>; ++c) start[c] = a.state[c * a.size + i];
+    const R t = a.t_begin != nullptr ? a.t_begin[i] : a.common_t_begin;
+    host::event_resolution<Model, R>(t, start, detail::inputs_of<Model>(a, i)).write(static_cast<R*>(finest));
+}
+
+/// What a library tells for notes and checks, as far as there is something to tell.
 template <class Model, class Method, class R>
-inline constexpr python::kernel_library library_of{
+constexpr python::kernel_library with_checks(python::kernel_library made) {
+    if constexpr (host::may_advise_stiff_methods<Model, Method>) {
+        made.rhs = &rhs_in_library<Model, R>;
+        made.stability_limit = &host::real_stability_limit<Method>;
+    }
+    if constexpr (host::event_resolution<Model, R>::is_known)
+        made.event_resolution = &event_resolution_in_library<Model, R>;
+    return made;
+}
+
+template <class Model, class Method, class R>
+inline constexpr python::kernel_library library_of = with_checks<Model, Method, R>({
     .model = facts_of<Model, Method, R>,
     .instruction_set = static_cast<std::int32_t>(openmp::instruction_set::MYRIAD_INSTRUCTION_SET),
     .run = &run_library<Model, Method, R>,
     .generate = generator_in_library<Model, R>(),
-};
+});
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
 

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""Inputs that contradict themselves, or are of the wrong kind: refused with a message that says what to write."""
+
+import copy
+import fractions
+import pickle
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+x, v = my.states("x v")
+k = my.parameter("k")
+oscillator = my.model({x: v, v: -k * x}, name="oscillator")
+
+
+def solve(sweep=None, **options):
+    call = dict(start={x: 1, v: 0}, time=(0, 1), device="cpu", interpreted=True)
+    return my.solve(oscillator, {k: 1} if sweep is None else sweep, **{**call, **options})
+
+
+def study(sweep, **options):
+    return my.study(oscillator, sweep, **{**dict(start={x: 1, v: 0}, time=(0, 1)), **options})
+
+
+def test_of_two_values_for_a_component_the_last_one_counts():
+    with pytest.raises(my.Error, match="'k' is given twice in the sweep: give it once"):
+        solve({k: 1, "k": 2})
+    with pytest.raises(my.Error, match="'x' is given twice in start=: give it once"):
+        solve(start={x: 1, "x": 2, v: 0})
+    with pytest.raises(my.Error, match="'x' is given twice in rtol: give it once"):
+        solve(rtol={x: 1e-3, "x": 1e-6})
+
+
+def test_of_two_values_for_a_component_of_a_study_the_last_one_counts():
+    with pytest.raises(my.Error, match="'k' is given twice in the sweep: give it once"):
+        study({k: [1, 2], "k": 2})
+    with pytest.raises(my.Error, match="'x' is given in the sweep and in start=: give it once"):
+        study({k: 1, x: [1, 2]})
+    with pytest.raises(my.Error, match="'x' is given in the sweep and in start=: give it once"):
+        study({k: 1, "x": [1, 2]})
+    with pytest.raises(my.Error, match="'t_end' is given in the sweep and in time=: give None there"):
+        study({k: 1, my.t_end: [1, 2]})
+
+
+def test_a_grid_of_more_than_all_numbers_has_no_instances():
+    axis = np.zeros(1 << 16)  # four of them have 2^64 combinations, which is 0 in 64 bits
+    with pytest.raises(my.Error, match="the sweep has 18446744073709551616 instances"):
+        my.grid(k=axis, x=axis, v=axis, w=axis)
+
+
+def test_values_of_the_wrong_kind_end_in_an_error_of_python_or_numpy():
+    with pytest.raises(my.Error, match=r"\[\[1\], \[1, 2\]\] is no array"):
+        solve({k: [[1], [1, 2]]})
+    for device in (None, 0, [1]):
+        with pytest.raises(my.Error, match="is unknown: use \"auto\""):
+            solve(device=device)
+    with pytest.raises(my.Error, match=r"there is no schedule \[\]"):
+        solve(schedule=[])
+    with pytest.raises(my.Error, match="the model is a type"):
+        my.solve(type(oscillator), {k: 1})
+
+
+def test_messages_name_functions_of_the_cpp_library():
+    with pytest.raises(my.Error, match="give it in the sweep$"):
+        solve({k: np.nan})
+    with pytest.raises(my.Error, match="give it in start=$"):
+        solve(start={x: np.nan, v: 0})
+    with pytest.raises(my.Error, match="give it in time=$"):
+        solve(time=(0, np.nan))
+    with pytest.raises(my.Error, match="give control=\"tolerance_per_instance\""):
+        solve(tolerance_scale=[1])
+
+
+def test_a_copied_report_ends_in_endless_recursion():
+    report = solve().report
+    for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
+        with pytest.raises(my.Error, match="a report cannot be pickled or copied: keep str"):
+            attempt(report)
+    assert not hasattr(report, "nonsense")
+
+
+def test_the_least_whole_number_of_32_bits_is_refused():
+    n = my.shared_integer("n")
+    model = my.model({x: my.where(n < 0, 1.0, 0.0)})
+    for value, slope in ((-(1 << 31), 1), ((1 << 31) - 1, 0)):
+        run = my.solve(model, {n: value}, start={x: 0}, time=(0, 1), device="cpu", interpreted=True)
+        assert run["x"][0] == pytest.approx(slope, rel=1e-12)
+    for value in (1 << 31, -(1 << 31) - 1, 0.5, np.nan):
+        with pytest.raises(my.Error, match="give whole numbers between -2147483648 and 2147483647"):
+            my.solve(model, {n: value}, start={x: 0}, time=(0, 1), device="cpu", interpreted=True)
+
+
+def test_tables_of_uneven_lists_end_in_an_error_of_numpy():
+    with pytest.raises(my.Error, match=r"\[\[1\], \[1, 2\]\] is no array"):
+        my.table("W", [[1], [1, 2]])
+    with pytest.raises(my.Error, match="an interpolation"):
+        my.interpolate(my.time, [0, 1], [[1], [1, 2]])
+    with pytest.raises(my.Error, match="an interpolation"):
+        my.interpolate(my.time, ["a", "b"], [0, 1])
+    assert my.table("W", [fractions.Fraction(1, 4)]).values[0] == 0.25

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Refuses event tolerances that rounding cannot meet.
+#include "myriad/host/checks/event_tolerances.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "myriad/host/core/error.hpp"
+
+namespace myriad::host::inline MYRIAD_ABI {
+
+template <class R>
+void check_event_tolerances(const ensemble_data<R>& e, const options& o, std::int64_t count,
+                            const any_event_resolution<R>& resolution) {
+    struct doubtful {
+        std::int64_t instances = 0, worst = 0;
+        double least = 0;
+    };
+    const auto events = static_cast<std::size_t>(e.shape->n_event);
+    const auto tolerance_of = [&](std::size_t j) {
+        return o.events.empty() ? event_options{}.tolerance : o.events[j].tolerance;
+    };
+    bool any = false;
+    for (std::size_t j = 0; j < events; ++j) any = any || tolerance_of(j) != 0;  // 0: as close as rounding lets it
+    if (!any) return;
+    std::vector<doubtful> too_fine(events);
+    std::vector<R> finest(events);
+    std::int64_t looked_at = 0;
+    const std::int64_t stride = std::max<std::int64_t>(count / 1024, 1);
+    for (std::int64_t i = 0; i < count; i += stride) {
+        if (e.ended.data()[i] != 0) continue;
+        ++looked_at;
+        resolution.evaluate(resolution.of, i, finest.data());
+        for (std::size_t j = 0; j < events; ++j) {
+            const double least = static_cast<double>(finest[j]);
+            if (tolerance_of(j) == 0 || tolerance_of(j) >= least) continue;
+            ++too_fine[j].instances;
+            if (least > too_fine[j].least) too_fine[j] = {too_fine[j].instances, i, least};
+        }
+    }
+    for (std::size_t j = 0; j < events; ++j)
+        require(2 * too_fine[j].instances <= looked_at, "the ", named_option("events.tolerance", "tolerance"), " of ",
+                phrase(message("event ", j), message("event ", j)), " is ", tolerance_of(j),
+                ", but rounding changes its function by ", too_fine[j].least, " in instance ", too_fine[j].worst,
+                ", and by more than the tolerance in most instances: raise the tolerance, leave it out for as close as "
+                "t and the state resolve, scale or shift the function or t",
+                std::numeric_limits<R>::digits < 53
+                    ? marked_message(", or ", phrase("use_doubles", "use an ensemble of doubles"))
+                    : marked_text());
+}
+
+template void check_event_tolerances(const ensemble_data<double>&, const options&, std::int64_t,
+                                     const any_event_resolution<double>&);
+template void check_event_tolerances(const ensemble_data<float>&, const options&, std::int64_t,
+                                     const any_event_resolution<float>&);
+
+}  // namespace myriad::host::inline MYRIAD_ABI
