@@ -112,9 +112,14 @@ file_system& file_system::real() {
 }
 
 int file_system::open(const std::string& path, int flags) {
-    // A pipe in the place of a file is empty, and nothing to wait for.
-    const int waiting = (flags & O_ACCMODE) == O_RDONLY ? O_NONBLOCK : 0;
-    return ::open(path.c_str(), flags | O_CLOEXEC | waiting, 0666);
+    if ((flags & O_ACCMODE) != O_RDONLY) return ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+    // A pipe in the place of a file would be waited for, and a device may have no end: they are read as empty.
+    const int file = ::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0 && errno != ENXIO) return file;  // which a socket gives
+    struct stat status;
+    if (file >= 0 && (::fstat(file, &status) < 0 || S_ISREG(status.st_mode) || S_ISDIR(status.st_mode))) return file;
+    if (file >= 0) ::close(file);
+    return ::open("/dev/null", O_RDONLY | O_CLOEXEC);
 }
 ssize_t file_system::read(int file, void* data, std::size_t size) { return ::read(file, data, size); }
 ssize_t file_system::write(int file, const void* data, std::size_t size) { return ::write(file, data, size); }

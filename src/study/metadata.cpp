@@ -318,8 +318,8 @@ stored_group group_of(std::string_view text, const std::string& path) {
         const json& arrays = read.at("consolidated_metadata");
         require(arrays == again.at("consolidated_metadata"), path,
                 " is damaged (it says different things of its arrays): ", restore_advice);
-    } catch (const nlohmann::json::exception& failure) {
-        host::refuse({path, " is damaged (", failure.what(), "): ", restore_advice});
+    } catch (const nlohmann::json::exception&) {
+        host::refuse({path, " is damaged (an entry is missing, or of another kind): ", restore_advice});
     }
     return group;
 }

@@ -34,8 +34,10 @@ auto read_record(const char* kind, std::string_view text, const group_checksum& 
             require(entries.at("group") == group, what, " is that of another study");
         }
         return read(entries);
-    } catch (const nlohmann::json::exception& failure) {
-        host::refuse({what, " is damaged: ", failure.what()});
+    } catch (const nlohmann::json::parse_error&) {  // its text quotes the damaged bytes, which may be no characters
+        host::refuse({what, " is damaged: it is no JSON"});
+    } catch (const nlohmann::json::exception&) {
+        host::refuse({what, " is damaged: an entry is missing, or of another kind"});
     } catch (const std::logic_error&) {
         host::refuse({what, " is damaged: a checksum is no number"});
     }

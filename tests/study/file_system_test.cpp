@@ -7,7 +7,12 @@
 #include <map>
 
 #include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
 
+#include "myriad/study/array_file.hpp"
 #include "tests/catch.hpp"
 #include "tests/study/synthetic.hpp"
 
@@ -39,6 +44,28 @@ TEST_CASE("a new file has its name when it is whole, and is gone if it never is"
     CHECK(tests::text_of(folder / "old") == "new");
     CHECK_FALSE(std::filesystem::exists(folder / "new"));
     CHECK_THROWS_AS(new_file(disk(), folder / "old"), file_error);
+}
+
+TEST_CASE("a device without an end, a pipe whose writer is silent and a socket are read as empty files") {
+    tests::temporary_folder folder;
+    std::filesystem::create_symlink("/dev/zero", folder / "device");
+    REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+    const int writer = ::open((folder / "pipe").c_str(), O_RDWR);
+    REQUIRE(writer >= 0);
+    const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::string place = folder / "socket";
+    place.copy(address.sun_path, sizeof address.sun_path - 1);
+    REQUIRE(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+    for (const char* const name : {"device", "pipe", "socket"}) {
+        CAPTURE(name);
+        CHECK(read_text(disk(), folder / name) == "");
+        std::byte values[8];
+        CHECK(read_array_file(disk(), folder / name, {element::f64, {}}, 0, 8, values).damage == "it is too short");
+    }
+    ::close(socket);
+    ::close(writer);
 }
 
 TEST_CASE("texts are read as a whole, and what there is not is nothing") {

@@ -6,6 +6,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/study/synthetic.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace {
 
@@ -29,6 +30,7 @@ TEST_CASE("the record of a chunk comes back, and that of another chunk or study 
     CHECK_THROWS_WITH(record_of(text, content, "87654321", 3), Contains("that of another study"));
     CHECK_THROWS_WITH(record_of("", content, "12345678", 4), Contains("the record of chunk 4 is damaged"));
     CHECK_THROWS_WITH(record_of(text.substr(0, text.size() / 2), content, "12345678", 3), Contains("is damaged"));
+    CHECK_THROWS_WITH(record_of("{}", content, "", 3), Contains("damaged: an entry is missing, or of another kind"));
 }
 
 TEST_CASE("a record of which any byte has changed is refused") {
@@ -43,6 +45,12 @@ TEST_CASE("a record of which any byte has changed is refused") {
         }
     }
     CHECK_NOTHROW(record_of(text, content, "12345678", 3));
+}
+
+TEST_CASE("the message about a damaged record does not repeat bytes that are no characters") {
+    const std::string damaged = "{\"kind\": \"chunk\xe3\x1b[2J";
+    CHECK(tests::message_of([&] { record_of(damaged, tests::synthetic_layout(), "12345678", 3); }) ==
+          "the record of chunk 3 is damaged: it is no JSON");
 }
 
 TEST_CASE("records of coordinates, final results and the arithmetic are not taken for each other") {

@@ -168,3 +168,41 @@ TEST_CASE("progress that throws ends instances that take for ever within a secon
             CHECK((e.status(i) == status::success || e.status(i) == status::not_started || i % 100 == 99));
     }
 }
+
+TEST_CASE("no instance that progress stopped between its phases says success, with any schedule, chunks and records") {
+    constexpr std::int64_t size = 3000;
+    constexpr std::int32_t phases = 3;
+    const auto check = [](schedule how, std::int64_t chunk, std::int32_t earlier, double after) {
+        CAPTURE(static_cast<int>(how), chunk, earlier, after);
+        auto o = short_steps();
+        o.schedule = how;
+        o.chunk_size = chunk;
+        o.phases = earlier;
+        auto e = filled(size, size + 1);
+        if (earlier > 0) myriad::solve<cash_karp>(test_device(2), e, o);
+        if (after > 0) e.t_end()[size / 2] = 1e9;  // so that the first phase is the last one
+        o.phases = phases;
+        if (earlier > 0) o.record.states = {drift::x};
+        const auto begin = clock_type::now();
+        o.progress = [&](std::int64_t, std::int64_t) {
+            if (seconds_since(begin) >= after) throw std::runtime_error("enough");
+        };
+        CHECK_THROWS_WITH(myriad::solve<cash_karp>(test_device(2), e, o), "enough");
+        const status before = earlier > 0 ? status::success : status::not_started;
+        std::int64_t wrong = 0;
+        for (std::int64_t i = 0; i < size; ++i) {
+            const std::int32_t done = e.phases_done()[i] - earlier;
+            const bool all = done == phases && e.status(i) == status::success && !e.ended(i);
+            const bool left = done < phases && e.status(i) == status::interrupted && e.ended(i);
+            const bool same = done == 0 && e.status(i) == before && !e.ended(i);
+            if (!(all || left || same)) ++wrong;
+        }
+        CHECK(wrong == 0);
+    };
+    for (const auto how : {schedule::automatic, schedule::in_order, schedule::dynamic, schedule::by_cost}) {
+        for (const std::int32_t earlier : {0, 2}) {
+            for (const std::int64_t chunk : {0, 400}) check(how, chunk, earlier, 0);
+            check(how, 0, earlier, 0.1);
+        }
+    }
+}

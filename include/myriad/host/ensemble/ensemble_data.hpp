@@ -84,7 +84,7 @@ struct ensemble_data : detail::instance_arrays<component_array, R> {
     void expect_phases(std::int64_t phases);
     /// Marks an instance as one that cannot be integrated.
     void mark_invalid(std::int64_t i);
-    /// Ends instance i, which was not begun, as `interrupted`, unless it has ended before.
+    /// Ends instance i, which is in no phase, as `interrupted`, unless it has ended before.
     void leave(std::int64_t i);
     /// To be called after a kernel has run: remembers the inputs of the instances that have ended.
     void remember_ended();
