@@ -8,6 +8,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -37,14 +38,24 @@ int child_process::wait() {
     return status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
 
+namespace {
+
+/// A folder may be "executed", too.
+bool is_program(const std::string& path) {
+    struct stat is;
+    return ::stat(path.c_str(), &is) == 0 && S_ISREG(is.st_mode) && access(path.c_str(), X_OK) == 0;
+}
+
+}  // namespace
+
 std::string find_program(const std::string& name) {
-    if (name.find('/') != std::string::npos) return access(name.c_str(), X_OK) == 0 ? name : "";
+    if (name.find('/') != std::string::npos) return is_program(name) ? name : "";
     const char* const path = std::getenv("PATH");
     std::string_view left = path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin";
     while (!left.empty()) {
         const std::size_t end = std::min(left.find(':'), left.size());
         const std::string found = std::string(left.substr(0, end)) + '/' + name;
-        if (end > 0 && access(found.c_str(), X_OK) == 0) return found;
+        if (end > 0 && is_program(found)) return found;
         left.remove_prefix(std::min(end + 1, left.size()));
     }
     return "";

@@ -179,6 +179,7 @@ std::string first_errors(const fs::path& output) {
         if (line.find("error: ") == std::string::npos || ++count > 5) continue;
         found += "\n  " + line;
     }
+    if (found.empty() && last.empty()) return " it failed without a message";
     return found.empty() ? "\n  " + last : found;
 }
 

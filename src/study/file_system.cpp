@@ -326,8 +326,15 @@ std::string folder_of(const std::string& path) {
     return last == std::string::npos ? "/" : path.substr(0, last + 1);
 }
 
+void refuse_zero_byte(std::string_view path) {
+    const std::size_t end = path.find('\0');
+    require(end == std::string_view::npos, "the path ", path.substr(0, end),
+            " goes on after a zero byte, where the system would end it: give a path without one");
+}
+
 std::string file_place(const std::string& path) {
     require(!path.empty(), "the file has no name: give the path of a file");
+    refuse_zero_byte(path);
     std::filesystem::path place = path;
     std::error_code unknown;  // what cannot be looked up shows when it is written
     for (int links = 0; std::filesystem::is_symlink(place, unknown); ++links) {

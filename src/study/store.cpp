@@ -34,6 +34,7 @@ std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count
 // Where it is also after the process has gone to another folder.
 std::string absolute(const std::string& folder) {
     require(!folder.empty(), host::named_option("store", "the folder"), " of a study has no name: give one");
+    refuse_zero_byte(folder);
     std::error_code unknown;
     const std::filesystem::path path = std::filesystem::absolute(folder, unknown);
     return unknown ? folder : path.string();

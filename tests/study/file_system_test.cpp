@@ -68,6 +68,15 @@ TEST_CASE("a device without an end, a pipe whose writer is silent and a socket a
     ::close(writer);
 }
 
+TEST_CASE("a path with a zero byte is refused, and nothing is written to what is before it") {
+    tests::temporary_folder folder;
+    const std::string path = (folder / "run") + std::string("\0b", 2);
+    CHECK_THROWS_WITH(myriad::store::create_or_resume(path, tests::synthetic_layout()), Contains("after a zero byte"));
+    CHECK_THROWS_WITH(myriad::store::open(path), Contains("after a zero byte"));
+    CHECK_THROWS_WITH(file_place(path), Contains("after a zero byte"));
+    CHECK_FALSE(std::filesystem::exists(folder / "run"));
+}
+
 TEST_CASE("texts are read as a whole, and what there is not is nothing") {
     tests::temporary_folder folder;
     for (const std::size_t size : std::vector<std::size_t>{0, 1, 65535, 65536, 65537, 200000}) {

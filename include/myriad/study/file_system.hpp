@@ -127,6 +127,8 @@ std::optional<std::string> read_text(file_system& files, const std::string& path
 void write_text(file_system& files, const std::string& temporary_path, const std::string& path, std::string_view text);
 /// The folder that a path is in.
 std::string folder_of(const std::string& path);
+/// Throws `error` if there is a zero byte in a path: the system would take what is before it for the path.
+void refuse_zero_byte(std::string_view path);
 /// The place of a file to be written to a path: symbolic links are followed. Throws `error` if there is something else
 /// than a file, as a folder or a device, which a new file must not replace.
 std::string file_place(const std::string& path);
