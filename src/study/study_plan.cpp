@@ -291,8 +291,9 @@ private:
             const auto& entries = asked_.axes.entries();
             const bool is_set =
                 std::any_of(entries.begin(), entries.end(), [&](const axes::entry& e) { return e.what == c; });
-            require(is_set, c.full_name(),
-                    " has no value in any instance: give it an axis, a value by set, or a generator of instances");
+            require(is_set, host::named_component(c.full_name()),
+                    " has no value in any instance: give it an axis, a value by ", host::named_option("set"),
+                    ", or a generator of instances");
         }
     }
 

@@ -404,18 +404,24 @@ TEMPLATE_TEST_CASE("an event function too steep for its tolerance is located to 
 
 TEST_CASE("roots of one direction are no accumulation though the middle between them is a root too") {
     // cos t falls through zero 159 times in [0, 1000]; x = 0 lets the steps grow over many of its periods
-    myriad::ensemble<wave> e(1);
-    e.state(wave::x) = 0;
-    e.parameter(wave::amplitude) = 1;
-    e.parameter(wave::c) = 0;
-    e.time_domain(0, 1000);
-    auto o = one_event(1e-6, 0.01);
-    o.maximum_step = std::numeric_limits<double>::infinity();
-    o.events[0].direction = myriad::direction::falling;
-    o.sub_samples = 2000;
-    myriad::solve<myriad::cash_karp>(tests::test_device(1), e, o);
-    CHECK(e.status(0) == myriad::status::success);
-    CHECK(e.integer_accessory(wave::fired)[0] == 159);
+    for (const double tolerance : {1e-6, 0.0}) {
+        for (const std::int32_t points : {500, 2000, 4000}) {
+            CAPTURE(tolerance, points);
+            myriad::ensemble<wave> e(1);
+            e.state(wave::x) = 0;
+            e.parameter(wave::amplitude) = 1;
+            e.parameter(wave::c) = 0;
+            e.integer_accessory(wave::fired) = 0;
+            e.time_domain(0, 1000);
+            auto o = one_event(tolerance, 0.01);
+            o.maximum_step = std::numeric_limits<double>::infinity();
+            o.events[0].direction = myriad::direction::falling;
+            o.sub_samples = points;
+            myriad::solve<myriad::cash_karp>(tests::test_device(1), e, o);
+            CHECK(e.status(0) == myriad::status::success);
+            CHECK(e.integer_accessory(wave::fired)[0] == 159);
+        }
+    }
 }
 
 TEMPLATE_TEST_CASE("a crossing that redone steps overshoot is not put at the start of the step", "", ALL_METHODS) {

@@ -128,7 +128,14 @@ struct event_locator {
         R low = R(0), high = R(1);
         if (MYRIAD_UNLIKELY(scans)) {
             crossed = scan(i, step, side, low, high);
-            if (locating) reached = arrival_of(i, step, side);
+            if (locating) {
+                reached = arrival_of(i, step, side);
+                // At a root in the other direction, to which a long step has come, the event's is anywhere beyond.
+                MYRIAD_UNROLL
+                for (int j = 0; j < m; ++j)
+                    if (sides.memory_of(i).redo.target == j && !sides.is_asked(j, side[j]))
+                        reached.gap = infinity_of<R>;
+            }
         }
         if (crossed.any_of()) {
             know_start(i, step, side);
