@@ -12,7 +12,7 @@
 // limit: integrate_ensemble<chain<8>, rodas_5p> stack 2400
 // limit: integrate_ensemble<chain<32>, rosenbrock_23> stack 14000
 // limit: integrate_ensemble<chain<32>, rodas_5p> stack 14000
-// limit: integrate_ensemble<sparse_chain<8>, rosenbrock_23> stack 24 spill 48
+// limit: integrate_ensemble<sparse_chain<8>, rosenbrock_23> stack 24 spill 68
 // limit: integrate_ensemble<sparse_chain<8>, rodas_5p> stack 0 spill 0
 // limit: integrate_ensemble<sparse_chain<32>, rosenbrock_23> stack 3000
 // limit: integrate_ensemble<sparse_chain<32>, rodas_5p> stack 4000
