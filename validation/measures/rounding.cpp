@@ -41,6 +41,7 @@ void measure_late_start(session& s, const char* name) {
     myriad::options o;
     o.relative_tolerance = o.absolute_tolerance = 1e-10;
     o.step = o.maximum_step = 1e-3;
+    o.max_steps = 10'000'000;
     if (myriad::detail::solves_linear_systems<Method>) o.maximum_step = 1e-2;
     const auto early = follow<Method, double>(s, 1, 0, 0, 0, length, o);
     for (const double t_begin : {1e6, 1e9}) {
