@@ -27,8 +27,9 @@ using tests::run_synthetic;
 using tests::synthetic_layout;
 namespace fs = std::filesystem;
 
-// A process that takes so long for each chunk, on a machine of its own if `files` is one.
 enum class when { now, continued };  // at once, or at SIGCONT
+
+// A process that takes so long for each chunk, on a machine of its own if `files` is one.
 pid_t start(const std::string& folder, const layout& content, milliseconds each, const store_options& options,
             when begin = when::now) {
     const pid_t child = ::fork();

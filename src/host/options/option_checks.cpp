@@ -80,9 +80,9 @@ void check_no_samples(const sample_options& s) {
     if (s.from_phase != 0) given = "from_phase";
     if (given == nullptr) return;
     const std::string key = message("samples.", given);
-    require(
-        false, named_option(key), " is given, but ", named_option("samples.states"),
-        " names no state, so that nothing would be sampled: name the states to sample, or leave out all of samples");
+    refuse({named_option(key), " is given, but ", named_option("samples.states"),
+            " names no state, so that nothing would be sampled: name the states to sample, or leave out all of "
+            "samples"});
 }
 
 /// The same for records.

@@ -69,7 +69,7 @@ public:
     bool gives_up_before(std::int32_t) {
         if (options_.stop != nullptr && --phases_before_asking_ == 0) {
             phases_before_asking_ = ask_every;
-            return ask(ask_at_ - ask_every);
+            return ask(ask_at_ - ask_every);  // when `gives_up` asks next stays as it is
         }
         return all_.given_up.load(std::memory_order_relaxed);
     }
