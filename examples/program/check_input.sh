@@ -47,6 +47,17 @@ expect 2 'none\.toml: there is no such file' "$program" run none.toml
 expect 2 'folder' "$program" resume none
 expect 2 'folder' "$program" info none
 
+# Every option that the program shows is one that files may have.
+"$program" options >shown || fail 'options are not shown'
+options=$(sed -n 's/^\([a-z_]*\) (.*/\1/p' shown)
+[[ $(wc -w <<<"$options") -gt 20 ]] || fail 'few options are shown'
+for option in $options; do
+    [[ $option == samples ]] && continue  # for which a method dense<...> is looked for first
+    sed -e "/^$option = /d" -e "/^\[options\]/a $option = \"nonsense\"" good.toml >bad.toml
+    expect 2 "options\.$option: " "$program" run bad.toml
+    grep -q 'there is no such key' stderr && fail "no file may have $option"
+done
+
 # Another study in the same folder: what differs, and where.
 expect 0 '' "$program" run good.toml --quiet
 sed 's/1e-9/1e-8/' good.toml >other.toml

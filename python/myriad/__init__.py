@@ -13,6 +13,7 @@ from .grid import *  # noqa: F403
 from .interpolate import *  # noqa: F403
 from .methods import controls, methods
 from .model import *  # noqa: F403
+from .options import EventChoice, Options, RecordChoice, SampleChoice
 from .run import Interrupted, Run, status_names
 from .solve import solve
 from .study import Study, study
@@ -23,8 +24,9 @@ from .tangents import *  # noqa: F403
 
 __version__ = _core.version
 
-_public = ["CppModel", "Damage", "Error", "Interrupted", "Run", "Study", "StudyResult", "cache", "controls", "methods",
-           "open_study", "plots", "reduce", "solve", "status_names", "study", "verify",
+_public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options", "RecordChoice", "Run",
+           "SampleChoice", "Study", "StudyResult", "cache", "controls", "methods", "open_study", "plots", "reduce",
+           "solve", "status_names", "study", "verify",
            *(name for part in ("axes", "expression", "grid", "interpolate", "model", "symbols", "table", "tangents")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad import *` brings: nothing that has the name of a function of Python's, such as abs.

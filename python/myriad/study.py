@@ -2,31 +2,38 @@
 """Studies: ensembles of any size along axes by name, computed chunk by chunk, kept in a store in which they go on after
 a stop, and handed to any executor. The C++ library's `study` with a model of Python's."""
 
+from __future__ import annotations
+
 import concurrent.futures
 import hashlib
-import inspect
 import os
 import pickle
 import queue
 import threading
 import time as clock
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _core, nvrtc
 from .axes import Axis, Random
 from .components import Components, name_of, unknown
-from .errors import Error, note_in_python, refuse_options, with_event_names
+from .core_options import finish_options, make_options, options_of, takes_options
+from .errors import Error, note_in_python, with_event_names
 from .expression import Node
 from .grid import Sweep
+from .inputs import by_name, numbers, only, whole
 from .methods import default, fixed_step, method_type
+from .options import Options, StudyArguments
 from .reduce import Reduction
 from .run import Interrupted
-from .solve import (_by_name, _numbers, _only, _per_state, _set_events, _whole, device_names, ends_of, kernel_for,
-                    make_options, refuse_missing)
+from .solve import device_names, ends_of, kernel_for, refuse_missing
 from .study_result import StudyResult
 from .symbols import t_begin, t_end, time as time_symbol
 from .whole_numbers import check_whole_numbers
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 __all__ = ["Study", "study"]
 
@@ -51,23 +58,22 @@ class Study:
     # -- What the study is --------------------------------------------------------------------------------------------
 
     def _build(self, model, sweep, *, start, time, keep, reduce, draws, seed, title, units, notes, method, control,
-               rtol, atol, events, samples, record, precision, interpreted, **others):
+               options, precision, interpreted):
         if not hasattr(model, "source"):
             raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...)")
         if precision not in ("double", "float"):
             raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
         method = default if method is None else method
-        if method in fixed_step and others["step"] is None:
+        if method in fixed_step and options.step is None:
             raise Error(f"{method} takes fixed steps: give step=")
         components = self._components = Components(model)
+        samples = options.samples
         if np.ndim(samples if not hasattr(samples, "items") else samples.get("times", ())) > 1:
             raise Error("a study has no sample times for each instance: give the same times for all, or a number of "
                         "evenly spaced ones")
-        options, recorded, sampled = make_options(components, 0, record=record, samples=samples, **others)
-        count = len(components.states)
-        options.set_tolerances(_per_state(rtol, components, "rtol", count), _per_state(atol, components, "atol", count))
-        _set_events(options, events, components, len(components.events))
-        options.mark_invalid()
+        core_options, recorded, sampled = make_options(components, 0, options)
+        finish_options(core_options, options, components, len(components.states), len(components.events))
+        core_options.invalid_instances = "mark"
         self._interpreted, self._kernels = interpreted, {}
         self._kernel_for = lambda device: kernel_for(device, model, components, method, control, samples is not None,
                                                      precision, self._interpreted)
@@ -77,12 +83,12 @@ class Study:
                 getattr(model, "generator", ""), "float64" if precision == "double" else "float32",
                 getattr(model, "name", None) or "model",
                 method_type(method, control, samples is not None).replace("myriad::", ""))
-            made.options(options)
+            made.options(core_options)
             self._set_instances(made, components, sweep, start, time, draws)
-            self._looks_at_domains = bool(samples is not None or others["phase_length"] or others["carry_on"])
+            self._looks_at_domains = bool(samples is not None or options.phase_length or options.carry_on)
             if draws is not None:
-                made.repeat(_whole(draws, "draws", 1 << 62), "draw")
-            made.seed(_whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
+                made.repeat(whole(draws, "draws", 1 << 62), "draw")
+            made.seed(whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
             check_whole_numbers(getattr(model, "generate", ()), made.size, self._shared_integers)
             self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
             for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
@@ -90,13 +96,13 @@ class Study:
                     raise Error(f"reduce= has {reduction!r}: give reductions, as in "
                                 "[myriad.reduce.mean(\"x_end\")]")
                 made.reduce(reduction.core())
-            for key, unit in _by_name(units, "units", "units={x: \"m\"}").items():
+            for key, unit in by_name(units, "units", "units={x: \"m\"}").items():
                 made.unit("t" if key is time_symbol else self._full_name(key), unit)
             if title:
                 made.title(title)
             values = np.array(list(components.tables.values()), float)
             made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
-            for key, text in _by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
+            for key, text in by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
                 made.note(f"user.{key}", str(text))
         except Error as error:
             raise with_event_names(error, components.event_names) from None
@@ -124,7 +130,7 @@ class Study:
     def _set_instances(self, made, components, sweep, start, time, draws):
         """Axes, random values and values for all instances."""
         begin, end = ends_of(time)
-        given = dict(_by_name(start, "start", "start={x: 1, v: 0}"))
+        given = dict(by_name(start, "start", "start={x: 1, v: 0}"))
         self._refuse_twice(given, "start=")
         for name, value in (("t_begin", begin), ("t_end", end)):
             if value is not None:
@@ -136,7 +142,7 @@ class Study:
                 on_grid.append([(n, v) for n, (a, v) in sweep.coordinates.items() if a == axis])
             constants.update(sweep.constants)
         else:
-            swept = _by_name(sweep, "the sweep", "{k: myriad.linspace(0, 1, 100)}")
+            swept = by_name(sweep, "the sweep", "{k: myriad.linspace(0, 1, 100)}")
             twice = self._refuse_twice(swept, "the sweep") & self._refuse_twice(given, "start=")
             for name in twice & {"t_begin", "t_end"}:
                 raise Error(f"'{name}' is given in the sweep and in time=: give None there")
@@ -151,7 +157,7 @@ class Study:
                     raise Error(f"'{name}' is given in the sweep and in time=: give None there")
                 raise Error(f"'{name}' is given in the sweep and in start=: give it once")
             if not isinstance(value, Axis):
-                value = _numbers(value, name)
+                value = numbers(value, name)
             (constants.__setitem__(key, value) if value.ndim == 0 else together.append((key, value)))
         if together and isinstance(sweep, Sweep):
             raise Error(f"'{self._full_name(together[0][0])}' has {len(together[0][1])} values beside a grid: make it "
@@ -205,7 +211,7 @@ class Study:
                 "end": [*components.states, *components.accessories, *components.integer_accessories]}
         elif not hasattr(keep, "items"):
             keep = {"end": keep}
-        _only(keep, _keep_choices, "keep=")
+        only(keep, _keep_choices, "keep=")
         end = keep.get("end", ())
         end = [end] if isinstance(end, (str, Node)) else list(end)
         names = ["t" if key is time_symbol else self._full_name(key) for key in end]
@@ -238,7 +244,7 @@ class Study:
                 self._core.add_kernel(device, self._kernels[device].library, [list(n) for n in names])
         self._runs_interpreted = any(self._kernels[d].origin.startswith("interpreted") for d in devices)
         self._core.note("kernel", "interpreted" if self._runs_interpreted else "compiled")
-        self._core.set_run(devices, _whole(chunk or 0, "chunk", 1 << 62))
+        self._core.set_run(devices, whole(chunk or 0, "chunk", 1 << 62))
 
     def run(self, store=None, *, device="auto", chunk=None, executor=None, check="sizes", expiry=60, arithmetic="same",
             progress=None):
@@ -454,12 +460,10 @@ class _ExecutedRun:
         return self._study._result(results, {**facts, "seconds": clock.perf_counter() - self._begin}, self._folder)
 
 
-def study(model, sweep=None, *, start=None, time=None, phases=1, record=None, samples=None, keep=None, reduce=(),
-          draws=None, seed=0, title="", units=None, notes=None, method=None, control=(), rtol=1e-8, atol=1e-8,
-          step=None,
-          minimum_step=0, maximum_step=None, growth_limit=5, shrink_limit=0.1, max_steps=1_000_000, phase_length=0,
-          carry_on=False, carry_on_step=False, events=None, sub_samples=1, accumulation_limit=50,
-          schedule="automatic", precision="double", interpreted=None, advice=True, **unknown):
+@takes_options(StudyArguments)
+def study(model, sweep=None, *, start=None, time=None, keep=None, reduce=(), draws=None, seed=0, title="", units=None,
+          notes=None, method=None, control=(), options: Options | None = None, precision="double", interpreted=None,
+          **others: Unpack[StudyArguments]) -> Study:
     """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
     What `generate=` of the model sets is given neither in the sweep nor in start.
 
@@ -481,14 +485,13 @@ def study(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
     units     {component: unit} for results; notes: {key: text}, anything that tells this study from others, such as the
               version of data: a store that was made with other notes is refused
 
-    All others are those of `solve`. Inputs that are not finite mark their instances as invalid_input. Names of results
-    are those of the C++ library: "x" at recorded phases, "x_sample", "x_end", "t_last", "status"; of initial values of
-    states "x_begin". Raises `myriad.Error`."""
-    refuse_options(unknown, inspect.signature(study).parameters, "study")
+    method, control, precision, interpreted, options, record, samples, events, rtol and atol are those of `solve`.
+    Inputs that are not finite mark their instances as invalid_input. Names of results are those of the C++ library: "x" at
+    recorded phases, "x_sample", "x_end", "t_last", "status"; of initial values of states "x_begin". Raises
+    `myriad.Error`.
+
+    The options:"""
     return Study(model, sweep, dict(
-        start=start, time=time, phases=phases, record=record, samples=samples, keep=keep, reduce=reduce, draws=draws,
-        seed=seed, title=title, units=units, notes=notes, method=method, control=control, rtol=rtol, atol=atol,
-        step=step, minimum_step=minimum_step, maximum_step=maximum_step, growth_limit=growth_limit,
-        shrink_limit=shrink_limit, max_steps=max_steps, time_limit=None, phase_length=phase_length, carry_on=carry_on,
-        carry_on_step=carry_on_step, events=events, sub_samples=sub_samples, accumulation_limit=accumulation_limit,
-        schedule=schedule, precision=precision, interpreted=interpreted, advice=advice))
+        start=start, time=time, keep=keep, reduce=reduce, draws=draws, seed=seed, title=title, units=units, notes=notes,
+        method=method, control=control, options=options_of(options, others, study), precision=precision,
+        interpreted=interpreted))

@@ -22,6 +22,7 @@
 
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/core/instruction_set.hpp"
+#include "myriad/host/options/option_table.hpp"
 #include "myriad/host/threads/parallel.hpp"
 #include "myriad/version.hpp"
 #include "resident.hpp"
@@ -311,49 +312,64 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
     m.def("solve", &solve_from_python<R>, "kernels"_a, "ensemble"_a, "options"_a, "progress"_a.none() = nb::none());
 }
 
+/// The options of a struct, by their names: choices as text, tolerances and numbers of components as lists.
+template <class Group>
+void bind_options_of(nb::module_& m, const char* name) {
+    nb::class_<Group> bound(m, name);
+    bound.def(nb::init<>());
+    host::for_each_option<Group>([&](const auto& e) {
+        using T = typename std::decay_t<decltype(e)>::value_type;
+        const auto member = e.member;
+        if constexpr (std::is_enum_v<T>) {
+            bound.def_prop_rw(
+                e.name, [member](const Group& o) { return host::name_of_choice(o.*member); },
+                [member](Group& o, const std::string& wanted) {
+                    for (const auto& c : host::choices(T{}))
+                        if (wanted == c.name) o.*member = c.value;
+                });
+        } else if constexpr (std::is_same_v<T, per_component>) {
+            bound.def_prop_rw(
+                e.name,
+                [member](const Group& o) {
+                    std::vector<double> all;
+                    for (std::size_t i = 0; i < (o.*member).size(); ++i) all.push_back((o.*member)[i]);
+                    return all;
+                },
+                [member](Group& o, std::vector<double> all) { o.*member = per_component(std::move(all)); });
+        } else if constexpr (std::is_same_v<T, component_list>) {
+            bound.def_prop_rw(
+                e.name, [member](const Group& o) { return std::vector<int>((o.*member).begin(), (o.*member).end()); },
+                [member](Group& o, const std::vector<int>& all) { o.*member = all; });
+        } else if constexpr (!std::is_same_v<T, decltype(options::progress)>) {  // which is given to `solve`
+            bound.def_rw(e.name, member);
+        }
+    });
+}
+
 void bind_options(nb::module_& m) {
-    nb::class_<options>(m, "Options")
-        .def(nb::init<>())
-        .def_rw("phases", &options::phases)
-        .def_rw("step", &options::step)
-        .def_rw("minimum_step", &options::minimum_step)
-        .def_rw("maximum_step", &options::maximum_step)
-        .def_rw("growth_limit", &options::growth_limit)
-        .def_rw("shrink_limit", &options::shrink_limit)
-        .def_rw("max_steps", &options::max_steps)
-        .def_rw("time_limit", &options::time_limit)
-        .def_rw("phase_length", &options::phase_length)
-        .def_rw("sub_samples", &options::sub_samples)
-        .def_rw("accumulation_limit", &options::accumulation_limit)
-        .def("set_tolerances",
-             [](options& o, std::vector<double> relative, std::vector<double> absolute) {
-                 o.relative_tolerance = std::move(relative);
-                 o.absolute_tolerance = std::move(absolute);
-             })
-        .def("carry_on",
-             [](options& o, bool time, bool step) {
-                 o.phase_time = time ? phase_time::carry_on : phase_time::restart;
-                 o.phase_step = step ? phase_step::carry_on : phase_step::restart;
-             })
-        .def_prop_ro("sample_capacity", [](const options& o) { return o.samples.capacity; })
-        .def("without_advice", [](options& o) { o.advice = advice::off; })
-        .def("mark_invalid", [](options& o) { o.invalid_instances = invalid_instances::mark; })
-        .def("add_event",
-             [](options& o, int direction, double tolerance, std::int64_t stop_after) {
-                 o.events.push_back({static_cast<myriad::direction>(direction), tolerance, stop_after});
-             })
-        .def("set_schedule", [](options& o, int number) { o.schedule = static_cast<myriad::schedule>(number); })
-        .def("record",
-             [](options& o, std::int64_t from_phase, const std::vector<int>& states,
-                const std::vector<int>& accessories, const std::vector<int>& integer_accessories, bool time) {
-                 o.record = {from_phase, states, accessories, integer_accessories, time};
-             })
-        .def("sample", [](options& o, const std::vector<int>& states, std::int64_t capacity, std::int64_t evenly,
-                          std::vector<double> times, std::vector<double> times_of_instances, std::int64_t every,
-                          double minimum_spacing, std::int64_t from_phase) {
-            o.samples = {states, capacity,        evenly,    std::move(times), std::move(times_of_instances),
-                         every,  minimum_spacing, from_phase};
-        });
+    bind_options_of<event_options>(m, "EventOptions");
+    bind_options_of<record_options>(m, "RecordOptions");
+    bind_options_of<sample_options>(m, "SampleOptions");
+    bind_options_of<options>(m, "Options");
+    m.def(
+        "option_rows",
+        [] {
+            nb::list rows;
+            for (const host::option_row& r : host::option_rows()) {
+                nb::dict row;
+                row["name"] = r.name;
+                row["type"] = r.type;
+                row["choices"] = r.choices;
+                row["initial"] = r.initial;
+                row["range"] = r.range;
+                row["unit"] = r.unit;
+                row["of_call_alone"] = r.effect == host::option_effect::call;
+                row["meaning"] = r.meaning;
+                rows.append(row);
+            }
+            return rows;
+        },
+        nb::sig("def option_rows() -> list[dict[str, typing.Any]]"));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ def test_values_of_the_wrong_kind_end_in_an_error_of_python_or_numpy():
     for device in (None, 0, [1]):
         with pytest.raises(my.Error, match="is unknown: use \"auto\""):
             solve(device=device)
-    with pytest.raises(my.Error, match=r"there is no schedule \[\]"):
+    with pytest.raises(my.Error, match=r"schedule is \[\]: give \"automatic\", "):
         solve(schedule=[])
     with pytest.raises(my.Error, match="the model is a type"):
         my.solve(type(oscillator), {k: 1})

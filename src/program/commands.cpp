@@ -19,6 +19,7 @@
 
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/core/error.hpp"
+#include "myriad/host/options/option_table.hpp"
 #include "myriad/host/report/progress.hpp"
 #include "myriad/program.hpp"
 #include "myriad/study/export.hpp"
@@ -316,6 +317,22 @@ int run_study(const run_request& asked, study_file& file, const std::string& tex
     return 0;
 }
 
+/// The options that a study may have, by the table of options.
+void show_options() {
+    for (const host::option_row& r : host::option_rows()) {
+        if (r.effect == host::option_effect::call) continue;
+        std::string facts = r.type;
+        if (r.type == "choice") {
+            facts.clear();
+            for (const std::string& c : r.choices) facts += (facts.empty() ? "" : " | ") + c;
+        }
+        if (!r.range.empty()) facts += " in " + r.range;
+        if (!r.unit.empty()) facts += ", unit: " + r.unit;
+        if (!r.initial.empty()) facts += ", default: " + r.initial;
+        std::cout << r.name << " (" << facts << ")\n    " << r.meaning << '\n';
+    }
+}
+
 int run(run_request asked) {
     asked.compiles = asked.compiles || !asked.only_check;
     const std::string text = read_file(asked.file);
@@ -517,6 +534,8 @@ int parse_and_run(int argc, const char* const* argv) {
     };
     add_compile_option(list_command);
     list_command->callback([&] { status = list(files, asked); });
+
+    app.add_subcommand("options", "Show what [options] of a study may have")->callback([&] { show_options(); });
 
     const auto add_run_options = [&](CLI::App* command) {
         command

@@ -3,14 +3,17 @@
 // code only.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "myriad/host/options/option_table.hpp"
 #include "program/toml_value.hpp"
 
 namespace myriad::programs {
@@ -69,19 +72,12 @@ public:
     }
     /// One of some words.
     template <class T>
-    void read(std::string_view key, T& to, std::initializer_list<std::pair<const char*, T>> choices) {
-        with(key, [&](const toml_value& v, const std::string& name) {
-            const std::string& word = text_in(v, name);
-            std::vector<std::string> words;
-            for (const auto& [choice, value] : choices) {
-                if (word == choice) {
-                    to = value;
-                    return;
-                }
-                words.emplace_back(choice);
-            }
-            throw wrong(v, name, message('"', word, "\" is none of its values", suggestion(word, words)));
-        });
+    void read(std::string_view key, T& to, std::initializer_list<host::choice<T>> choices) {
+        read_choice<T>(key, to, {choices.begin(), choices.size()});
+    }
+    template <class T, std::size_t n>
+    void read(std::string_view key, T& to, const std::array<host::choice<T>, n>& choices) {
+        read_choice<T>(key, to, choices);
     }
     /// A key's name in messages, with those of the tables that it is in.
     std::string full(std::string_view key) const;
@@ -90,6 +86,22 @@ public:
     void finish() const;
 
 private:
+    template <class T>
+    void read_choice(std::string_view key, T& to, std::span<const host::choice<T>> choices) {
+        with(key, [&](const toml_value& v, const std::string& name) {
+            const std::string& word = text_in(v, name);
+            std::vector<std::string> words;
+            for (const host::choice<T>& c : choices) {
+                if (word == c.name) {
+                    to = c.value;
+                    return;
+                }
+                words.emplace_back(c.name);
+            }
+            throw wrong(v, name, message('"', word, "\" is none of its values", suggestion(word, words)));
+        });
+    }
+
     const toml_value& table_;
     std::string path_;
     std::vector<std::string> asked_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "myriad/host/backend/device.hpp"
+#include "myriad/host/options/option_table.hpp"
 
 namespace myriad::programs {
 
@@ -285,9 +286,43 @@ void study_file::read_values(any_study& study) {
 
 namespace {
 
-/// A number for all states, an array with one for each, or a table of states, where the others keep the default.
-void read_tolerance(section& from, std::string_view key, per_component& to, const component_names& names) {
-    from.with(key, [&](const toml_value& v, const std::string& path) {
+/// The options of a study's file, by the table of options.
+class option_reader {
+public:
+    explicit option_reader(const program_model& model) : model_(model) {}
+
+    /// A table with the options of a struct.
+    template <class Group>
+    void read(const toml_value& table, const std::string& path, Group& to) const {
+        section from(table, path);
+        host::for_each_option<Group>([&](const auto& e) {
+            using T = typename std::decay_t<decltype(e)>::value_type;
+            T& value = to.*e.member;
+            if constexpr (std::is_enum_v<T>) {
+                from.read(e.name, value, host::choices(T{}));
+            } else if constexpr (std::is_same_v<T, component_list>) {
+                from.with(e.name, [&](const toml_value& v, const std::string& key) {
+                    value = components_in(v, key, model_.names, kind_of(e.unit));
+                });
+            } else if constexpr (requires { from.read(e.name, value); }) {
+                from.read(e.name, value);
+            } else if constexpr (requires(const toml_value& v) { set(v, std::string(), value); }) {
+                from.with(e.name, [&](const toml_value& v, const std::string& key) { set(v, key, value); });
+            }  // else a function, which no file has
+        });
+        from.finish();
+    }
+
+private:
+    static component_kind kind_of(std::string_view name) {
+        for (const component_kind kind : {state, accessory})
+            if (name_of(kind) == name) return kind;
+        return integer_accessory;
+    }
+
+    void set(const toml_value& v, const std::string& key, std::vector<double>& to) const { to = numbers_in(v, key); }
+    /// A number for all states, an array with one for each, or a table of states, where the others keep the default.
+    void set(const toml_value& v, const std::string& path, per_component& to) const {
         if (v.as<toml_value::array>() != nullptr) {
             to = per_component(numbers_in(v, path));
             return;
@@ -298,121 +333,51 @@ void read_tolerance(section& from, std::string_view key, per_component& to, cons
             return;
         }
         std::vector<double> each;
-        for (const component& c : names.all())
+        for (const component& c : model_.names.all())
             if (c.kind == state) each.push_back(to[0]);
         for (const toml_value::entry& e : *table) {
             const std::string name = message(path, '.', e.key);
-            with_component(names, e.key, e.value, name, {state}, [&] {
-                each[static_cast<std::size_t>(names.find(e.key, {state}).number)] = number_in(e.value, name);
+            with_component(model_.names, e.key, e.value, name, {state}, [&] {
+                each[static_cast<std::size_t>(model_.names.find(e.key, {state}).number)] = number_in(e.value, name);
             });
         }
         to = per_component(std::move(each));
-    });
-}
+    }
+    /// A table for each event, in an array or under its name.
+    void set(const toml_value& v, const std::string& path, std::vector<event_options>& to) const {
+        const std::vector<std::string>& events = model_.events;
+        to.assign(events.size(), event_options{});
+        if (const auto* const array = v.as<toml_value::array>()) {
+            if (array->size() != events.size())
+                throw wrong(v, path,
+                            message("has ", array->size(), " events, and the model has ", events.size(),
+                                    ": give one table for each, or tables with their names"));
+            for (std::size_t e = 0; e < array->size(); ++e) read((*array)[e], path, to[e]);
+            return;
+        }
+        const section checked(v, path);
+        for (const toml_value::entry& e : *v.as<toml_value::table>()) {
+            const std::string key = checked.full(e.key);
+            const auto found = std::find(events.begin(), events.end(), e.key);
+            if (found == events.end())
+                throw wrong(e.value, key, message("the model has no event \"", e.key, '"', suggestion(e.key, events)));
+            read(e.value, key, to[static_cast<std::size_t>(found - events.begin())]);
+        }
+    }
+    void set(const toml_value& v, const std::string& key, record_options& to) const { read(v, key, to); }
+    void set(const toml_value& v, const std::string& key, sample_options& to) const {
+        read(v, key, to);
+        if (to.states.empty()) throw wrong(v, key, "names no states: write states = [...] with those that are sampled");
+    }
 
-event_options event_in(const toml_value& v, const std::string& path) {
-    event_options made;
-    section from(v, path);
-    from.read("direction", made.direction,
-              {{"falling", direction::falling},
-               {"either", direction::either},
-               {"rising", direction::rising},
-               {"none", direction::none}});
-    from.read("tolerance", made.tolerance);
-    from.read("stop_after", made.stop_after);
-    from.finish();
-    return made;
-}
+    const program_model& model_;
+};
 
 }  // namespace
 
-void study_file::read_events(const toml_value& v, const std::string& path, options& to, const program_model& model) {
-    to.events.assign(model.events.size(), event_options{});
-    if (const auto* const array = v.as<toml_value::array>()) {
-        if (array->size() != model.events.size())
-            throw wrong(v, path,
-                        message("has ", array->size(), " events, and the model has ", model.events.size(),
-                                ": give one table for each, or tables with their names"));
-        for (std::size_t e = 0; e < array->size(); ++e) to.events[e] = event_in((*array)[e], path);
-        return;
-    }
-    const section checked(v, path);
-    for (const toml_value::entry& e : *v.as<toml_value::table>()) {
-        const std::string key = checked.full(e.key);
-        const auto found = std::find(model.events.begin(), model.events.end(), e.key);
-        if (found == model.events.end())
-            throw wrong(e.value, key,
-                        message("the model has no event \"", e.key, '"', suggestion(e.key, model.events)));
-        to.events[static_cast<std::size_t>(found - model.events.begin())] = event_in(e.value, key);
-    }
-}
-
-void study_file::read_record(section& from, record_options& to, const component_names& names) {
-    from.read("from_phase", to.from_phase);
-    const auto read = [&](std::string_view key, component_list& list, component_kind kind) {
-        from.with(key,
-                  [&](const toml_value& v, const std::string& name) { list = components_in(v, name, names, kind); });
-    };
-    read("states", to.states, state);
-    read("accessories", to.accessories, accessory);
-    read("integer_accessories", to.integer_accessories, integer_accessory);
-    from.read("time", to.time);
-}
-
-void study_file::read_samples(section& from, sample_options& to, const component_names& names) {
-    from.with("states",
-              [&](const toml_value& v, const std::string& name) { to.states = components_in(v, name, names, state); });
-    from.read("capacity", to.capacity);
-    from.read("evenly", to.evenly);
-    from.with("times", [&](const toml_value& v, const std::string& name) { to.times = numbers_in(v, name); });
-    from.read("every", to.every);
-    from.read("minimum_spacing", to.minimum_spacing);
-    from.read("from_phase", to.from_phase);
-}
-
 void study_file::read_options(any_study& study, const program_model& model) {
     root_.with("options", [&](const toml_value& v, const std::string& path) {
-        section from(v, path);
-        options& o = study.options;
-        from.read("phases", o.phases);
-        read_tolerance(from, "relative_tolerance", o.relative_tolerance, *names_);
-        read_tolerance(from, "absolute_tolerance", o.absolute_tolerance, *names_);
-        from.read("step", o.step);
-        from.read("minimum_step", o.minimum_step);
-        from.read("maximum_step", o.maximum_step);
-        from.read("growth_limit", o.growth_limit);
-        from.read("shrink_limit", o.shrink_limit);
-        from.read("max_steps", o.max_steps);
-        from.read("time_limit", o.time_limit);
-        from.read("phase_time", o.phase_time, {{"restart", phase_time::restart}, {"carry_on", phase_time::carry_on}});
-        from.read("phase_length", o.phase_length);
-        from.read("phase_step", o.phase_step, {{"restart", phase_step::restart}, {"carry_on", phase_step::carry_on}});
-        from.with("events",
-                  [&](const toml_value& events, const std::string& key) { read_events(events, key, o, model); });
-        from.read("sub_samples", o.sub_samples);
-        from.read("accumulation_limit", o.accumulation_limit);
-        from.with("record", [&](const toml_value& table, const std::string& key) {
-            section record(table, key);
-            read_record(record, o.record, *names_);
-            record.finish();
-        });
-        from.with("samples", [&](const toml_value& table, const std::string& key) {
-            section samples(table, key);
-            read_samples(samples, o.samples, *names_);
-            samples.finish();
-            if (o.samples.states.empty())
-                throw wrong(table, key, "names no states: write states = [...] with those that are sampled");
-        });
-        from.read("counting", o.counting, {{"off", counting::off}, {"on", counting::on}});
-        from.read("advice", o.advice, {{"off", advice::off}, {"on", advice::on}});
-        from.read("schedule", o.schedule,
-                  {{"automatic", schedule::automatic},
-                   {"in_order", schedule::in_order},
-                   {"dynamic", schedule::dynamic},
-                   {"by_cost", schedule::by_cost}});
-        from.read("block_size", o.block_size);
-        from.read("chunk_size", o.chunk_size);
-        from.finish();
+        option_reader(model).read(v, path, study.options);
     });
 }
 

@@ -51,9 +51,6 @@ private:
     void read_dimension(any_study& study, const toml_value& table, const std::string& path);
     void read_values(any_study& study);
     void read_options(any_study& study, const program_model& model);
-    void read_record(section& from, record_options& to, const studies::component_names& names);
-    void read_samples(section& from, sample_options& to, const studies::component_names& names);
-    void read_events(const toml_value& v, const std::string& path, options& to, const program_model& model);
     void read_kept(kept_values& keep);
     void read_reductions(any_study& study);
     void read_texts(std::string_view key, const std::function<void(const std::string&, std::string)>& set);

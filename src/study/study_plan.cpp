@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/host/options/option_table.hpp"
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/version.hpp"
@@ -113,49 +114,52 @@ json describe(const axes& all) {
     return made;
 }
 
-json names_of(const component_names& names, component_kind kind, const component_list& list) {
+template <class Group>
+json describe_options(const Group& o, const component_names& names);
+
+/// The value of an option.
+json value_of(std::int64_t value, const component_names&) { return value; }
+json value_of(bool value, const component_names&) { return value; }
+json value_of(double value, const component_names&) { return number_or_word(value); }
+json value_of(direction value, const component_names&) { return static_cast<int>(value); }
+json value_of(const std::vector<event_options>& all, const component_names& names) {
     json made = json::array();
-    for (const int c : list) made.push_back(names.find(message(name_of(kind), '.', c), {kind}).full_name());
+    for (const event_options& e : all) made.push_back(describe_options(e, names));
+    return made;
+}
+template <class T>
+json value_of(const T& value, const component_names& names) {
+    if constexpr (std::is_enum_v<T>) {
+        return host::name_of_choice(value);
+    } else if constexpr (std::is_same_v<T, std::vector<double>> || std::is_same_v<T, per_component>) {
+        return numbers(value);
+    } else if constexpr (requires { value.empty(); }) {
+        return value.empty() ? json() : describe_options(value, names);  // records and samples that nobody asked for
+    } else {
+        return json();
+    }
+}
+json names_of(const component_names& names, const char* kind, const component_list& list) {
+    json made = json::array();
+    for (const int c : list)
+        made.push_back(names.find(message(kind, '.', c), {state, accessory, integer_accessory}).full_name());
     return made;
 }
 
-json describe(const options& o, const component_names& names) {
-    json events = json::array();
-    for (const event_options& e : o.events)
-        events.push_back({{"direction", static_cast<int>(e.direction)},
-                          {"tolerance", number_or_word(e.tolerance)},
-                          {"stop_after", e.stop_after}});
-    json made{{"phases", o.phases},
-              {"relative_tolerance", numbers(o.relative_tolerance)},
-              {"absolute_tolerance", numbers(o.absolute_tolerance)},
-              {"step", number_or_word(o.step)},
-              {"minimum_step", number_or_word(o.minimum_step)},
-              {"maximum_step", number_or_word(o.maximum_step)},
-              {"growth_limit", number_or_word(o.growth_limit)},
-              {"shrink_limit", number_or_word(o.shrink_limit)},
-              {"max_steps", o.max_steps},
-              {"phase_time", o.phase_time == phase_time::restart ? "restart" : "carry_on"},
-              {"phase_length", number_or_word(o.phase_length)},
-              {"phase_step", o.phase_step == phase_step::restart ? "restart" : "carry_on"},
-              {"events", events},
-              {"sub_samples", o.sub_samples},
-              {"accumulation_limit", o.accumulation_limit}};
-    if (!o.record.empty()) {
-        made["record"] = {{"from_phase", o.record.from_phase},
-                          {"states", names_of(names, state, o.record.states)},
-                          {"accessories", names_of(names, accessory, o.record.accessories)},
-                          {"integer_accessories", names_of(names, integer_accessory, o.record.integer_accessories)},
-                          {"time", o.record.time}};
-    }
-    if (!o.samples.empty()) {
-        made["samples"] = {{"states", names_of(names, state, o.samples.states)},
-                           {"capacity", o.samples.capacity},
-                           {"evenly", o.samples.evenly},
-                           {"times", numbers(o.samples.times)},
-                           {"every", o.samples.every},
-                           {"minimum_spacing", number_or_word(o.samples.minimum_spacing)},
-                           {"from_phase", o.samples.from_phase}};
-    }
+/// Those that have an effect on results.
+template <class Group>
+json describe_options(const Group& o, const component_names& names) {
+    json made = json::object();
+    host::for_each_option<Group>([&](const auto& e) {
+        if (e.effect != host::option_effect::results) return;
+        json value;
+        if constexpr (std::is_same_v<typename std::decay_t<decltype(e)>::value_type, component_list>) {
+            value = names_of(names, e.unit, o.*e.member);
+        } else {
+            value = value_of(o.*e.member, names);
+        }
+        if (!value.is_null()) made[e.name] = std::move(value);
+    });
     return made;
 }
 
@@ -175,7 +179,7 @@ std::string describe(const study_request& asked, const study_plan& plan) {
               {"real", name_of(asked.real)},
               {"version", MYRIAD_VERSION},
               {"axes", describe(asked.axes)},
-              {"options", describe(asked.options, names)},
+              {"options", describe_options(asked.options, names)},
               {"kept", kept}};
     if (!asked.title.empty()) made["title"] = asked.title;
     if (!reductions.empty()) made["reductions"] = reductions;

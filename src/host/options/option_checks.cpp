@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "myriad/host/options/option_table.hpp"
 #include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
@@ -17,36 +18,63 @@ void check_count(const char* name, std::int64_t value, std::int64_t least, std::
 
 namespace {
 
-void check_positive(const char* name, double value, const char* advice) {
-    require(value > 0 && std::isfinite(value), named_option(name), " is ", value,
-            " (must be positive and finite): ", advice);
-}
 void check_tolerance_count(const char* name, const per_component& t, std::size_t components) {
     require(t.size() == 1 || t.size() == components, named_option(name), " has ", t.size(),
             " values, but the model has ", components, " state components: give one value for all, or one for each");
 }
-/// Checks an option that is an enumeration of `count` choices, numbered from 0.
-template <class Choice>
-void check_choice(const char* name, Choice chosen, int count, const char* choices) {
-    const int number = static_cast<int>(chosen);
-    require(number >= 0 && number < count, named_option(name), " is ", number, ", which is none: choose ", choices);
+/// "must be positive and finite": a range in words.
+std::string words_of(const number_range& r) {
+    const std::string least = text_of(r.least), most = text_of(r.most), zero = r.or_zero ? ", or 0" : "";
+    if (std::isfinite(r.most))
+        return message("must be ", r.without_least ? "between " : "from ", least, r.without_least ? " and " : " to ",
+                       most, zero);
+    const char* const finite = !r.without_most ? "" : r.without_least ? " and finite" : ", and finite";
+    if (r.least != 0) return message("must be at least ", least, finite, zero);
+    return message(r.without_least ? "must be positive" : "must not be negative", finite);
+}
+template <class E>
+std::string names_of_choices() {
+    std::string all;
+    const auto known = choices(E{});
+    for (std::size_t i = 0; i < known.size(); ++i)
+        all += message(i == 0 ? "" : i + 1 == known.size() ? " or " : ", ", known[i].name);
+    return all;
+}
+/// Checks the numbers and choices of a struct, each on its own. `what`: what messages say before the option's name.
+template <class Group>
+void check_each(const option_limits& limits, const Group& given, const char* what) {
+    static const Group initial{};
+    for_each_option<Group>([&](const auto& e) {
+        using T = typename std::decay_t<decltype(e)>::value_type;
+        const T& value = given.*e.member;
+        const auto key = [&] {
+            const std::string path = option_table<Group>::path;
+            return path.empty() ? e.name : path + '.' + e.name;
+        };
+        const auto name = [&] { return message(what, e.name); };
+        if constexpr (std::is_enum_v<T>) {
+            if (name_of_choice(value) != nullptr) return;
+            refuse({named_option(key(), name()), " is ", static_cast<int>(value), ", which is none: choose ",
+                    names_of_choices<T>()});
+        } else if constexpr (std::is_same_v<T, std::int64_t> || std::is_same_v<T, double>) {
+            const auto number = static_cast<double>(value);
+            if (std::isnan(number) && std::isnan(static_cast<double>(initial.*e.member))) return;  // not given
+            if (!e.range.contains(number))
+                refuse({named_option(key(), name()), " is ", value, " (", words_of(e.range), ")",
+                        e.cure != nullptr ? ": " : "", e.cure != nullptr ? e.cure : ""});
+            if (e.is_real()) limits.check_kept(key().c_str(), number, name().c_str());
+        }
+    });
 }
 
 void check_samples(const sample_options& s, const options& o) {
     const int ways = (s.evenly != 0) + !s.times.empty() + !s.times_of_instances.empty() + (s.every != 0);
     require(ways == 1, named_option("samples"), " names ", ways,
             " of evenly, times, times_of_instances and every: choose exactly one");
-    require(s.capacity > 0 && s.capacity < 2'000'000'000, named_option("samples.capacity"), " is ", s.capacity,
-            " (must be positive): give the number of samples to keep per instance");
-    require(s.from_phase >= 0 && s.from_phase < o.phases, named_option("samples.from_phase"), " is ", s.from_phase,
-            ", but the call has ", o.phases, " phases (counted from 0): nothing would be sampled");
-    require(s.minimum_spacing >= 0 && std::isfinite(s.minimum_spacing), named_option("samples.minimum_spacing"), " is ",
-            s.minimum_spacing, " (must not be negative)");
-    if (s.every != 0) {
-        check_count("samples.every", s.every, 1, 2'000'000'000);
-        return;
-    }
-    if (s.evenly != 0) check_count("samples.evenly", s.evenly, 2, 2'000'000'000);
+    require(s.from_phase < o.phases, named_option("samples.from_phase"), " is ", s.from_phase, ", but the call has ",
+            o.phases, " phases (counted from 0): nothing would be sampled");
+    if (s.every != 0) return;
+    require(s.evenly != 1, named_option("samples.evenly"), " is 1 (must be from 2, for both ends of the domain)");
     bool rising = true, falling = true;
     for (std::size_t k = 0; k < s.times.size(); ++k) {
         require(std::isfinite(s.times[k]), named_option("samples.times"), "[", k, "] is ", s.times[k],
@@ -125,7 +153,8 @@ void option_limits::check_kept(const char* key, double value, const char* name) 
 }
 void option_limits::check(const options& o) const {
     require(computes_as_written(), "the library ", not_as_written);
-    check_count("phases", o.phases, 1, 1'000'000'000);
+    check_each(*this, o, "");
+    for (const event_options& e : o.events) check_each(*this, e, "event ");
     const auto n_state = static_cast<std::size_t>(components.state.count);
     check_tolerance_count("relative_tolerance", o.relative_tolerance, n_state);
     check_tolerance_count("absolute_tolerance", o.absolute_tolerance, n_state);
@@ -152,15 +181,8 @@ void option_limits::check(const options& o) const {
     for (std::size_t c = 0; c < n_state; ++c)
         require(o.relative_tolerance[c] > 0 || o.absolute_tolerance[c] > 0, named_option("relative_tolerance"), " and ",
                 named_option("absolute_tolerance"), " are 0: give the error you accept per step, such as 1e-9");
-    if (adaptive) {
-        require(std::isnan(o.step) || (o.step > 0 && std::isfinite(o.step)), named_option("step"), " is ", o.step,
-                " (must be positive and finite): give the length of the first step to try");
-    } else {
-        require(!std::isnan(o.step), named_option("step"),
-                " is not set, but the method takes fixed steps: ", phrase("give_step", "give options::step"));
-        check_positive("step", o.step, "give the length of the fixed step; the direction follows from t_end");
-    }
-    if (!std::isnan(o.step)) check_kept("step", o.step);
+    require(adaptive || !std::isnan(o.step), named_option("step"),
+            " is not set, but the method takes fixed steps: ", phrase("give_step", "give options::step"));
     // Fixed steps do not use tolerances.
     for (std::size_t c = 0; adaptive && c < o.relative_tolerance.size(); ++c)
         check_kept("relative_tolerance", o.relative_tolerance[c]);
@@ -173,62 +195,25 @@ void option_limits::check(const options& o) const {
                 ", where a ratio of error to tolerance has no meaning: give at least that, or 0 for that of ",
                 named_option("relative_tolerance"), " alone");
     }
-    require(o.minimum_step >= 0 && std::isfinite(o.minimum_step), named_option("minimum_step"), " is ", o.minimum_step,
-            " (must not be negative): give 0 for the resolution of t");
-    check_kept("minimum_step", o.minimum_step);
-    require(o.maximum_step > 0, named_option("maximum_step"), " is ", o.maximum_step, " (must be positive)");
-    check_kept("maximum_step", o.maximum_step);
     require(o.minimum_step <= o.maximum_step, named_option("minimum_step"), " ", o.minimum_step, " is above ",
             named_option("maximum_step"), " ", o.maximum_step, ": no step size is left; exchange them");
-    require(o.growth_limit >= 1 && std::isfinite(o.growth_limit), named_option("growth_limit"), " is ", o.growth_limit,
-            " (must be at least 1): give the largest factor from one step to the next, such as 5");
-    require(o.shrink_limit > 0 && o.shrink_limit < 1, named_option("shrink_limit"), " is ", o.shrink_limit,
-            " (must be between 0 and 1): give the smallest factor from one step to the next, such as 0.1");
     require(static_cast<float>(o.shrink_limit) < 1, named_option("shrink_limit"), " is ", o.shrink_limit,
             ", which is 1 in single precision, that of step-size control: give a smaller value, such as 0.1");
     // Fixed steps are counted in the state's real type, exact up to its mantissa.
     check_count("max_steps", o.max_steps, 1, digits > 31 ? 2'000'000'000 : 16'000'000);
-    require(o.time_limit >= 0, named_option("time_limit"), " is ", o.time_limit,
-            " (must not be negative): give the seconds that the call may take, or 0 for no limit");
     require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), named_option("events"), " has ",
             o.events.size(), " entries, but the model has ", n_event,
             " event functions: give one entry for each, or none for defaults");
-    for (const event_options& e : o.events) {
-        require(e.tolerance >= 0 && std::isfinite(e.tolerance), named_option("events.tolerance", "event tolerance"),
-                " is ", e.tolerance,
-                " (must not be negative, and finite): give the |g| at which an event counts as located, such as 1e-6, "
-                "or 0 for as close as t and the state resolve");
-        check_kept("events.tolerance", e.tolerance, "event tolerance");
-        check_count("stop_after", e.stop_after, 0, 2'000'000'000);
-        const int d = static_cast<int>(e.direction);
-        require(d >= -1 && d <= 2, named_option("events.direction", "event direction"), " is ", d,
-                " (must be falling, either, rising or none)");
-    }
-    check_count("sub_samples", o.sub_samples, 1, 10'000);
-    check_choice("schedule", o.schedule, 4, "automatic, in_order, dynamic or by_cost");
-    check_choice("phase_time", o.phase_time, 2, "restart or carry_on");
-    require(o.phase_length >= 0 && std::isfinite(o.phase_length), named_option("phase_length"), " is ", o.phase_length,
-            " (must not be negative, and finite): give the length of a phase, whose direction follows "
-            "from t_end, or 0 for phases that go to t_end");
-    check_kept("phase_length", o.phase_length);
     require(o.phase_length == 0 || !writes_times, named_option("phase_length"), " is ", o.phase_length,
             ", but the model declares writes_time_domain, so that its hooks say where phases end: leave "
             "out phase_length, and set t_end in initialise");
-    check_choice("phase_step", o.phase_step, 2, "restart or carry_on");
-    check_choice("counting", o.counting, 2, "off or on");
-    check_choice("advice", o.advice, 2, "off or on");
-    check_choice("invalid_instances", o.invalid_instances, 2, "refuse or mark");
-    check_choice("shared_placement", o.shared_placement, 4, "automatic, constant_bank, shared_memory or cache");
-    check_count("accumulation_limit", o.accumulation_limit, 1, 1'000'000'000);
-    require(o.block_size >= 0 && o.block_size <= 1024 && o.block_size % 32 == 0, named_option("block_size"), " is ",
-            o.block_size, " (must be a multiple of 32 up to 1024, or 0 for an automatic choice)");
-    require(o.chunk_size >= 0, named_option("chunk_size"), " is ", o.chunk_size,
-            " (must not be negative): give 0 for what the memory allows");
+    require(o.block_size % 32 == 0, named_option("block_size"), " is ", o.block_size, " (must be a multiple of 32)");
     if (!o.samples.empty()) {
         require(samples_trajectory, named_option("samples"),
                 " are requested, but the method has no dense output: use dense<Method>, in solve and in "
                 "MYRIAD_INSTANTIATE");
         components.check("samples.states", o.samples.states, components.state);
+        check_each(*this, o.samples, "samples.");
         check_samples(o.samples, o);
         const std::vector<double>& times = o.samples.times;
         for (std::size_t k = 1; k < times.size(); ++k)
@@ -240,9 +225,9 @@ void option_limits::check(const options& o) const {
         check_no_samples(o.samples);
     }
     if (!o.record.empty()) {
-        require(o.record.from_phase >= 0 && o.record.from_phase < o.phases, named_option("record.from_phase"), " is ",
-                o.record.from_phase, ", but the call has ", o.phases,
-                " phases (counted from 0): nothing would be recorded");
+        check_each(*this, o.record, "record.");
+        require(o.record.from_phase < o.phases, named_option("record.from_phase"), " is ", o.record.from_phase,
+                ", but the call has ", o.phases, " phases (counted from 0): nothing would be recorded");
         components.check("record.states", o.record.states, components.state);
         components.check("record.accessories", o.record.accessories, components.accessory);
         components.check("record.integer_accessories", o.record.integer_accessories, components.integer_accessory);

@@ -592,7 +592,7 @@ TEST_CASE("a capacity of zero, or too small for the chosen samples, is refused",
     for (const std::int64_t bad : {std::int64_t{0}, std::int64_t{-1}, std::int64_t{1} << 40}) {
         options o = sampled();
         o.samples.capacity = bad;
-        options_refused<dense<cash_karp>>(o, {"samples.capacity is ", "must be positive", "samples to keep"});
+        options_refused<dense<cash_karp>>(o, {"samples.capacity is ", "must be from 1 to", "samples to keep"});
     }
     options o = sampled();
     o.samples.capacity = 4;
@@ -652,12 +652,12 @@ TEST_CASE("other wrong sample options are refused", "[input]") {
     o = sampled();
     o.samples.minimum_spacing = -0.5;
     options_refused<dense<cash_karp>>(o, {"samples.minimum_spacing is -0.5", "must not be negative"});
-    for (const std::int64_t bad : {1, -1}) {
-        o = sampled();
-        o.samples.from_phase = bad;
-        options_refused<dense<cash_karp>>(
-            o, {"samples.from_phase is ", "the call has 1 phases", "nothing would be sampled"});
-    }
+    o = sampled();
+    o.samples.from_phase = 1;
+    options_refused<dense<cash_karp>>(o,
+                                      {"samples.from_phase is 1", "the call has 1 phases", "nothing would be sampled"});
+    o.samples.from_phase = -1;
+    options_refused<dense<cash_karp>>(o, {"samples.from_phase is -1", "must not be negative"});
 }
 
 TEST_CASE("samples that do not fit those of an earlier call are refused", "[input]") {

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""Numbers, arrays and dicts as users give them: checked, and as the core takes them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .components import unknown
+from .device import DeviceInput, is_on_gpu
+from .errors import Error, refuse_masked
+from .grid import as_numbers
+
+
+class Along:
+    """Values of a grid along one of its axes, as an array of one value per instance that is not made until needed."""
+
+    ndim = 1
+
+    def __init__(self, sweep, name):
+        self._sweep, self._name = sweep, name
+        self.values, self.repeat = sweep.along(name)
+        self.dtype = self.values.dtype
+
+    def __len__(self):
+        return self._sweep.size
+
+    def __array__(self, dtype=None, copy=None):
+        return self._sweep.values(self._name).astype(dtype or self.dtype, copy=False)
+
+
+def numbers(value, name):
+    """A number, or an array of one dimension, of real numbers; arrays on a GPU stay there."""
+    if isinstance(value, Along):
+        return value
+    if is_on_gpu(value):
+        return DeviceInput(value, name)
+    refuse_masked(value, f"'{name}'")
+    array = as_numbers(value)
+    if array.dtype.kind == "c":
+        raise Error(f"'{name}' is complex: a model is real, so give real and imaginary parts as two components")
+    if array.dtype.kind not in "biuf":
+        raise Error(f"'{name}' is {value!r}: give a number, or an array with one number per instance")
+    if array.ndim > 1:
+        raise Error(f"'{name}' has {array.ndim} dimensions: give one number per instance, in one dimension; "
+                    "myriad.grid(...) makes a sweep over several axes")
+    return array
+
+
+def whole_numbers(array, name):
+    """The values of an integer component: whole numbers of 32 bits."""
+    least, largest = -(1 << 31), (1 << 31) - 1
+    values = array.astype(float)
+    wrong = np.flatnonzero((array != np.floor(array)) | ~((values >= least) & (values <= largest)))
+    if wrong.size:
+        raise Error(f"'{name}' is an integer and has the value {array.flat[wrong[0]]}: give whole numbers between "
+                    f"{least} and {largest}")
+    return array.astype(np.int32)
+
+
+_largest = (1 << 31) - 1
+
+
+def whole(value, name, largest=_largest):
+    try:
+        is_whole = not isinstance(value, (bool, np.bool_, str)) and float(value).is_integer()
+    except (TypeError, ValueError, OverflowError):
+        is_whole = False
+    if not is_whole:
+        raise Error(f"{name} is {value!r}: give a whole number")
+    if not -largest <= value <= largest:
+        raise Error(f"{name} is {value}: give a number up to {largest}")
+    return int(value)
+
+
+def real(value, name):
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise Error(f"{name} is {value!r}: give a number") from None
+
+
+def by_name(value, name, example):
+    """The dict that an option is."""
+    if value is not None and not hasattr(value, "items"):
+        raise Error(f"{name} is {value!r}: give a dict by name, as in {example}")
+    return value or {}
+
+
+def only(options, known, what):
+    for name in options:
+        if name not in known:
+            raise unknown(name, list(known), f"choice of {what}")
