@@ -486,8 +486,8 @@ def study(model, sweep=None, *, start=None, time=None, keep=None, reduce=(), dra
               version of data: a store that was made with other notes is refused
 
     method, control, precision, interpreted, options, record, samples, events, rtol and atol are those of `solve`.
-    Inputs that are not finite mark their instances as invalid_input. Names of results are those of the C++ library: "x" at
-    recorded phases, "x_sample", "x_end", "t_last", "status"; of initial values of states "x_begin". Raises
+    Inputs that are not finite mark their instances as invalid_input. Names of results are those of the C++ library: "x"
+    at recorded phases, "x_sample", "x_end", "t_last", "status"; of initial values of states "x_begin". Raises
     `myriad.Error`.
 
     The options:"""
