@@ -66,6 +66,7 @@ started=$SECONDS
 scripts/check_readme.py
 scripts/site_sources.py "$sources"
 scripts/reference.py --write "$sources/reference"
+scripts/python_reference.py --write "$sources/reference"
 rm -rf "$site"
 "$tools/bin/python" -m sphinx -q -W --keep-going -n -j auto -b html -d "$doctrees" "$sources" "$site"
 scripts/check_site.py "$site"

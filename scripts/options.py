@@ -23,8 +23,8 @@ DOCUMENT = ROOT / "docs/solving.md"
 BEGIN, END = "<!-- options: written by scripts/options.py -->\n", "<!-- end of options -->\n"
 
 HINTS = {"whole number": "int", "number": "float", "truth": "bool", "tolerances": "Tolerance", "numbers": "Values",
-         "components": "Components", "events": "Mapping[Component, EventChoice] | None",
-         "record": "Components | RecordChoice | None", "samples": "Values | SampleChoice | None"}
+         "components": "SomeComponents", "events": "Mapping[Component, EventChoice] | None",
+         "record": "SomeComponents | RecordChoice | None", "samples": "Values | SampleChoice | None"}
 
 
 def literal(choices):
@@ -72,7 +72,7 @@ def python_module(rows, option_names):
              '"""The options of `solve` and `study`. Written by scripts/options.py from the table of options."""', '',
              'from __future__ import annotations', '', 'from collections.abc import Mapping',
              'from dataclasses import dataclass', 'from typing import Literal, TypedDict', '',
-             'from .hints import Component, Components, Tolerance, Values', '',
+             'from .hints import Component, SomeComponents, Tolerance, Values', '',
              '__all__ = ["EventChoice", "Options", "RecordChoice", "SampleChoice"]', '']
     for struct, name, what in (("events", "EventChoice", "How an event is detected, instead of what the model says."),
                                ("record", "RecordChoice", "What is kept at the end of each phase."),

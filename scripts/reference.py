@@ -21,6 +21,8 @@ import sys
 import tempfile
 import xml.etree.ElementTree as ElementTree
 
+import python_reference
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 # What the pages are about, and the headers whose entities they have, by the beginning of the path below
@@ -549,11 +551,13 @@ def write(entities, folder):
         shown = list(dict.fromkeys(names))
         out.append(f"| [{title}]({page}.md) | {', '.join(shown[:8])}{', ...' if len(shown) > 8 else ''} |")
     out.append("| [CMake](cmake.md) | targets, components, `myriad_add_models`, options |")
+    out.append("\nThe Python package, `myriad`:\n\n| page | what |\n|---|---|")
+    out.extend(f"| [{title}]({page}.md) | {about} |" for page, (title, about, _) in python_reference.PAGES.items())
     out.append("\nWhat is found by name, and not declared in a header:\n\n| page | what |\n|---|---|")
     out.append("| [Members of a model](../model_members.md) | components, functions, hooks, declarations |")
     out.append("| [Members of a method](../method_members.md) | those of an integration method of your own |")
     out.append("| [Environment variables](../environment.md) | those that are read when a program runs |")
-    out.append("\n```{toctree}\n:hidden:\n" + "\n".join(PAGES) + "\ncmake\n```")
+    out.append("\n```{toctree}\n:hidden:\n" + "\n".join([*PAGES, "cmake", *python_reference.PAGES]) + "\n```")
     (folder / "index.md").write_text("\n".join(out) + "\n", encoding="utf-8")
 
 

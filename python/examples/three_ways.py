@@ -38,5 +38,5 @@ of_sympy = my.model({sx: sympy.diff(energy, sv), sv: -sympy.diff(energy, sx) - s
 # end of snippet
 
 assert duffing.cpp() == of_function.cpp() == of_text.cpp()
-point = dict(t=0.7, y=[0.3, -0.2], k=0.25, B=0.3)
-assert np.allclose(of_sympy.derivatives(**point), duffing.derivatives(**point), rtol=1e-14)
+assert np.allclose(of_sympy.derivatives(0.7, [0.3, -0.2], k=0.25, B=0.3),
+                   duffing.derivatives(0.7, [0.3, -0.2], k=0.25, B=0.3), rtol=1e-14)

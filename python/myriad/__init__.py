@@ -4,20 +4,21 @@
 import builtins as _builtins
 import sys as _sys
 
-from . import _core, cache, numpy_functions, plots, reduce
+from . import _core, cache as cache, numpy_functions as numpy_functions, plots as plots, reduce as reduce
 from .axes import *  # noqa: F403
-from .cpp_model import CppModel
-from .errors import Error
+from .cpp_model import CppModel as CppModel
+from .errors import Error as Error
 from .expression import *  # noqa: F403
 from .grid import *  # noqa: F403
 from .interpolate import *  # noqa: F403
-from .methods import controls, methods
+from .methods import controls as controls, methods as methods
 from .model import *  # noqa: F403
-from .options import EventChoice, Options, RecordChoice, SampleChoice
-from .run import Interrupted, Run, status_names
-from .solve import solve
-from .study import Study, study
-from .study_result import Damage, StudyResult, open_study, verify
+from .options import (EventChoice as EventChoice, Options as Options, RecordChoice as RecordChoice,
+                      SampleChoice as SampleChoice)
+from .run import Interrupted as Interrupted, Run as Run, status_names as status_names
+from .solve import solve as solve
+from .study import Study as Study, study as study
+from .study_result import Damage as Damage, StudyResult as StudyResult, open_study as open_study, verify as verify
 from .symbols import *  # noqa: F403
 from .table import *  # noqa: F403
 from .tangents import *  # noqa: F403

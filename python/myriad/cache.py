@@ -2,6 +2,8 @@
 """The cache of compiled models on disk: one file per key, put there whole, so that readers need no lock. Behind its
 content a file has a digest, by which damage is noticed before the system loads it."""
 
+from __future__ import annotations
+
 import contextlib
 import hashlib
 import json
@@ -15,16 +17,18 @@ from dataclasses import dataclass
 
 from .errors import Error
 
+__all__ = ["clear", "directory", "prepare", "size_limit"]
+
 try:
     import fcntl
 except ImportError:  # no locks on this system: two processes may then compile the same model
-    fcntl = None
+    fcntl = None  # type: ignore[assignment]
 
 DEFAULT_SIZE = 1 << 30  # bytes
 _work = ".work."  # in names of folders where models are compiled
 
 
-def directory():
+def directory() -> pathlib.Path:
     """The folder of the cache: $MYRIAD_CACHE_DIR, or myriad in the user's folder of caches. It may not exist yet."""
     if chosen := os.environ.get("MYRIAD_CACHE_DIR"):
         return pathlib.Path(chosen)
@@ -32,7 +36,7 @@ def directory():
     return pathlib.Path(caches) / "myriad"
 
 
-def size_limit():
+def size_limit() -> int:
     """The bytes that the cache may hold: $MYRIAD_CACHE_SIZE, or 1 GiB."""
     text = os.environ.get("MYRIAD_CACHE_SIZE")
     if text is None:
@@ -242,7 +246,7 @@ def _shrink(folder, keep):
             total -= size
 
 
-def prepare():
+def prepare() -> bool:
     """Has the compiler prepare the library's headers now, as after an installation or while an image of a container is
     made, so that the very first model compiles as fast as later ones. Returns False where the compiler prepares none.
     Raises `Error` if there is no compiler, or if the folder of the cache cannot be used."""
@@ -252,7 +256,7 @@ def prepare():
     return compiler.prepare()
 
 
-def clear():
+def clear() -> int:
     """Removes all compiled models from the cache; returns how many."""
     folder = directory()
     removed = 0

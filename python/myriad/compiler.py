@@ -103,7 +103,7 @@ def find_compiler():
     return None
 
 
-_found = {}
+_found: dict = {}
 
 
 def known_compiler():
@@ -180,7 +180,7 @@ class Kernel:
     seconds: float  # that it took to get
 
 
-_loaded = {}
+_loaded: dict = {}
 
 
 def _instruction_set():

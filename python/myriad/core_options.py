@@ -113,7 +113,7 @@ def _per_state(value: Any, components: Components, name: str, count: int) -> lis
     """One tolerance for all states, one for each in their order, or a dict by state; those that it leaves out get the
     default. For `count` states, of which those beyond the model's are not used."""
     if hasattr(value, "items"):
-        values = [float(_fields[name].default)] * len(components.states)
+        values = [float(getattr(Options(), name))] * len(components.states)
         for state, tolerance in by_component(value, name).items():
             if state not in components.states:
                 raise unknown(state, components.states, "state of the model")

@@ -524,7 +524,7 @@ class Writer:
             lines.append("}")
         if ends and not (len(events) == 1 and lines[-1].startswith("return")):
             lines.append("return myriad::action::proceed;")
-        number = f"int event" if len(events) > 1 else "int"
+        number = "int event" if len(events) > 1 else "int"
         result = "myriad::action" if ends else "void"
         return [f"MYRIAD_FUNCTION static {result} after_event({number}, auto& {n.lane}) {{",
                 *self.block(lines), "}"]

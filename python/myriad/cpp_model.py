@@ -1,17 +1,27 @@
 # SPDX-License-Identifier: MIT
 """Models that are written in C++ rather than traced."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
 from .errors import Error
+
+if TYPE_CHECKING:
+    from .hints import Names
+    from .options import EventChoice
 
 
 class CppEvent:
     """The name of an event of a model in C++, and how it is detected unless a call says otherwise."""
 
-    def __init__(self, name, direction="either", tolerance=None, stop_after=0):
+    def __init__(self, name: str, direction: str = "either", tolerance: float | None = None,
+                 stop_after: int = 0) -> None:
         self.name, self.direction, self.tolerance, self.stop_after = name, direction, tolerance, stop_after
 
 
-def _names(several):
+def _names(several: Any) -> tuple[str, ...]:
     return tuple(several.replace(",", " ").split() if isinstance(several, str) else several)
 
 
@@ -21,23 +31,24 @@ class CppModel:
     names to their `direction`, `tolerance` and `stop_after`. `generates` names what the struct's `generate` sets, if a
     study is to call it."""
 
-    def __init__(self, text, struct, states, parameters=(), shared=(), shared_integers=(), accessories=(),
-                 integer_accessories=(), events=(), generates=()):
+    def __init__(self, text: str, struct: str, states: Names, parameters: Names = (), shared: Names = (),
+                 shared_integers: Names = (), accessories: Names = (), integer_accessories: Names = (),
+                 events: Names | Mapping[str, EventChoice] = (), generates: Names = ()) -> None:
         if struct not in text:
             raise Error(f"the text of the model defines no struct {struct}: give the name of the model's struct")
         self._text, self.name = text, struct
         self.states, self.parameters = _names(states), _names(parameters)
         self.shared, self.shared_integers = _names(shared), _names(shared_integers)
         self.accessories, self.integer_accessories = _names(accessories), _names(integer_accessories)
-        options = events if hasattr(events, "items") else dict.fromkeys(_names(events), {})
+        options: Any = events if hasattr(events, "items") else dict.fromkeys(_names(events), {})
         self.generated = _names(generates)
         self.generator = f"{struct}::generate" if self.generated else ""
         self.events = tuple(CppEvent(name, **chosen) for name, chosen in options.items())
 
-    def cpp(self):
+    def cpp(self) -> str:
         """The text of the model."""
         return self._text
 
-    def source(self):
+    def source(self) -> tuple[str, str]:
         """The text that kernels are compiled from, and the name of its struct."""
         return self._text, self.name

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Arrays on GPUs: those of other libraries as values of a sweep, and results where they are."""
 
+from __future__ import annotations
+
 import functools
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,10 +14,14 @@ from .components import name_of
 from .errors import Error
 from .symbols import time
 
+if TYPE_CHECKING:
+    from .hints import Component
+    from .run import Run
+
 _cuda = 2  # the kind of device in DLPack
 
 
-def is_on_gpu(value):
+def is_on_gpu(value: Any) -> bool:
     """Whether an array of another library, such as CuPy, PyTorch or JAX, is on an NVIDIA GPU."""
     if isinstance(value, (np.ndarray, int, float, list, tuple)):
         return False
@@ -59,7 +67,7 @@ class DeviceArray:
     `__cuda_array_interface__`: `torch.from_dlpack(a)`, `cupy.asarray(a)`, `jax.dlpack.from_dlpack(a)`. It is there as
     long as one of these uses it."""
 
-    def __init__(self, capsule, make):
+    def __init__(self, capsule: Any, make: Callable[[], Any]) -> None:
         self._make = make  # another capsule, as each is for one use
         self.address, self.shape, dtype, self.device, self._strides = _core.facts_of_own_array(capsule)
         self.dtype = np.dtype(dtype)
@@ -76,20 +84,20 @@ class DeviceArray:
         return {"shape": self.shape, "typestr": self.dtype.str, "data": (self.address, False), "version": 3,
                 "strides": strides, "stream": None}
 
-    def __len__(self):
+    def __len__(self) -> int:
         return self.shape[0]
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<myriad.DeviceArray of shape {self.shape}, {self.dtype}, on cuda:{self.device}>"
 
 
 class DeviceResults:
     """The results of a run that are still on the GPU, by name, as the run itself has them on the host."""
 
-    def __init__(self, run):
+    def __init__(self, run: Run) -> None:
         self._run = run
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: Component) -> DeviceArray:
         run = self._run
         name = name if name is time else name_of(name)
         kind, number = run._components.place.get(name, (name, 0))

@@ -38,7 +38,8 @@ class EmptyEnsemble:
 class EmptyReport:
     """A report of nothing."""
 
-    by_status, notes, device = [0] * len(_names), [], "none"
+    by_status, device = [0] * len(_names), "none"
+    notes: list[str] = []
     instances = accepted_steps = rejected_steps = located_steps = rhs_evaluations = 0
     seconds = kernel_seconds = 0.0
 

@@ -3,6 +3,8 @@
 one object. Operators and functions record what they are applied to and compute nothing, except with constants alone.
 """
 
+from __future__ import annotations
+
 import builtins
 import decimal
 import math
@@ -11,20 +13,25 @@ import operator
 import threading
 import uuid
 import weakref
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from .errors import Error, at, refuse_masked, users_line
+
+if TYPE_CHECKING:
+    from .hints import Operand
 
 __all__ = ["sqrt", "cbrt", "abs", "floor", "ceil", "trunc", "round", "sin", "cos", "tan", "asin", "acos", "atan",
            "atan2", "sinpi", "cospi", "sinh", "cosh", "tanh", "exp", "exp2", "expm1", "log", "log2", "log10", "log1p",
            "pow", "powr", "reciprocal", "hypot", "copysign", "fmod", "fma", "sincos", "sincospi", "minimum", "maximum",
            "where", "is_finite", "uniform", "normal", "pi"]
 
-pi = math.pi
+pi = math.pi  #: the number
 
 real, integer, condition = "real", "integer", "condition"  # the types of nodes
-_known = weakref.WeakValueDictionary()
+_known: weakref.WeakValueDictionary[Any, Any] = weakref.WeakValueDictionary()
 _lock = threading.RLock()
 
 
@@ -32,26 +39,31 @@ class Node:
     """An operation with its arguments. Nodes are made by `make`, so that equal ones are the same object."""
 
     __slots__ = ("op", "args", "value", "type", "line", "__weakref__")
+    op: str
+    args: tuple[Any, ...]
+    value: Any
+    type: str
+    line: tuple[str, int] | None
 
-    def __hash__(self):
+    def __hash__(self) -> int:
         return id(self) >> 4
 
     def __reduce__(self):
         return make, (self.op, self.args, self.value, self.type)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return text(self)
 
-    def __bool__(self):
+    def __bool__(self) -> NoReturn:
         raise Error(f"`{text(self)}` has no truth value while the model is recorded, as it differs between instances: "
                     "instead of `if`, `and`, `or`, `not` and chained comparisons use myriad.where(condition, a, b) "
                     "and (a < b) & (b < c), |, ~")
 
-    def __iter__(self):
+    def __iter__(self) -> NoReturn:
         raise Error(f"`{text(self)}` is one number and cannot be iterated over")
 
 
-def make(op, args=(), value=None, type=real):
+def make(op: str, args: tuple[Any, ...] = (), value: Any = None, type: str = real) -> Any:
     """The node of an operation; the same object whenever it is made of the same arguments."""
     key = (op, tuple(id(a) for a in args), value if op != "constant" else (value.__class__, repr(value)))
     with _lock:
@@ -223,7 +235,7 @@ def _is_array(other):
     return isinstance(other, np.ndarray) and other.ndim > 0
 
 
-def _binary(build):
+def _binary(build: Callable[[Any, Any], Any]) -> tuple[Any, Any]:
     def forward(self, other):
         return NotImplemented if _is_array(other) else build(self, other)
 
@@ -350,30 +362,52 @@ class Expression(Node, _NumpyFunctions):
 
     __slots__ = ()
     __hash__ = Node.__hash__
-    __add__, __radd__ = _binary(add)
-    __sub__, __rsub__ = _binary(subtract)
-    __mul__, __rmul__ = _binary(multiply)
-    __truediv__, __rtruediv__ = _binary(divide)
-    __floordiv__, __rfloordiv__ = _binary(floor_divide)
-    __mod__, __rmod__ = _binary(remainder)
-    __pow__, __rpow__ = _binary(_power)
-    __lt__, _ = _binary(lambda a, b: _compare("less", operator.lt, a, b))
-    __le__, _ = _binary(lambda a, b: _compare("less_equal", operator.le, a, b))
-    __gt__, _ = _binary(lambda a, b: _compare("greater", operator.gt, a, b))
-    __ge__, _ = _binary(lambda a, b: _compare("greater_equal", operator.ge, a, b))
-    __eq__, _ = _binary(lambda a, b: _compare("equal", operator.eq, a, b))
-    __ne__, _ = _binary(lambda a, b: _compare("not_equal", operator.ne, a, b))
-    del _
+    if TYPE_CHECKING:  # with an array they give an array, which is another of these for a type checker
+        def __add__(self, other: Any) -> Expression: ...
+        def __radd__(self, other: Any) -> Expression: ...
+        def __sub__(self, other: Any) -> Expression: ...
+        def __rsub__(self, other: Any) -> Expression: ...
+        def __mul__(self, other: Any) -> Expression: ...
+        def __rmul__(self, other: Any) -> Expression: ...
+        def __truediv__(self, other: Any) -> Expression: ...
+        def __rtruediv__(self, other: Any) -> Expression: ...
+        def __floordiv__(self, other: Any) -> Expression: ...
+        def __rfloordiv__(self, other: Any) -> Expression: ...
+        def __mod__(self, other: Any) -> Expression: ...
+        def __rmod__(self, other: Any) -> Expression: ...
+        def __pow__(self, other: Any) -> Expression: ...
+        def __rpow__(self, other: Any) -> Expression: ...
+        def __lt__(self, other: Any) -> Condition: ...
+        def __le__(self, other: Any) -> Condition: ...
+        def __gt__(self, other: Any) -> Condition: ...
+        def __ge__(self, other: Any) -> Condition: ...
+        def __eq__(self, other: Any) -> Condition: ...  # type: ignore[override]
+        def __ne__(self, other: Any) -> Condition: ...  # type: ignore[override]
+    else:
+        __add__, __radd__ = _binary(add)
+        __sub__, __rsub__ = _binary(subtract)
+        __mul__, __rmul__ = _binary(multiply)
+        __truediv__, __rtruediv__ = _binary(divide)
+        __floordiv__, __rfloordiv__ = _binary(floor_divide)
+        __mod__, __rmod__ = _binary(remainder)
+        __pow__, __rpow__ = _binary(_power)
+        __lt__, _ = _binary(lambda a, b: _compare("less", operator.lt, a, b))
+        __le__, _ = _binary(lambda a, b: _compare("less_equal", operator.le, a, b))
+        __gt__, _ = _binary(lambda a, b: _compare("greater", operator.gt, a, b))
+        __ge__, _ = _binary(lambda a, b: _compare("greater_equal", operator.ge, a, b))
+        __eq__, _ = _binary(lambda a, b: _compare("equal", operator.eq, a, b))
+        __ne__, _ = _binary(lambda a, b: _compare("not_equal", operator.ne, a, b))
+        del _
 
     __divmod__, __rdivmod__ = _binary(lambda a, b: (floor_divide(a, b), remainder(a, b)))
 
-    def __neg__(self):
+    def __neg__(self) -> Expression:
         return subtract(0, self) if self.type == integer else make("negate", (self,))
 
-    def __pos__(self):
+    def __pos__(self) -> Expression:
         return self
 
-    def __abs__(self):
+    def __abs__(self) -> Expression:
         return abs(self)
 
     def __round__(self, digits=None):
@@ -422,14 +456,24 @@ class Condition(Node, _NumpyFunctions):
 
     __slots__ = ()
     __hash__ = Node.__hash__
-    __and__, __rand__ = _binary(_both)
-    __or__, __ror__ = _binary(_either)
-    __xor__, __rxor__ = _binary(_differ)
-    __eq__, _ = _binary(_equal)
-    __ne__, _ = _binary(_differ)
-    del _
+    if TYPE_CHECKING:
+        def __and__(self, other: Any) -> Condition: ...
+        def __rand__(self, other: Any) -> Condition: ...
+        def __or__(self, other: Any) -> Condition: ...
+        def __ror__(self, other: Any) -> Condition: ...
+        def __xor__(self, other: Any) -> Condition: ...
+        def __rxor__(self, other: Any) -> Condition: ...
+        def __eq__(self, other: Any) -> Condition: ...  # type: ignore[override]
+        def __ne__(self, other: Any) -> Condition: ...  # type: ignore[override]
+    else:
+        __and__, __rand__ = _binary(_both)
+        __or__, __ror__ = _binary(_either)
+        __xor__, __rxor__ = _binary(_differ)
+        __eq__, _ = _binary(_equal)
+        __ne__, _ = _binary(_differ)
+        del _
 
-    def __invert__(self):
+    def __invert__(self) -> Condition:
         return make("truth", value=not self.value, type=condition) if self.op == "truth" else make(
             "not", (self,), type=condition)
 
@@ -462,7 +506,7 @@ _unary = {  # for the values of constants and for `evaluate`; C++ uses myriad's 
 }
 
 
-def _function(name, description):
+def _function(name: str, description: str) -> Callable[[Operand], Expression]:
     def function(x):
         return make(name, (to_real(as_number(x)),))
 
@@ -482,22 +526,22 @@ def _of_real(x, function):
     return x if x.type == integer else function(x)
 
 
-def floor(x):
+def floor(x: Operand) -> Expression:
     """The largest whole number that is not above x."""
     return _of_real(x, _floor)
 
 
-def ceil(x):
+def ceil(x: Operand) -> Expression:
     """The smallest whole number that is not below x."""
     return _of_real(x, lambda x: -_floor(-x))
 
 
-def trunc(x):
+def trunc(x: Operand) -> Expression:
     """x without its fraction."""
     return _of_real(x, lambda x: copysign(_floor(abs(x)), x))
 
 
-def round(x):
+def round(x: Operand) -> Expression:
     """The nearest whole number, halves to the even one, as Python and NumPy round."""
     return _of_real(x, _rint)
 
@@ -523,7 +567,7 @@ log10 = _function("log10", "Logarithm to base 10.")
 reciprocal = _function("reciprocal", "1 / x without a division, for normal x with a normal result.")
 
 
-def _function_of_two(name, description):
+def _function_of_two(name: str, description: str) -> Callable[[Operand, Operand], Expression]:
     def function(a, b):
         return make(name, (to_real(as_number(a)), to_real(as_number(b))))
 
@@ -540,31 +584,31 @@ fmod = _function_of_two("fmod", "The exact remainder of a division with its quot
 powr = _function_of_two("powr", "x to the power y for x >= 0, in half the time of pow: NaN for negative x.")
 
 
-def pow(x, y):
+def pow(x: Operand, y: Operand) -> Expression:
     """x to the power y, the same as `x**y`: whole constants y by multiplication."""
     return _power(x, y)
 
 
-def abs(x):
+def abs(x: Operand) -> Expression:
     """Absolute value."""
-    x = as_number(x)
-    if _is_constant(x):
-        return constant(builtins.abs(x.value))
-    return maximum(x, -x) if x.type == integer else make("abs", (x,))
+    number = as_number(x)
+    if _is_constant(number):
+        return constant(builtins.abs(number.value))
+    return maximum(number, -number) if number.type == integer else make("abs", (number,))
 
 
-def fma(a, b, c):
+def fma(a: Operand, b: Operand, c: Operand) -> Expression:
     """a * b + c, with one rounding if the processor has the instruction."""
     return make("fma", tuple(to_real(as_number(x)) for x in (a, b, c)))
 
 
-def sincos(x):
+def sincos(x: Operand) -> tuple[Expression, Expression]:
     """Sine and cosine of one angle for about the price of one: up to 2^30 (float 2^16) radians, NaN beyond."""
     x = to_real(as_number(x))
     return make("sincos.sine", (x,)), make("sincos.cosine", (x,))
 
 
-def sincospi(x):
+def sincospi(x: Operand) -> tuple[Expression, Expression]:
     """sin(pi x) and cos(pi x) for about the price of one: x up to 2^50 (float 2^21), NaN beyond."""
     x = to_real(as_number(x))
     return make("sincospi.sine", (x,)), make("sincospi.cosine", (x,))
@@ -586,17 +630,17 @@ def _extreme(op, pick, arguments):
     return result
 
 
-def minimum(*numbers):
+def minimum(*numbers: Any) -> Expression:
     """The smallest of two numbers or more; a NaN is left out."""
     return _extreme("min", min, numbers)
 
 
-def maximum(*numbers):
+def maximum(*numbers: Any) -> Expression:
     """The largest of two numbers or more; a NaN is left out."""
     return _extreme("max", max, numbers)
 
 
-def where(condition, a, b):
+def where(condition: Condition | bool, a: Any, b: Any) -> Any:
     """a where the condition holds, else b, by instance: what `if` is elsewhere. Both are evaluated."""
     chosen = as_condition(condition)
     a, b = as_node(a), as_node(b)
@@ -621,19 +665,19 @@ def _draw(kind, a, b):
     return make(kind, (to_real(as_number(a)), to_real(as_number(b))), value=uuid.uuid4().int)
 
 
-def uniform(low=0.0, high=1.0):
+def uniform(low: Operand = 0.0, high: Operand = 1.0) -> Expression:
     """A random number, evenly distributed between two bounds, for `generate` of a model. Each call is a draw of its
     own."""
     return _draw("uniform", low, high)
 
 
-def normal(mean=0.0, deviation=1.0):
+def normal(mean: Operand = 0.0, deviation: Operand = 1.0) -> Expression:
     """A random number, normally distributed with that standard deviation, for `generate` of a model. Each call is a
     draw of its own."""
     return _draw("normal", mean, deviation)
 
 
-def is_finite(x):
+def is_finite(x: Operand) -> Condition:
     """A condition: neither infinite nor NaN."""
     return make("is_finite", (to_real(as_number(x)),), type=condition)
 

@@ -3,9 +3,13 @@
 axes, the last one varying fastest; a zip takes the values of equally long arrays together.
 """
 
+from __future__ import annotations
+
 import decimal
 import math
 import numbers
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +17,11 @@ from .axes import Axis
 from .errors import Error, at, refuse_masked, users_line
 from .expression import Node, is_sympy
 from .parse import sympy_name
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from .hints import Array, Values
 
 __all__ = ["grid", "zip", "Sweep"]
 
@@ -27,7 +36,7 @@ def _name(key, line):
     raise Error(f"{key!r} names nothing to sweep over{at(line)}: use a symbol, as from myriad.parameter, or its name")
 
 
-def as_numbers(values):
+def as_numbers(values: Any) -> Array:
     """What users give as numbers, as an array; also objects that are real numbers, as those of `fractions`."""
     try:
         array = np.asarray(values)
@@ -71,7 +80,8 @@ class Sweep:
     names whose values go along one axis, `constants` {name: value} those that are equal for all instances.
     """
 
-    def __init__(self, axes, coordinates, constants):
+    def __init__(self, axes: list[tuple[str, Any]], coordinates: dict[str, tuple[str, Any]],
+                 constants: dict[str, Any]) -> None:
         self.axes, self.coordinates, self.constants = axes, coordinates, constants
         self.shape = tuple(len(values) for _, values in axes)
         self.size = math.prod(self.shape)
@@ -80,7 +90,7 @@ class Sweep:
                         "make its axes shorter")
         self.names = [*coordinates, *constants]
 
-    def values(self, name):
+    def values(self, name: str) -> Array:
         """One value per instance, as an array of length `size`."""
         if name in self.constants:
             return np.full(self.size, np.asarray(self.constants[name]))
@@ -93,14 +103,14 @@ class Sweep:
         shape[place] = len(values)
         return np.ascontiguousarray(np.broadcast_to(np.asarray(values).reshape(shape), self.shape)).reshape(self.size)
 
-    def along(self, name):
+    def along(self, name: str) -> tuple[Array, int]:
         """The values of a name along its axis, and how many instances in a row have each: instance i has
         `values[i // repeat % len(values)]`."""
         axis, values = self.coordinates[name]
         place = [a for a, _ in self.axes].index(axis)
         return np.asarray(values), math.prod(self.shape[place + 1:])
 
-    def unstack(self, values):
+    def unstack(self, values: npt.ArrayLike) -> Array:
         """An array with a row per instance as one with the axes of the sweep: (size, ...) to shape + (...)."""
         values = np.asarray(values)
         if values.shape[:1] != (self.size,):
@@ -108,17 +118,17 @@ class Sweep:
                         "instances: give one")
         return values.reshape(self.shape + values.shape[1:])
 
-    def with_constants(self, constants):
+    def with_constants(self, constants: dict[str, float]) -> Sweep:
         """The same with further values that are equal for all instances."""
         twice = [n for n in constants if n in self.names]
         if twice:
             raise Error(f"'{twice[0]}' is given twice{at(users_line())}: give it one value")
         return Sweep(self.axes, self.coordinates, {**self.constants, **constants})
 
-    def __len__(self):
+    def __len__(self) -> int:
         return self.size
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         along = " x ".join(f"{name} ({len(values)})" for name, values in self.axes)
         fixed = ", ".join(f"{n} = {v}" for n, v in self.constants.items())
         return f"<sweep of {self.size} instances: {along or 'one'}{', ' + fixed if fixed else ''}>"
@@ -134,12 +144,14 @@ def _collect(mapping, named, line):
     return given
 
 
-def grid(*parts, **axes):
+def grid(*parts: Sweep | Mapping[Any, Any], **axes: Values) -> Sweep:
     """All combinations of the values of several axes: `grid(k=np.linspace(0.2, 0.3, 100), B=[0.3, 0.4])`, or with
     symbols `grid({k: ..., B: ...})`. The last axis varies fastest. A single number is a value for all instances.
     Sweeps, as from `zip`, may be among the parts: their axes come first, in order."""
     line = users_line()
-    made_axes, coordinates, constants = [], {}, {}
+    made_axes: list[tuple[str, Any]] = []
+    coordinates: dict[str, tuple[str, Any]] = {}
+    constants: dict[str, Any] = {}
 
     def add(new_axes, new_coordinates, new_constants):
         for name in [*new_coordinates, *new_constants, *(a for a, _ in new_axes if a not in new_coordinates)]:
@@ -167,7 +179,7 @@ def grid(*parts, **axes):
     return Sweep(made_axes, coordinates, constants)
 
 
-def zip(mapping=None, **arrays):
+def zip(mapping: Mapping[Any, Any] | None = None, **arrays: Values) -> Sweep:
     """The values of equally long arrays together: instance i has the i-th of each. Single numbers are for all."""
     line = users_line()
     given = _collect(mapping, arrays, line)
@@ -191,7 +203,7 @@ def zip(mapping=None, **arrays):
     return Sweep([(axis, np.arange(next(iter(lengths.values()))))], {n: (axis, v) for n, v in along.items()}, constants)
 
 
-def as_sweep(given):
+def as_sweep(given: Any) -> Sweep:
     """A sweep from what users give to `solve`: a sweep, or a dictionary {name or symbol: number or array}, whose arrays
     are zipped."""
     if isinstance(given, Sweep):

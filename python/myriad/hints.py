@@ -3,23 +3,42 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Union
+from typing import TYPE_CHECKING, Any, Literal, Union
 
+import numpy as np
 import numpy.typing as npt
 
-from .expression import Node
+from .expression import Expression
 
-# A symbol, as from `myriad.states`, or its name. Keys of mappings are any, since those of SymPy will do, and a mapping
-# with keys of one kind is none with keys of several.
+if TYPE_CHECKING:
+    from .cpp_model import CppModel
+    from .model import Model
+    from .tangents import WithTangents
+
+# A component: a symbol, as from `myriad.states`, or its name. Those of SymPy will do, and a mapping with keys of one
+# kind is none with keys of several, so that it may be anything for a type checker.
 Component = Any
 # One or several.
-Components = Union[Node, str, Iterable[Union[Node, str]]]
+SomeComponents = Union[Expression, str, Iterable[Any]]
+# What stands in an equation: an expression or a number.
+Operand = Union[Expression, float]
+# The same, or text.
+Written = Union[Expression, float, str, Any]
 # A number, an array of NumPy's or what it takes, an axis, or an array on a GPU.
 Values = Union[npt.ArrayLike, Any]
 # Values by component.
 ByComponent = Mapping[Any, Any]
 # One for all states, one for each, or those of some states.
-Tolerance = Union[float, Sequence[float], npt.ArrayLike, Mapping[Any, float]]
+Tolerance = Union[float, Sequence[float], npt.NDArray[np.floating[Any]], Mapping[Any, float]]
 # True for a bar, or a function of the numbers of instances done and of all.
 Progress = Union[bool, Callable[[int, int], object], None]
+# Names, as "x v" or in a list, or symbols.
+Names = Union[str, Expression, Iterable[Any]]
+# A model of any kind.
+AnyModel = Union["Model", "CppModel", "WithTangents"]
+Path = Union[str, "os.PathLike[str]"]
+Array = npt.NDArray[Any]
+Direction = Literal["falling", "either", "rising", "none"]
+Precision = Literal["double", "float"]

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Interpolation of measured values, such as a forcing known at some times."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
 import numpy as np
 
 from .errors import Error, at, refuse_masked, users_line
@@ -8,12 +12,19 @@ from .expression import as_number, floor, make, maximum, minimum, to_real
 from .symbols import check_name
 from .table import Table
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from .expression import Expression
+    from .hints import Operand
+
 __all__ = ["interpolate"]
 
 _outside = ("hold", "periodic", "extrapolate")
 
 
-def interpolate(t, times, values, kind="linear", outside="hold", name="forcing"):
+def interpolate(t: Operand, times: npt.ArrayLike, values: npt.ArrayLike, kind: Literal["linear", "cubic"] = "linear",
+                outside: Literal["hold", "periodic", "extrapolate"] = "hold", name: str = "forcing") -> Expression:
     """The value at t, any expression, of data that are known at increasing times.
 
     kind     "linear", as numpy.interp, or "cubic", the spline with continuous second derivative whose first and last
@@ -58,7 +69,7 @@ def interpolate(t, times, values, kind="linear", outside="hold", name="forcing")
     even = np.abs(times - (times[0] + spacing * np.arange(rows + 1))).max() <= 8 * np.finfo(float).eps * max(
         abs(times[0]), abs(times[-1]))
     head = [times[0], times[-1], length, spacing, 1 / spacing]
-    knots = [] if even else times
+    knots = times[:0] if even else times
     table = Table(check_name(name, "a table"), np.concatenate([head, knots, pieces.ravel()]))
     begin, end, period, step, per_step = (table[i] for i in range(5))
     if periodic:

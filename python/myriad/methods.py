@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: MIT
 """The methods of integration and the choices of step-size control, by the names of the C++ library."""
 
+from __future__ import annotations
+
 import difflib
+from typing import Literal, get_args
 
 from .errors import Error
 
-methods = ("cash_karp", "dormand_prince_5", "tsitouras_5", "verner_7", "dormand_prince_8", "runge_kutta_4",
-           "rosenbrock_23", "rodas_5p")
+Method = Literal["cash_karp", "dormand_prince_5", "tsitouras_5", "verner_7", "dormand_prince_8", "runge_kutta_4",
+                 "rosenbrock_23", "rodas_5p"]
+Control = Literal["pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
+                  "tolerance_per_instance"]
+methods: tuple[str, ...] = get_args(Method)  #: the names of methods
+controls: tuple[str, ...] = get_args(Control)  #: the names of choices of step-size control
 fixed_step = ("runge_kutta_4",)
-controls = ("pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step", "tolerance_per_instance")
-
 
 default = "tsitouras_5"  # docs/methods.md#the-default
 

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: MIT
 """A model: equations, events, accessories and hooks, recorded once, checked, and written as C++."""
 
+from __future__ import annotations
+
 import hashlib
 import inspect
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +19,11 @@ from .expression import (Node, as_condition, as_number, draws, evaluate, integer
 from .parse import from_sympy, parse, parse_equations, sympy_name
 from .table import element_name, tables_of
 from .whole_numbers import check_constants
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from .hints import Array, ByComponent, Direction, Names, Written
 
 __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
            "integral"]
@@ -30,27 +39,27 @@ class Reduction:
         self.observed = self.accessory = None  # names, known with the model
 
 
-def phase_maximum(quantity):
+def phase_maximum(quantity: Written) -> Reduction:
     """For an accessory: the largest value of a quantity over each phase."""
     return Reduction("maximum", quantity)
 
 
-def phase_minimum(quantity):
+def phase_minimum(quantity: Written) -> Reduction:
     """For an accessory: the smallest value of a quantity over each phase."""
     return Reduction("minimum", quantity)
 
 
-def time_of_maximum(quantity):
+def time_of_maximum(quantity: Written) -> Reduction:
     """For an accessory: when the quantity was largest; another accessory has its `phase_maximum`."""
     return Reduction("time_of_maximum", quantity)
 
 
-def time_of_minimum(quantity):
+def time_of_minimum(quantity: Written) -> Reduction:
     """For an accessory: when the quantity was smallest; another accessory has its `phase_minimum`."""
     return Reduction("time_of_minimum", quantity)
 
 
-def integral(quantity):
+def integral(quantity: Written) -> Reduction:
     """For an accessory: the integral of a quantity over time, from the start of each phase."""
     return Reduction("integral", quantity)
 
@@ -58,16 +67,18 @@ def integral(quantity):
 class Event:
     """A change of sign of a function of time and state; `do` is what happens then."""
 
-    def __init__(self, function, name, direction, tolerance, stop_after, do):
+    def __init__(self, function: Any, name: str | None, direction: Direction, tolerance: float | None, stop_after: int,
+                 do: Any) -> None:
         self.function, self.name, self.direction = function, name, direction
         self.tolerance, self.stop_after, self.do = tolerance, stop_after, do
         self.line = users_line()
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"event {self.name or ''}: {self.function!r} {self.direction}"
 
 
-def event(function, *, name=None, direction="either", tolerance=None, stop_after=0, do=None):
+def event(function: Written, *, name: str | None = None, direction: Direction = "either",
+          tolerance: float | None = None, stop_after: int = 0, do: ByComponent | None = None) -> Event:
     """An event of a model: `function` changes its sign, "rising", "falling" or "either" ("none": switched off). Every
     change between the ends of steps is found; `tolerance` is the largest value of the function at which it counts as
     located (default, or 0: as close as time and state resolve). After `stop_after` detections the phase ends (0:
@@ -87,8 +98,11 @@ def event(function, *, name=None, direction="either", tolerance=None, stop_after
     return Event(function, name, direction, tolerance, int(stop_after), {} if do is None else do)
 
 
-def model(equations, *, events=(), accessories=None, initialise=None, after_step=None, finalise=None, generate=None,
-          states=None, parameters=(), shared=(), name=None):
+def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | Sequence[Event] = (),
+          accessories: ByComponent | None = None, initialise: ByComponent | None = None,
+          after_step: ByComponent | None = None, finalise: ByComponent | None = None,
+          generate: ByComponent | None = None, states: Names | None = None, parameters: Names = (), shared: Names = (),
+          name: str | None = None) -> Model:
     """Records a model.
 
     `equations` is a dictionary {state: its derivative}; or a function f(t, y, ...) that returns the derivatives, as for
@@ -115,10 +129,12 @@ class Model:
     tables behind the other shared values; `shared_values` has what they are. `cpp()` is its header, `hash` identifies
     it."""
 
-    def __init__(self, equations, events, accessories, initialise, after_step, finalise, generate, states, parameters,
-                 shared, name):
+    def __init__(self, equations: ByComponent | Callable[..., Any] | str, events: Event | Sequence[Event],
+                 accessories: ByComponent | None, initialise: ByComponent | None, after_step: ByComponent | None,
+                 finalise: ByComponent | None, generate: ByComponent | None, states: Names | None, parameters: Names,
+                 shared: Names, name: str | None) -> None:
         self.line = users_line()
-        self._source = None
+        self._source: str | None = None
         self._declared = self._declare(states, parameters, shared, accessories)
         self._names = self._declared  # what texts may name: later also what the equations do
         targets, self.rhs = self._equations(equations, states)
@@ -194,7 +210,7 @@ class Model:
             raise Error(f"the equations of a model are {type(equations).__name__}{at(self.line)}: give a dictionary "
                         "{state: derivative}, a function f(t, y, ...) or a string \"x' = v; v' = -x\"")
         targets, rhs = [], []
-        for key, value in equations.items():
+        for key in equations:
             if isinstance(key, str) and key not in self._declared:
                 self._declared[key] = sym.symbol("state", key)
             elif is_sympy(key) and sympy_name(key) not in self._declared:
@@ -421,7 +437,7 @@ class Model:
             "accessory", "integer_accessory"}
         self._hooks = hooks
 
-    def enumerations(self):
+    def enumerations(self) -> list[tuple[str, list[str]]]:
         """(kind, names) of everything that has an enumeration in C++."""
         shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
         return [("state", self.states), ("parameter", self.parameters), ("shared", shared),
@@ -430,7 +446,7 @@ class Model:
                 ("observed", [n for n, _ in self.observed])]
 
     @property
-    def component_names(self):
+    def component_names(self) -> list[str]:
         """All names, in the order of `enumerations`."""
         return [n for _, names in self.enumerations() for n in names]
 
@@ -457,7 +473,7 @@ class Model:
                 raise Error(f"the exponent of `{text(node)}`{at(node.line)} depends on the state or on time: use "
                             "myriad.pow, as powr has no derivative by its exponent")
         for what, assignments in self._hooks:
-            for target, value in assignments:
+            for _, value in assignments:
                 for symbol in symbols_of([value]):
                     kind, name = symbol.value
                     if kind == "action":
@@ -472,20 +488,20 @@ class Model:
     # What it is used for
 
     @property
-    def generated(self):
+    def generated(self) -> list[str]:
         """The names of the components that `generate` sets."""
         return [target.value[1] for target, _ in self.generate]
 
     @property
-    def generator(self):
+    def generator(self) -> str:
         """What `generate` does, as text for the description of a study; empty if there is none."""
         return "; ".join(f"{target.value[1]} = {text(value)}" for target, value in self.generate)
 
-    def cpp(self, name=None):
+    def cpp(self, name: str | None = None) -> str:
         """The model as the text of a C++ header, `model.hpp`, which compiles as it is: `struct NAME { ... };`."""
         return Writer(self).header(self.name if name is None else sym.check_name(name, "a model"))
 
-    def source(self):
+    def source(self) -> tuple[str, str]:
         """The text that kernels are compiled from, the same for equal models, and the name of its struct."""
         name = "traced_model"
         while name in self.component_names:
@@ -495,11 +511,11 @@ class Model:
         return self._source, name
 
     @property
-    def hash(self):
+    def hash(self) -> str:
         """A text that is equal for models with the same C++ code, whatever their names and their events' options."""
         return hashlib.sha256(self.cpp("model").encode()).hexdigest()
 
-    def derivatives(self, t, y, **values):
+    def derivatives(self, t: npt.ArrayLike, y: Any, **values: Any) -> Array:
         """The right-hand side by NumPy: y has one entry per state, each a number or an array; parameters and shared
         values are given by name. For looking at a model and for tests; SciPy can integrate it."""
         known = {sym.time: t, **{sym.symbol("state", n): v for n, v in zip(self.states, y)}}
@@ -511,6 +527,6 @@ class Model:
                 known[symbol] = values[name]
         return np.array(np.broadcast_arrays(*evaluate(self.rhs, known), *y, t)[:len(y)])
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         equations = [f"{s}' = {text(e)}" for s, e in zip(self.states[:4], self.rhs)]
         return f"<myriad model {self.name}: {'; '.join(equations)}{'; ...' if len(self.states) > 4 else ''}>"

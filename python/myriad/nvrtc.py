@@ -167,7 +167,7 @@ def source_of(header, struct, method, real, place, generates=False):
     return program
 
 
-_loaded = {}
+_loaded: dict = {}
 
 
 def _cached(source, capability, load):
@@ -211,7 +211,7 @@ def kernel(header, struct, method, real, shared, device, generates=False):
     return Kernel(_loaded[asked], origin, time.perf_counter() - begin)
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def load_study_kernels(device):
     """Loads the kernels that set and reduce the instances of studies on a GPU by its number."""
     _, capability, _ = _core.gpu(device)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, TypedDict
 
-from .hints import Component, Components, Tolerance, Values
+from .hints import Component, SomeComponents, Tolerance, Values
 
 __all__ = ["EventChoice", "Options", "RecordChoice", "SampleChoice"]
 
@@ -36,8 +36,8 @@ class RecordChoice(TypedDict, total=False):
     """
 
     from_phase: int
-    states: Components
-    accessories: Components
+    states: SomeComponents
+    accessories: SomeComponents
     time: bool
 
 
@@ -53,7 +53,7 @@ class SampleChoice(TypedDict, total=False):
     from_phase: first phase of the call that is sampled (in [0, inf))
     """
 
-    states: Components
+    states: SomeComponents
     capacity: int
     evenly: int
     times: Values
@@ -80,7 +80,7 @@ class StudyArguments(TypedDict, total=False):
     events: Mapping[Component, EventChoice] | None
     sub_samples: int
     accumulation_limit: int
-    record: Components | RecordChoice | None
+    record: SomeComponents | RecordChoice | None
     samples: Values | SampleChoice | None
     advice: bool
     schedule: Literal["automatic", "in_order", "dynamic", "by_cost"]
@@ -142,7 +142,7 @@ class Options:
     events: Mapping[Component, EventChoice] | None = None
     sub_samples: int = 1
     accumulation_limit: int = 50
-    record: Components | RecordChoice | None = None
+    record: SomeComponents | RecordChoice | None = None
     samples: Values | SampleChoice | None = None
     advice: bool = True
     invalid: Literal["refuse", "mark"] = "refuse"

@@ -164,7 +164,7 @@ def from_sympy(value, names, what):
     relations = {sympy.StrictLessThan: operator.lt, sympy.LessThan: operator.le, sympy.StrictGreaterThan: operator.gt,
                  sympy.GreaterThan: operator.ge, sympy.Equality: operator.eq, sympy.Unequality: operator.ne}
 
-    @functools.lru_cache(maxsize=None)
+    @functools.cache
     def convert(e):
         if isinstance(e, (sympy.Symbol, sympy.core.function.AppliedUndef)):
             return find(sympy_name(e))

@@ -4,10 +4,24 @@ series, phase portrait, statuses. The functions draw arrays, of NumPy or xarray;
 by name. All draw into `axes`, or a new figure, and return the axes.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from .errors import Error
 from .expression import Node
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+
+    from .hints import Component
+    from .run import Run
+
+__all__ = ["bifurcation", "parameter_map", "phase_portrait", "statuses", "time_series"]
 
 # Okabe and Ito's colours, which the colour-blind can tell apart.
 _colours = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#000000")
@@ -54,7 +68,8 @@ def _logarithmic(axis, set_scale):
         axis.set_minor_formatter(NullFormatter())
 
 
-def bifurcation(x, y, *, xlabel=None, ylabel=None, axes=None, **style):
+def bifurcation(x: Any, y: Any, *, xlabel: str | None = None, ylabel: str | None = None,
+                axes: Axes | None = None, **style: Any) -> Axes:
     """Points (x, y) of a bifurcation diagram: x has one value per instance, y a row of values, one for each phase.
     Further arguments are those of matplotlib's `plot`. Many points are drawn as their density."""
     xlabel, ylabel = _label(x, xlabel), _label(y, ylabel)
@@ -88,7 +103,9 @@ def bifurcation(x, y, *, xlabel=None, ylabel=None, axes=None, **style):
     return axes
 
 
-def parameter_map(x, y, z, *, xlabel=None, ylabel=None, zlabel=None, names=None, axes=None, **style):
+def parameter_map(x: Any, y: Any, z: Any, *, xlabel: str | None = None,
+                  ylabel: str | None = None, zlabel: str | None = None, names: Sequence[str] | None = None,
+                  axes: Axes | None = None, **style: Any) -> Axes:
     """A quantity z over two parameters in colour: z has shape (len(x), len(y)). NaN is left grey. With `names`, z has
     whole numbers that stand for these names. Further arguments are those of matplotlib's `pcolormesh`."""
     xlabel, ylabel, zlabel = _label(x, xlabel), _label(y, ylabel), _label(z, zlabel)
@@ -134,7 +151,8 @@ def _lines(x, y, labels, axes, style):
         axes.legend(frameon=False)
 
 
-def time_series(t, y, *, labels=None, ylabel=None, axes=None, **style):
+def time_series(t: Any, y: Any, *, labels: Sequence[str] | None = None, ylabel: str | None = None,
+                axes: Axes | None = None, **style: Any) -> Axes:
     """Each row of y over time: t has a row for each, or is the same for all."""
     ylabel = _label(y, ylabel)
     t, y = _numbers(t, "t", (1, 2)), _numbers(y, "y", (1, 2))
@@ -148,7 +166,9 @@ def time_series(t, y, *, labels=None, ylabel=None, axes=None, **style):
     return axes
 
 
-def phase_portrait(x, y, *, labels=None, xlabel=None, ylabel=None, points=False, axes=None, **style):
+def phase_portrait(x: Any, y: Any, *, labels: Sequence[str] | None = None,
+                   xlabel: str | None = None, ylabel: str | None = None, points: bool = False,
+                   axes: Axes | None = None, **style: Any) -> Axes:
     """Each row of y over the same row of x, as a line, or with `points` as separate points (a Poincare section)."""
     xlabel, ylabel = _label(x, xlabel), _label(y, ylabel)
     x, y = _numbers(x, "x", (1, 2)), _numbers(y, "y", (1, 2))
@@ -163,7 +183,7 @@ def phase_portrait(x, y, *, labels=None, xlabel=None, ylabel=None, points=False,
     return axes
 
 
-def statuses(status, names, *, axes=None):
+def statuses(status: Any, names: Sequence[str], *, axes: Axes | None = None) -> Axes:
     """How many instances ended in which way: `status` has numbers into `names`."""
     counts = np.bincount(_numbers(status, "status", (1,)), minlength=len(names))
     present = np.flatnonzero(counts)[::-1]
@@ -192,8 +212,8 @@ def _name(key):
 class Plots:
     """`run.plot`: pictures of the results of a run, whose components are given by name or symbol."""
 
-    def __init__(self, run):
-        self._run = run
+    def __init__(self, run: Run) -> None:
+        self._run: Any = run
 
     def _per_instance(self, name):
         """A value for each instance: of the sweep, so that initial states are those given, else of the results."""
@@ -205,14 +225,15 @@ class Plots:
             raise Error(f"{name} has values of shape {values.shape}: this axis needs one number per instance")
         return values
 
-    def bifurcation(self, x, y, *, axes=None, **style):
+    def bifurcation(self, x: Component, y: Component, *, axes: Axes | None = None, **style: Any) -> Axes:
         """The recorded component y of every phase over the parameter x."""
         x, y = _name(x), _name(y)
         if y not in self._run.records:
             raise Error(f"{y} was not recorded: give record=dict(from_phase=..., states=[{y}]) to solve")
         return bifurcation(self._per_instance(x), self._run.records[y], xlabel=x, ylabel=y, axes=axes, **style)
 
-    def map(self, x, y, z, *, phase=-1, axes=None, **style):
+    def map(self, x: Component, y: Component, z: Component, *, phase: int = -1, axes: Axes | None = None,
+            **style: Any) -> Axes:
         """The component z over two axes of a grid, x and y: its value at the end, or in one recorded phase; failed
         instances are left grey. z may be "status"."""
         from .run import status_names
@@ -244,7 +265,8 @@ class Plots:
         return chosen, [", ".join(f"{n} = {v[i]:.4g}" for n, v in values.items()) or f"instance {chosen[i]}"
                         for i in range(len(chosen))]
 
-    def time_series(self, y, *, instances=None, axes=None, **style):
+    def time_series(self, y: Component, *, instances: npt.ArrayLike | None = None, axes: Axes | None = None,
+                    **style: Any) -> Axes:
         """The samples of a state over time, for the first five instances or those of the given numbers."""
         run, y = self._run, _name(y)
         chosen, labels = self._instances(instances)
@@ -253,7 +275,8 @@ class Plots:
         return time_series(run.sample_times[chosen], run.samples[y][chosen], labels=labels, ylabel=y, axes=axes,
                            **style)
 
-    def phase_portrait(self, x, y, *, instances=None, axes=None, **style):
+    def phase_portrait(self, x: Component, y: Component, *, instances: npt.ArrayLike | None = None,
+                       axes: Axes | None = None, **style: Any) -> Axes:
         """The samples of one state over those of another; without samples the points recorded at the ends of phases.
         For the first five instances or those of the given numbers."""
         run, x, y = self._run, _name(x), _name(y)
@@ -265,7 +288,7 @@ class Plots:
         return phase_portrait(kept[x][chosen], kept[y][chosen], labels=labels, xlabel=x, ylabel=y, points=points,
                               axes=axes, **style)
 
-    def statuses(self, *, axes=None):
+    def statuses(self, *, axes: Axes | None = None) -> Axes:
         """How many instances ended in which way."""
         from .run import status_names
 

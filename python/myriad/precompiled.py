@@ -14,7 +14,7 @@ from . import cache
 
 HEADER = "myriad/python/kernel_library.hpp"
 _suffixes = {"clang++": ".pch", "g++": ".hpp.gch"}  # zig has none
-_begun = set()
+_begun: set = set()
 
 
 def _path(key, by):

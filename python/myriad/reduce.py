@@ -4,11 +4,19 @@
 Variables are named as in results: "x" at recorded phases, "x_end" at the end, "x_sample". Instances that failed are
 left out, but by `total`. Results do not depend on how the instances are divided into chunks, bit for bit."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from . import _core
 from .axes import Axis
 from .errors import Error
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 __all__ = ["histogram", "minimum", "maximum", "mean", "total"]
 
@@ -16,15 +24,15 @@ __all__ = ["histogram", "minimum", "maximum", "mean", "total"]
 class Reduction:
     """A reduction, made by the functions of this module."""
 
-    def __init__(self, kind, *arguments):
+    def __init__(self, kind: str, *arguments: Any) -> None:
         self.kind, self.arguments = kind, arguments
 
-    def core(self):
+    def core(self) -> _core.Reduction:
         """The reduction for the core."""
         arguments = [a.core() if isinstance(a, Axis) else a for a in self.arguments]
         return getattr(_core, self.kind)(*arguments)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"{self.kind}({', '.join(map(repr, self.arguments))})"
 
 
@@ -41,7 +49,7 @@ class _Values(Axis):
         return _core.values(list(self.arguments))
 
 
-def histogram(variable, edges):
+def histogram(variable: str, edges: Axis | npt.ArrayLike) -> Reduction:
     """How many values lie between neighbouring edges, as numpy.histogram: "x_end_histogram" along "x_end_bin"; and
     "x_end_outside", how many lie below, above, and are not finite."""
     if not isinstance(edges, Axis):
@@ -49,22 +57,22 @@ def histogram(variable, edges):
     return Reduction("histogram_of", _variable(variable), edges)
 
 
-def minimum(variable):
+def minimum(variable: str) -> Reduction:
     """The smallest value, for each phase or sample: "x_end_minimum"."""
     return Reduction("minimum_of", _variable(variable))
 
 
-def maximum(variable):
+def maximum(variable: str) -> Reduction:
     """The largest value, for each phase or sample: "x_end_maximum"."""
     return Reduction("maximum_of", _variable(variable))
 
 
-def mean(variable):
+def mean(variable: str) -> Reduction:
     """The mean, for each phase or sample: "x_end_mean". The sum is exact and rounded once."""
     return Reduction("mean_of", _variable(variable))
 
 
-def total(name, inputs, size, function):
+def total(name: str, inputs: str | Sequence[str], size: int, function: Callable[[dict[str, Any]], Any]) -> Reduction:
     """The sum over chunks of `size` numbers that a function computes of each chunk: variable `name`. The function gets
     a dict of arrays, the inputs by name and "status", with a row for each instance of the chunk, failed ones too, and
     returns the numbers. `name` stands for it in the study's description: give another one when it changes. Threads take

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The outcome of `solve`: arrays by name, statuses, the report, and the way to xarray and pandas."""
 
-from collections.abc import Mapping
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -12,7 +15,15 @@ from .errors import Error, note_in_python
 from .grid import Sweep
 from .symbols import time
 
-status_names = tuple(_core.status_names())
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+    from .components import Components
+    from .hints import Array, Component
+    from .plots import Plots
+
+status_names: tuple[str, ...] = tuple(_core.status_names())  #: the names of statuses, by their numbers
 # What datasets and tables call what they have besides components, whose names there get a _ behind.
 _own_names = ("instance", "phase", "sample", "time", "t_last", "status")
 _first_failure = status_names.index("max_steps")
@@ -22,7 +33,7 @@ class Interrupted(KeyboardInterrupt):
     """Ctrl-C ended a call of `solve`; `run` has the instances that were done, and the others as not_started, or as
     interrupted if they were under way and took more than half a second longer."""
 
-    def __init__(self, run):
+    def __init__(self, run: Any) -> None:
         super().__init__(f"{run.done} of {run.size} instances were done; .run has them")
         self.run = run
 
@@ -30,7 +41,7 @@ class Interrupted(KeyboardInterrupt):
 class Report:
     """How the instances ended, the work, where it was done, and where the kernel came from."""
 
-    def __init__(self, report, kernel, seconds, notes=()):
+    def __init__(self, report: Any, kernel: Any, seconds: float, notes: Sequence[str] = ()) -> None:
         self._report = report
         self.notes = [*map(note_in_python, report.notes), *notes]  #: what else to know
         #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
@@ -39,7 +50,7 @@ class Report:
         self.compile_seconds = kernel.seconds  #: that it took to get the kernel, compiled or from the cache
         self.total_seconds = seconds  #: of the whole call
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Any:
         if name == "_report":  # of one that was made without __init__, as by `copy`
             raise AttributeError(name)
         return getattr(self._report, name)
@@ -48,11 +59,11 @@ class Report:
         raise Error("a report cannot be pickled or copied: keep str(report), or the numbers that you need")
 
     @property
-    def by_status(self):
+    def by_status(self) -> dict[str, int]:
         """Number of instances by the name of their status, those that occur."""
         return {name: count for name, count in zip(status_names, self._report.by_status) if count}
 
-    def __str__(self):
+    def __str__(self) -> str:
         told = str(self._report).rstrip("\n").splitlines()
         text = "\n".join([*(line for line in told if not line.startswith("note: ")),
                           *(f"note: {note}" for note in self.notes)])
@@ -70,8 +81,9 @@ class Run(Mapping):
     the end, or that of an input. Its length is the number of names, `size` that of the instances. Arrays are views of
     the core's memory, not copies. Results of a GPU are copied to the host when they are first asked for."""
 
-    def __init__(self, components, ensemble, report, kernel, sweep, inputs, recorded, sampled, seconds, from_phase,
-                 notes=()):
+    def __init__(self, components: Components, ensemble: Any, report: Any, kernel: Any, sweep: Any,
+                 inputs: dict[str, Any], recorded: dict[str, tuple[str, int]], sampled: dict[str, int], seconds: float,
+                 from_phase: int, notes: Sequence[str] = ()) -> None:
         self._components, self._ensemble, self._records = components, ensemble, report
         self._recorded, self._sampled, self._inputs = recorded, sampled, inputs
         self.sweep = sweep if isinstance(sweep, Sweep) else None
@@ -79,49 +91,49 @@ class Run(Mapping):
         self.from_phase = from_phase  #: number of the first recorded phase
 
     @property
-    def size(self):
+    def size(self) -> int:
         """The number of instances."""
         return self.report.instances
 
     @property
-    def shape(self):
+    def shape(self) -> tuple[int, ...]:
         """The lengths of the sweep's axes; those of a sweep without axes are its size alone."""
         return tuple(self.sweep.shape) if self.sweep is not None else (self.size,)
 
     @property
-    def status(self):
+    def status(self) -> Array:
         """How each instance ended, as numbers into `myriad.status_names`."""
         return self._ensemble.array("status")
 
     @property
-    def done(self):
+    def done(self) -> int:
         """The number of instances that were integrated: all, unless the call was interrupted."""
         by_status = self._records.by_status
         return self.size - by_status[status_names.index("not_started")] - by_status[status_names.index("interrupted")]
 
     @property
-    def failed(self):
+    def failed(self) -> Array:
         """True for each instance that ended with a failure."""
         return self.status >= _first_failure
 
     @property
-    def t(self):
+    def t(self) -> Array:
         """The time at which the last phase of each instance ended."""
         return self._ensemble.array("t")
 
     @property
-    def phases_done(self):
+    def phases_done(self) -> Array:
         """The number of phases that each instance has done."""
         return self._ensemble.array("phases_done")
 
     @property
-    def stored_samples(self):
+    def stored_samples(self) -> Array:
         """The number of samples of each instance."""
         self._require_samples()
         return self._ensemble.stored_samples()
 
     @property
-    def sample_times(self):
+    def sample_times(self) -> Array:
         """The times of the samples, one row per instance; NaN beyond those stored."""
         self._require_samples()
         return self._ensemble.samples(-1)
@@ -130,7 +142,7 @@ class Run(Mapping):
         if not self._sampled:
             raise Error("no samples were taken: give samples= to solve")
 
-    def steps(self, kind="accepted"):
+    def steps(self, kind: Literal["accepted", "rejected", "located", "evaluations"] = "accepted") -> Array:
         """Steps of each instance: "accepted", "rejected" or "located" (redone to locate events); or "evaluations" of
         the right-hand side."""
         names = {"accepted": "accepted_steps", "rejected": "rejected_steps", "located": "located_steps",
@@ -140,12 +152,12 @@ class Run(Mapping):
         return self._ensemble.array(names[kind])
 
     @property
-    def states(self):
+    def states(self) -> dict[str, Array]:
         """The states at the end by name."""
         return {name: self._ensemble.array("state", c) for c, name in enumerate(self._components.states)}
 
     @property
-    def accessories(self):
+    def accessories(self) -> dict[str, Array]:
         """The accessories at the end by name, integer ones too."""
         found = {name: self._ensemble.array("accessory", c) for c, name in enumerate(self._components.accessories)}
         found.update((name, self._ensemble.array("integer_accessory", c))
@@ -153,12 +165,12 @@ class Run(Mapping):
         return found
 
     @property
-    def parameters(self):
+    def parameters(self) -> dict[str, Array]:
         """The parameters by name, one value per instance."""
         return {name: self._ensemble.array("parameter", c) for c, name in enumerate(self._components.parameters)}
 
     @property
-    def shared(self):
+    def shared(self) -> dict[str, Any]:
         """The shared values by name, without those of tables."""
         reals, integers = self._ensemble.array("shared"), self._ensemble.array("shared_integer")
         tables = self._components.tables
@@ -166,29 +178,29 @@ class Run(Mapping):
                 **{name: integers[c] for c, name in enumerate(self._components.shared_integers)}}
 
     @property
-    def start(self):
+    def start(self) -> dict[str, Any]:
         """The initial states by name, as they were given; arrays on a GPU as objects that are there."""
         return {name: self._inputs[name] if isinstance(self._inputs[name], DeviceInput) else
                 np.asarray(self._inputs[name]) for name in self._components.states}
 
     @property
-    def records(self):
+    def records(self) -> dict[str, Array]:
         """What was recorded at the end of each phase, by name: one row per instance, one column per phase; NaN (0 of
         integers) after an instance has ended."""
         return {name: self._records.records(kind, c) for name, (kind, c) in self._recorded.items()}
 
     @property
-    def samples(self):
+    def samples(self) -> dict[str, Array]:
         """The sampled states by name: one row per instance, one column per sample."""
         return {name: self._ensemble.samples(c) for name, c in self._sampled.items()}
 
     @property
-    def device(self):
+    def device(self) -> DeviceResults:
         """Results where a GPU has them, by name: `run.device["x"]` is an array as `run["x"]`, that torch, CuPy and JAX
         take without a copy."""
         return DeviceResults(self)
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: Component) -> Array:
         if name is time:
             return self._times()
         name = name_of(name)
@@ -217,13 +229,13 @@ class Run(Mapping):
         tables = self._components.tables
         return list(dict.fromkeys([*(n for n in self._components.place if n not in tables), *self._recorded]))
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self._names())
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._names())
 
-    def __contains__(self, name):
+    def __contains__(self, name: object) -> bool:
         try:
             self[name]
         except (KeyError, Error):
@@ -262,7 +274,7 @@ class Run(Mapping):
             return ["instance"], (self.size,)
         return [self._in_dataset(name) for name, _ in self.sweep.axes], tuple(self.sweep.shape)
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """The results as an `xarray.Dataset`: records along `phase`, samples along `sample`, and along `instance`, or
         the axes of a grid, whose values are coordinates, as are parameters. A component with a name that the dataset
         has for something else, such as `phase`, has a _ behind it."""
@@ -303,7 +315,7 @@ class Run(Mapping):
                 coordinates[self._in_dataset(name)] = unstacked(value)
         return xarray.Dataset(variables, coordinates, {"myriad_version": _core.version})
 
-    def to_pandas(self):
+    def to_pandas(self) -> pandas.DataFrame:
         """The results as a `pandas.DataFrame`: one row for each instance and recorded phase, or each instance and
         sample, or each instance, with the parameters as columns. A component with the name of another
         column, such as `phase`, has a _ behind it."""
@@ -332,7 +344,7 @@ class Run(Mapping):
         return frame.dropna(subset=["time"]).reset_index(drop=True) if self._sampled else frame
 
     @property
-    def plot(self):
+    def plot(self) -> Plots:
         """Pictures by matplotlib: `bifurcation`, `map`, `time_series`, `phase_portrait` and `statuses`."""
         from .plots import Plots
         return Plots(self)
@@ -341,6 +353,6 @@ class Run(Mapping):
         from .plots import html
         return html(self)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         counts = ", ".join(f"{count} {name}" for name, count in self.report.by_status.items())
         return f"<myriad.Run of {self.size} instances: {counts}>"

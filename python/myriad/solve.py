@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import time as clock
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,7 +13,8 @@ from . import _core, compiler, nvrtc, tape
 from .components import Components, by_component, unknown
 from .core_options import finish_options, make_options, options_of, takes_options
 from .device import DeviceInput
-from .empty import EmptyEnsemble, EmptyReport, kernel as no_kernel
+from .empty import EmptyEnsemble, EmptyReport
+from .empty import kernel as no_kernel
 from .errors import Error, with_event_names
 from .grid import Sweep
 from .inputs import Along, by_name, numbers, whole, whole_numbers
@@ -22,6 +24,9 @@ from .run import Interrupted, Run
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+    from .hints import AnyModel, ByComponent, Precision, Progress, Values
+    from .methods import Control, Method
 
 
 def _sweep_values(sweep):
@@ -84,7 +89,7 @@ def _gather(components, sweep, start, time, size):
     if isinstance(sweep, Sweep):
         lengths["the sweep"] = sweep.size
     if len(set(lengths.values())) > 1:
-        (first, n), (other, m) = next(((a, b) for a in lengths.items() for b in lengths.items() if a[1] != b[1]))
+        (first, n), (other, m) = next((a, b) for a in lengths.items() for b in lengths.items() if a[1] != b[1])
         raise Error(f"'{first}' has {n} values and '{other}' has {m}: give one for each instance, or single numbers; "
                     "myriad.grid(...) combines all values with all")
     return given, domain, next(iter(lengths.values()), 1)
@@ -209,9 +214,12 @@ def _inputs(components, given):
 
 
 @takes_options(SolveArguments)
-def solve(model, sweep=None, *, start=None, time=None, method=None, control=(), options: Options | None = None,
-          tolerance_scale=None, size=None, precision="double", device="auto", interpreted=None, progress=None,
-          **others: Unpack[SolveArguments]) -> Run:
+def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: ByComponent | None = None,
+          time: tuple[Values, Values] | None = None, method: Method | None = None,
+          control: Control | Sequence[Control] = (),
+          options: Options | None = None, tolerance_scale: Values | None = None, size: int | None = None,
+          precision: Precision = "double", device: str | Sequence[str] = "auto", interpreted: bool | None = None,
+          progress: Progress = None, **others: Unpack[SolveArguments]) -> Run:
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
     model             from `myriad.model(...)`
@@ -258,13 +266,13 @@ def solve(model, sweep=None, *, start=None, time=None, method=None, control=(), 
     if isinstance(model, type) or not hasattr(model, "source"):
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
-    method = default if method is None else method
+    chosen = default if method is None else method
     components = Components(model)
     given, domain, count = _gather(components, sweep, start, time, size)
     samples = given_options.samples is not None
-    method_type(method, control, samples)  # refuses what does not exist
-    if method in fixed_step and given_options.step is None:
-        raise Error(f"{method} takes fixed steps: give step=")
+    method_type(chosen, control, samples)  # refuses what does not exist
+    if chosen in fixed_step and given_options.step is None:
+        raise Error(f"{chosen} takes fixed steps: give step=")
     core_options, recorded, sampled = make_options(components, count, given_options)
     if count == 0:
         real = np.dtype("f8" if precision == "double" else "f4")
@@ -272,11 +280,11 @@ def solve(model, sweep=None, *, start=None, time=None, method=None, control=(), 
         return Run(components, EmptyEnsemble(components, given, real, core_options.samples.capacity),
                    EmptyReport(max(core_options.phases - from_phase, 0), real), no_kernel, sweep,
                    _inputs(components, given), recorded, sampled, clock.perf_counter() - begin, from_phase)
-    kernels = [kernel_for(d, model, components, method, control, samples, precision, interpreted)
+    kernels = [kernel_for(d, model, components, chosen, control, samples, precision, interpreted)
                for d in devices]
     kernel, names = kernels[0]
     finish_options(core_options, given_options, components, len(names[0]), len(names[-1]))
-    kind = _core.Ensemble64 if precision == "double" else _core.Ensemble32
+    kind: Any = _core.Ensemble64 if precision == "double" else _core.Ensemble32
     function, finish = _progress_function(progress)
     try:
         ensemble = kind(kernel.library, *names, count)

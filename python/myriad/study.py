@@ -11,7 +11,8 @@ import pickle
 import queue
 import threading
 import time as clock
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -29,11 +30,15 @@ from .reduce import Reduction
 from .run import Interrupted
 from .solve import device_names, ends_of, kernel_for, refuse_missing
 from .study_result import StudyResult
-from .symbols import t_begin, t_end, time as time_symbol
+from .symbols import t_begin, t_end
+from .symbols import time as time_symbol
 from .whole_numbers import check_whole_numbers
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+    from .hints import AnyModel, ByComponent, Path, Precision, Progress, SomeComponents
+    from .methods import Control, Method
 
 __all__ = ["Study", "study"]
 
@@ -48,7 +53,7 @@ def _time_name(key):
 class Study:
     """A parameter study, made by `study`. `run` computes it."""
 
-    def __init__(self, model, sweep, options):
+    def __init__(self, model: AnyModel, sweep: Any, options: dict[str, Any]) -> None:
         self._given, self._has_store = (model, sweep, options), False
         self._build(model, sweep, **options)
 
@@ -218,14 +223,14 @@ class Study:
         made.keep(names, *(bool(keep.get(choice, choice != "work")) for choice in _keep_choices[1:]))
 
     @property
-    def size(self):
+    def size(self) -> int:
         """The number of instances."""
         return self._core.size
 
-    def __len__(self):
+    def __len__(self) -> int:
         return self.size
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<myriad study of {self.size} instances>"
 
     # -- The run ------------------------------------------------------------------------------------------------------
@@ -246,8 +251,9 @@ class Study:
         self._core.note("kernel", "interpreted" if self._runs_interpreted else "compiled")
         self._core.set_run(devices, whole(chunk or 0, "chunk", 1 << 62))
 
-    def run(self, store=None, *, device="auto", chunk=None, executor=None, check="sizes", expiry=60, arithmetic="same",
-            progress=None):
+    def run(self, store: Path | None = None, *, device: str | Sequence[str] = "auto", chunk: int | None = None,
+            executor: Any = None, check: Literal["sizes", "checksums"] = "sizes", expiry: float = 60,
+            arithmetic: Literal["same", "any"] = "same", progress: Progress = None) -> StudyResult:
         """Computes what is not there yet, and returns a `StudyResult`.
 
         store      a folder, in which the study goes on if it is run again, also by several processes at a time, each
@@ -461,9 +467,13 @@ class _ExecutedRun:
 
 
 @takes_options(StudyArguments)
-def study(model, sweep=None, *, start=None, time=None, keep=None, reduce=(), draws=None, seed=0, title="", units=None,
-          notes=None, method=None, control=(), options: Options | None = None, precision="double", interpreted=None,
-          **others: Unpack[StudyArguments]) -> Study:
+def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: ByComponent | None = None,
+          time: tuple[Any, Any] | None = None, keep: SomeComponents | Mapping[str, Any] | None = None,
+          reduce: Reduction | Sequence[Reduction] = (), draws: int | None = None, seed: int = 0, title: str = "",
+          units: Mapping[Any, str] | None = None, notes: Mapping[str, object] | None = None,
+          method: Method | None = None,
+          control: Control | Sequence[Control] = (), options: Options | None = None, precision: Precision = "double",
+          interpreted: bool | None = None, **others: Unpack[StudyArguments]) -> Study:
     """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
     What `generate=` of the model sets is given neither in the sweep nor in start.
 

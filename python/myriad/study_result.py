@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The results of a study, in memory or in its store: arrays by name, xarray, netCDF."""
 
+from __future__ import annotations
+
 import json
 import os
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -13,6 +15,11 @@ from .components import name_of, unknown
 from .errors import Error
 from .parts import blocks, read_part
 from .symbols import time
+
+if TYPE_CHECKING:
+    import xarray
+
+    from .hints import Array, Component, Path
 
 
 class Damage(NamedTuple):
@@ -28,7 +35,8 @@ class StudyResult(Mapping):
     the study, and then the phases or samples. Of an axis, and of other coordinates, it is the values. `result[x]` of a
     component is what was recorded of it, or its last values."""
 
-    def __init__(self, results, folder=None, facts=None):
+    def __init__(self, results: _core.Results, folder: str | None = None,
+                 facts: Mapping[str, Any] | None = None) -> None:
         self._results, self.folder = results, folder
         facts = facts or {}
         #: whether all instances are done
@@ -45,37 +53,37 @@ class StudyResult(Mapping):
         self._inner = {d: n for rest in self._variables.values() for d, n in rest[1]}
 
     @property
-    def size(self):
+    def size(self) -> int:
         """The number of instances of the study."""
         return self._results.instances
 
     @property
-    def done(self):
+    def done(self) -> int:
         """The number of instances whose results are there, of whichever run."""
         return self._results.instances_done
 
     @property
-    def shape(self):
+    def shape(self) -> tuple[int, ...]:
         """The lengths of the axes."""
         return tuple(self._axes.values())
 
     @property
-    def axes(self):
+    def axes(self) -> dict[str, int]:
         """The names of the axes and their lengths."""
         return dict(self._axes)
 
     @property
-    def names(self):
+    def names(self) -> list[str]:
         """The names of all variables and coordinates."""
         return [*self._variables, *self._coordinates]
 
     @property
-    def description(self):
+    def description(self) -> dict[str, Any]:
         """All that determines the results, as a dict: model, axes, options, what is kept, version."""
         return json.loads(self._results.description)
 
     @property
-    def devices(self):
+    def devices(self) -> list[str]:
         """The devices that computed what is in the store."""
         return self._results.devices
 
@@ -88,7 +96,7 @@ class StudyResult(Mapping):
                 return found
         raise KeyError(str(unknown(name, self.names, "variable of the results")))
 
-    def __getitem__(self, key):
+    def __getitem__(self, key: Component) -> Array:
         name = self._name(key)
         if name in self._coordinates:
             return self._coordinate(name)
@@ -104,13 +112,13 @@ class StudyResult(Mapping):
             return self._results.coordinate(name, 1)[0]
         return self._results.coordinate(name, {**self._axes, **self._inner}[along])
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self.names)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.names)
 
-    def __contains__(self, key):
+    def __contains__(self, key: object) -> bool:
         try:
             return self._name(key) in self.names
         except (KeyError, Error):
@@ -121,12 +129,12 @@ class StudyResult(Mapping):
 
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         state = "" if self.complete else f", {self.done} of them done"
         where = f" in {self.folder}" if self.folder else ""
         return f"<myriad study of {self.size} instances{state}{where}: {', '.join(self._variables)}>"
 
-    def __str__(self):
+    def __str__(self) -> str:
         if not self.by_status:
             return f"{self.done} of {self.size} instances are done"
         counts = ", ".join(f"{count} {name}" for name, count in self.by_status.items())
@@ -140,7 +148,7 @@ class StudyResult(Mapping):
             raise Error("results in memory cannot be pickled: pickle result.to_xarray(), or give the study a store")
         return open_study, (self.folder,)
 
-    def verify(self):
+    def verify(self) -> list[Damage]:
         """Reads all that is stored, and returns what is damaged as a list of `Damage`. `study.run(store=...,
         check="checksums")` computes it again."""
         return verify(self.folder) if self.folder is not None else []
@@ -154,14 +162,15 @@ class StudyResult(Mapping):
         """What stands for a value that was not computed, if there may be one."""
         return _fill_values[type_name] if type_name.startswith("float") or not self.complete else None
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """The results as an `xarray.Dataset` along the axes of the study; those of a store are read when they are used,
         chunk by chunk. What is not done is NaN, or the attribute `_FillValue` of integers."""
         try:
             import xarray
         except ImportError:
             raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
-        variables, coordinates = {}, {}
+        variables: dict[str, Any] = {}
+        coordinates: dict[str, Any] = {}
         for name, (type_name, inner, attributes, of_instances, is_coordinate) in self._written().items():
             dims, lengths = tuple(d for d, _ in inner), tuple(n for _, n in inner)
             if not of_instances:
@@ -180,7 +189,7 @@ class StudyResult(Mapping):
                 coordinates[name] = xarray.Variable((along,) if along else (), self._coordinate(name), attributes)
         return xarray.Dataset(variables, coordinates, {"myriad_study": self._results.description})
 
-    def to_netcdf(self, path, complevel=1):
+    def to_netcdf(self, path: Path, complevel: int = 1) -> None:
         """Writes netCDF-4 by the package netCDF4 or h5netcdf, whichever is there, part by part, so that memory is
         bounded. The file replaces one of that name when it is whole."""
         dataset_of = _netcdf_package()
@@ -225,7 +234,7 @@ class StudyResult(Mapping):
         if not self.complete:
             file.setncattr("incomplete", f"{self.done} of {self.size} instances are done")
 
-    def to_csv(self, path):
+    def to_csv(self, path: Path) -> None:
         """Writes text with commas, a line for each instance, as the C++ library does; for small results."""
         self._results.write_csv(os.fspath(path))
 
@@ -256,12 +265,12 @@ def _netcdf_package():
                     "wheel is built without the library for netCDF itself") from None
 
 
-def open_study(folder):
+def open_study(folder: Path) -> StudyResult:
     """The results of a study in its store, also while it runs. Raises `Error` if there is none."""
     folder = os.path.abspath(os.fspath(folder))
     return StudyResult(_core.open_store(folder), folder)
 
 
-def verify(folder):
+def verify(folder: Path) -> list[Damage]:
     """Reads all that is stored in a folder and compares checksums; returns what is damaged as a list of `Damage`."""
     return [Damage(*d) for d in _core.verify_store(os.path.abspath(os.fspath(folder)))]

@@ -3,10 +3,18 @@
 its kind and its name: made twice, it is the same.
 """
 
+from __future__ import annotations
+
 import re
+from typing import TYPE_CHECKING, Any
 
 from .errors import Error, at, users_line
 from .expression import integer, make, real
+
+if TYPE_CHECKING:
+    from .expression import Expression
+    from .hints import Names
+    from .model import Event
 
 __all__ = ["states", "state", "parameters", "parameter", "shared", "shared_integer", "accessory", "integer_accessory",
            "event_count", "time", "step", "next_step", "phase", "instance", "t_begin", "t_end", "end_phase",
@@ -36,7 +44,7 @@ _reserved_pattern = re.compile(
     r"M_[A-Z0-9_]+|MYRIAD_.*|[A-Z0-9]+_(MAX|MIN|EPSILON|DIG)|FP_[A-Z]+")
 
 
-def check_name(name, what):
+def check_name(name: Any, what: str) -> str:
     """Refuses a name that no C++ model can have, with what to write instead."""
     line = at(users_line())
     if not isinstance(name, str):
@@ -53,22 +61,22 @@ def check_name(name, what):
     return name
 
 
-def a(kind):
+def a(kind: str) -> str:
     """A kind of component for messages, as in 'a shared integer'."""
     return ("an " if kind[0] in "aei" else "a ") + kind.replace("_", " ")
 
 
-def symbol(kind, name, type=real):
+def symbol(kind: str, name: str, type: str = real) -> Any:
     """The symbol of a component."""
     return make("symbol", value=(kind, check_name(name, a(kind))), type=type)
 
 
-def names(several):
+def names(several: Any) -> list[str]:
     """The names in "x v", "x, v" or a list."""
     return several.replace(",", " ").split() if isinstance(several, str) else list(several)
 
 
-def _several(kind, several, type=real):
+def _several(kind: str, several: Names, type: str = real) -> tuple[Any, ...]:
     found = names(several)
     if not found:
         raise Error(f"no names are given{at(users_line())}: list them, as in myriad.states(\"x v\")")
@@ -78,54 +86,54 @@ def _several(kind, several, type=real):
     return tuple(symbol(kind, name, type) for name in found)
 
 
-def states(names):
+def states(names: Names) -> tuple[Expression, ...]:
     """The unknowns, as in `x, v = myriad.states("x v")`; always a tuple."""
     return _several("state", names)
 
 
-def state(name):
+def state(name: str) -> Expression:
     """One unknown."""
     return symbol("state", name)
 
 
-def parameters(names):
+def parameters(names: Names) -> tuple[Expression, ...]:
     """Several numbers with one value per instance, as a tuple."""
     return _several("parameter", names)
 
 
-def parameter(name):
+def parameter(name: str) -> Expression:
     """A number with one value per instance."""
     return symbol("parameter", name)
 
 
-def shared(name):
+def shared(name: Names) -> Any:
     """A number with one value for all instances; several names in a string give a tuple."""
-    found = names(name) if isinstance(name, str) else [name]
+    found = names(name)
     return symbol("shared", found[0]) if len(found) == 1 else _several("shared", found)
 
 
-def shared_integer(name):
+def shared_integer(name: str) -> Expression:
     """A whole number with one value for all instances."""
     return symbol("shared_integer", name, integer)
 
 
-def accessory(name):
+def accessory(name: str) -> Expression:
     """A real number that the model stores by instance: hooks, actions and reductions over a phase write it."""
     return symbol("accessory", name)
 
 
-def integer_accessory(name):
+def integer_accessory(name: str) -> Expression:
     """A whole number that the model stores by instance, such as a count or a mode."""
     return symbol("integer_accessory", name, integer)
 
 
-def event_count(event):
+def event_count(event: Event | str) -> Expression:
     """How often the event, given by its name or itself, was detected in this phase; in its action including this time.
     For hooks and actions."""
     return make("symbol", value=("event_count", check_name(getattr(event, "name", event), "an event")), type=integer)
 
 
-def _built_in(kind, type=real):
+def _built_in(kind: str, type: str = real) -> Any:
     return make("symbol", value=("built-in", kind), type=type)
 
 

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Tables: NumPy arrays that all instances share, as coefficients of a model's equations."""
 
+from __future__ import annotations
+
 import hashlib
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -10,12 +13,15 @@ from .expression import as_number, make, to_real
 from .grid import as_numbers
 from .symbols import check_name
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
 __all__ = ["table"]
 
 _unrolled = 8  # vectors up to this length are multiplied term by term in the generated code
 
 
-def table(name, values):
+def table(name: str, values: npt.ArrayLike) -> Table:
     """An array of one or two dimensions whose values all instances share: `A = myriad.table("A", array)`. `A[i, j]` is
     an element and `A @ vector` the product with a vector of expressions, an array of expressions. Generated code names
     its values and does not contain them, so that models with other values need not be compiled again."""
@@ -27,7 +33,7 @@ class Table:
 
     __array_ufunc__ = None  # array @ table is refused by __rmatmul__, and not by NumPy
 
-    def __init__(self, name, values):
+    def __init__(self, name: str, values: Any) -> None:
         self.name, self.line = name, users_line()
         refuse_masked(values, f"the table {name}")
         array = as_numbers(values)
@@ -43,19 +49,19 @@ class Table:
         self.shape = self.values.shape
         self._key = (name, self.shape, hashlib.sha256(self.values.tobytes()).hexdigest())
 
-    def __eq__(self, other):
+    def __eq__(self, other: object) -> bool:
         return isinstance(other, Table) and self._key == other._key
 
-    def __hash__(self):
+    def __hash__(self) -> int:
         return hash(self._key)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<table {self.name} of shape {self.shape}>"
 
-    def __len__(self):
+    def __len__(self) -> int:
         return self.shape[0]
 
-    def __getitem__(self, place):
+    def __getitem__(self, place: Any) -> Any:
         try:
             chosen = np.arange(self.values.size).reshape(self.shape)[place]
         except (IndexError, TypeError):
@@ -71,7 +77,7 @@ class Table:
     def _element(self, number):
         return make("element", value=(self, number))
 
-    def __matmul__(self, vector):
+    def __matmul__(self, vector: Any) -> Any:
         line = at(users_line())
         vector = np.asarray(vector, dtype=object)
         columns = self.shape[-1]
@@ -90,7 +96,7 @@ class Table:
         product[:] = rows
         return product
 
-    def __rmatmul__(self, vector):
+    def __rmatmul__(self, vector: Any) -> NoReturn:
         raise Error(f"a vector is multiplied from the left by the table {self.name}{at(users_line())}: make a table of "
                     "the transposed array, and write table @ vector")
 

@@ -1,14 +1,24 @@
 # SPDX-License-Identifier: MIT
 """Lyapunov exponents: a model with solutions of its variational equations, by `myriad::with_tangents`."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from .errors import Error, at, users_line
 
+if TYPE_CHECKING:
+    from .cpp_model import CppModel
+    from .hints import Array
+    from .model import Model
+    from .run import Run
+
 __all__ = ["with_tangents", "exponents"]
 
 
-def with_tangents(model, vectors=1):
+def with_tangents(model: Model | CppModel, vectors: int = 1) -> WithTangents:
     """The model with tangent vectors: one gives the largest Lyapunov exponent, as many as there are states the full
     spectrum. They are orthonormalised at the end of every phase, and their growth is summed from phase
     `transient_phases` on, a shared integer that is 0 unless the sweep sets it: `exponents(run)` has the result. Phases
@@ -20,7 +30,7 @@ class WithTangents:
     """A model with tangent vectors. Component c of tangent i is the state `<c>_tangent_<i>`, and the growth of tangent
     i the accessory `growth_<i>`, counted from 1."""
 
-    def __init__(self, model, vectors):
+    def __init__(self, model: Model | CppModel, vectors: int) -> None:
         line = users_line()
         n = len(model.states)
         if isinstance(vectors, bool) or not isinstance(vectors, (int, np.integer)) or not 1 <= vectors <= n:
@@ -52,21 +62,21 @@ class WithTangents:
         self.defaults = {**self.shared_values, "transient_phases": 0,
                          **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}
 
-    def cpp(self):
+    def cpp(self) -> str:
         """The model and its tangents as the text of a C++ header."""
         return self.source()[0]
 
-    def source(self):
+    def source(self) -> tuple[str, str]:
         """The text that kernels are compiled from, and the name of its struct."""
         text, struct = self.model.source()
         return (f"{text}\n#include <myriad/tangent.hpp>\n"
                 f"using {struct}_tangents = myriad::with_tangents<{struct}, {self.vectors}>;\n"), f"{struct}_tangents"
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<{self.vectors} tangents of {self.model!r}>"
 
 
-def exponents(run):
+def exponents(run: Run) -> Array:
     """The Lyapunov exponents of a run of a model `with_tangents`, per unit of time, by the natural logarithm: one row
     per instance, the largest first. NaN if no phase was summed."""
     names = [name for name in run.accessories if name.startswith("growth_")]

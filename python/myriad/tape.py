@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Interpreted models: the operations of a traced model as a tape, which the core runs where there is no compiler."""
 
+from __future__ import annotations
+
 import weakref
+from typing import Any
 
 from . import _core
 from .compiler import Kernel
@@ -152,7 +155,7 @@ def library(model, components, method):
     return _core.Library(method, len(components.shared), len(components.shared_integers), may_stop, made)
 
 
-_known = weakref.WeakKeyDictionary()
+_known: weakref.WeakKeyDictionary[Any, Any] = weakref.WeakKeyDictionary()
 
 
 def kernel(model, components, method, why):

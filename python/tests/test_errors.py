@@ -105,4 +105,4 @@ def test_what_was_not_asked_for(oscillator):
     with pytest.raises(KeyError, match="there is no 'y': the model has x, v, w"):
         run["y"]
     with pytest.raises(my.Error, match="no samples were taken"):
-        run.sample_times
+        _ = run.sample_times

@@ -190,6 +190,6 @@ def test_what_a_worker_raises_arrives():
 
 
 def test_a_study_that_does_not_pickle_is_refused():
-    study = oscillator(reduce=my.reduce.total("wrong", [], 1, lambda chunk, lock=threading.Lock(): [1]))
+    study = oscillator(reduce=my.reduce.total("wrong", [], 1, lambda chunk, lock=threading.Lock(): [1]))  # noqa: B008
     with spawned(1) as executor, pytest.raises(my.Error, match="does not pickle"):
         study.run(executor=executor)

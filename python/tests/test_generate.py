@@ -124,7 +124,7 @@ def test_whole_numbers_are_those_of_python(interpreted):
         model = my.model({x: -x}, generate={x: 1, **dict(zip(symbols, values[first:]))})
         given = {k: 4} if first else {}
         result = my.study(model, given, draws=12, time=(0, 1), keep=symbols, interpreted=interpreted).run(device="cpu")
-        for c, symbol in enumerate(symbols):
+        for c, _ in enumerate(symbols):
             np.testing.assert_array_equal(result[f"a{c}_end"], expected[first + c], str(values[first + c]))
 
 
@@ -154,7 +154,7 @@ def test_places_counted_from_behind_are_exact_in_single_precision():
     result = my.study(model, draws=12, time=(0, 0.1), precision="float", keep=symbols).run(device="cpu")
     n = np.arange(12)
     expected = [(n - first) % 3, (first - n) % 7, -(n + first) // 10 + 10_000_000, (5 * (n - first) - 2) // 4 + 2**27]
-    for c, symbol in enumerate(symbols):
+    for c, _ in enumerate(symbols):
         np.testing.assert_array_equal(result[f"a{c}_end"], expected[c], str(values[c]))
 
 

@@ -134,7 +134,7 @@ def test_results_are_inputs_without_leaving_the_gpu(precision):
     on_host = van_der_pol(first["x"], first["v"], precision=precision)
     for on_device in (van_der_pol(x, v, precision=precision), van_der_pol(Dlpack(x), Dlpack(v), precision=precision)):
         del first  # the arrays keep what they need
-        first = None
+        first = None  # noqa: F841, for the next round to delete
         assert np.array_equal(on_device["x"], on_host["x"]) and np.array_equal(on_device["v"], on_host["v"])
 
 

@@ -218,7 +218,7 @@ def branching(t, y):
     return [y[1], 1.0 if y[0] > 0 else -1.0]
 
 
-def of_wrong_shape(t, y, A=np.ones((3, 3))):
+def of_wrong_shape(t, y, A=np.ones((3, 3))):  # noqa: B008, a constant
     return A @ y
 
 

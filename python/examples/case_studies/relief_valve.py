@@ -41,8 +41,8 @@ print(run.report)
 
 # %%
 rest = np.array([np.roots([1, delta, 0, -flow**2]).real.max() for flow in flows])
-growth = np.array([np.linalg.eigvals([[0, 1, 0], [-1, -kappa, 1], [
-    -beta * np.sqrt(level + delta), 0, -beta * level / (2 * np.sqrt(level + delta))]]).real.max() for level in rest])
+growth = np.array([np.linalg.eigvals(np.array([[0, 1, 0], [-1, -kappa, 1], [
+    -beta * np.sqrt(level + delta), 0, -beta * level / (2 * np.sqrt(level + delta))]])).real.max() for level in rest])
 hopf = flows[growth > 0].max()
 hits = run["impacts"].max(axis=1) > 0
 grazing = flows[hits].max()

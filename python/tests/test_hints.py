@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""Type hints: the package has them for type checkers, for all that is public, the compiled module too."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+import myriad
+from myriad import _core
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FOLDER = pathlib.Path(myriad.__file__).parent
+
+
+def test_the_package_says_that_it_has_types():
+    assert (FOLDER / "py.typed").is_file()
+
+
+def test_the_stub_of_the_compiled_module_has_all_of_it():
+    stub = (FOLDER / "_core.pyi").read_text()
+    for name in (n for n in dir(_core) if not n.startswith("__")):
+        assert re.search(rf"^(class |def )?{name}\b", stub, re.M), name
+    for name in (n for n in dir(_core.Study) if not n.startswith("__")):
+        assert re.search(rf"^    def {name}\(", stub, re.M), name
+    assert "-> object:" not in stub  # nothing that a type checker could not use
+
+
+def checked(source):
+    return subprocess.run([sys.executable, ROOT / "scripts/python_reference.py", "--check", "--source", source],
+                          capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("file, before, after, said", [
+    ("solve.py", r'(?s)"""Integrates a model.*?"""', '""""""', "myriad.solve has no description"),
+    ("grid.py", "def values\\(self, name: str\\)", "def values(self, name)", "Sweep.values: name has no type"),
+    ("run.py", r"def size\(self\) -> int", "def size(self)", "Run.size: what it returns has no type"),
+    ("symbols.py", r"  #: the time; in an action.*", "", "myriad.time has no description"),
+    ("axes.py", r'__all__ = \["linspace",', '__all__ = ["missing", "linspace",', "missing is public and defined"),
+])
+def test_what_has_no_description_or_type_is_found(tmp_path, file, before, after, said):
+    assert checked(ROOT).returncode == 0
+    shutil.copytree(ROOT / "python/myriad", tmp_path / "python/myriad", symlinks=False)
+    changed = tmp_path / "python/myriad" / file
+    text, count = re.subn(before, after, changed.read_text(), count=1)
+    assert count == 1
+    changed.write_text(text)
+    done = checked(tmp_path)
+    assert done.returncode == 1 and said in done.stdout
