@@ -19,9 +19,8 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "cuda"))
 sys.dont_write_bytecode = True
 from check_resources import compile_command, read_report  # noqa: E402
+from methods import METHODS  # noqa: E402
 
-METHODS = ("runge_kutta_4", "cash_karp", "tsitouras_5", "dormand_prince_5", "verner_7", "dormand_prince_8",
-           "rosenbrock_23", "rodas_5p")
 SIZES = (2, 4, 8, 16)
 FEATURES = {
     "no event, no hook": ["-DEVENTS=0"],

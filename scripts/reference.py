@@ -22,6 +22,7 @@ import tempfile
 import xml.etree.ElementTree as ElementTree
 
 import python_reference
+from methods import METHODS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -433,8 +434,7 @@ def check(entities, source):
 
 # On their pages before all others.
 FIRST = ("ensemble", "options", "report", "status", "MYRIAD_FUNCTION", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT",
-         "vec", "lane", "inputs", "select", "device", "solve", "solver", "runge_kutta_4", "cash_karp", "tsitouras_5",
-         "dormand_prince_5", "verner_7", "dormand_prince_8", "rosenbrock_23", "rodas_5p", "dense", "controlled")
+         "vec", "lane", "inputs", "select", "device", "solve", "solver", *METHODS, "dense", "controlled")
 _anchors = {}
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The validated methods: an entry in one of these lists adds a method everywhere. Each is instantiated with dense
-// output, which without samples takes the same steps, bit for bit.
+// The validated methods: those of the library. Each is instantiated with dense output, which without samples takes the
+// same steps, bit for bit.
 #pragma once
 
 #include <myriad/methods.hpp>
@@ -10,10 +10,9 @@
 #define VALIDATED_STIFF_METHODS(DO) DO(rodas_5p)
 #else
 /// Non-stiff problems are integrated with each of these.
-#define VALIDATED_METHODS(DO) \
-    DO(runge_kutta_4) DO(cash_karp) DO(tsitouras_5) DO(dormand_prince_5) DO(verner_7) DO(dormand_prince_8)
+#define VALIDATED_METHODS(DO) MYRIAD_EXPLICIT_METHODS(DO)
 /// Stiff problems are integrated with each of these.
-#define VALIDATED_STIFF_METHODS(DO) DO(rosenbrock_23) DO(rodas_5p)
+#define VALIDATED_STIFF_METHODS(DO) MYRIAD_STIFF_METHODS(DO)
 #endif
 /// Some problems also in single precision.
 #define VALIDATED_FLOAT_METHODS(DO) DO(tsitouras_5)

@@ -8,6 +8,7 @@
 #include "myriad/kernel/methods/dense.hpp"
 #include "myriad/kernel/methods/dormand_prince_5.hpp"
 #include "myriad/kernel/methods/dormand_prince_8.hpp"
+#include "myriad/kernel/methods/method_list.hpp"
 #include "myriad/kernel/methods/rodas_5p.hpp"
 #include "myriad/kernel/methods/rosenbrock_23.hpp"
 #include "myriad/kernel/methods/runge_kutta_4.hpp"

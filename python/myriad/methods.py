@@ -8,8 +8,8 @@ from typing import Literal, get_args
 
 from .errors import Error
 
-Method = Literal["cash_karp", "dormand_prince_5", "tsitouras_5", "verner_7", "dormand_prince_8", "runge_kutta_4",
-                 "rosenbrock_23", "rodas_5p"]
+Method = Literal["runge_kutta_4", "cash_karp", "tsitouras_5", "dormand_prince_5", "verner_7", "dormand_prince_8",
+                 "rosenbrock_23", "rodas_5p"]  # of the library's list, as a test says
 Control = Literal["pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
                   "tolerance_per_instance"]
 methods: tuple[str, ...] = get_args(Method)  #: the names of methods

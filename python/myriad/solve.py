@@ -234,10 +234,8 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                       a t of its own) or `run[myriad.time]` are the recorded times
     samples           dense output: a number of evenly spaced times, an array of times, or `dict(states=, evenly= |
                       times= | every=, capacity=, minimum_spacing=, from_phase=)`
-    method, control   as in the C++ library: "tsitouras_5" (default), "dormand_prince_5", "cash_karp", "verner_7",
-                      "dormand_prince_8", "runge_kutta_4", "rosenbrock_23", "rodas_5p"; control is one or several of
-                      "pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
-                      "tolerance_per_instance", the last with `tolerance_scale=`
+    method, control   as in the C++ library: one of `myriad.methods`, by default "tsitouras_5"; control is one or
+                      several of `myriad.controls`, of which "tolerance_per_instance" is with `tolerance_scale=`
     rtol, atol        tolerances of the error per step: numbers, lists in the order of the states, or dicts by state
     events            changes of `direction`, `tolerance` or `stop_after` of events by name
     size              number of instances, if no array gives it

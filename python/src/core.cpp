@@ -24,6 +24,7 @@
 #include "myriad/host/core/instruction_set.hpp"
 #include "myriad/host/options/option_table.hpp"
 #include "myriad/host/threads/parallel.hpp"
+#include "myriad/kernel/methods/method_list.hpp"
 #include "myriad/version.hpp"
 #include "resident.hpp"
 #include "run.hpp"
@@ -422,6 +423,9 @@ NB_MODULE(_core, m) {
     m.def("may_use_gpus", &host::may_use_gpus);
     m.def("driver_version", &driver_version);
     m.def("interpreted_methods", &interpreted_methods);
+#define METHOD_NAME(method) #method,
+    m.attr("methods") = std::vector<std::string>{MYRIAD_METHODS(METHOD_NAME)};
+#undef METHOD_NAME
     m.def("tape_operations", &tape_operations);
     m.attr("tape_limits") =
         nb::make_tuple(tape_states, tape_parameters, tape_accessories, tape_integers, tape_events, tape_registers);

@@ -40,7 +40,7 @@ CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
     (dict(record=["z"]), "'z' is no component of the model that record= can name"),
     (dict(record=dict(states=["x"], phase=1)), "'phase' is no choice of record="),
     (dict(record=dict(states=["x"], from_phase=1)), "nothing would be recorded"),
-    (dict(method="euler"), "there is no method 'euler': choose one of cash_karp"),
+    (dict(method="euler"), "there is no method 'euler': choose one of runge_kutta_4"),
     (dict(method="runge_kutta_4"), "runge_kutta_4 takes fixed steps: give step="),
     (dict(method="runge_kutta_4", step=0.1, control="pi_control"), "has no step-size control to choose"),
     (dict(control="pi"), "there is no step-size control 'pi'"),

@@ -29,6 +29,10 @@ def test_the_stub_of_the_compiled_module_has_all_of_it():
     assert "-> object:" not in stub  # nothing that a type checker could not use
 
 
+def test_methods_are_those_of_the_library():
+    assert list(myriad.methods) == _core.methods
+
+
 def checked(source):
     return subprocess.run([sys.executable, ROOT / "scripts/python_reference.py", "--check", "--source", source],
                           capture_output=True, text=True)

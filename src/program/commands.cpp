@@ -21,6 +21,7 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/options/option_table.hpp"
 #include "myriad/host/report/progress.hpp"
+#include "myriad/kernel/methods/method_list.hpp"
 #include "myriad/program.hpp"
 #include "myriad/study/export.hpp"
 #include "myriad/study/file_system.hpp"
@@ -158,8 +159,9 @@ void compile_model(const study_file::model_choice& wanted, const model_source& s
     if (wanted.model == name && std::find(structs.begin(), structs.end(), last) == structs.end())
         throw wrong_at(wanted.model_place,
                        message("model: ", source.name, " defines no \"", wanted.model, '"', suggestion(last, structs)));
-    constexpr const char* methods[] = {"runge_kutta_4", "cash_karp",        "dormand_prince_5", "tsitouras_5",
-                                       "verner_7",      "dormand_prince_8", "rosenbrock_23",    "rodas_5p"};
+#define METHOD_NAME(method) #method,
+    constexpr const char* methods[] = {MYRIAD_METHODS(METHOD_NAME)};
+#undef METHOD_NAME
     const std::string method = plain_name(wanted.method);
     const bool is_plain = method.find_first_of("<:") == std::string::npos;
     if (is_plain && std::find(std::begin(methods), std::end(methods), method) == std::end(methods) &&

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "myriad/kernel/methods/method_list.hpp"
+
 namespace myriad {
 
 template <class Model, class R = double>
@@ -39,13 +41,8 @@ enum class schedule : std::uint8_t;
 enum class shared_placement : std::uint8_t;
 enum class status : std::uint8_t;
 
-struct cash_karp;
-struct dormand_prince_5;
-struct dormand_prince_8;
-struct rodas_5p;
-struct rosenbrock_23;
-struct runge_kutta_4;
-struct tsitouras_5;
-struct verner_7;
+#define MYRIAD_DECLARE(method) struct method;
+MYRIAD_METHODS(MYRIAD_DECLARE)
+#undef MYRIAD_DECLARE
 
 }  // namespace myriad

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: MIT
+// The names of the methods, once. Declarations, the program, validation, the scripts and the Python package have them
+// from here.
+#pragma once
+
+#define MYRIAD_EXPLICIT_METHODS(DO) \
+    DO(runge_kutta_4) DO(cash_karp) DO(tsitouras_5) DO(dormand_prince_5) DO(verner_7) DO(dormand_prince_8)
+#define MYRIAD_STIFF_METHODS(DO) DO(rosenbrock_23) DO(rodas_5p)
+#define MYRIAD_METHODS(DO) MYRIAD_EXPLICIT_METHODS(DO) MYRIAD_STIFF_METHODS(DO)
