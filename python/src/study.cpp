@@ -405,9 +405,8 @@ void bind_study(nb::module_& m) {
     m.def("random_normal", &random_normal);
     nb::class_<ensemble_reduction>(m, "Reduction");
     m.def("histogram_of", &histogram_of);
-    m.def("minimum_of", [](const std::string& v) { return minimum_of(v); });
-    m.def("maximum_of", [](const std::string& v) { return maximum_of(v); });
-    m.def("mean_of", [](const std::string& v) { return mean_of(v); });
+    for (const auto& [name, make] : studies::named_reductions)
+        m.def(name, [reduction = make](const std::string& variable) { return reduction(variable); });
     m.def("sum_of", &sum_by_python);
 
     nb::class_<opened_results>(m, "Results")

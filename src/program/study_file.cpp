@@ -420,17 +420,17 @@ void study_file::read_reductions(any_study& study) {
                     placed(*edges, from.full("edges"), [&] { study.reduce(histogram_of(name, all)); });
             });
             if (edges != nullptr && !has_any) throw wrong(*edges, from.full("edges"), "are for histogram_of alone");
-            constexpr std::pair<const char*, ensemble_reduction (*)(std::string_view)> others[] = {
-                {"minimum_of", &minimum_of}, {"maximum_of", &maximum_of}, {"mean_of", &mean_of}};
-            for (const auto& [key, make] : others)
+            std::string known = "histogram_of";
+            for (const auto& [key, make] : studies::named_reductions) {
+                known += message(", ", key);
                 from.with(key, [&, reduction = make](const toml_value& names, const std::string& full_key) {
                     has_any = true;
                     for (const std::string& name : texts_in(names, full_key))
                         placed(names, full_key, [&] { study.reduce(reduction(name)); });
                 });
+            }
             from.finish();
-            if (!has_any)
-                throw wrong(*item, path, "has none of histogram_of, minimum_of, maximum_of and mean_of: give one");
+            if (!has_any) throw wrong(*item, path, message("has none of ", known, ": give one"));
         }
     });
 }

@@ -94,4 +94,17 @@ private:
     std::string name, std::vector<std::string> inputs, std::int64_t size,
     std::function<void(const chunk_columns& chunk, std::span<double> sums)> function);
 
+namespace studies::inline MYRIAD_ABI {
+
+/// A reduction of a variable alone, by the name of its function.
+struct named_reduction {
+    const char* name;
+    ensemble_reduction (*make)(std::string_view variable);
+};
+/// Those that files and the Python package have from here.
+inline constexpr named_reduction named_reductions[] = {
+    {"minimum_of", &minimum_of}, {"maximum_of", &maximum_of}, {"mean_of", &mean_of}};
+
+}  // namespace studies::inline MYRIAD_ABI
+
 }  // namespace myriad
