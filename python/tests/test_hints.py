@@ -54,3 +54,26 @@ def test_what_has_no_description_or_type_is_found(tmp_path, file, before, after,
     changed.write_text(text)
     done = checked(tmp_path)
     assert done.returncode == 1 and said in done.stdout
+
+
+def test_a_type_checker_finds_what_is_wrong_in_a_program(tmp_path):
+    mypy = pytest.importorskip("mypy.api")
+    program = tmp_path / "program.py"
+    program.write_text('''import myriad as my
+x, v = my.states("x v")
+k = my.parameter("k")
+oscillator = my.model({x: v, v: -k * x})
+run = my.solve(oscillator, {k: [1.0, 2.0]}, start={x: 1, v: 0}, time=(0, 1), rtol=1e-9, record=[x])
+print(run["x"].mean() + 1, run.report.accepted_steps, run.size + 1)
+study = my.study(oscillator, {k: my.linspace(0, 1, 5)}, start={x: 1, v: 0}, time=(0, 1), options=my.Options(phases=3))
+my.solve(oscillator, {k: 1}, start={x: 1, v: 0}, time=(0, 1), rtoll=1e-9)
+my.solve(oscillator, {k: 1}, start={x: 1, v: 0}, time=(0, 1), schedule="slow")
+my.study(oscillator, {k: 1}, start={x: 1, v: 0}, time=(0, 1), time_limit=3)
+my.Options(phases="three")
+my.solve(oscillator, {k: 1}, start={x: 1, v: 0}, time=(0, 1), method="rk45")
+run.sizes
+''')
+    said, problem, _ = mypy.run([str(program), "--cache-dir", str(tmp_path / "cache")])
+    assert not problem
+    lines = [int(line.split(":")[1]) for line in said.splitlines() if ": error:" in line]
+    assert sorted(set(lines)) == [8, 9, 10, 11, 12, 13], said
