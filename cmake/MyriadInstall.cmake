@@ -50,7 +50,7 @@ endif()
 configure_package_config_file(cmake/myriadConfig.cmake.in myriadConfig.cmake INSTALL_DESTINATION "${package_dir}")
 write_basic_package_version_file(myriadConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/myriadConfig.cmake" "${PROJECT_BINARY_DIR}/myriadConfigVersion.cmake"
-              cmake/MyriadModels.cmake cmake/MyriadXsimd.cmake
+              cmake/MyriadKernelFlags.cmake cmake/MyriadModels.cmake cmake/MyriadXsimd.cmake
         DESTINATION "${package_dir}" COMPONENT core)
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/myriad" COMPONENT core)
 

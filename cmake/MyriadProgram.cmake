@@ -6,6 +6,7 @@
 file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/program/*.cpp")
 list(REMOVE_ITEM sources "${PROJECT_SOURCE_DIR}/src/program/threads.cpp")
 add_library(myriad_program STATIC ${sources})
+myriad_add_compile_sources(myriad_program)
 add_library(myriad::program ALIAS myriad_program)
 set_target_properties(myriad_program PROPERTIES EXPORT_NAME program)
 target_include_directories(myriad_program PRIVATE "${PROJECT_SOURCE_DIR}/src")

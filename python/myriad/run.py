@@ -33,7 +33,7 @@ class Report:
     def __init__(self, report, kernel, seconds, notes=()):
         self._report = report
         self.notes = [*map(note_in_python, report.notes), *notes]  #: what else to know
-        #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
+        #: "compiled by g++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
         #: with a note if the cache cannot be used
         self.kernel = kernel.origin
         self.compile_seconds = kernel.seconds  #: that it took to get the kernel, compiled or from the cache

@@ -16,7 +16,7 @@ _limits = dict(zip(("states", "parameters", "accessories", "integer accessories"
 
 
 def _refuse(why):
-    return Error(f"the model cannot be interpreted, as {why}: install a C++ compiler (clang++ 14 or g++ 12 or newer), "
+    return Error(f"the model cannot be interpreted, as {why}: install a C++ compiler (g++ 12 or clang++ 14 or newer), "
                  "or `pip install ziglang`")
 
 

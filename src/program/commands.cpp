@@ -17,6 +17,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "compile/child_process.hpp"
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/progress.hpp"
@@ -28,7 +29,6 @@
 #include "myriad/study/store.hpp"
 #include "myriad/study/study.hpp"
 #include "myriad/version.hpp"
-#include "program/child_process.hpp"
 #include "program/model_compiler.hpp"
 #include "program/model_source.hpp"
 #include "program/study_file.hpp"
@@ -467,7 +467,7 @@ std::string find_python(bool is_folder) {
     const std::string imports = message("import site; site.addsitedir(site.getusersitepackages()); import matplotlib",
                                         is_folder ? "" : ", netCDF4");
     for (const char* python : {"python3", "/usr/bin/python3"})
-        if (child_process({python, "-I", "-c", imports}, "/dev/null").wait() == 0) return python;
+        if (compiling::child_process({python, "-I", "-c", imports}, "/dev/null").wait() == 0) return python;
     throw error(message("pictures need a Python 3 with matplotlib", is_folder ? "" : " and netCDF4",
                         ": install it (Debian, Ubuntu: apt-get install python3-matplotlib",
                         is_folder ? ")" : " python3-netcdf4), or draw the folder of the results"));
@@ -490,7 +490,7 @@ int plot(const plot_request& asked) {
              {std::pair("--variable", asked.variable), {"--over", asked.over}, {"--value", asked.value}})
             if (!value.empty()) words.push_back(message(option, '=', value));
         for (const std::string& place : asked.at) words.push_back("--at=" + place);
-        if (const int status = child_process(words).wait(); status != 0) return status == 2 ? 2 : 1;
+        if (const int status = compiling::child_process(words).wait(); status != 0) return status == 2 ? 2 : 1;
         std::cout << "picture: " << picture << '\n';
     }
     return 0;
