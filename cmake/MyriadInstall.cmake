@@ -41,6 +41,7 @@ if(TARGET myriad_program)
     install(FILES "${PROJECT_BINARY_DIR}/installed_model_flags.txt" DESTINATION "${myriad_data_dir}"
             RENAME model_flags.txt COMPONENT study)
     install(FILES ${myriad_plot_scripts} DESTINATION "${myriad_data_dir}" COMPONENT study)
+    install(FILES ${myriad_plot_pictures} DESTINATION "${myriad_data_dir}/pictures" COMPONENT study)
 endif()
 if(MYRIAD_ENABLE_CUDA)
     myriad_install_component(cuda myriad_cuda backends/cuda/myriad)
