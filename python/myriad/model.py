@@ -340,8 +340,8 @@ class Model:
                 raise Error(f"generate assigns {name}{at(line)}: it sets states, parameters and accessories; give "
                             "myriad.study the time domain and what all instances share")
             if what == "generate" and isinstance(value, Axis):
-                raise Error(f"generate sets {name} to {value!r}{at(line)}, which is for the sweep of a study: write "
-                            "myriad.uniform(low, high) or myriad.normal(mean, deviation)")
+                raise Error(f"generate sets {name} to {value!r}{at(line)}, which is for the sweep of a study: write it "
+                            "with myriad.instance")
             if kind in ("shared", "shared_integer", "event_count") or kind == "built-in" and name not in (
                     "next_step", "t_begin", "t_end"):
                 raise Error(f"{what} assigns {name}{at(line)}, which no hook may: states, parameters, accessories, "
