@@ -60,6 +60,9 @@ bool make_folders(const fs::path& path) {
     return ::mkdir(path.c_str(), 0700) == 0 || errno == EEXIST;
 }
 
+/// The name by which an open file, and no other, is read, written and loaded.
+std::string path_of(int file) { return "/proc/self/fd/" + std::to_string(file); }
+
 /// Closes a file at its end, unless that is released.
 class open_file {
 public:
@@ -75,27 +78,6 @@ public:
 private:
     int file_;
 };
-
-std::string contents_of(int file) {
-    std::string text;
-    char part[65536];
-    for (off_t at = 0;;) {
-        const ssize_t got = ::pread(file, part, sizeof part, at);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) return text;
-        text.append(part, static_cast<std::size_t>(got));
-        at += got;
-    }
-}
-bool append_to(int file, std::string_view text) {
-    while (!text.empty()) {
-        const ssize_t put = ::write(file, text.data(), text.size());
-        if (put < 0 && errno == EINTR) continue;
-        if (put <= 0) return false;
-        text.remove_prefix(static_cast<std::size_t>(put));
-    }
-    return true;
-}
 
 // Behind a shared object there is the text that it was made from and a checksum of everything, by which damage is
 // noticed before the system loads it. Loaders do not look at it.
@@ -113,8 +95,8 @@ bool is_whole(const std::string& whole, std::string_view made_from) {
 }
 
 /// Opens a file of this user; -1 if it is not that. A pipe does not wait for its other end.
-int open_own(int folder, const std::string& name, int flags) {
-    const int file = ::openat(folder, name.c_str(), flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+int open_own(int folder, const std::string& name) {
+    const int file = ::openat(folder, name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     struct stat is;
     if (file < 0 || (::fstat(file, &is) == 0 && S_ISREG(is.st_mode) && objection_to(is).empty())) return file;
     ::close(file);
@@ -138,8 +120,6 @@ int take_lock(int folder, const std::string& name, bool wait, const signal_check
         if (locked < 0) return -1;
     }
 }
-// What is loaded has the name of its descriptor.
-std::string path_of(int file) { return "/proc/self/fd/" + std::to_string(file); }
 bool is_loaded(int file, const compiled_cache::loader& load) {
     try {
         load(path_of(file));
@@ -288,17 +268,15 @@ public:
 
     /// Puts what it was made from and a checksum behind `model.so`, and returns it open.
     int seal(std::string_view made_from) const {
-        const int file = open_own(cache_.made_in_folder_, made(), O_RDWR | O_APPEND);
+        const int file = open_own(cache_.made_in_folder_, made());
         require(file >= 0, folder_.string(), "/model.so is missing, or somebody else's: compile the model again");
         std::string added(made_from);
         const std::uint64_t size = made_from.size();
         added.append(reinterpret_cast<const char*>(&size), sizeof size);
-        const std::uint32_t sum = checksum(contents_of(file) + added);
+        const std::uint32_t sum = checksum(read_file(path_of(file)) + added);
         added.append(reinterpret_cast<const char*>(&sum), sizeof sum);
-        const bool done = append_to(file, added);
-        ::close(file);
-        require(done, folder_.string(), "/model.so cannot be written: is the disk full?");
-        return open_own(cache_.made_in_folder_, made(), O_RDONLY);
+        write_file(folder_ / "model.so", added, std::ios::app);
+        return file;
     }
     /// Gives `model.so` the mode of a file for this user alone, in a folder that nobody else can look into.
     void make_private() const { ::fchmodat(cache_.made_in_folder_, made().c_str(), 0600, 0); }
@@ -323,8 +301,8 @@ private:
 bool compiled_cache::find(const std::string& key, std::string_view made_from, const loader& load) const {
     const std::string name = key + ".so";
     const auto find_in = [&](int folder) {
-        open_file file(folder < 0 ? -1 : open_own(folder, name, O_RDONLY));
-        if (file.get() < 0 || !is_whole(contents_of(file.get()), made_from)) return false;
+        open_file file(folder < 0 ? -1 : open_own(folder, name));
+        if (file.get() < 0 || !is_whole(read_file(path_of(file.get())), made_from)) return false;
         ::utimensat(folder, name.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);  // the time of its last use, for `shrink`
         if (!is_loaded(file.get(), load)) return false;
         file.release();
@@ -361,7 +339,7 @@ bool compiled_cache::obtain(std::string_view made_from, const maker& make, const
 }
 
 std::string compiled_cache::find_file(const std::string& name) const {
-    const int file = folder_ < 0 ? -1 : open_own(folder_, name, O_RDONLY);
+    const int file = folder_ < 0 ? -1 : open_own(folder_, name);
     if (file < 0) return "";
     ::close(file);
     ::utimensat(folder_, name.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);
@@ -377,26 +355,17 @@ std::string compiled_cache::make_file(const std::string& name, const maker& make
         work.make_private();
         return work.keep(name) ? find_file(name) : "";
     } catch (const std::system_error&) {
-        return "";
+    } catch (const error&) {  // another time, then
     }
+    return "";
 }
 
 bool compiled_cache::knows(const std::string& source) const {
-    const int file = open_own(folder_, text_hash(source) + ".hpp", O_RDONLY);
-    if (file < 0) return false;
-    const bool same = contents_of(file) == source;
-    ::close(file);
-    return same;
+    const open_file file(open_own(folder_, text_hash(source) + ".hpp"));
+    return file.get() >= 0 && read_file(path_of(file.get())) == source;
 }
-void compiled_cache::remember(const std::string& source) const {
-    if (made_in_folder_ != folder_ || knows(source)) return;
-    const std::string name = text_hash(source) + ".hpp", made = message(name, ".part-", ::getpid());
-    ::unlinkat(folder_, made.c_str(), 0);
-    const int file = ::openat(folder_, made.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    if (file < 0) return;  // and asked for again
-    const bool done = append_to(file, source);
-    ::close(file);
-    if (!done || ::renameat(folder_, made.c_str(), folder_, name.c_str()) < 0) ::unlinkat(folder_, made.c_str(), 0);
+void compiled_cache::remember(const std::string& source) {
+    make_file(text_hash(source) + ".hpp", [&](const fs::path& folder) { write_file(folder / "model.so", source); });
 }
 
 void compiled_cache::shrink(const std::string& keep) const {
@@ -449,8 +418,8 @@ std::string text_hash(std::string_view text) {
     return digits;
 }
 
-void write_file(const fs::path& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
+void write_file(const fs::path& path, const std::string& text, std::ios::openmode mode) {
+    std::ofstream file(path, std::ios::binary | mode);
     file << text;
     file.close();
     require(file.good(), path.string(), " cannot be written: is the disk full?");

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <ios>
 #include <string>
 #include <string_view>
 
@@ -52,7 +53,7 @@ public:
     /// Whether this user has compiled a source before, of any compiler and version.
     bool knows(const std::string& source) const;
     /// From now on it is known.
-    void remember(const std::string& source) const;
+    void remember(const std::string& source);
 
     /// Removes all compiled models and prepared headers of the user's folder; returns how many models.
     int clear() const;
@@ -76,8 +77,8 @@ private:
 /// FNV-1a of a text, as 16 hexadecimal digits.
 std::string text_hash(std::string_view text);
 
-/// Writes a file. Throws `error` if that fails.
-void write_file(const std::filesystem::path& path, const std::string& text);
+/// Writes a file, or with `std::ios::app` what is behind its text. Throws `error` if that fails.
+void write_file(const std::filesystem::path& path, const std::string& text, std::ios::openmode mode = std::ios::trunc);
 /// The text of a file; empty if it cannot be read.
 std::string read_file(const std::filesystem::path& path);
 

@@ -1,9 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws diagrams of a study over one or two of its parameters: what `myriad plot` runs.
-
-Usage: plot.py RESULTS PNG [--variable=NAME] [--over=AXIS[,AXIS]] [--at=AXIS=VALUE]... [--value=WHICH]
-               [--reader=PROGRAM]
+"""Draws diagrams of a study over one or two of its parameters.
 
 RESULTS is the folder of a study, or a netCDF file. Over one axis, every value is a dot: all phases, and all places of
 axes that --at does not fix. Over two, colours show one value for each place, of several the one that --value says.
@@ -226,21 +223,31 @@ def import_elsewhere():
 
 
 def main():
-    """Reads the arguments; exit status 2 if something is missing or wrong."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results")
-    parser.add_argument("picture")
-    parser.add_argument("--variable")
-    parser.add_argument("--over")
-    parser.add_argument("--at", action="append", default=[])
-    parser.add_argument("--reader", default="myriad", help="the program that reads folders")
-    parser.add_argument("--value", choices=REDUCTIONS, default="last")
+    """Reads the arguments of `myriad plot`; exit status 2 if something is missing or wrong."""
+    parser = argparse.ArgumentParser("myriad plot", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", nargs="+", help="folders of results, or netCDF files", metavar="RESULTS")
+    parser.add_argument("--output", help="the picture (default: RESULTS.png)", metavar="PNG")
+    parser.add_argument("--variable", help="what to show (default: the first one)", metavar="NAME")
+    parser.add_argument("--over", help="one axis, or two with a comma (default: the longest ones)", metavar="AXES")
+    parser.add_argument("--at", action="append", default=[], metavar="AXIS=VALUE",
+                        help="for another axis the value nearest to this; may be repeated")
+    parser.add_argument("--value", choices=REDUCTIONS, default="last",
+                        help="over two axes, of several phases or starts: one of them, or how many values there are")
+    parser.add_argument("--reader", default="myriad", help=argparse.SUPPRESS)  # the program that reads folders
     asked = parser.parse_args()
     refused = ()
     try:
+        if asked.output and len(asked.results) > 1:
+            raise figures.PlotError("--output names one picture, and several results are given")
         plots, numpy, refused = import_elsewhere()
-        data = (Folder if os.path.isdir(asked.results) else File)(numpy, asked.results, asked.reader)
-        figures.save(draw(plots, numpy, data, asked), asked.picture, dpi=200)
+        for path in asked.results:
+            path = path.rstrip("/") or "/"
+            is_folder = os.path.isdir(path)  # whose name may have dots
+            picture = asked.output or (path if is_folder else os.path.splitext(path)[0]) + ".png"
+            data = (Folder if is_folder else File)(numpy, path, asked.reader)
+            figures.save(draw(plots, numpy, data, asked), picture, dpi=200)
+            print(f"picture: {picture}")
     except (figures.PlotError, refused) as error:
         print(error, file=sys.stderr)
         sys.exit(2)
