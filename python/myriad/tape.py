@@ -128,7 +128,7 @@ def library(model, components, method):
         raise _refuse("it has tangents" if hasattr(model, "vectors") else "it is written in C++")
     if method not in methods:
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
-    if model.reductions:
+    if model.summaries:
         raise _refuse("it has extrema or integrals over a phase")
     for kind, count in (("states", len(components.states)), ("parameters", len(components.parameters)),
                         ("accessories", len(components.accessories)),

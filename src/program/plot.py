@@ -22,7 +22,7 @@ if sys.flags.no_user_site:
 
 import figure as figures  # noqa: E402  pylint: disable=wrong-import-position
 
-REDUCTIONS = ("last", "minimum", "maximum", "mean", "distinct")
+VALUES = ("last", "minimum", "maximum", "mean", "distinct")
 
 
 class Folder:
@@ -152,7 +152,7 @@ def distinct(numpy, row):
     return 1 + int(numpy.count_nonzero(numpy.diff(row) > 1e-3 * max(1e-300, float(numpy.abs(row).max()))))
 
 
-def reduce_rows(numpy, rows, which):
+def value_of_rows(numpy, rows, which):
     """One number for each row; phases that an instance did not reach are NaN."""
     if rows.shape[-1] == 1:
         return rows[..., 0]
@@ -197,7 +197,7 @@ def draw(plots, numpy, data, asked):
         return plots.bifurcation(sides[0], rows.astype(float), xlabel=labels[0], ylabel=label).figure
     if rows.shape[-1] > 1 and names is None:
         label = f"{asked.value} of {label}"
-    reduced = reduce_rows(numpy, rows, asked.value if names is None else "last")
+    reduced = value_of_rows(numpy, rows, asked.value if names is None else "last")
     return plots.parameter_map(*sides, reduced, names=names, xlabel=labels[0], ylabel=labels[1], zlabel=label).figure
 
 
@@ -232,7 +232,7 @@ def main():
     parser.add_argument("--over", help="one axis, or two with a comma (default: the longest ones)", metavar="AXES")
     parser.add_argument("--at", action="append", default=[], metavar="AXIS=VALUE",
                         help="for another axis the value nearest to this; may be repeated")
-    parser.add_argument("--value", choices=REDUCTIONS, default="last",
+    parser.add_argument("--value", choices=VALUES, default="last",
                         help="over two axes, of several phases or starts: one of them, or how many values there are")
     parser.add_argument("--reader", default="myriad", help=argparse.SUPPRESS)  # the program that reads folders
     asked = parser.parse_args()
