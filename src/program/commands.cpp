@@ -278,7 +278,7 @@ int run_study(const run_request& asked, study_file& file, const std::string& tex
     if (header) compile_model(wanted, *header, asked.permission(), asked.quiet);
     const program_model& model = find_model(wanted);
     any_study study(find_method(model, wanted).make());
-    file.describe(study, model, devices_of(asked.devices));
+    file.set_up(study, model, devices_of(asked.devices));
     if (header) study.note("source of the model", header->digest());
     studies::store_options options = file.store_options();
     if (asked.checksums) options.check = studies::resume_check::checksums;

@@ -178,7 +178,7 @@ void study_file::read_store() {
     from.finish();
 }
 
-void study_file::describe(any_study& study, const program_model& model, const std::vector<device>& instead) {
+void study_file::set_up(any_study& study, const program_model& model, const std::vector<device>& instead) {
     names_ = &model.names;
     read_axes(study);
     read_values(study);
