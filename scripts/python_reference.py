@@ -22,17 +22,17 @@ PACKAGE = "python/myriad"
 # The pages, and the modules whose names they have. A public name of another module is an error.
 PAGES = {
     "python_solve": ("Python: solve and runs", "What a call takes and returns.",
-                     ["solve", "options", "run", "grid", "axes", "device", "errors", "methods"]),
+                     ["solve", "options", "run", "statuses", "grid", "axes", "device", "errors", "methods"]),
     "python_model": ("Python: models", "Equations, events and hooks, and the symbols and functions in them.",
                      ["model", "symbols", "expression", "interpolate", "table", "tangents", "cpp_model"]),
     "python_study": ("Python: studies", "Studies, reductions, and results on disk.",
                      ["study", "study_result", "reduce"]),
     "python_tools": ("Python: pictures and the cache", "`myriad.plots`, `run.plot`, and `myriad.cache`.",
-                     ["plots", "cache"]),
+                     ["plots", "run_plots", "cache"]),
 }
 # Classes that public functions return, whose members users call though they do not make them.
 RETURNED = {"run": ["Report"], "grid": ["Sweep"], "axes": ["Axis"], "table": ["Table"], "reduce": ["Reduction"],
-            "tangents": ["WithTangents"], "plots": ["Plots"], "device": ["DeviceArray", "DeviceResults"],
+            "tangents": ["WithTangents"], "run_plots": ["Plots"], "device": ["DeviceArray", "DeviceResults"],
             "expression": ["Expression", "Condition"]}
 
 

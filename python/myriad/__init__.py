@@ -15,8 +15,9 @@ from .methods import controls as controls, methods as methods
 from .model import *  # noqa: F403
 from .options import (EventChoice as EventChoice, Options as Options, RecordChoice as RecordChoice,
                       SampleChoice as SampleChoice)
-from .run import Interrupted as Interrupted, Run as Run, status_names as status_names
+from .run import Interrupted as Interrupted, Run as Run
 from .solve import solve as solve
+from .statuses import status_names as status_names
 from .study import Study as Study, study as study
 from .study_result import Damage as Damage, StudyResult as StudyResult, open_study as open_study, verify as verify
 from .symbols import *  # noqa: F403
@@ -32,6 +33,15 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]
+
+
+_renamed = {"logspace": "geomspace", "random_uniform": "uniform", "random_normal": "normal"}
+
+
+def __getattr__(name):
+    if name in _renamed:
+        raise AttributeError(f"myriad.{name} is myriad.{_renamed[name]}, NumPy's name")
+    raise AttributeError(f"module 'myriad' has no attribute '{name}'")
 
 
 def __dir__():

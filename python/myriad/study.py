@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from . import _core, nvrtc
-from .axes import Axis, Random
+from .axes import Axis, Random, drawn
 from .components import Components, name_of, unknown
 from .core_options import finish_options, make_options, options_of, takes_options
 from .errors import Error, note_in_python, with_event_names
@@ -161,6 +161,7 @@ class Study:
                 if name in ("t_begin", "t_end") and name not in components.place:
                     raise Error(f"'{name}' is given in the sweep and in time=: give None there")
                 raise Error(f"'{name}' is given in the sweep and in start=: give it once")
+            value = drawn(value)
             if not isinstance(value, Axis):
                 value = numbers(value, name)
             (constants.__setitem__(key, value) if value.ndim == 0 else together.append((key, value)))
@@ -478,8 +479,8 @@ def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     What `generate=` of the model sets is given neither in the sweep nor in start.
 
     sweep     as in `solve`: `myriad.grid(...)` for all combinations of its axes, or a dict whose arrays go together.
-              Besides arrays and numbers, values are `myriad.linspace(a, b, n)`, `myriad.logspace(a, b, n)`, of which
-              none is stored, and `myriad.random_uniform(a, b)`, `myriad.random_normal(mean, deviation)`, which draw a
+              Besides arrays and numbers, values are `myriad.linspace(a, b, n)`, `myriad.geomspace(a, b, n)`, of which
+              none is stored, and `myriad.uniform(a, b)`, `myriad.normal(mean, deviation)`, which draw a
               value for each instance. States and `myriad.t_begin`, `myriad.t_end` may have axes too
     start     initial values, as in `solve`
     time      begin and end; None for one that is in the sweep
