@@ -108,20 +108,17 @@ build() {
             cmake --build --preset "$preset" --parallel "$jobs" "${targets[@]}" -- -k 0 || built=no
 }
 
-# The programs that test both backends in one program without a GPU, and with --all every file that nvcc compiles;
-# without it only the tests whose features no others have, and some examples (tests/cuda/budgets.cu has the benchmarks'
-# kernels, and scripts/case_studies.sh builds the case studies).
+# The programs that test both backends in one program without a GPU, and with --all every kernel, for GPUs alone; without
+# it only the kernels of tests whose features no others have, and of some examples (tests/cuda/budgets.cu has the
+# benchmarks' kernels, and scripts/case_studies.sh builds the case studies).
 build_kernels() {
-    local kernels
+    local chosen=(--files '^(tests|examples/(duffing|hooks|own_method|quickstart))/' --except build/cuda/single_lanes.txt)
+    if [[ $every_kernel == yes ]]; then chosen=(); fi
     quietly build/cuda/configure.log \
-        cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return
-    mapfile -t kernels < <(ninja -C build/cuda -t targets all | sed -n 's/: CUDA_COMPILER__.*//p' |
-        if [[ $every_kernel == yes ]]; then cat; else
-            grep -E '^(tests|examples/(duffing|hooks|own_method|quickstart))/' | grep -vFf build/cuda/single_lanes.txt
-        fi)
-    ((${#kernels[@]})) || return
-    quietly build/cuda/build.log cmake --build --preset cuda --parallel "$jobs" \
-        --target "${kernels[@]}" solver_test duffing -- -k 0
+        cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF &&
+        quietly build/cuda/build.log \
+            cmake --build --preset cuda --parallel "$jobs" --target solver_test duffing -- -k 0 &&
+        quietly build/cuda/kernels.log tests/cuda/compile_kernels.py build/cuda --jobs "$jobs" "${chosen[@]}"
 }
 
 # The files that took longest to compile, as a budget to keep an eye on.
