@@ -25,8 +25,8 @@ Steps that run without options: what shows that a build is right.
 With --full also these. Steps run in the order ci, programs, python, and then as they stand here.
   programs  in the build of ci: examples, benchmarks, validation, projects outside that use the library, every public
             header by itself, compile times
-  docs      the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx cannot
-            be installed)
+  docs      the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx
+            cannot be installed)
   cuda      the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
             both backends runs without a GPU (skipped without nvcc)
   strict    all models in packs, for AVX2: events, output and reductions; scalar lanes and packs agree bit for bit
@@ -108,11 +108,12 @@ build() {
             cmake --build --preset "$preset" --parallel "$jobs" "${targets[@]}" -- -k 0 || built=no
 }
 
-# The programs that test both backends in one program without a GPU, and with --all every kernel, for GPUs alone; without
-# it only the kernels of tests whose features no others have, and of some examples (tests/cuda/budgets.cu has the
-# benchmarks' kernels, and scripts/case_studies.sh builds the case studies).
+# The programs that test both backends in one program without a GPU, and with --all every kernel, for GPUs alone;
+# without it only the kernels of tests whose features no others have, and of some examples (tests/cuda/budgets.cu has
+# the benchmarks' kernels, and scripts/case_studies.sh builds the case studies).
 build_kernels() {
-    local chosen=(--files '^(tests|examples/(duffing|hooks|own_method|quickstart))/' --except build/cuda/single_lanes.txt)
+    local chosen=(--except build/cuda/single_lanes.txt --files
+        '^(tests|examples/(duffing|hooks|own_method|quickstart))/')
     if [[ $every_kernel == yes ]]; then chosen=(); fi
     quietly build/cuda/configure.log \
         cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF &&
@@ -133,6 +134,7 @@ slowest_files() {
 # Registers, stack and spills of every kernel that the tests compile.
 kernel_table() {
     local log=build/cuda/Testing/Temporary/LastTest.log
+    [[ -r $log ]] || return 0
     sed -nE 's/^(.*): ([0-9]+) registers, stack ([0-9]+), spill ([0-9]+).*/\2 \3 \4 \1/p' "$log" |
         sed -E 's/myriad:://g; s/, \(shared_placement\)1>$/>/' | sort -u -k4 |
         awk 'BEGIN { print "   registers stack spill kernel" }

@@ -4,9 +4,9 @@
 
     compile_kernels.py BUILD [--files REGEX] [--except FILE] [--jobs N]
 
-The build's own commands without the host's part, which takes three quarters of the time and which programs that are linked
-show. REGEX is searched for in the paths of the objects, below BUILD; a line of FILE is a part of the path of one that is
-left out. Exit status: 0, 1 some do not compile, 2 there is nothing to compile.
+The build's own commands without the host's part, which takes three quarters of the time, and which programs that are
+linked show. REGEX is searched for in the paths of the objects, below BUILD; a line of FILE is a part of the path of one
+that is left out. Exit status: 0, 1 some do not compile, 2 there is nothing to compile.
 """
 import argparse
 import concurrent.futures
