@@ -42,11 +42,11 @@ template <class R>
 void device_solver_of<R>::start() {
     if (instances_ != nullptr) return;
     instances_ = make_(std::min(plan_.content.instances(), most_looked_at));
-    how_ = rules_of_instances();
+    how_ = describe();
 }
 
 template <class R>
-std::shared_ptr<const cuda::generation> device_solver_of<R>::rules_of_instances() {
+std::shared_ptr<const cuda::generation> device_solver_of<R>::describe() {
     using enum component_kind;
     using valid = cuda::generated_component::valid;
     const axes& all = plan_.asked.axes;

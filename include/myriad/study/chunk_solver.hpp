@@ -154,7 +154,7 @@ public:
 
 private:
     void start();
-    std::shared_ptr<const cuda::generation> rules_of_instances();
+    std::shared_ptr<const cuda::generation> describe();
     cuda::device_values values_of(const quantity& what) const;
 
     const study_plan& plan_;

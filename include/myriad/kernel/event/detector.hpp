@@ -79,7 +79,7 @@ struct event_detector {
         masks crossed = seen.crossed.in(follow);
         // A function whose event was just located, maybe past zero, changes its side after the event's action.
         if constexpr (!is_pack<S>) crossed = crossed & ~events.which;
-        if (is_pack<S> || MYRIAD_UNLIKELY(crossed.any_of())) {
+        if (is_pack<S> || MYRIAD_UNLIKELY(any(crossed.any_of()))) {
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) crossed.set(j, crossed[j] & (seen.g1[j] != S(R(0))));  // zero is on either side
         }

@@ -72,10 +72,8 @@ struct event_locator {
         step.slope = get_lanes<R>(ends.slope_start, i);
         if constexpr (!is_pack<S>) {
             step.g1 = ends.g;
-            const plain_nearness<Model, R> near{sides.args};
-            const flags crossed = seen.crossed & sides.asked();
-            if (!crossed.several() && is_plain(i, step, near))
-                return look_plainly(i, step, ends, crossed, near, events);
+            flags crossed = seen.crossed & sides.asked();
+            if (is_plain(i, step, crossed)) return look_plainly(i, step, ends, crossed, events);
         } else {
             // Not the pack's values, which may round differently from those they are compared with.
             step.g1 = detail::evaluate_events<Model>(step.t1, step.y1, p);
@@ -100,32 +98,51 @@ struct event_locator {
     }
 
 private:
-    /// Whether what happens in a trial can be told without the rounding errors of the event functions, as these are
-    /// smaller than tolerances that were given: every function has a side and is beyond its tolerance, or at the event
-    /// that is located. One that has not left its surface since its event must be on the side that it was heading for.
-    MYRIAD_FUNCTION bool is_plain(int i, const ends_of_step& step, const plain_nearness<Model, R>& near) const {
+    /// The part of a step, in fractions of it, that contains the crossings.
+    struct step_part {
+        R low = R(0), high = R(1);
+        bool scanned = false;  // found by a look at points inside the step, and the slope at its end is known
+    };
+
+    /// Whether a trial does what nearly all do that are looked at: one function, of those in `crossed`, has crossed, or
+    /// the step ends close to its event. That can be told without the rounding errors of the event functions if these
+    /// are smaller than tolerances that were given: every function has a side and is beyond its tolerance, or at the
+    /// event. One that has not left its surface since its event must be on the side that it was heading for.
+    MYRIAD_FUNCTION bool is_plain(int i, const ends_of_step& step, flags& crossed) const {
         const auto& own = sides.memory_of(i);
         bool plain = sides.args.sub_samples <= 1 && !(own.open | own.on_jump).any_of();
+        bool arrives = false, others = false;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const R tolerance = near.band(j), g = abs(step.g1[j]);
+            const R tolerance = sides.args.event[j].tolerance, g = abs(step.g1[j]);
             const bool left = sides.e.left.get(j, i), stays = (step.g1[j] > R(0)) == sides.e.above.get(j, i);
-            const bool arrives =
-                own.locating && own.redo.target == j && left && g <= R(arrival_part) * own.redo.tolerance[j];
-            plain = plain && tolerance > R(0) && ((g > tolerance && (left || stays)) || arrives);
+            const bool is_target = own.redo.target == j;
+            const bool here = own.locating && is_target && left && g <= R(arrival_part) * own.redo.tolerance[j];
+            plain = plain && tolerance > R(0) && (here || (g > tolerance && (left || stays)));
+            arrives = arrives || here;
+            others = others || !left || (!is_target && own.redo.crossed[j]);
+            if (here) crossed.set(j, false);
         }
-        return plain;
+        return plain && (crossed.any_of() ? !crossed.several() : arrives && !others);
     }
-    /// Looks at a trial for which `is_plain` holds, and in which one function has crossed at most.
+    /// Looks at a trial for which `is_plain` holds.
     MYRIAD_FUNCTION trial_outcome look_plainly(int i, ends_of_step& step, const trial_ends<Model, S>& ends,
-                                               flags crossed, const plain_nearness<Model, R>& near, fired& events) {
-        reals side;
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            side[j] = sides.e.above.get(j, i) ? R(1) : R(-1);
-            if (!(abs(step.g1[j]) > near.past(j))) crossed.set(j, false);
+                                               const flags& crossed, fired& events) {
+        auto& own = sides.memory_of(i);
+        if (crossed.any_of()) {
+            reals side;
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) side[j] = sides.e.above.get(j, i) ? R(1) : R(-1);
+            step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
+            know_end_slope(i, step, ends);
+            begin_or_shorten(i, step, side, crossed, step_part{}, plain_nearness<Model, R>{sides.args}, events);
+            return trial_outcome::is_redone;
         }
-        return decide(i, step, ends, side, crossed, step_part{}, near, events);
+        own.at_jump.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) events.put(j, i, own.redo.target == j, step.g1[j]);
+        end_location(i);
+        return trial_outcome::stands_before_sides;
     }
     /// Looks at any trial, with the rounding errors of the event functions.
     MYRIAD_FUNCTION trial_outcome look_carefully(int i, ends_of_step& step, const trial_ends<Model, S>& ends,
@@ -156,30 +173,15 @@ private:
             part.scanned = true;
             crossed = scan(i, step, side, part);
         }
-        return decide(i, step, ends, side, crossed, part, near, events);
-    }
-
-    /// The part of a step, in fractions of it, that contains the crossings.
-    struct step_part {
-        R low = R(0), high = R(1);
-        bool scanned = false;  // found by a look at points inside the step, and the slope at its end is known
-    };
-
-    /// Decides what happens to a trial, at the end of which the functions in `crossed` are beyond a crossing.
-    template <class Nearness>
-    MYRIAD_FUNCTION trial_outcome decide(int i, ends_of_step& step, const trial_ends<Model, S>& ends, const reals& side,
-                                         const flags& crossed, const step_part& part, const Nearness& near,
-                                         fired& events) {
-        const bool locating = sides.memory_of(i).locating;
-        const bool is_last = get_lane(sides.s.final_step, i) && ends_near_root(step, near);
+        const bool locating = own.locating;
+        const bool is_last = get_lane(sides.s.final_step, i) && ends_near_root(i, step);
         arrival reached{};
         if (locating) {
-            reached = arrival_of(i, step, side, near);
+            reached = arrival_of(i, step, side);
             // At a root in the other direction, to which a long step has come, the event's is anywhere beyond.
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j)
-                if (part.scanned && sides.memory_of(i).redo.target == j && !sides.is_asked(j, side[j]))
-                    reached.gap = infinity_of<R>;
+                if (part.scanned && own.redo.target == j && !sides.is_asked(j, side[j])) reached.gap = infinity_of<R>;
         }
         if (!part.scanned && (crossed.any_of() || (locating ? !reached.is_plain() : is_last)))
             know_end_slope(i, step, ends);
@@ -189,32 +191,23 @@ private:
             return trial_outcome::is_redone;
         }
         if (locating) {
-            if (Nearness::is_plain && reached.is_plain()) {
-                auto& own = sides.memory_of(i);
-                own.at_jump.clear();
-                MYRIAD_UNROLL
-                for (int j = 0; j < m; ++j) events.put(j, i, own.redo.target == j, step.g1[j]);
-                end_location(i);
-                return trial_outcome::stands_before_sides;
-            }
-            if (arrive(i, step, side, reached, near, events) == trial_outcome::is_redone)
-                return trial_outcome::is_redone;
+            if (arrive(i, step, side, reached, events) == trial_outcome::is_redone) return trial_outcome::is_redone;
         } else if (is_last) {
             know_start(i, step, side);
-            end_on_root(i, step, side, near, events);
+            end_on_root(i, step, side, events);
         }
-        sides.follow(i, step, side, near);
+        sides.follow(i, step, side);
         sides.note(i);
         return trial_outcome::stands;
     }
 
     /// Whether an event may happen at the end of the domain.
-    template <class Nearness>
-    MYRIAD_FUNCTION bool ends_near_root(const ends_of_step& step, const Nearness& near) const {
+    MYRIAD_FUNCTION bool ends_near_root(int i, const ends_of_step& step) const {
+        const auto& near = sides.memory_of(i).near;
         bool any_near = false;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool given = Nearness::is_plain || sides.args.event[j].tolerance > R(0);
+            const bool given = sides.args.event[j].tolerance > R(0);
             const R close = given ? near.band(j) : max(near.band(j), R(last_part) * abs(step.g[j] - step.g1[j]));
             any_near = any_near || abs(step.g1[j]) <= close;
         }
@@ -335,9 +328,9 @@ private:
         /// Only the event itself happens here.
         MYRIAD_FUNCTION bool is_plain() const { return is_close() && !others && all_left; }
     };
-    template <class Nearness>
-    MYRIAD_FUNCTION arrival arrival_of(int i, const ends_of_step& step, const reals& side, const Nearness& near) const {
+    MYRIAD_FUNCTION arrival arrival_of(int i, const ends_of_step& step, const reals& side) const {
         const auto& redo = sides.memory_of(i).redo;
+        const auto& near = sides.memory_of(i).near;
         arrival reached{R(0), R(0), R(0), false, true};
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
@@ -354,12 +347,12 @@ private:
     }
 
     /// Handles a redone step that ended before its crossing: close to it its events fire; else it is lengthened.
-    template <class Nearness>
     MYRIAD_FUNCTION trial_outcome arrive(int i, const ends_of_step& step, const reals& side, const arrival& reached,
-                                         const Nearness& near, fired& events) {
+                                         fired& events) {
         auto& e = sides.e;
         auto& own = sides.memory_of(i);
         auto& redo = own.redo;
+        const auto& near = own.near;
         const bool narrow = redo.is_between(step.h);
         reals slope = step.g1, middle = step.g1;
         if (!reached.is_plain()) {
@@ -403,9 +396,7 @@ private:
     /// by rounding alone, judged by both its slope and the last step. A function that settles at zero, or is still
     /// falling towards it, gets there later or never; one that is about to turn back, as at a double root, does not
     /// cross it.
-    template <class Nearness>
-    MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const reals& side, const Nearness& near,
-                                     fired& events) {
+    MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const reals& side, fired& events) {
         auto& own = sides.memory_of(i);
         const reals slope = step.slopes1();
         const R rounding = end_rounding(i, step);
@@ -418,7 +409,7 @@ private:
             const bool close = abs(g) <= sides.end_tolerance(j);
             // The discriminant of the parabola through the last step's start, with the slope at its end.
             const R bend = (last_speed - speed) / abs(step.h);
-            const bool turns = speed * speed <= R(8) * bend * (abs(g) + near.rounding(j));
+            const bool turns = speed * speed <= R(8) * bend * (abs(g) + own.near.rounding(j));
             events.put(j, i, sides.is_asked(j, side[j]) && close && speed > R(0) && at_zero && !turns, step.g1[j]);
         }
     }

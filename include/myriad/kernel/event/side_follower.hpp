@@ -194,8 +194,7 @@ struct side_follower {
 
     /// Updates the sides at the end of an accepted trial that was looked at closely; `side` holds those before it. A
     /// function within its `band` has not left the surface.
-    template <class Nearness>
-    MYRIAD_FUNCTION void follow(int i, const step_ends<Model, R>& step, const reals& side, const Nearness& near) {
+    MYRIAD_FUNCTION void follow(int i, const step_ends<Model, R>& step, const reals& side) {
         const bool timeless = is_timeless(i, step.h);
         auto& own = memory_of(i);
         MYRIAD_UNROLL
@@ -203,8 +202,8 @@ struct side_follower {
             if (is_at_jump(j, i, step.h)) continue;  // after the trial it is still at the jump where it fired
             own.on_jump.set(j, false);
             own.fresh.set(j, false);
-            put_side(j, i, abs(step.g1[j]) > near.past(j) ? sign_of(step.g1[j]) : side[j]);
-            e.left.set(j, i, e.left.get(j, i) || (abs(step.g1[j]) > near.band(j) && !timeless));
+            put_side(j, i, abs(step.g1[j]) > own.near.past(j) ? sign_of(step.g1[j]) : side[j]);
+            e.left.set(j, i, e.left.get(j, i) || (abs(step.g1[j]) > own.near.band(j) && !timeless));
         }
     }
 
@@ -212,7 +211,11 @@ private:
     /// The same if a function may be on its surface or at a jump.
     MYRIAD_FUNCTION void keep_carefully(int i, const reals& g) const {
         const auto& own = memory_of(i);
-        const reals rounding = roundings_if_needed(i, g, flags::all_in(true));
+        flags in_question;
+        in_question.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) in_question.set(j, !is_fresh(j, i));
+        const reals rounding = roundings_if_needed(i, g, in_question);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const R side = side_of(j, i);
@@ -355,10 +358,16 @@ private:
     /// The same if a function may be on its surface, at a jump, or undefined.
     MYRIAD_FUNCTION void begin_carefully(int i, const reals& g) {
         auto& own = memory_of(i);
-        const reals rounding = roundings_if_needed(i, g, flags::all_in(true));
         bool undefined = false;
-        flags at_jump;
+        flags at_jump, in_question;
         at_jump.clear();
+        in_question.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool fired_there = kept_event(kept_at(j, i)).kind() == kept_side::fired;
+            in_question.set(j, !(fired_there && args.event[j].tolerance > R(0)));
+        }
+        const reals rounding = roundings_if_needed(i, g, in_question);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const kept_event kept(kept_at(j, i));
