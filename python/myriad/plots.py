@@ -16,6 +16,8 @@ from .errors import Error
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+# What is returned is any to type checkers: matplotlib says of axes that their figure may be one which cannot be saved.
+
 # Okabe and Ito's colours, which the colour-blind can tell apart.
 _colours = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#000000")
 _many_points = 300_000  # from which on a picture shows their density
@@ -72,7 +74,7 @@ def _logarithmic(axis, set_scale):
 
 
 def bifurcation(x: Any, y: Any, *, xlabel: str | None = None, ylabel: str | None = None, axes: Axes | None = None,
-                **style: Any) -> Axes:
+                **style: Any) -> Any:
     """Points (x, y) of a bifurcation diagram: x has one value per instance, y a row of values, one for each phase.
     Further arguments are those of matplotlib's `plot`. Many points are drawn as their density."""
     xlabel, ylabel = _label(x, xlabel), _label(y, ylabel)
@@ -108,7 +110,7 @@ def bifurcation(x: Any, y: Any, *, xlabel: str | None = None, ylabel: str | None
 
 def parameter_map(x: Any, y: Any, z: Any, *, xlabel: str | None = None, ylabel: str | None = None,
                   zlabel: str | None = None, names: Sequence[str] | None = None, axes: Axes | None = None,
-                  **style: Any) -> Axes:
+                  **style: Any) -> Any:
     """A quantity z over two parameters in colour: z has shape (len(x), len(y)). NaN is left grey. With `names`, z has
     whole numbers that stand for these names. Further arguments are those of matplotlib's `pcolormesh`."""
     xlabel, ylabel, zlabel = _label(x, xlabel), _label(y, ylabel), _label(z, zlabel)
@@ -155,7 +157,7 @@ def _lines(x, y, labels, axes, style):
 
 
 def time_series(t: Any, y: Any, *, labels: Sequence[str] | None = None, ylabel: str | None = None,
-                axes: Axes | None = None, **style: Any) -> Axes:
+                axes: Axes | None = None, **style: Any) -> Any:
     """Each row of y over time: t has a row for each, or is the same for all."""
     ylabel = _label(y, ylabel)
     t, y = _numbers(t, "t", (1, 2)), _numbers(y, "y", (1, 2))
@@ -170,7 +172,7 @@ def time_series(t: Any, y: Any, *, labels: Sequence[str] | None = None, ylabel: 
 
 
 def phase_portrait(x: Any, y: Any, *, labels: Sequence[str] | None = None, xlabel: str | None = None,
-                   ylabel: str | None = None, points: bool = False, axes: Axes | None = None, **style: Any) -> Axes:
+                   ylabel: str | None = None, points: bool = False, axes: Axes | None = None, **style: Any) -> Any:
     """Each row of y over the same row of x, as a line, or with `points` as separate points (a Poincare section)."""
     xlabel, ylabel = _label(x, xlabel), _label(y, ylabel)
     x, y = _numbers(x, "x", (1, 2)), _numbers(y, "y", (1, 2))
@@ -185,7 +187,7 @@ def phase_portrait(x: Any, y: Any, *, labels: Sequence[str] | None = None, xlabe
     return axes
 
 
-def statuses(status: Any, names: Sequence[str], *, axes: Axes | None = None) -> Axes:
+def statuses(status: Any, names: Sequence[str], *, axes: Axes | None = None) -> Any:
     """How many instances ended in which way: `status` has numbers into `names`."""
     counts = np.bincount(_numbers(status, "status", (1,)), minlength=len(names))
     present = np.flatnonzero(counts)[::-1]

@@ -35,7 +35,7 @@ class Plots:
             raise Error(f"{name} has values of shape {values.shape}: this axis needs one number per instance")
         return values
 
-    def bifurcation(self, x: Component, y: Component, *, axes: Axes | None = None, **style: Any) -> Axes:
+    def bifurcation(self, x: Component, y: Component, *, axes: Axes | None = None, **style: Any) -> Any:
         """The recorded component y of every phase over the parameter x."""
         x, y = name_of(x), name_of(y)
         if y not in self._run.records:
@@ -43,7 +43,7 @@ class Plots:
         return plots.bifurcation(self._per_instance(x), self._run.records[y], xlabel=x, ylabel=y, axes=axes, **style)
 
     def map(self, x: Component, y: Component, z: Component, *, phase: int = -1, axes: Axes | None = None,
-            **style: Any) -> Axes:
+            **style: Any) -> Any:
         """The component z over two axes of a grid, x and y: its value at the end, or in one recorded phase; failed
         instances are left grey. z may be "status"."""
         run, (x, y, z) = self._run, map(name_of, (x, y, z))
@@ -74,7 +74,7 @@ class Plots:
                         for i in range(len(chosen))]
 
     def time_series(self, y: Component, *, instances: npt.ArrayLike | None = None, axes: Axes | None = None,
-                    **style: Any) -> Axes:
+                    **style: Any) -> Any:
         """The samples of a state over time, for the first five instances or those of the given numbers."""
         run, y = self._run, name_of(y)
         chosen, labels = self._instances(instances)
@@ -84,7 +84,7 @@ class Plots:
                                  **style)
 
     def phase_portrait(self, x: Component, y: Component, *, instances: npt.ArrayLike | None = None,
-                       axes: Axes | None = None, **style: Any) -> Axes:
+                       axes: Axes | None = None, **style: Any) -> Any:
         """The samples of one state over those of another; without samples the points recorded at the ends of phases.
         For the first five instances or those of the given numbers."""
         run, x, y = self._run, name_of(x), name_of(y)
@@ -96,7 +96,7 @@ class Plots:
         return plots.phase_portrait(kept[x][chosen], kept[y][chosen], labels=labels, xlabel=x, ylabel=y, points=points,
                                     axes=axes, **style)
 
-    def statuses(self, *, axes: Axes | None = None) -> Axes:
+    def statuses(self, *, axes: Axes | None = None) -> Any:
         """How many instances ended in which way."""
         return plots.statuses(self._run.status, status_names, axes=axes)
 
