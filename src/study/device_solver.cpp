@@ -63,11 +63,13 @@ void device_instances<R>::check(std::int64_t count) {
 template <class R>
 std::vector<std::string> device_instances<R>::notes(std::int64_t count) {
     const detail::default_arithmetic here;
-    use([&] { engine_->fetch_first(call_.arguments, count); });
-    few_.data().untouched = false;
     report_of<R> found;
-    if (options_.counting == counting::on)
-        host::set_work(found, host::work_count{}, host::counted_work(few_.data(), count));
+    if (model_.looks_at_results()) {
+        use([&] { engine_->fetch_first(call_.arguments, count); });
+        few_.data().untouched = false;
+        if (options_.counting == counting::on)
+            host::set_work(found, host::work_count{}, host::counted_work(few_.data(), count));
+    }
     model_.add_notes(found, few_.data(), options_, call_.arguments);
     return found.notes;
 }

@@ -69,14 +69,6 @@ std::unique_ptr<chunk_solver> solver_on_host(const study_plan& plan, const studi
 template <class R>
 std::unique_ptr<chunk_solver> solver_on_device(const study_plan& plan, const studied_model<R>& model,
                                                const device& where);
-extern template std::unique_ptr<chunk_solver> solver_on_host(const study_plan&, const studied_model<double>&,
-                                                             const device&);
-extern template std::unique_ptr<chunk_solver> solver_on_host(const study_plan&, const studied_model<float>&,
-                                                             const device&);
-extern template std::unique_ptr<chunk_solver> solver_on_device(const study_plan&, const studied_model<double>&,
-                                                               const device&);
-extern template std::unique_ptr<chunk_solver> solver_on_device(const study_plan&, const studied_model<float>&,
-                                                               const device&);
 
 /// Instances in the host's memory, and what is recorded of them.
 template <class R>

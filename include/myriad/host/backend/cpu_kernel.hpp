@@ -60,8 +60,6 @@ cpu_kernel<R> choose_cpu_kernel() {
 /// the model's functions.
 template <class R>
 run_statistics run_kernel(const cpu_kernel<R>& kernel, const any_arguments<R>& arguments, const run_options& options);
-extern template run_statistics run_kernel(const cpu_kernel<double>&, const any_arguments<double>&, const run_options&);
-extern template run_statistics run_kernel(const cpu_kernel<float>&, const any_arguments<float>&, const run_options&);
 
 }  // namespace host::inline MYRIAD_ABI
 

@@ -18,9 +18,4 @@ template <class R>
 void check_event_tolerances(const ensemble_data<R>& e, const options& o, std::int64_t count,
                             const single_instances<R>& of);
 
-extern template void check_event_tolerances(const ensemble_data<double>&, const options&, std::int64_t,
-                                            const single_instances<double>&);
-extern template void check_event_tolerances(const ensemble_data<float>&, const options&, std::int64_t,
-                                            const single_instances<float>&);
-
 }  // namespace myriad::host::inline MYRIAD_ABI

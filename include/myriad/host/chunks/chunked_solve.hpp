@@ -23,9 +23,5 @@ namespace myriad::host::inline MYRIAD_ABI {
 template <class R>
 void solve_in_chunks(const options& o, const engine_source<R>& source, const any_arguments<R>& arguments,
                      ensemble_data<R>& instances, data_check<R>& check, progress_relay& relay, report_of<R>& result);
-extern template void solve_in_chunks(const options&, const engine_source<double>&, const any_arguments<double>&,
-                                     ensemble_data<double>&, data_check<double>&, progress_relay&, report_of<double>&);
-extern template void solve_in_chunks(const options&, const engine_source<float>&, const any_arguments<float>&,
-                                     ensemble_data<float>&, data_check<float>&, progress_relay&, report_of<float>&);
 
 }  // namespace myriad::host::inline MYRIAD_ABI

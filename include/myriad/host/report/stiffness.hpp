@@ -26,13 +26,4 @@ stiffness find_stiffness(const ensemble_data<R>& e, const options& o, double lim
 template <class R>
 void note_stiffness(report_of<R>& r, const ensemble_data<R>& e, const options& o, const single_instances<R>& of);
 
-extern template stiffness find_stiffness(const ensemble_data<double>&, const options&, double,
-                                         const single_instances<double>&);
-extern template stiffness find_stiffness(const ensemble_data<float>&, const options&, double,
-                                         const single_instances<float>&);
-extern template void note_stiffness(report_of<double>&, const ensemble_data<double>&, const options&,
-                                    const single_instances<double>&);
-extern template void note_stiffness(report_of<float>&, const ensemble_data<float>&, const options&,
-                                    const single_instances<float>&);
-
 }  // namespace myriad::host::inline MYRIAD_ABI

@@ -17,8 +17,4 @@ namespace myriad::host::inline MYRIAD_ABI {
 template <class R>
 void note_exponents(report_of<R>& r, const ensemble_data<R>& e, const options& o, const call_facts& facts);
 
-extern template void note_exponents(report_of<double>&, const ensemble_data<double>&, const options&,
-                                    const call_facts&);
-extern template void note_exponents(report_of<float>&, const ensemble_data<float>&, const options&, const call_facts&);
-
 }  // namespace myriad::host::inline MYRIAD_ABI

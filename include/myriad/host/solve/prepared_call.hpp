@@ -60,10 +60,6 @@ private:
     component_array<R> own_times_;  // sample times of each instance
 };
 
-extern template void add_memory_of_call(memory_need&, const model_shape&, std::int64_t, const ensemble_data<double>*,
-                                        bool, const options&, const call_facts&);
-extern template void add_memory_of_call(memory_need&, const model_shape&, std::int64_t, const ensemble_data<float>*,
-                                        bool, const options&, const call_facts&);
 extern template class prepared_call<double>;
 extern template class prepared_call<float>;
 

@@ -58,6 +58,8 @@ struct called_model {
     /// Adds the notes of a call with these arguments, whose results are in the ensemble.
     void add_notes(report_of<R>& result, ensemble_data<R>& data, const options& o,
                    const argument_head<R>& arguments) const;
+    /// Whether notes look at what is in the ensemble.
+    bool looks_at_results() const { return functions.rhs != nullptr || facts.tangents.n_vectors > 0; }
     /// Has the model's `generate` set all instances. Throws `error` if it has none, and what it throws.
     void generate(ensemble_data<R>& data, std::uint64_t seed) const;
 };
