@@ -117,6 +117,7 @@ private:
             set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
         stepping_type{args, s}.load(i);
+        if constexpr (m > 0) sides.load(i);
         set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(args.first_index + index));
         s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases - args.first_phase;
     }
