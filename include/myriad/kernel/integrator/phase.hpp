@@ -6,8 +6,8 @@
 
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/side_follower.hpp"
-#include "myriad/kernel/output/reducer.hpp"
 #include "myriad/kernel/output/sampler.hpp"
+#include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -194,7 +194,7 @@ private:
         }
         const R t = get_lane(s.data.t, i);
         args.t[index] = t;
-        if constexpr (has_reductions<Model>) reducer<Model, Method, S>{s}.begin(i);
+        if constexpr (has_summaries<Model>) summariser<Model, Method, S>{s}.begin(i);
         steps.begin(i, t);
         if constexpr (m > 0) {
             if (phase == 0) sides.forget(i);

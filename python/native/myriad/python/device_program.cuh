@@ -8,9 +8,9 @@
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/methods.hpp"
 #include "myriad/model.hpp"
-#include "myriad/model/random.hpp"
-#include "myriad/model/tangent.hpp"
 #include "myriad/python/device_facts.hpp"
+#include "myriad/random.hpp"
+#include "myriad/tangent.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 

@@ -9,9 +9,9 @@
 #include "myriad/kernel/stepper/method_check.hpp"
 #include "myriad/methods.hpp"
 #include "myriad/model.hpp"
-#include "myriad/model/random.hpp"
-#include "myriad/model/tangent.hpp"
 #include "myriad/openmp/packs.hpp"
+#include "myriad/random.hpp"
+#include "myriad/tangent.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
