@@ -112,13 +112,18 @@ struct argument_head : instance_range, instance_arrays<array_pointer, R> {
 // The arrays behind the head, whose lengths depend on the model: type, name, and what they have one of. Wider types
 // come first, so that there is no padding between them. All that is known of them follows from this list. Bit j % 32 of
 // word j / 32 of `rising` and `falling` says whether crossings of event j fire.
-#define MYRIAD_ARGUMENT_ARRAYS(array)                                                                  \
-    array(R, relative_tolerance, n_state) array(R, absolute_tolerance, n_state)                        \
-        array(event_arguments<R>, event, n_event) array(std::uint32_t, rising, n_event / 32 + 1)       \
-            array(std::uint32_t, falling, n_event / 32 + 1) array(std::int16_t, state_column, n_state) \
-                array(std::int16_t, accessory_column, n_accessory)                                     \
-                    array(std::int16_t, integer_accessory_column, n_integer_accessory)                 \
-                        array(std::int16_t, sample_column, n_state)
+// clang-format off
+#define MYRIAD_ARGUMENT_ARRAYS(array)                                  \
+    array(R, relative_tolerance, n_state)                              \
+    array(R, absolute_tolerance, n_state)                              \
+    array(event_arguments<R>, event, n_event)                          \
+    array(std::uint32_t, rising, n_event / 32 + 1)                     \
+    array(std::uint32_t, falling, n_event / 32 + 1)                    \
+    array(std::int16_t, state_column, n_state)                         \
+    array(std::int16_t, accessory_column, n_accessory)                 \
+    array(std::int16_t, integer_accessory_column, n_integer_accessory) \
+    array(std::int16_t, sample_column, n_state)
+// clang-format on
 
 /// Where the arrays of a model with so many components are, in bytes from the first.
 template <class R>
