@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Times the Pleiades problem, seven stars in a plane (Hairer, Norsett, Wanner, Solving ODE I, II.10), for many masses of
-the first star. In a few instances two stars nearly collide, so that they need far more steps than the others: the call
-must end nevertheless, with the default `max_steps` and no other option, and in time where `time_limit` is given.
+"""Times the Pleiades problem, seven stars in a plane (Hairer, Norsett, Wanner, Solving ODE I, II.10), for many masses
+of the first star. In a few instances two stars nearly collide, so that they need far more steps than the others: the
+call must end nevertheless, with the default `max_steps` and no other option, and in time where `time_limit` is given.
 
 With --check exit status 1 if a call takes longer than it should on an H200."""
 

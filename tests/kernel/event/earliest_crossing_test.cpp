@@ -29,6 +29,12 @@ struct thrown {
 using flags = myriad::detail::mask_set<bool, thrown::n_event>;
 using values = myriad::vec<double, thrown::n_event>;
 
+/// Below which values have no sign, as the loop hands it over.
+struct floors {
+    values each;
+    double floor(int j) const { return each[j]; }
+};
+
 struct step : myriad::inputs<thrown, double>, myriad::detail::step_ends<thrown, double> {
     static constexpr double closest = 1e-9;
     values floor, tolerance;  // of all functions the same
@@ -47,7 +53,7 @@ struct step : myriad::inputs<thrown, double>, myriad::detail::step_ends<thrown, 
         flags crossed;
         crossed.clear();
         for (int j = 0; j < thrown::n_event; ++j) crossed.set(j, side[j] * g1[j] < 0);
-        return earliest_crossing(*this, side, crossed, floor, tolerance);
+        return earliest_crossing(*this, side, crossed, floors{floor}, tolerance);
     }
 };
 
