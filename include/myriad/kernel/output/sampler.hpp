@@ -62,14 +62,16 @@ struct sampler {
     }
 
     /// Stores the samples within the accepted trial steps, which end at t1, before they are committed. Where a step
-    /// ends at an event, a sample at the instant of it, up to the rounding of t, shows the state before the action.
+    /// ends at an event, a sample at the instant of it, as closely as its function's rounding errors let it be located,
+    /// shows the state before the action.
     MYRIAD_FUNCTION void save(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted,
                               const mask& at_event) {
         if (args.sample.stored == nullptr) return;
         if (args.sample.every > 0) {
             save_steps(trial, t1, accepted);
         } else {
-            const S rounding = time_rounding(t1), later = select(s.h < S(R(0)), t1 - rounding, t1 + rounding);
+            const S instant = S(R(16) * epsilon_of<R>) * abs(t1);
+            const S later = select(s.h < S(R(0)), t1 - instant, t1 + instant);
             save_times(trial, t1, select(at_event, later, t1), accepted);
         }
     }
