@@ -57,6 +57,7 @@ public:
         if (options_.counting == counting::on)
             host::set_work(found, host::work_count{}, host::counted_work(few_.data(), count));
         host::note_tolerances<Method>(found, options_);
+        host::note_matrix<Method>(found);
         host::note_stiffness<Method>(found, few_.all(), options_);
         host::note_exponents<Method>(found, few_.all(), options_);
         return found.notes;

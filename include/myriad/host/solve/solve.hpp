@@ -89,6 +89,7 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
     result.records = std::move(prepared.records());
     if (!left.note.empty()) result.notes.push_back(left.note);
     host::note_tolerances<Method>(result, options);
+    host::note_matrix<Method>(result);
     host::note_stiffness<Method>(result, instances, options);
     host::note_exponents<Method>(result, instances, options);
     return result;

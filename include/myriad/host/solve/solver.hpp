@@ -234,6 +234,7 @@ public:
         host::note_ended(report_, host::ensemble_access::data(instances_), count_);
         host::note_failures(report_, host::ensemble_access::data(instances_), options_, count_);
         host::note_tolerances<Method>(report_, options_);
+        host::note_matrix<Method>(report_);
         report_.device = where_.name();
         if (engine_) {
             report_.kernel = engine_->facts();

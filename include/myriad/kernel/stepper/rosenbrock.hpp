@@ -186,7 +186,7 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
     return factorise(lu);
 }
 
-/// The same for a matrix of the model's declared pattern.
+/// The same for a matrix whose pattern is known.
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
                                                   const inputs<Model, S>& p, sparse_lu_factors<Model, S>& lu) {
@@ -231,7 +231,7 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
     stage_factors<Model, S> lu;
     trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
     vec<S, n> slope_t;
-    if constexpr (!autonomous<Model>) slope_t = detail::time_derivative<Model>(t, y, p);
+    if constexpr (depends_on_time<Model>) slope_t = detail::time_derivative<Model>(t, y, p);
 
     vec<S, n> increment, slope = trial.k[0];
     // Writes the argument of stage `row`, or the new state, to trial.y.
@@ -260,7 +260,8 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
             S right = slope[c];
             if constexpr (i > 0)
                 right = fma(per_h, detail::sum_stages<Method, rosenbrock_row::coupling, i, i>(trial.u, c), right);
-            if constexpr (!autonomous<Model> && time_weight != R(0)) right = fma(h * S(time_weight), slope_t[c], right);
+            if constexpr (depends_on_time<Model> && time_weight != R(0))
+                right = fma(h * S(time_weight), slope_t[c], right);
             trial.u[stage][c] = right;
         });
         solve_factorised(lu, trial.u[stage]);

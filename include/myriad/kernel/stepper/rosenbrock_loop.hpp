@@ -72,7 +72,7 @@ MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& 
     stage_factors<Model, R> lu;
     trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
     vec<R, n> slope_t;
-    if constexpr (!autonomous<Model>) slope_t = detail::time_derivative<Model>(t, y, p);
+    if constexpr (depends_on_time<Model>) slope_t = detail::time_derivative<Model>(t, y, p);
 
     vec<R, n> slope = trial.k[0];
     MYRIAD_ROLLED
@@ -99,7 +99,7 @@ MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& 
         }
         loop::all([&](auto c) MYRIAD_LAMBDA {
             right[c] = right[c] + slope[c];
-            if constexpr (!autonomous<Model>)
+            if constexpr (depends_on_time<Model>)
                 right[c] = fma(h * rosenbrock_table_of<Method, R>.time_weight[i], slope_t[c], right[c]);
         });
         solve_factorised(lu, right);
