@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "myriad/host/checks/consistency.hpp"
 #include "myriad/host/checks/event_resolution.hpp"
 #include "myriad/host/checks/event_tolerances.hpp"
 #include "myriad/host/checks/input_check.hpp"
@@ -129,7 +130,10 @@ void check_uses(ensemble<Model, R>& instances, const options& o, std::int64_t co
     check_sample_times(data, o, count);
     check_event_tolerances(instances, o, count);
     // As the concept of Rosenbrock methods, whose header has kernels.
-    if constexpr (requires { Method::tableau().coupling; }) check_jacobian_pattern(instances, count);
+    if constexpr (requires { Method::tableau().coupling; }) {
+        check_jacobian_pattern(instances, count);
+        check_consistency(instances, o, count);
+    }
 #if !defined(NDEBUG)
     check_jacobian(instances, count);
 #endif

@@ -79,6 +79,12 @@ inline constexpr int first_new_stage = [] {
     return j == row - 1 ? j : 0;
 }();
 
+/// Whether the solution is the argument of the last stage plus that stage, so that algebraic equations hold at the end
+/// of a step as they do in its last stage.
+template <class Method>
+inline constexpr bool is_stiffly_accurate = first_new_stage<Method, Method::stages> == Method::stages - 1 &&
+                                            Method::tableau().weight(Method::stages, Method::stages - 1) == 1;
+
 /// One row of weights of the given kind.
 template <class Method>
 constexpr auto rosenbrock_weights(rosenbrock_row kind, std::size_t row) {
@@ -181,7 +187,11 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
     const S shift = per_h * S(reciprocal_gamma<Method, real_of<S>>);
     loop::all([&](auto i) MYRIAD_LAMBDA {
         loop::all([&](auto j) MYRIAD_LAMBDA { lu.a[i][j] = -lu.a[i][j]; });
-        lu.a[i][i] = shift + lu.a[i][i];
+        if constexpr (!has_mass_matrix<Model>) lu.a[i][i] = shift + lu.a[i][i];
+    });
+    static_for<0, n_mass_entry<Model>>([&](auto m) MYRIAD_LAMBDA {
+        constexpr int entry = decltype(m)::value, i = mass_row<Model, entry>, j = mass_column<Model, entry>;
+        lu.a[i][j] = fma(S(mass_value<Model, entry, real_of<S>>), shift, lu.a[i][j]);
     });
     return factorise(lu);
 }
@@ -196,8 +206,19 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
     const S shift = per_h * S(reciprocal_gamma<Method, real_of<S>>);
     loop::template range<0, tables::n_entry>([&](auto e) MYRIAD_LAMBDA { lu.a[e] = S(real_of<S>(0)); });
     loop::template range<0, n_state<Model>>([&](auto i) MYRIAD_LAMBDA {
-        lu.a[lu_type::template at<&tables::diagonal>(i)] = shift;
-        lu.size[i] = abs(shift);
+        if constexpr (has_mass_matrix<Model>) {
+            lu.size[i] = S(real_of<S>(0));
+        } else {
+            lu.a[lu_type::template at<&tables::diagonal>(i)] = shift;
+            lu.size[i] = abs(shift);
+        }
+    });
+    static_for<0, n_mass_entry<Model>>([&](auto m) MYRIAD_LAMBDA {
+        constexpr int entry = decltype(m)::value, i = mass_row<Model, entry>;
+        constexpr int place = lu_tables_of<Model>.position[n_jacobian_entry<Model> + entry];
+        const S term = S(mass_value<Model, entry, real_of<S>>) * shift;
+        lu.a[place] = lu.a[place] + term;
+        if constexpr (i == mass_column<Model, entry>) lu.size[i] = lu.size[i] + abs(term);
     });
     detail::for_each_jacobian_entry<Model, loop>(t, y, p, [&](auto e, const S& derivative) MYRIAD_LAMBDA {
         const auto place = lu_type::template at<&tables::position>(e);
@@ -258,12 +279,20 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
         }
         loop::all([&](auto c) MYRIAD_LAMBDA {
             S right = slope[c];
-            if constexpr (i > 0)
+            if constexpr (i > 0 && !has_mass_matrix<Model>)
                 right = fma(per_h, detail::sum_stages<Method, rosenbrock_row::coupling, i, i>(trial.u, c), right);
             if constexpr (depends_on_time<Model> && time_weight != R(0))
                 right = fma(h * S(time_weight), slope_t[c], right);
             trial.u[stage][c] = right;
         });
+        if constexpr (i > 0) {
+            static_for<0, n_mass_entry<Model>>([&](auto m) MYRIAD_LAMBDA {
+                constexpr int entry = decltype(m)::value, row = mass_row<Model, entry>;
+                const S moved =
+                    detail::sum_stages<Method, rosenbrock_row::coupling, i, i>(trial.u, mass_column<Model, entry>);
+                trial.u[stage][row] = fma(per_h * S(mass_value<Model, entry, R>), moved, trial.u[stage][row]);
+            });
+        }
         solve_factorised(lu, trial.u[stage]);
     });
     advance(constant_index<Method::stages>{});

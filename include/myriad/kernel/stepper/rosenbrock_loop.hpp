@@ -97,6 +97,14 @@ MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& 
             if constexpr (Method::first_same_as_last)
                 if (at_end) trial.k[1] = slope;
         }
+        if constexpr (has_mass_matrix<Model>) {
+            vec<R, n> moved{};
+            static_for<0, n_mass_entry<Model>>([&](auto m) MYRIAD_LAMBDA {
+                constexpr int entry = decltype(m)::value, row = mass_row<Model, entry>;
+                moved[row] = fma(mass_value<Model, entry, R>, right[mass_column<Model, entry>], moved[row]);
+            });
+            right = moved;
+        }
         loop::all([&](auto c) MYRIAD_LAMBDA {
             right[c] = right[c] + slope[c];
             if constexpr (depends_on_time<Model>)
