@@ -41,6 +41,7 @@ if(TARGET myriad_program)
     install(FILES "${PROJECT_BINARY_DIR}/installed_model_flags.txt" DESTINATION "${myriad_data_dir}"
             RENAME model_flags.txt COMPONENT study)
     install(FILES ${myriad_plot_scripts} DESTINATION "${myriad_data_dir}" COMPONENT study)
+    install(FILES ${myriad_plot_pictures} DESTINATION "${myriad_data_dir}/pictures" COMPONENT study)
 endif()
 if(MYRIAD_ENABLE_CUDA)
     myriad_install_component(cuda myriad_cuda backends/cuda/myriad)
@@ -50,7 +51,7 @@ endif()
 configure_package_config_file(cmake/myriadConfig.cmake.in myriadConfig.cmake INSTALL_DESTINATION "${package_dir}")
 write_basic_package_version_file(myriadConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/myriadConfig.cmake" "${PROJECT_BINARY_DIR}/myriadConfigVersion.cmake"
-              cmake/MyriadModels.cmake cmake/MyriadXsimd.cmake
+              cmake/MyriadKernelFlags.cmake cmake/MyriadModels.cmake cmake/MyriadXsimd.cmake
         DESTINATION "${package_dir}" COMPONENT core)
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/myriad" COMPONENT core)
 

@@ -7,8 +7,6 @@ include(CheckCXXCompilerFlag)
 set(MYRIAD_ARCH "" CACHE STRING
     "Instruction set of model files, as in -march=, or a list of which a program takes what the CPU has; \
 empty: the compiler's own")
-# Off by default: with contraction left to the compiler, results were found to depend on the pack size. The library
-# writes its fused multiply-adds itself.
 set(MYRIAD_FP_CONTRACT off CACHE STRING
     "Contraction of a * b + c in model files: off, or fast, which gives up bit-identical results")
 set(MYRIAD_MODEL_FLAGS "" CACHE STRING
@@ -17,7 +15,7 @@ set_property(CACHE MYRIAD_ARCH PROPERTY STRINGS native x86-64-v4 x86-64-v3 x86-6
 set_property(CACHE MYRIAD_FP_CONTRACT PROPERTY STRINGS fast off)
 
 # myriad_model_flags(<result> [<arch>]) sets the variable to the flags of model files for one instruction set, by
-# default the last of MYRIAD_ARCH. -ffast-math is never among them: NaN must stay visible.
+# default the last of MYRIAD_ARCH.
 function(myriad_model_flags result)
     set(arch ${ARGN})
     if(NOT arch AND MYRIAD_ARCH)
@@ -45,16 +43,16 @@ function(myriad_model_flags result)
                            "-DMYRIAD_ARCH=native is several times as fast")
         endif()
     endif()
-    list(APPEND flags "-ffp-contract=${MYRIAD_FP_CONTRACT}" -fno-math-errno)
-    # g++ keeps large objects that are copied as a whole in memory, including dual numbers of packs. In registers, a
-    # Runge-Kutta 4 step of Lorenz' equations with three tangents takes 7.5 ns instead of 20 (Zen 4, AVX-512).
-    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-        list(APPEND flags "--param=sra-max-scalarization-size-Ospeed=2048")
+    include("${CMAKE_CURRENT_FUNCTION_LIST_DIR}/MyriadKernelFlags.cmake")
+    list(APPEND flags ${myriad_kernel_flags})
+    if(CMAKE_CXX_COMPILER_ID MATCHES "(GNU|Clang)")
+        list(APPEND flags ${myriad_kernel_flags_${CMAKE_MATCH_1}})
     endif()
+    list(TRANSFORM flags REPLACE "^-ffp-contract=.*" "-ffp-contract=${MYRIAD_FP_CONTRACT}")
     # In every configuration, including none and custom ones: without optimisation kernels take 50 to 250 times as long.
     # Debug needs it too: the AVX-512 part of xsimd 8.1 compiles only with optimisation, and without inlining packs are
     # useless.
-    list(APPEND flags "$<IF:$<CONFIG:Debug>,-O1,-O3>")
+    list(TRANSFORM flags REPLACE "^-O3$" "$<IF:$<CONFIG:Debug>,-O1,-O3>")
     separate_arguments(further UNIX_COMMAND "${MYRIAD_MODEL_FLAGS}")
     list(APPEND flags ${further})
     set(${result} "${flags}" PARENT_SCOPE)

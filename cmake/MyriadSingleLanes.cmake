@@ -3,8 +3,8 @@
 include_guard(GLOBAL)
 
 option(MYRIAD_ALL_PACKS
-       "Compile all of the project's own models for packs; off: of those that show as much one instance at a time, \
-none, which takes a quarter of the compile time" ON)
+       "Compile all of the project's own models for packs as users have them; off: those that show as much one \
+instance at a time without, and other tests' models for packs of one SIMD batch, in half of the time" ON)
 
 # Files that scripts/test.sh compiles for GPUs only with --all.
 file(WRITE "${PROJECT_BINARY_DIR}/single_lanes.txt" "")

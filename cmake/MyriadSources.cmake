@@ -11,6 +11,25 @@ function(myriad_add_host_sources target)
     target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 endfunction()
 
+# myriad_add_compile_sources(<target>): models compiled at run time, by the program and the Python package.
+function(myriad_add_compile_sources target)
+    cmake_path(SET folder NORMALIZE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../src")
+    file(GLOB sources CONFIGURE_DEPENDS "${folder}/compile/*.cpp")
+    target_sources(${target} PRIVATE ${sources})
+    target_include_directories(${target} PRIVATE "${folder}")
+    include("${CMAKE_CURRENT_FUNCTION_LIST_DIR}/MyriadKernelFlags.cmake")
+    foreach(compiler IN ITEMS "" _GNU _Clang)
+        string(TOUPPER "MYRIAD_KERNEL_FLAGS${compiler}" name)
+        list(JOIN myriad_kernel_flags${compiler} " " flags)
+        target_compile_definitions(${target} PRIVATE "${name}=\"${flags}\"")
+    endforeach()
+    foreach(set IN ITEMS AVX512 AVX2 SSE2)
+        target_compile_definitions(${target} PRIVATE "MYRIAD_ARCHITECTURE_${set}=\"${myriad_architecture_${set}}\"")
+    endforeach()
+    target_compile_definitions(${target} PRIVATE MYRIAD_OLDEST_GNU=${myriad_oldest_GNU}
+                                                 MYRIAD_OLDEST_CLANG=${myriad_oldest_Clang})
+endfunction()
+
 # myriad_add_study_sources(<target>): studies and their results on disk. What works on every value is fully optimised,
 # in an object library of its own, <target>_values, as one file; the rest as two.
 function(myriad_add_study_sources target)

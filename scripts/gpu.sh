@@ -20,7 +20,7 @@ Without --tests, --sanitize, --bench, --profile, --methods or --python: the firs
   --bench        the benchmarks, as CSV, and a table of registers, stack and spills per kernel
   --profile      what Nsight Compute counts in four kernels of the benchmark; needs ncu
   --methods      the methods beside each other, as CSV; its kernels take minutes to compile
-  --python       the Python package: its wheel is built, and its tests for GPUs and a benchmark are run. Needs Python
+  --python       the Python package: its wheel is built, and its tests for GPUs and benchmarks are run. Needs Python
                  with NumPy, libnvrtc of the CUDA Toolkit, and in DIR/wheels what the wheel is built and tested with:
                  pip download --only-binary :all: --dest DIR/wheels scikit-build-core nanobind pytest
                  With scipy too, the validation has its references, and errors are compared with other packages'.
@@ -87,6 +87,7 @@ END
         tee "$output/python_tests.log" | tail -40 || status=1
     python3 benchmarks/python/van_der_pol.py --check --output "$output/python_van_der_pol.csv" 2>&1 |
         tee "$output/python_van_der_pol.log" || status=1
+    python3 benchmarks/python/pleiades.py --check 2>&1 | tee "$output/python_pleiades.txt" || status=1
     python3 benchmarks/python/generated_study.py --check 2>&1 | tee "$output/python_generated_study.txt" || status=1
     if python3 -c 'import scipy' 2>/dev/null; then
         python3 benchmarks/python/compare.py --side 1024 --programs "myriad gpu" cubie myriad \

@@ -5,11 +5,12 @@
 Usage: scripts/reference.py (--check | --write FOLDER) [--source FOLDER]
 
 --check names every public entity without a description, and fails if there is one; --write writes the reference as
-Markdown. Public is: what is in namespace myriad (not detail, host, studies or a backend, but for what a report holds)
-and has public access; macros and CMake functions that users write; CMake options. Of overloads one must be described,
-and a member that several methods have in one of them. What the sources look for by name in a model or a method of the
-user's, and the environment variables that they read, must have entries on the pages of MEMBER_PAGES. A warning of
-Doxygen's is an error. Exit status 77, "skipped" for ctest, if there is no doxygen.
+Markdown. Public is: what is in namespace myriad (not detail, host, studies or a backend, but for what public
+functions take and return) and has public access; macros and CMake functions that users write; CMake options. Of
+overloads one must be described, and a member that several methods have in one of them. What the sources look for by
+name in a model or a method of the user's, and the environment variables that they read, must have entries on the
+pages of MEMBER_PAGES. A warning of Doxygen's is an error. Exit status 77, "skipped" for ctest, if there is no
+doxygen.
 """
 
 import argparse
@@ -38,7 +39,7 @@ PAGES = {
                ["host/report/", "kernel/core/status.hpp", "host/backend/facts.hpp"]),
     "model": ("In a model", "`<myriad/model.hpp>`: what the functions of a model are called with, and what they use.",
               ["host/model/", "kernel/core/", "kernel/model/lane.hpp", "kernel/model/jacobian_pattern.hpp",
-               "kernel/model/mass_matrix.hpp", "kernel/model/reductions.hpp",
+               "kernel/model/mass_matrix.hpp", "kernel/model/summaries.hpp",
                "kernel/model/tables.hpp", "kernel/scalar/"]),
     "random": ("Random numbers", "`<myriad/random.hpp>`.", ["kernel/model/random.hpp"]),
     "tangent": ("Tangents and Lyapunov exponents", "`<myriad/tangent.hpp>`.",
@@ -56,7 +57,15 @@ PAGES = {
 # Classes whose objects a model handles as R, masks or expressions, without naming their members.
 OPAQUE = ("pack", "pack_mask", "dual", "dependence", "unknown_truth", "vec_values", "shared_values",
           "component_map::list")
-PUBLIC_IN_BACKENDS = ("myriad::cuda::kernel_facts",)  # report::kernel
+# What public functions take and return of other namespaces. Objects of OPAQUE_STUDIES are passed on, or made by the
+# library alone.
+PUBLIC_STUDIES = ("along", "arithmetic", "attribute", "component", "component_kind", "component_names", "coordinate",
+                  "damage", "dimension", "element", "layout", "other_arithmetic", "results", "resume_check", "role",
+                  "store_options", "store_progress", "variable")
+OPAQUE_STUDIES = ("any_model", "chunk_record", "column", "computed_chunk", "file_system", "handed_out_run",
+                  "reduction_definition")
+PUBLIC_ELSEWHERE = ("myriad::cuda::kernel_facts",  # report::kernel
+                    *(f"myriad::studies::{name}" for name in PUBLIC_STUDIES))
 MACROS = ("MYRIAD_FUNCTION", "MYRIAD_LAMBDA", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT", "MYRIAD_VERSION",
           "MYRIAD_REGISTER_MODEL", "MYRIAD_REGISTER_MODEL_FLOAT",
           "MYRIAD_VERSION_MAJOR", "MYRIAD_VERSION_MINOR", "MYRIAD_VERSION_PATCH")
@@ -221,7 +230,8 @@ def read_classes(folder):
         kind, name = entry.get("kind"), plain(entry.find("name"))
         if kind not in ("namespace", "class", "struct", "concept") or not re.match(r"myriad(::|$)", name):
             continue
-        if re.match(r"myriad::(detail|host|studies|openmp|cuda|target)\b", name) and name not in PUBLIC_IN_BACKENDS:
+        internal = re.match(r"myriad::(detail|host|studies|openmp|cuda|target)\b", name)
+        if internal and name not in PUBLIC_ELSEWHERE and (kind != "namespace" or name != "myriad::studies"):
             continue
         root = ElementTree.parse(folder / (entry.get("refid") + ".xml")).getroot().find("compounddef")
         if root.get("prot", "public") != "public":
@@ -231,9 +241,10 @@ def read_classes(folder):
             # Overloads are one entity if they are in one file, as min and max of packs and of integers are not.
             by_file = {}
             for m in root.iter("memberdef"):
-                by_file.setdefault(place(m)[0], []).append(m)
+                if not internal or m.get("kind") == "enum" and f"{name}::{plain(m.find('name'))}" in PUBLIC_ELSEWHERE:
+                    by_file.setdefault(place(m)[0], []).append(m)
             for members in by_file.values():
-                entities += overloads(members, "")
+                entities += overloads(members, "studies::" if internal else "")
             continue
         if "<" in short or short in OPAQUE and "::" in short:
             continue  # a specialisation
@@ -345,7 +356,7 @@ def names_looked_for(source, owner):
     found = {}
     if owner == "environment":
         for file, text in texts.items():
-            for match in re.finditer(r"\bgetenv\(\"(\w+)\"\)", text):
+            for match in re.finditer(r"\b(?:getenv|variable)\(\"(\w+)\"\)", text):
                 found.setdefault(match[1], file)
         return found
     member = re.compile(rf"\b{owner}>?::(?:template\s+)?(\w+(?:\s*##\s*\w+)*)")
@@ -414,6 +425,15 @@ def undocumented(entities):
                     yield m, f"{e.name}::{m.name}::{value}"
 
 
+def unknown_types(entities):
+    """Types of studies in declarations that are neither public nor known to be passed on."""
+    for e in entities:
+        for declaration_of_one in [d for some in (e, *e.members) for d in some.declarations]:
+            for name in re.findall(r"studies::(\w+)", declaration_of_one):
+                if name not in (*PUBLIC_STUDIES, *OPAQUE_STUDIES, e.name.removeprefix("studies::")):
+                    yield e, name
+
+
 def check(entities, source):
     wrong_members = check_members(source)
     missing = list(undocumented(entities))
@@ -422,6 +442,10 @@ def check(entities, source):
     homeless = [e for e in entities if not e.kind.startswith("CMake") and page_of(e) is None]
     for e in homeless:
         print(f"{e.file}:{e.line}: {e.name} is on no page of the reference: name its header in scripts/reference.py")
+    for entity, name in unknown_types(entities):
+        print(f"{entity.file}:{entity.line}: {entity.name} has studies::{name} in its declaration, which is in neither "
+              "PUBLIC_STUDIES nor OPAQUE_STUDIES of scripts/reference.py")
+        wrong_members += 1
     count = sum(1 + len(e.values) + sum(1 + len(m.values) for m in e.members) for e in entities)
     if count < 300:  # of about 500: else something was not read, and nothing was checked
         print(f"Only {count} public entities were found: something is wrong with how they are read")

@@ -6,31 +6,39 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
 source scripts/lib.sh
 
-all_steps=(ci docs python cuda strict clang asan tsan)
-usual_steps=(ci docs python cuda tsan)
+all_steps=(ci programs python docs cuda strict asan tsan clang)
+usual_steps=(ci python)
+full_steps=(ci programs python docs cuda strict asan tsan)
 
 usage() {
     cat <<'END'
-Usage: scripts/test.sh [--quick] [--all] [--only STEP,...] [--jobs N] [--help]
+Usage: scripts/test.sh [--quick] [--full] [--all] [--only STEP,...] [--jobs N] [--help]
 
 Installs the packages that are missing (as root or with sudo), builds and runs the tests.
 Its last line is "N passed, N failed"; the exit status is 0 if none failed.
 
-Steps, in this order, of which strict, clang and asan run only if asked for, for the sake of the usual run's time:
-  ci      g++, release, warnings are errors: all tests, examples, benchmarks, validation
-  docs    the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx cannot
-          be installed)
-  python  the Python package: its wheel is built, installed in a fresh virtual environment, and tested (skipped where
-          the packages of PyPI that it is built with cannot be installed)
-  cuda    the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
-          both backends runs without a GPU (skipped without nvcc)
-  strict  no contraction of a * b + c: scalar lanes and packs agree bit for bit
-  clang   clang++, warnings are errors
-  asan    address and undefined-behaviour sanitizer
-  tsan    thread sanitizer
+Steps that run without options: what shows that a build is right.
+  ci        g++, release, warnings are errors: all tests of the library
+  python    the Python package: its wheel is built, installed in a fresh virtual environment, and tested (skipped where
+            the packages of PyPI that it is built with cannot be installed)
+
+With --full also these. Steps run in the order ci, programs, python, and then as they stand here.
+  programs  in the build of ci: examples, benchmarks, validation, projects outside that use the library, every public
+            header by itself, compile times
+  docs      the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx
+            cannot be installed)
+  cuda      the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
+            both backends runs without a GPU (skipped without nvcc)
+  strict    all models in packs, for AVX2: events, output and reductions; scalar lanes and packs agree bit for bit
+  asan      address and undefined-behaviour sanitizer
+  tsan      thread sanitizer
+
+With --all also this.
+  clang     clang++, warnings are errors
 
 Options:
   --quick          only ci
+  --full           what continuous integration runs
   --all            all of them, in cuda all kernels, and all models in packs
   --only STEP,...  only these
   --jobs N         processes at a time (default: number of cores)
@@ -45,6 +53,7 @@ while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
         --quick) steps=(ci) ;;
+        --full) steps=("${full_steps[@]}") ;;
         --all) steps=("${all_steps[@]}") every_kernel=yes ;;
         --only)
             (($# > 1)) || usage_error "--only needs steps: ${all_steps[*]}"
@@ -70,7 +79,7 @@ done
 wants() { [[ " ${steps[*]} " == *" $1 "* ]]; }
 
 packages=(g++ cmake ninja-build python3 libeigen3-dev libxsimd-dev catch2 libnetcdf-dev nlohmann-json3-dev)
-if wants ci || wants cuda || wants clang; then
+if wants ci || wants programs || wants cuda || wants clang; then
     packages+=(libboost-dev libcli11-dev libopenmpi-dev libsundials-dev libtomlplusplus-dev openmpi-bin
         python3-matplotlib python3-scipy python3-netcdf4 python3-xarray)
 fi
@@ -85,28 +94,32 @@ passed=0
 failed=0
 summary=()
 
-# build PRESET
+# The tests of preset ci that belong to step programs, by their labels.
+programs='^(benchmarks|compile_time|examples|headers|install|validation)$'
+
+# build STEP PRESET: sets `built`.
 build() {
-    local preset=$1 options=()
+    local step=$1 preset=$2 options=() targets=()
     if [[ $every_kernel == yes ]]; then options+=(-DMYRIAD_ALL_PACKS=ON); fi
+    if [[ $step == ci ]]; then targets=(--target tests/all); fi
+    built=yes
     quietly "build/$preset/configure.log" cmake --preset "$preset" "${options[@]}" &&
-        quietly "build/$preset/build.log" cmake --build --preset "$preset" --parallel "$jobs" -- -k 0
+        quietly "build/$preset/build-$step.log" \
+            cmake --build --preset "$preset" --parallel "$jobs" "${targets[@]}" -- -k 0 || built=no
 }
 
-# The programs that test both backends in one program without a GPU, and with --all every file that nvcc compiles;
-# without it only the tests whose features no others have, and some examples (tests/cuda/budgets.cu has the benchmarks'
-# kernels, and scripts/case_studies.sh builds the case studies).
+# The programs that test both backends in one program without a GPU, and with --all every kernel, for GPUs alone;
+# without it only the kernels of tests whose features no others have, and of some examples (tests/cuda/budgets.cu has
+# the benchmarks' kernels, and scripts/case_studies.sh builds the case studies).
 build_kernels() {
-    local kernels
+    local chosen=(--except build/cuda/single_lanes.txt --files
+        '^(tests|examples/(duffing|hooks|own_method|quickstart))/')
+    if [[ $every_kernel == yes ]]; then chosen=(); fi
     quietly build/cuda/configure.log \
-        cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF || return
-    mapfile -t kernels < <(ninja -C build/cuda -t targets all | sed -n 's/: CUDA_COMPILER__.*//p' |
-        if [[ $every_kernel == yes ]]; then cat; else
-            grep -E '^(tests|examples/(duffing|hooks|own_method|quickstart))/' | grep -vFf build/cuda/single_lanes.txt
-        fi)
-    ((${#kernels[@]})) || return
-    quietly build/cuda/build.log cmake --build --preset cuda --parallel "$jobs" \
-        --target "${kernels[@]}" solver_test duffing -- -k 0
+        cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF &&
+        quietly build/cuda/build.log \
+            cmake --build --preset cuda --parallel "$jobs" --target solver_test duffing -- -k 0 &&
+        quietly build/cuda/kernels.log tests/cuda/compile_kernels.py build/cuda --jobs "$jobs" "${chosen[@]}"
 }
 
 # The files that took longest to compile, as a budget to keep an eye on.
@@ -121,6 +134,7 @@ slowest_files() {
 # Registers, stack and spills of every kernel that the tests compile.
 kernel_table() {
     local log=build/cuda/Testing/Temporary/LastTest.log
+    [[ -r $log ]] || return 0
     sed -nE 's/^(.*): ([0-9]+) registers, stack ([0-9]+), spill ([0-9]+).*/\2 \3 \4 \1/p' "$log" |
         sed -E 's/myriad:://g; s/, \(shared_placement\)1>$/>/' | sort -u -k4 |
         awk 'BEGIN { print "   registers stack spill kernel" }
@@ -193,13 +207,15 @@ run_step() {
                 failed=$((failed + 1)) result="build failed"
             fi ;;
         *)
-            local built=yes
-            build "$step" || built=no
-            if [[ $built == yes || -e build/$step/build.ninja ]]; then
-                case $step in
-                    ci) slowest_files ci; run_tests ci ci --label-exclude '^cuda$' ;;
-                    *) run_tests "$step" "$step" ;;
-                esac
+            local built preset=$step tests=()
+            case $step in
+                ci) tests=(--label-exclude "^cuda$|$programs") ;;
+                programs) preset=ci tests=(--label-regex "$programs") ;;
+            esac
+            build "$step" "$preset"
+            if [[ $built == yes || -e build/$preset/build.ninja ]]; then
+                if [[ $step == ci ]]; then slowest_files ci; fi
+                run_tests "$step" "$preset" "${tests[@]}"
             fi
             if [[ $built == no ]]; then
                 failed=$((failed + 1))

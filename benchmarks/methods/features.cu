@@ -11,7 +11,7 @@ struct oscillator {
     enum state { x, v, n_state };
     enum parameter { k, n_parameter };
     enum shared { B, n_shared };
-#if defined(ACCESSORIES) || defined(REDUCTIONS)
+#if defined(ACCESSORIES) || defined(SUMMARIES)
     enum accessory { largest, last, n_accessory };
 #endif
 
@@ -31,9 +31,9 @@ struct oscillator {
         return g;
     }
 #endif
-#ifdef REDUCTIONS
+#ifdef SUMMARIES
     enum observed { displacement, n_observed };
-    static constexpr myriad::reduction reductions[] = {{displacement, myriad::over_phase::maximum, largest}};
+    static constexpr myriad::summary summaries[] = {{displacement, myriad::over_phase::maximum, largest}};
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& y, const auto&) {
         return myriad::vec<R, n_observed>{y[x]};

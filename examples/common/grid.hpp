@@ -16,7 +16,7 @@ inline Eigen::ArrayXd linspace(double first, double last, std::int64_t n) {
 }
 
 /// n values from `first` to `last`, both included and positive, with a constant ratio between neighbours.
-inline Eigen::ArrayXd logspace(double first, double last, std::int64_t n) {
+inline Eigen::ArrayXd geomspace(double first, double last, std::int64_t n) {
     return Eigen::exp(linspace(std::log(first), std::log(last), n));
 }
 

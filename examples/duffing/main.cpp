@@ -21,7 +21,7 @@ using namespace duffing_sweep;
 std::string folder;  // for results that are kept while it runs; empty: they are in memory
 
 /// One instance per damping; a phase is one period of the forcing.
-void describe(myriad::any_study& sweep, std::int64_t instances, std::int64_t transient, std::int64_t phases) {
+void set_up(myriad::any_study& sweep, std::int64_t instances, std::int64_t transient, std::int64_t phases) {
     // snippet: study
     sweep.axis("k", myriad::linspace(k_first, k_last, instances));
     sweep.set("B", forcing);
@@ -92,7 +92,7 @@ int run(const examples::sweep_options& chosen, const myriad::device& device) {
     examples::csv_file file(chosen.output, is_table ? 80 * rows : 0);
 
     myriad::study<duffing, myriad::cash_karp> sweep;
-    describe(sweep, chosen.instances, chosen.transient, chosen.phases);
+    set_up(sweep, chosen.instances, chosen.transient, chosen.phases);
     sweep.devices = {device};
     if (!folder.empty()) sweep.store(folder);
     if (!chosen.quiet) {

@@ -32,7 +32,7 @@ std::string placement = "automatic";
 template <class Model>
 myriad::ensemble<Model> prepare(std::int64_t instances) {
     const Eigen::ArrayXd diffusivity =
-        examples::logspace(diffusivity_first, diffusivity_last, (instances + shell::flows - 1) / shell::flows);
+        examples::geomspace(diffusivity_first, diffusivity_last, (instances + shell::flows - 1) / shell::flows);
     const Eigen::ArrayXd start = shell::still_temperature(chebyshev::points(1, shell::outer, Model::inner + 2));
     // snippet: ensemble
     myriad::ensemble<Model> sweep(instances);

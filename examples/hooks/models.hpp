@@ -38,7 +38,7 @@ struct damped {
     enum parameter { zeta, n_parameter };
     enum accessory { overshoot, t_overshoot, dissipated, n_accessory };
     enum observed { displacement, power, n_observed };
-    static constexpr myriad::reduction reductions[] = {
+    static constexpr myriad::summary summaries[] = {
         {displacement, myriad::over_phase::minimum, overshoot},
         {displacement, myriad::over_phase::time_of_minimum, t_overshoot},
         {power, myriad::over_phase::integral, dissipated},

@@ -21,7 +21,7 @@ std::vector<double> first_amplitudes{0.5, 1.1}, second_amplitudes{0.7, 1.2};
 
 /// The two waves of every instance: f1 varies fastest, then f2, then the second amplitude.
 std::vector<waves> prepare_waves(std::int64_t frequencies) {
-    const Eigen::ArrayXd f = examples::logspace(f_first, f_last, frequencies);
+    const Eigen::ArrayXd f = examples::geomspace(f_first, f_last, frequencies);
     std::vector<waves> all;
     for (const double p1 : first_amplitudes)
         for (const double p2 : second_amplitudes)
@@ -34,7 +34,7 @@ void write(examples::csv_file& file, const myriad::ensemble<model>& sweep, const
            const examples::sweep_options& chosen) {
     using myriad::message;
     file.comment("Keller-Miksis bubble in water at 25 C, radius at rest RE = 10 um, under sound of two frequencies");
-    file.comment(message("f1, f2 = logspace(", f_first / kHz, ", ", f_last / kHz, ", ", chosen.instances,
+    file.comment(message("f1, f2 = geomspace(", f_first / kHz, ", ", f_last / kHz, ", ", chosen.instances,
                          ") kHz, no phase between them, start at rest"));
     file.comment(message("eigenfrequency ", bubble::eigenfrequency() / kHz, " kHz"));
     file.comment(message("phases from one maximum of the radius to the next: ", chosen.transient, " transient, ",

@@ -49,7 +49,7 @@ void write(examples::csv_file& file, const myriad::ensemble<bubble_response>& sw
            const records& recorded, std::int64_t transient) {
     using myriad::message;
     file.comment("Keller-Miksis bubble in water at 25 C, radius at rest 10 um, under a sound wave of one frequency");
-    file.comment(message("f = logspace(", f_first / kHz, ", ", f_last / kHz, ", ", sweep.size(),
+    file.comment(message("f = geomspace(", f_first / kHz, ", ", f_last / kHz, ", ", sweep.size(),
                          ") kHz, pressure amplitude ", amplitude, " bar, start at rest"));
     file.comment(message("eigenfrequency ", bubble::eigenfrequency() / kHz, " kHz"));
     file.comment(message("phases of one period: ", transient, " transient, ", recorded.phases(), " recorded"));
@@ -71,7 +71,7 @@ void write(examples::csv_file& file, const myriad::ensemble<bubble_response>& sw
 int run(const examples::sweep_options& chosen, const myriad::device& device) {
     const auto rows = static_cast<std::uintmax_t>(chosen.instances) * static_cast<std::uintmax_t>(chosen.phases);
     examples::csv_file file(chosen.output, 40 * rows);
-    const Eigen::ArrayXd f = examples::logspace(f_first, f_last, chosen.instances);
+    const Eigen::ArrayXd f = examples::geomspace(f_first, f_last, chosen.instances);
     auto sweep = prepare(f);
     const auto report = examples::integrate<myriad::cash_karp>(chosen, device, sweep, integration(chosen));
     write(file, sweep, f, report.records, chosen.transient);

@@ -13,7 +13,7 @@
 
 namespace {
 
-void describe(myriad::any_study& sweep, std::int64_t instances, const std::string& folder) {
+void set_up(myriad::any_study& sweep, std::int64_t instances, const std::string& folder) {
     sweep.axis("k", myriad::linspace(0.2, 0.3, instances));
     sweep.set("x", -0.5);
     sweep.set("v", -0.1);
@@ -33,7 +33,7 @@ int main(int argc, char** argv) try {
     // snippet: ranks
     myriad::mpi_ranks ranks;  // initialises MPI, and finalizes it at the end of main
     myriad::study<duffing, myriad::cash_karp> sweep;
-    describe(sweep, instances, folder);  // as for one process
+    set_up(sweep, instances, folder);  // as for one process
     if (ranks.rank() == 0) sweep.progress = myriad::progress_line();
     const myriad::study_result result = ranks.run(sweep);
     if (ranks.rank() == 0 && result.complete) myriad::export_npy(result.results(), "x", folder + ".npy");

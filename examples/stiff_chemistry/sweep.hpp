@@ -54,7 +54,7 @@ inline growth growth_at(double f, double epsilon) {
 inline myriad::ensemble<oregonator> prepare(std::int64_t side) {
     myriad::ensemble<oregonator> sweep(side * side);
     examples::fill_plane(sweep.parameter(oregonator::f), examples::linspace(f_first, f_last, side),
-                         sweep.parameter(oregonator::epsilon), examples::logspace(epsilon_first, epsilon_last, side));
+                         sweep.parameter(oregonator::epsilon), examples::geomspace(epsilon_first, epsilon_last, side));
     for (std::int64_t i = 0; i < sweep.size(); ++i) {
         const Eigen::Vector3d start = equilibrium(sweep.parameter(oregonator::f)[i]);
         sweep.state(oregonator::x)[i] = start[0];

@@ -20,7 +20,7 @@ void run_grid() {
     myriad::study<duffing, myriad::cash_karp> sweep;
     sweep.axis("k", myriad::linspace(0.2, 0.3, 200));  // two axes: a grid of 200 times 9 instances,
     sweep.axis("x", myriad::linspace(-1, 1, 9));       // the last axis varying fastest
-    sweep.axis("v", myriad::random_normal(0, 0.1));    // a value of its own for each instance
+    sweep.axis("v", myriad::normal(0, 0.1));           // a value of its own for each instance
     sweep.set("B", 0.3);                               // the same for all
     sweep.time_domain(0, 2 * std::numbers::pi);
     sweep.options = {.phases = 68, .relative_tolerance = 1e-9, .record = {.from_phase = 64, .states = {duffing::x}}};

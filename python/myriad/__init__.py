@@ -31,5 +31,14 @@ _public = ["CppModel", "Damage", "Error", "Interrupted", "Run", "Study", "StudyR
 __all__ = [name for name in _public if not hasattr(_builtins, name)]
 
 
+_renamed = {"logspace": "geomspace", "random_uniform": "uniform", "random_normal": "normal"}
+
+
+def __getattr__(name):
+    if name in _renamed:
+        raise AttributeError(f"myriad.{name} is myriad.{_renamed[name]}, NumPy's name")
+    raise AttributeError(f"module 'myriad' has no attribute '{name}'")
+
+
 def __dir__():
     return sorted([*_public, "__version__"])

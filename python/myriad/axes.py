@@ -5,9 +5,10 @@ arrays may be given."""
 import numpy as np
 
 from . import _core
-from .errors import Error
+from .errors import Error, at, users_line
+from .expression import Node, draws
 
-__all__ = ["linspace", "logspace", "random_uniform", "random_normal"]
+__all__ = ["linspace", "geomspace"]
 
 
 class Axis:
@@ -70,17 +71,17 @@ def linspace(first, last, size):
     return Axis("linspace", first, last, size)
 
 
-def logspace(first, last, size):
+def geomspace(first, last, size):
     """`size` values from `first` to `last`, both included, with a constant ratio between neighbours, as
     numpy.geomspace."""
-    return Axis("logspace", first, last, size)
+    return Axis("geomspace", first, last, size)
 
 
-def random_uniform(low, high):
-    """A random value for each instance of a study, evenly distributed between two bounds."""
-    return Random("random_uniform", low, high)
-
-
-def random_normal(mean, deviation):
-    """A random value for each instance of a study, normally distributed with that standard deviation."""
-    return Random("random_normal", mean, deviation)
+def drawn(value):
+    """A call of `uniform` or `normal` as what it is in a sweep, `Random`; anything else as it is."""
+    if not isinstance(value, Node) or value.op not in draws:
+        return value
+    if any(bound.op != "constant" for bound in value.args):
+        raise Error(f"`{value}` is given in a sweep{at(users_line())}: give numbers, or draw it in generate= of the "
+                    "model")
+    return Random(value.op, *(float(bound.value) for bound in value.args))

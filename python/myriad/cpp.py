@@ -312,9 +312,9 @@ class Writer:
             if names:
                 written = ", ".join(last_elements.get(n, n) if kind == "shared" else n for n in names)
                 out += ["    " + line for line in _wrap(f"enum {kind} {{ {written}, n_{kind} }};", 0)]
-        if model.reductions:
-            out.append("    static constexpr myriad::reduction reductions[] = {")
-            out += [f"        {{{r.observed}, myriad::over_phase::{r.kind}, {r.accessory}}}," for r in model.reductions]
+        if model.summaries:
+            out.append("    static constexpr myriad::summary summaries[] = {")
+            out += [f"        {{{r.observed}, myriad::over_phase::{r.kind}, {r.accessory}}}," for r in model.summaries]
             out.append("    };")
         pattern, jacobian = self.jacobian()
         out += ["    " + line for line in pattern]

@@ -622,14 +622,13 @@ def _draw(kind, a, b):
 
 
 def uniform(low=0.0, high=1.0):
-    """A random number, evenly distributed between two bounds, for `generate` of a model. Each call is a draw of its
-    own."""
+    """A random number, evenly distributed between two bounds: in `generate` of a model, where each call is a draw of
+    its own, or as the values of a study's sweep, of which each instance draws one."""
     return _draw("uniform", low, high)
 
 
 def normal(mean=0.0, deviation=1.0):
-    """A random number, normally distributed with that standard deviation, for `generate` of a model. Each call is a
-    draw of its own."""
+    """A random number, normally distributed with that standard deviation, for the same as `uniform`."""
     return _draw("normal", mean, deviation)
 
 

@@ -9,7 +9,7 @@ import numbers
 
 import numpy as np
 
-from .axes import Axis
+from .axes import Axis, drawn
 from .errors import Error, at, refuse_masked, users_line
 from .expression import Node, is_sympy
 from .parse import sympy_name
@@ -30,7 +30,7 @@ def _name(key, line):
 def as_numbers(values):
     """What users give as numbers, as an array; also objects that are real numbers, as those of `fractions`."""
     try:
-        array = np.asarray(values)
+        array = np.asarray(drawn(values))
     except ValueError as why:  # lists of different lengths
         raise Error(f"{values!r} is no array{at(users_line())}: {why}") from None
     if array.dtype == object and all(isinstance(x, (numbers.Real, decimal.Decimal)) for x in array.flat):
@@ -44,6 +44,7 @@ def as_numbers(values):
 
 def _numbers(name, values, line):
     """Values as an array of whole numbers or of double precision, without NaN; axes of studies as they are."""
+    values = drawn(values)
     if isinstance(values, Axis):
         return values
     refuse_masked(values, name)

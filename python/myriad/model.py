@@ -22,7 +22,7 @@ __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum",
 _directions = ("rising", "falling", "either", "none")
 
 
-class Reduction:
+class Summary:
     """What is computed from a quantity over a phase, along the solution and not only at the ends of steps."""
 
     def __init__(self, kind, quantity):
@@ -32,27 +32,27 @@ class Reduction:
 
 def phase_maximum(quantity):
     """For an accessory: the largest value of a quantity over each phase."""
-    return Reduction("maximum", quantity)
+    return Summary("maximum", quantity)
 
 
 def phase_minimum(quantity):
     """For an accessory: the smallest value of a quantity over each phase."""
-    return Reduction("minimum", quantity)
+    return Summary("minimum", quantity)
 
 
 def time_of_maximum(quantity):
     """For an accessory: when the quantity was largest; another accessory has its `phase_maximum`."""
-    return Reduction("time_of_maximum", quantity)
+    return Summary("time_of_maximum", quantity)
 
 
 def time_of_minimum(quantity):
     """For an accessory: when the quantity was smallest; another accessory has its `phase_minimum`."""
-    return Reduction("time_of_minimum", quantity)
+    return Summary("time_of_minimum", quantity)
 
 
 def integral(quantity):
     """For an accessory: the integral of a quantity over time, from the start of each phase."""
-    return Reduction("integral", quantity)
+    return Summary("integral", quantity)
 
 
 class Event:
@@ -96,7 +96,7 @@ def model(equations, *, events=(), accessories=None, initialise=None, after_step
     `shared`; or a string "x' = v; v' = -x" with all names in `parameters` and `shared`. In a dictionary keys and values
     may be strings or SymPy's symbols and expressions, named in the same way.
 
-    `accessories` {a: value} are set to the value at the start of every phase, or get a reduction over the phase, as in
+    `accessories` {a: value} are set to the value at the start of every phase, or get a summary over the phase, as in
     {peak: myriad.phase_maximum(x)}. `initialise`, `after_step` and `finalise` are assignments {target: value} at the
     start of a phase, after every step and at the end of a phase. Assignments of one hook or event take effect together:
     every value is computed from what was there before.
@@ -291,7 +291,7 @@ class Model:
         return made
 
     def _accessories(self, accessories):
-        self.reductions, self.observed, start = [], [], []
+        self.summaries, self.observed, start = [], [], []
         quantities = {}
         self._accessory_targets = []
         for key, value in self._items(accessories, "accessories", self.line):
@@ -300,7 +300,7 @@ class Model:
                 raise Error(f"{target.value[1]} is no accessory but {sym.a(target.value[0])}"
                             f"{at(self.line)}: make it by myriad.accessory(\"{target.value[1]}\")")
             self._accessory_targets.append(target)
-            if not isinstance(value, Reduction):
+            if not isinstance(value, Summary):
                 if value is not None:
                     start += self._assignments({target: value}, "accessories")
                 continue
@@ -313,11 +313,11 @@ class Model:
                 short = quantity.value[1] if quantity.op == "symbol" else target.value[1]
                 quantities[id(quantity)] = f"observed_{short}"
                 self.observed.append((f"observed_{short}", quantity))
-            made = Reduction(value.kind, quantity)
+            made = Summary(value.kind, quantity)
             made.observed, made.accessory, made.line = quantities[id(quantity)], target.value[1], value.line
-            self.reductions.append(made)
-        present = {(r.observed, r.kind) for r in self.reductions}
-        for r in self.reductions:
+            self.summaries.append(made)
+        present = {(r.observed, r.kind) for r in self.summaries}
+        for r in self.summaries:
             extremum = r.kind.removeprefix("time_of_")
             if (r.observed, extremum) not in present:
                 raise Error(f"{r.accessory} is the time of a {extremum} that no accessory has{at(r.line)}: add one "
@@ -340,8 +340,8 @@ class Model:
                 raise Error(f"generate assigns {name}{at(line)}: it sets states, parameters and accessories; give "
                             "myriad.study the time domain and what all instances share")
             if what == "generate" and isinstance(value, Axis):
-                raise Error(f"generate sets {name} to {value!r}{at(line)}, which is for the sweep of a study: write "
-                            "myriad.uniform(low, high) or myriad.normal(mean, deviation)")
+                raise Error(f"generate sets {name} to {value!r}{at(line)}, which is for the sweep of a study: write it "
+                            "with myriad.instance")
             if kind in ("shared", "shared_integer", "event_count") or kind == "built-in" and name not in (
                     "next_step", "t_begin", "t_end"):
                 raise Error(f"{what} assigns {name}{at(line)}, which no hook may: states, parameters, accessories, "
@@ -446,7 +446,7 @@ class Model:
         for symbol in self._in_functions:
             kind, name = symbol.value
             if kind in ("event_count", "action") or kind == "built-in" and name != "time":
-                raise Error(f"{name} stands in an equation, event or reduction{at(self.line)}, but only hooks and "
+                raise Error(f"{name} stands in an equation, event or summary{at(self.line)}, but only hooks and "
                             "actions see it: store it in an accessory there")
         problem = generic_problem(self._functions)
         if problem is not None:

@@ -4,6 +4,7 @@
 import ctypes
 import functools
 import importlib.util
+import json
 import os
 import pathlib
 import re
@@ -11,7 +12,7 @@ import sys
 import time
 
 from . import _core, cache
-from .compiler import Kernel, first_message
+from .compiler import Kernel, kernel_of
 from .errors import Error
 
 _oldest = 12, 6  # older ones crash
@@ -140,7 +141,7 @@ class _Nvrtc:
             done = self._functions.nvrtcCompileProgram(program, len(chosen), (ctypes.c_char_p * len(chosen))(*chosen))
             said = self._text(program, "ProgramLog").rstrip(b"\0").decode(errors="replace")
             if done != 0:
-                raise Error(f"the model does not compile (NVRTC {self.version}): {first_message(said)}")
+                raise Error(f"the model does not compile (NVRTC {self.version}): {_core.first_error(said)}")
             return self._text(program, kind), said
         finally:
             self._call("nvrtcDestroyProgram", ctypes.byref(program))
@@ -171,7 +172,7 @@ _loaded = {}
 
 
 def _cached(source, capability, load):
-    """Takes a program from the cache, or compiles it into the cache, and loads it: `load` gets its file."""
+    """Takes a program from the cache, or compiles it into the cache, and loads it: `load` gets its content."""
     path = find()
     if path is None:
         library()  # says so
@@ -179,16 +180,14 @@ def _cached(source, capability, load):
     if _major(path) > driver:
         raise Error(f"NVRTC of CUDA {_major(path)} compiles for newer drivers than this one, of CUDA {driver}: update "
                     f"the driver, or `pip install nvidia-cuda-nvrtc-cu{driver}`")
-    key = cache.key_of({"source": source, "version": _core.version, "headers": _core.headers, "options": _options[:-1],
-                        "capability": capability,
-                        "nvrtc": f"{path.name} {path.stat().st_size}"})  # its version, without loading it
+    facts = path.stat()  # which tell its version without loading it
+    made_from = json.dumps([source, _core.version, _core.headers, _options[:-1], capability, path.name, facts.st_size,
+                            facts.st_mtime_ns])
 
-    def make(workplace):
-        made = workplace / "model.so"
-        made.write_bytes(library().compile(source, capability)[0])
-        return made
+    def make(folder):
+        pathlib.Path(folder, "model.so").write_bytes(library().compile(source, capability)[0])
 
-    return cache.obtain(key, make, load)
+    return cache.obtain(made_from.encode(), make, lambda made: load(pathlib.Path(made).read_bytes()))
 
 
 def kernel(header, struct, method, real, shared, device, generates=False):
@@ -203,12 +202,9 @@ def kernel(header, struct, method, real, shared, device, generates=False):
     asked = (source, capability, os.environ.get("MYRIAD_NVRTC"))
     if asked in _loaded:
         return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
-    obtained = _cached(source, capability, lambda made: _core.Library(made.read_bytes(), device))
+    obtained = _cached(source, capability, lambda program: _core.Library(program, device))
     _loaded[asked] = obtained.loaded
-    origin = "cache" if obtained.hit else f"compiled by NVRTC {library().version}"
-    if obtained.unusable is not None:
-        origin += f" ({obtained.unusable}; MYRIAD_CACHE_DIR names another folder)"
-    return Kernel(_loaded[asked], origin, time.perf_counter() - begin)
+    return kernel_of(obtained, "" if obtained.hit else f"NVRTC {library().version}", begin)
 
 
 @functools.lru_cache(maxsize=None)
@@ -216,4 +212,4 @@ def load_study_kernels(device):
     """Loads the kernels that set and reduce the instances of studies on a GPU by its number."""
     _, capability, _ = _core.gpu(device)
     _cached("#include <myriad/python/study_program.cuh>\n", capability,
-            lambda made: _core.load_study_kernels(made.read_bytes(), device))
+            lambda program: _core.load_study_kernels(program, device))

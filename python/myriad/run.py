@@ -10,12 +10,12 @@ from .components import name_of
 from .device import DeviceInput, DeviceResults
 from .errors import Error, note_in_python
 from .grid import Sweep
+from .run_plots import Plots, html
+from .statuses import first_failure, status_names
 from .symbols import time
 
-status_names = tuple(_core.status_names())
 # What datasets and tables call what they have besides components, whose names there get a _ behind.
 _own_names = ("instance", "phase", "sample", "time", "t_last", "status")
-_first_failure = status_names.index("max_steps")
 
 
 class Interrupted(KeyboardInterrupt):
@@ -33,7 +33,7 @@ class Report:
     def __init__(self, report, kernel, seconds, notes=()):
         self._report = report
         self.notes = [*map(note_in_python, report.notes), *notes]  #: what else to know
-        #: "compiled by clang++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
+        #: "compiled by g++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
         #: with a note if the cache cannot be used
         self.kernel = kernel.origin
         self.compile_seconds = kernel.seconds  #: that it took to get the kernel, compiled or from the cache
@@ -102,7 +102,7 @@ class Run(Mapping):
     @property
     def failed(self):
         """True for each instance that ended with a failure."""
-        return self.status >= _first_failure
+        return self.status >= first_failure
 
     @property
     def t(self):
@@ -334,11 +334,9 @@ class Run(Mapping):
     @property
     def plot(self):
         """Pictures by matplotlib: `bifurcation`, `map`, `time_series`, `phase_portrait` and `statuses`."""
-        from .plots import Plots
         return Plots(self)
 
     def _repr_html_(self):
-        from .plots import html
         return html(self)
 
     def __repr__(self):

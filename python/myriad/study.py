@@ -14,7 +14,7 @@ import time as clock
 import numpy as np
 
 from . import _core, nvrtc
-from .axes import Axis, Random
+from .axes import Axis, Random, drawn
 from .components import Components, name_of, unknown
 from .errors import Error, note_in_python, refuse_options, with_event_names
 from .expression import Node
@@ -150,6 +150,7 @@ class Study:
                 if name in ("t_begin", "t_end") and name not in components.place:
                     raise Error(f"'{name}' is given in the sweep and in time=: give None there")
                 raise Error(f"'{name}' is given in the sweep and in start=: give it once")
+            value = drawn(value)
             if not isinstance(value, Axis):
                 value = _numbers(value, name)
             (constants.__setitem__(key, value) if value.ndim == 0 else together.append((key, value)))
@@ -464,8 +465,8 @@ def study(model, sweep=None, *, start=None, time=None, phases=1, record=None, sa
     What `generate=` of the model sets is given neither in the sweep nor in start.
 
     sweep     as in `solve`: `myriad.grid(...)` for all combinations of its axes, or a dict whose arrays go together.
-              Besides arrays and numbers, values are `myriad.linspace(a, b, n)`, `myriad.logspace(a, b, n)`, of which
-              none is stored, and `myriad.random_uniform(a, b)`, `myriad.random_normal(mean, deviation)`, which draw a
+              Besides arrays and numbers, values are `myriad.linspace(a, b, n)`, `myriad.geomspace(a, b, n)`, of which
+              none is stored, and `myriad.uniform(a, b)`, `myriad.normal(mean, deviation)`, which draw a
               value for each instance. States and `myriad.t_begin`, `myriad.t_end` may have axes too
     start     initial values, as in `solve`
     time      begin and end; None for one that is in the sweep

@@ -27,7 +27,7 @@ typeid typename union unsigned using virtual void volatile wchar_t while xor xor
 """.split())
 # Members that the library looks for in a model by name, and macros of C's headers.
 _reserved = set("""state parameter shared shared_integer accessory integer_accessory event observed rhs jacobian events
-observe reductions initialise after_step after_event finalise generate writes_parameters writes_time_domain
+observe summaries initialise after_step after_event finalise generate writes_parameters writes_time_domain
 accessories_are_outputs scalar_only rare_events large_rhs autonomous jacobian_pattern pack_batches max_block_size
 myriad std linux unix errno assert NULL NAN INFINITY EOF BUFSIZ RAND_MAX HUGE_VAL OVERFLOW UNDERFLOW DOMAIN SING PLOSS
 TLOSS stdin stdout stderr major minor alloca offsetof issubnormal math_errhandling sched_priority""".split())
@@ -110,7 +110,7 @@ def shared_integer(name):
 
 
 def accessory(name):
-    """A real number that the model stores by instance: hooks, actions and reductions over a phase write it."""
+    """A real number that the model stores by instance: hooks, actions and summaries over a phase write it."""
     return symbol("accessory", name)
 
 

@@ -16,7 +16,7 @@ _limits = dict(zip(("states", "parameters", "accessories", "integer accessories"
 
 
 def _refuse(why):
-    return Error(f"the model cannot be interpreted, as {why}: install a C++ compiler (clang++ 14 or g++ 12 or newer), "
+    return Error(f"the model cannot be interpreted, as {why}: install a C++ compiler (g++ 12 or clang++ 14 or newer), "
                  "or `pip install ziglang`")
 
 
@@ -128,7 +128,7 @@ def library(model, components, method):
         raise _refuse("it has tangents" if hasattr(model, "vectors") else "it is written in C++")
     if method not in methods:
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
-    if model.reductions:
+    if model.summaries:
         raise _refuse("it has extrema or integrals over a phase")
     for kind, count in (("states", len(components.states)), ("parameters", len(components.parameters)),
                         ("accessories", len(components.accessories)),

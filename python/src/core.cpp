@@ -20,6 +20,7 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include "compile.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/core/instruction_set.hpp"
 #include "myriad/host/threads/parallel.hpp"
@@ -439,5 +440,6 @@ NB_MODULE(_core, m) {
     bind_precision<double>(m, "Ensemble64", "Report64");
     bind_precision<float>(m, "Ensemble32", "Report32");
     bind_study(m);
+    bind_compile(m);
     known = PyDict_Copy(m.attr("__dict__").ptr());
 }

@@ -399,10 +399,10 @@ void bind_study(nb::module_& m) {
             return array_of(std::move(all), {size});
         });
     m.def("linspace", &linspace);
-    m.def("logspace", &logspace);
+    m.def("geomspace", &geomspace);
     m.def("values", [](std::vector<double> list) { return values(std::move(list)); });
-    m.def("random_uniform", &random_uniform);
-    m.def("random_normal", &random_normal);
+    m.def("uniform", &uniform);
+    m.def("normal", &normal);
     nb::class_<ensemble_reduction>(m, "Reduction");
     m.def("histogram_of", &histogram_of);
     m.def("minimum_of", [](const std::string& v) { return minimum_of(v); });

@@ -5,6 +5,7 @@ import multiprocessing
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -45,9 +46,23 @@ def test_a_second_process_finds_the_kernel(tmp_path):
     tmp_path.chmod(0o700)
 
 
+def obtain(made_from, make, load):
+    return cache.obtain(made_from.encode(), make, load)
+
+
+def file_of(made_from):
+    """The name of the file of the cache that was made from a text: its hash, FNV-1a."""
+    hashed = 0xcbf29ce484222325
+    for byte in made_from.encode():
+        hashed = (hashed ^ byte) * 0x100000001b3 % 2**64
+    return f"{hashed:016x}.so"
+
+
 def read(path):
-    """Stands for loading a library: the content of its file without the digest."""
-    return path.read_bytes()[:-32].decode()
+    """Stands for loading a library: the content of its file without what the cache puts behind it, which is the text
+    that it was made from, the length of that in 8 bytes, and a checksum in 4."""
+    content = pathlib.Path(path).read_bytes()[:-4]
+    return content[:-8 - int.from_bytes(content[-8:], "little")].decode()
 
 
 def _obtain(folder, start, made, results):
@@ -56,14 +71,13 @@ def _obtain(folder, start, made, results):
     def make(workplace):
         with made.get_lock():
             made.value += 1
-        file = workplace / "it"
+        file = pathlib.Path(workplace, "model.so")
         file.write_text("begin")
         time.sleep(0.2)  # others would see a file that is written in place
         file.write_text("begin, end")
-        return file
 
     start.wait()
-    found = cache.obtain("0123", make, read)
+    found = obtain("0123", make, read)
     results.put((found.loaded, found.hit))
 
 
@@ -83,8 +97,7 @@ def test_64_processes_at_once_make_it_once(tmp_path):
 
 def _writer(text):
     def make(workplace):
-        (workplace / "it").write_text(text)
-        return workplace / "it"
+        pathlib.Path(workplace, "model.so").write_text(text)
     return make
 
 
@@ -92,47 +105,48 @@ def test_the_limit_removes_what_was_not_used_for_longest(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
     monkeypatch.setenv("MYRIAD_CACHE_SIZE", "2500")
     for age, key in ((300, "a"), (200, "b")):
-        cache.obtain(key, _writer("x" * 1000), read)
-        os.utime(tmp_path / f"{key}.so", (time.time() - age, time.time() - age))
-    assert cache.obtain("a", _writer("never made"), read).hit  # which makes b the older one
-    cache.obtain("c", _writer("x" * 1000), read)
-    assert sorted(p.name for p in tmp_path.glob("*.so")) == ["a.so", "c.so"]
+        obtain(key, _writer("x" * 1000), read)
+        os.utime(tmp_path / file_of(key), (time.time() - age, time.time() - age))
+    assert obtain("a", _writer("never made"), read).hit  # which makes b the older one
+    obtain("c", _writer("x" * 1000), read)
+    assert {p.name for p in tmp_path.glob("*.so")} == {file_of("a"), file_of("c")}
     assert cache.clear() == 2 and not list(tmp_path.iterdir())
     monkeypatch.setenv("MYRIAD_CACHE_SIZE", "1 GB")
     with pytest.raises(my.Error, match="MYRIAD_CACHE_SIZE is '1 GB': give a number of bytes"):
-        cache.obtain("d", _writer("x"), read)
+        obtain("d", _writer("x"), read)
 
 
 def test_a_failed_compilation_leaves_nothing(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
 
     def fail(workplace):
-        (workplace / "half").write_text("half")
+        pathlib.Path(workplace, "half").write_text("half")
         raise my.Error("no")
 
     with pytest.raises(my.Error):
-        cache.obtain("e", fail, read)
+        obtain("e", fail, read)
     assert not list(tmp_path.iterdir())
 
 
 def test_a_folder_that_cannot_be_made(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "file" / "cache"))
-    found = cache.obtain("f", _writer("made"), read)
-    assert found == cache.Obtained("made", False, f"the cache {tmp_path}/file/cache cannot be used: Not a directory")
-    assert cache.obtain("f", _writer("again"), read).hit
+    found = obtain("f", _writer("made"), read)
+    assert found == cache.Obtained("made", False, f"compiled models are not kept in {tmp_path}/file/cache, as it "
+                                   "cannot be used (Not a directory): set MYRIAD_CACHE_DIR to a folder that can")
+    assert obtain("f", _writer("again"), read).hit
     told, _, _ = run_script(MYRIAD_CACHE_DIR=str(tmp_path / "file" / "cache"))
-    assert told.startswith("compiled by") and f"the cache {tmp_path}/file/cache cannot be used" in told
+    assert told.startswith("compiled by") and f"not kept in {tmp_path}/file/cache" in told
 
 
 def test_a_damaged_entry_is_made_again(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
-    cache.obtain("g", _writer("whole"), read)
-    file = tmp_path / "g.so"
-    for damaged in (b"", file.read_bytes()[:20], b"X" + file.read_bytes()[1:]):
+    obtain("g", _writer("whole"), read)
+    file = tmp_path / file_of("g")
+    for damaged in (b"", file.read_bytes()[:10], b"X" + file.read_bytes()[1:]):
         file.write_bytes(damaged)
-        assert cache.obtain("g", _writer("new"), read) == cache.Obtained("new", False)
-        assert cache.obtain("g", _writer("never made"), read) == cache.Obtained("new", True)
+        assert obtain("g", _writer("new"), read) == cache.Obtained("new", False)
+        assert obtain("g", _writer("never made"), read) == cache.Obtained("new", True)
 
 
 def test_what_cannot_be_loaded_is_not_kept(tmp_path, monkeypatch):
@@ -142,54 +156,54 @@ def test_what_cannot_be_loaded_is_not_kept(tmp_path, monkeypatch):
         raise my.Error("undefined symbol")
 
     with pytest.raises(my.Error, match="undefined symbol"):
-        cache.obtain("h", _writer("made"), refuse)
+        obtain("h", _writer("made"), refuse)
     assert not list(tmp_path.glob("*.so"))
-    cache.obtain("h", _writer("old"), read)
+    obtain("h", _writer("old"), read)
 
     def refuse_old(path):
         return refuse(path) if read(path) == "old" else read(path)
 
-    assert cache.obtain("h", _writer("new"), refuse_old) == cache.Obtained("new", False)
+    assert obtain("h", _writer("new"), refuse_old) == cache.Obtained("new", False)
 
 
 def test_a_lock_that_cannot_be_opened(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
-    (tmp_path / "j.lock").symlink_to(tmp_path / "nowhere" / "else")  # which stops root too
-    assert cache.obtain("j", _writer("made"), read) == cache.Obtained(
-        "made", False, f"the cache {tmp_path} cannot be used: Too many levels of symbolic links")
+    (tmp_path / file_of("j")).with_suffix(".lock").symlink_to(tmp_path / "nowhere" / "else")  # which stops root too
+    assert obtain("j", _writer("made"), read) == cache.Obtained("made", False)  # others may make the same
+    assert obtain("j", _writer("never made"), read).hit
 
 
 def test_under_umask_0_the_cache_is_the_users_alone(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "of" / "mine"))
     before = os.umask(0)
     try:
-        cache.obtain("k", _writer("made"), read)
+        obtain("k", _writer("made"), read)
     finally:
         os.umask(before)
     modes = {p.name: p.stat().st_mode & 0o777 for p in tmp_path.rglob("*")}
-    assert modes == {"of": 0o700, "mine": 0o700, "k.so": 0o600}
+    assert modes == {"of": 0o700, "mine": 0o700, file_of("k"): 0o600}
 
 
 def _refused(why, key):
     """Nothing of the cache is loaded, and the model is made elsewhere."""
     with pytest.warns(RuntimeWarning, match=why):
-        found = cache.obtain(key, _writer("own"), read)
+        found = obtain(key, _writer("own"), read)
     assert found.loaded == "own" and re.search(why, found.unusable)
 
 
 def test_a_cache_that_others_may_write_to_is_refused(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
-    cache.obtain("m", _writer("planted"), read)
+    obtain("m", _writer("planted"), read)
     for mode in (0o777, 0o720, 0o702):
         tmp_path.chmod(mode)
         _refused(rf"others may write to it \(mode {mode:o}\).*chmod go-w", f"m{mode}")
     tmp_path.chmod(0o700)
-    assert cache.obtain("m", _writer("never made"), read).hit
+    assert obtain("m", _writer("never made"), read).hit
 
 
 def test_a_file_of_the_cache_that_may_be_somebody_elses_is_made_again(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "cache"))
-    file = tmp_path / "cache" / "n.so"
+    file = tmp_path / "cache" / file_of("n")
 
     def opened_to_others():
         file.chmod(0o622)
@@ -203,9 +217,9 @@ def test_a_file_of_the_cache_that_may_be_somebody_elses_is_made_again(tmp_path, 
         os.mkfifo(file)
 
     for plant in (opened_to_others, linked, pipe):
-        cache.obtain("n", _writer("planted"), read)
+        obtain("n", _writer("planted"), read)
         plant()
-        assert cache.obtain("n", _writer("own"), read) == cache.Obtained("own", False), plant.__name__
+        assert obtain("n", _writer("own"), read) == cache.Obtained("own", False), plant.__name__
         assert file.is_file() and not file.is_symlink() and file.stat().st_mode & 0o777 == 0o600
         file.unlink()
 
@@ -214,9 +228,9 @@ def test_a_file_of_the_cache_that_may_be_somebody_elses_is_made_again(tmp_path, 
 def test_what_belongs_to_another_user_is_refused(tmp_path, monkeypatch):
     folder = tmp_path / "cache"
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(folder))
-    cache.obtain("o", _writer("planted"), read)
-    os.chown(folder / "o.so", 12345, -1)
-    assert cache.obtain("o", _writer("own"), read) == cache.Obtained("own", False)
+    obtain("o", _writer("planted"), read)
+    os.chown(folder / file_of("o"), 12345, -1)
+    assert obtain("o", _writer("own"), read) == cache.Obtained("own", False)
     os.chown(folder, 12345, -1)
     _refused("it belongs to another user, of number 12345", "o1")
     os.chown(folder, 0, -1)
@@ -229,31 +243,66 @@ def test_what_belongs_to_another_user_is_refused(tmp_path, monkeypatch):
 def test_a_killed_compilation_leaves_nothing_after_the_next_one(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
     script = ("import os, signal; from myriad import cache\n"
-              "cache.obtain('p', lambda folder: os.kill(os.getpid(), signal.SIGKILL), None)")
+              "cache.obtain(b'p', lambda folder: os.kill(os.getpid(), signal.SIGKILL), print)")
+    own = file_of("p").removesuffix(".so")
     for key in ("p", "q"):  # the same model, and another one
         subprocess.run([sys.executable, "-c", script], check=False)
-        assert sorted(p.name.split(".")[1] for p in tmp_path.glob("p.*") if p.suffix != ".so") == ["lock", "work"]
-        cache.obtain(key, _writer("made"), read)
-        assert {p.name for p in tmp_path.iterdir()} <= {"p.so", "q.so"}
-        (tmp_path / "p.so").unlink(missing_ok=True)
+        assert sorted(p.name.split(".")[1] for p in tmp_path.glob(f"{own}.*") if p.suffix != ".so") == ["lock", "work"]
+        obtain(key, _writer("made"), read)
+        assert {p.name for p in tmp_path.iterdir()} <= {file_of("p"), file_of("q")}
+        (tmp_path / file_of("p")).unlink(missing_ok=True)
 
 
 def test_a_place_of_a_living_process_stays(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
 
     def make(workplace):
-        cache.obtain("inner", _writer("made"), read)
-        assert workplace.is_dir() and (tmp_path / "outer.lock").exists()
-        return _writer("made")(workplace)
+        obtain("inner", _writer("made"), read)
+        assert os.path.isdir(workplace) and (tmp_path / file_of("outer")).with_suffix(".lock").exists()
+        _writer("made")(workplace)
 
-    assert cache.obtain("outer", make, read) == cache.Obtained("made", False)
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["inner.so", "outer.so"]
+    assert obtain("outer", make, read) == cache.Obtained("made", False)
+    assert {p.name for p in tmp_path.iterdir()} == {file_of("inner"), file_of("outer")}
 
 
-def test_what_a_key_depends_on():
-    parts = {"source": "a", "flags": ["-O3"]}
-    assert cache.key_of(parts) == cache.key_of(dict(reversed(parts.items())))
-    assert cache.key_of(parts) != cache.key_of({**parts, "flags": ["-O2"]})
+def test_a_file_that_was_made_from_another_text_is_not_loaded(tmp_path, monkeypatch):
+    """Names are short hashes: what counts is the text itself."""
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    obtain("r", _writer("of r"), read)
+    (tmp_path / file_of("r")).rename(tmp_path / file_of("s"))
+    assert obtain("s", _writer("of s"), read) == cache.Obtained("of s", False)
+
+
+def test_ctrl_c_ends_a_compilation(tmp_path):
+    """The compiler need not get the signal, as in a notebook."""
+    slow = tmp_path / "g++"
+    slow.write_text("#!/bin/sh\n[ $1 = -dumpversion ] && echo 12 && exit\ntouch " + str(tmp_path / "begun") +
+                    "\nexec sleep 60\n")
+    slow.chmod(0o700)
+    with subprocess.Popen([sys.executable, "-c", SCRIPT], stderr=subprocess.PIPE, text=True, env={
+            **os.environ, "MYRIAD_CXX": str(slow), "MYRIAD_CACHE_DIR": str(tmp_path / "cache")}) as process:
+        while not (tmp_path / "begun").exists():
+            time.sleep(0.02)
+        begin = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        assert process.communicate()[1].endswith("KeyboardInterrupt\n")
+        assert time.monotonic() - begin < 20
+    assert not list((tmp_path / "cache").iterdir())
+
+
+def test_what_a_key_depends_on(monkeypatch):
+    by = compiler.known_compiler()
+    keys = [by.made_from("a"), by.made_from("b")]
+    for name, value in (("MYRIAD_INSTRUCTION_SET", "sse2"), ("MYRIAD_CXX", f"{by.command[0]} -fno-plt")):
+        monkeypatch.setenv(name, value)
+        keys.append(compiler.known_compiler().made_from("a"))
+    assert len(set(keys)) == len(keys) == 4 and by.made_from("a") == keys[2]
+
+
+def test_an_instruction_set_that_the_cpu_lacks(monkeypatch):
+    monkeypatch.setenv("MYRIAD_INSTRUCTION_SET", "avx1024")
+    with pytest.raises(my.Error, match="MYRIAD_INSTRUCTION_SET is 'avx1024': this CPU has .*sse2.*: name one of them"):
+        compiler.compiler().flags
 
 
 def test_the_compiler_that_the_environment_names(monkeypatch):

@@ -392,3 +392,32 @@ def test_hooks(run_program):
     run = my.solve(example_models.stop_by_select(), {"gap": np.full(3, 10), "K": 10}, start={"x": 2, "v": 0},
                    time=(0, 10), samples=101, **call)
     says("samples differ from 2 cos t by", np.abs(run["x"] - 2 * np.cos(run.sample_times)).max())
+
+
+def test_the_program_myriad_has_the_same_bits(tmp_path):
+    """Compiler and flags are the same, so that a chaotic orbit is the same."""
+    programs = [folder.parent / "bin" / "myriad" for folder in folders]
+    program = next((p for p in programs if p.is_file()), None)
+    if program is None:
+        pytest.skip(f"the program is not built: {' or '.join(map(str, programs))}")
+    text = (root / "examples" / "quickstart" / "model.hpp").read_text()
+    (tmp_path / "model.hpp").write_text(text)
+    (tmp_path / "study.toml").write_text("""
+        model = "duffing"
+        header = "model.hpp"
+        method = "cash_karp"
+        time_domain = [0, "2 pi"]
+        axes.k = {linspace = [0.2, 0.3, 37]}
+        set = {B = 0.3, x = -0.5, v = -0.1}
+        [options]
+        phases = 100
+        relative_tolerance = 1e-9
+        record = {from_phase = 90, states = ["x"]}
+        """)
+    subprocess.run([program, "run", "study.toml", "--quiet"], cwd=tmp_path, check=True, capture_output=True)
+    theirs = my.open_study(tmp_path / "study")
+    run = my.solve(my.CppModel(text, "duffing", "x v", "k", "B"), {"k": my.linspace(0.2, 0.3, 37), "B": 0.3},
+                   start={"x": -0.5, "v": -0.1}, time=(0, tau), phases=100, rtol=1e-9, method="cash_karp",
+                   record=dict(from_phase=90, states=["x"]), device="cpu")
+    assert np.ptp(run["x"]) > 1
+    np.testing.assert_array_equal(theirs["x"], run["x"])

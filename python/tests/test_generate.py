@@ -247,7 +247,7 @@ def test_text_and_sympy_name_the_instance_and_draw():
     (dict(generate={x: my.time}), "generate reads time.*before there is any"),
     (dict(generate={x: 1, y: 2 * x}), "generate reads x.*which it sets itself"),
     (dict(generate={x: 1, "x": 2}), "x is assigned twice in generate"),
-    (dict(generate={x: my.random_uniform(0, 1)}), "generate sets x to random_uniform.*write myriad.uniform"),
+    (dict(generate={x: my.linspace(0, 1, 3)}), "generate sets x to linspace.*write it with myriad.instance"),
     (dict(generate={n: my.instance / 2}), "generate gives the whole number n the real value `instance / 2`"),
     (dict(generate={"w": 1}), "generate.*'w' is unknown"),
     (dict(generate={my.state("w"): 1}), "the state w.*has no equation"),

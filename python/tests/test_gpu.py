@@ -43,7 +43,7 @@ sweeps = {
     "stick slip": (example_models.stick_slip, dict(belt=np.linspace(0.1, 0.4, 500), kinetic=0.6, breakaway=1),
                    dict(x=0, v=0, t_slip=0, x_slip=0, x_stick=0, period=0, sticks=0, slips=0),
                    dict(time=(0, 20), samples=30)),
-    "reductions": (example_models.damped, dict(zeta=np.linspace(0.05, 0.9, 1000)), dict(x=1, v=0),
+    "summaries": (example_models.damped, dict(zeta=np.linspace(0.05, 0.9, 1000)), dict(x=1, v=0),
                    dict(time=(0, 10), phases=3, method="tsitouras_5",
                         record=["overshoot", "t_overshoot", "dissipated"])),
     "stiff": (example_models.oregonator, dict(f=np.linspace(0.8, 1.2, 200), epsilon=0.04, q=8e-4, ratio=0.01),

@@ -9,6 +9,7 @@ import pytest
 
 import myriad as my
 from myriad import plots
+from myriad.run_plots import Plots
 
 matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")
@@ -100,19 +101,19 @@ class ARun:
 def test_a_run_draws_its_components_by_name_or_symbol():
     k, x = my.parameter("k"), my.state("x")
     run = ARun(my.grid({k: [1.0, 2.0]}), records={"x": np.array([[1.0], [2.0]])}, samples={"x": np.ones((2, 3))})
-    axes = plots.Plots(run).bifurcation(k, x)
+    axes = Plots(run).bifurcation(k, x)
     assert axes.lines[0].get_xydata().tolist() == [[1, 1], [2, 2]]
-    assert plots.Plots(run).time_series("x").lines[1].get_label() == "k = 2"
+    assert Plots(run).time_series("x").lines[1].get_label() == "k = 2"
     with pytest.raises(my.Error, match="v was not recorded: give record="):
-        plots.Plots(run).bifurcation("k", "v")
+        Plots(run).bifurcation("k", "v")
     with pytest.raises(my.Error, match="no grid over k and B alone"):
-        plots.Plots(run).map("k", "B", "x")
+        Plots(run).map("k", "B", "x")
 
 
 def test_a_map_of_a_run_follows_the_axes_of_its_grid_and_leaves_failures_out():
     run = ARun(my.grid(k=[1.0, 2.0], B=[3.0, 4.0, 5.0], c=7.0), final={"x": np.arange(6.0)})
     run.failed[5] = True
-    drawn = plots.Plots(run).map("B", "k", "x").collections[0].get_array()
+    drawn = Plots(run).map("B", "k", "x").collections[0].get_array()
     assert drawn[0].tolist() == [0, 1, 2] and drawn[1, :2].tolist() == [3, 4] and drawn.mask[1, 2]
 
 

@@ -106,7 +106,7 @@ def test_blocks_cover_a_grid():
 
 def test_axes_of_every_kind():
     model = duffing()
-    many = my.study(model, my.grid(my.zip({k: [0.2, 0.3], x: [1.0, 2.0]}), {v: my.logspace(1, 100, 3), B: 0.3}),
+    many = my.study(model, my.grid(my.zip({k: [0.2, 0.3], x: [1.0, 2.0]}), {v: my.geomspace(1, 100, 3), B: 0.3}),
                     time=(0, 0), draws=4).run()
     assert many.shape == (2, 3, 4)
     np.testing.assert_allclose(many["v_end"][0, :, 0], [1, 10, 100])
@@ -124,7 +124,7 @@ def test_axes_of_every_kind():
 
 def test_random_values_depend_on_the_seed_and_the_instance():
     def drawn(seed, **more):
-        study = my.study(duffing(), {k: my.random_uniform(0.2, 0.3), B: 0.3}, start={x: my.random_normal(1, 2), v: 0},
+        study = my.study(duffing(), {k: my.uniform(0.2, 0.3), B: 0.3}, start={x: my.normal(1, 2), v: 0},
                          time=(0, 0), draws=2000, seed=seed, **more)
         return study.run(chunk=300)
     first = drawn(1)
@@ -135,7 +135,24 @@ def test_random_values_depend_on_the_seed_and_the_instance():
     assert (first["k"] != drawn(2)["k"]).all()
     assert "k" not in drawn(1, keep=dict(end=[x], random=False)).names
     with pytest.raises(my.Error, match="is drawn for each instance of a study"):
-        my.solve(duffing(), {k: my.random_uniform(0, 1), B: 0.3}, start={x: 1, v: 0}, time=(0, 1))
+        my.solve(duffing(), {k: my.uniform(0, 1), B: 0.3}, start={x: 1, v: 0}, time=(0, 1))
+
+
+def test_random_values_in_a_grid_are_those_of_a_sweep():
+    def drawn(sweep):
+        return my.study(duffing(), sweep, start={x: 1, v: 0}, time=(0, 0), seed=3).run()["B"]
+    values = my.linspace(0, 1, 50)
+    np.testing.assert_array_equal(drawn(my.grid({k: values}, {B: my.normal(2, 0.5)})),
+                                  drawn({k: values, B: my.normal(2, 0.5)}))
+    with pytest.raises(my.Error, match=r"`uniform\(0, k\)` is given in a sweep.*draw it in generate="):
+        my.study(duffing(), {k: values, B: my.uniform(0, k)}, start={x: 1, v: 0}, time=(0, 1))
+
+
+def test_former_names_say_the_new_ones():
+    with pytest.raises(AttributeError, match="myriad.logspace is myriad.geomspace"):
+        my.logspace(1, 10, 3)
+    with pytest.raises(AttributeError, match="has no attribute 'logspaces'"):
+        my.logspaces(1, 10, 3)
 
 
 def test_reductions_are_numpys():

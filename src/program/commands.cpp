@@ -17,6 +17,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "compile/child_process.hpp"
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/progress.hpp"
@@ -28,7 +29,6 @@
 #include "myriad/study/store.hpp"
 #include "myriad/study/study.hpp"
 #include "myriad/version.hpp"
-#include "program/child_process.hpp"
 #include "program/model_compiler.hpp"
 #include "program/model_source.hpp"
 #include "program/study_file.hpp"
@@ -278,7 +278,7 @@ int run_study(const run_request& asked, study_file& file, const std::string& tex
     if (header) compile_model(wanted, *header, asked.permission(), asked.quiet);
     const program_model& model = find_model(wanted);
     any_study study(find_method(model, wanted).make());
-    file.describe(study, model, devices_of(asked.devices));
+    file.set_up(study, model, devices_of(asked.devices));
     if (header) study.note("source of the model", header->digest());
     studies::store_options options = file.store_options();
     if (asked.checksums) options.check = studies::resume_check::checksums;
@@ -455,45 +455,29 @@ int info(const std::string& folder, bool verify) {
     return damaged.empty() ? 0 : 1;
 }
 
-/// What `plot` passes on to its script.
-struct plot_request {
-    std::vector<std::string> sources, at;
-    std::string output, variable, over, value;
-};
-
 /// A Python that can draw: the first on the PATH may not be the one that the system's packages are for.
-std::string find_python(bool is_folder) {
+std::string find_python(bool reads_files) {
     // As plot.py does: no modules from the folder it is run in or from PYTHONPATH, but those that the user installed.
     const std::string imports = message("import site; site.addsitedir(site.getusersitepackages()); import matplotlib",
-                                        is_folder ? "" : ", netCDF4");
+                                        reads_files ? ", netCDF4" : "");
     for (const char* python : {"python3", "/usr/bin/python3"})
-        if (child_process({python, "-I", "-c", imports}, "/dev/null").wait() == 0) return python;
-    throw error(message("pictures need a Python 3 with matplotlib", is_folder ? "" : " and netCDF4",
+        if (compiling::child_process({python, "-I", "-c", imports}, "/dev/null").wait() == 0) return python;
+    throw error(message("pictures need a Python 3 with matplotlib", reads_files ? " and netCDF4" : "",
                         ": install it (Debian, Ubuntu: apt-get install python3-matplotlib",
-                        is_folder ? ")" : " python3-netcdf4), or draw the folder of the results"));
+                        reads_files ? " python3-netcdf4), or draw the folder of the results" : ")"));
 }
 
-int plot(const plot_request& asked) {
+/// Runs the script that draws, with all arguments of the command, which it knows.
+int plot(const std::vector<std::string>& arguments) {
     const std::string script = data_file("plot.py");
     if (!fs::is_regular_file(script)) throw error("this program draws nothing, as " + script + " is missing");
-    if (!asked.output.empty() && asked.sources.size() > 1)
-        throw input_error("--output names one picture, and several results are given");
-    for (std::string source : asked.sources) {
-        while (source.size() > 1 && source.back() == '/') source.pop_back();
-        const bool is_folder = fs::is_directory(source);
-        // The name of a folder may have dots.
-        const std::string beside = is_folder ? source + ".png" : fs::path(source).replace_extension(".png").string();
-        const std::string picture = asked.output.empty() ? beside : asked.output;
-        std::vector<std::string> words{find_python(is_folder), "-I", "-B", script, source, picture};
-        words.push_back("--reader=" + fs::read_symlink("/proc/self/exe").string());
-        for (const auto& [option, value] :
-             {std::pair("--variable", asked.variable), {"--over", asked.over}, {"--value", asked.value}})
-            if (!value.empty()) words.push_back(message(option, '=', value));
-        for (const std::string& place : asked.at) words.push_back("--at=" + place);
-        if (const int status = child_process(words).wait(); status != 0) return status == 2 ? 2 : 1;
-        std::cout << "picture: " << picture << '\n';
-    }
-    return 0;
+    const bool reads_files = std::any_of(arguments.begin(), arguments.end(),
+                                         [](const std::string& word) { return fs::is_regular_file(word); });
+    std::vector<std::string> words{find_python(reads_files), "-I", "-B", script,
+                                   "--reader=" + fs::read_symlink("/proc/self/exe").string()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const int status = compiling::child_process(words).wait();
+    return status == 0 || status == 2 ? status : 1;
 }
 
 int parse_and_run(int argc, const char* const* argv) {
@@ -502,7 +486,6 @@ int parse_and_run(int argc, const char* const* argv) {
     app.require_subcommand(1);
     app.footer("Exit status: 0 done, 1 a failure, 2 bad input, 130 and 143 stopped by SIGINT and SIGTERM.");
     run_request asked;
-    plot_request picture;
     std::vector<std::string> files;
     std::string target, variable;
     bool verify = false, require_complete = false;
@@ -563,20 +546,8 @@ int parse_and_run(int argc, const char* const* argv) {
     });
 
     CLI::App* const plot_command = app.add_subcommand("plot", "Draw diagrams over one or two parameters");
-    plot_command->add_option("RESULTS", picture.sources, "Folders of results, or netCDF files")->required();
-    plot_command->add_option("--output", picture.output, "The picture (default: RESULTS.png)")->type_name("PNG");
-    plot_command->add_option("--variable", picture.variable, "What to show (default: the first one)")
-        ->type_name("NAME");
-    plot_command->add_option("--over", picture.over, "One axis, or two with a comma (default: the longest ones)")
-        ->type_name("AXES");
-    plot_command->add_option("--at", picture.at, "For another axis the value nearest to this; may be repeated")
-        ->type_name("AXIS=VALUE");
-    plot_command
-        ->add_option("--value", picture.value,
-                     "Over two axes, of several phases or starts: last, minimum, maximum, mean, or distinct (how many "
-                     "values there are)")
-        ->type_name("WHICH");
-    plot_command->callback([&] { status = plot(picture); });
+    plot_command->prefix_command()->set_help_flag();  // of the script
+    plot_command->callback([&] { status = plot(plot_command->remaining()); });
 
     try {
         app.parse(argc, argv);

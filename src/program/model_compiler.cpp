@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -14,76 +13,18 @@
 
 #include <dlfcn.h>
 
+#include "compile/child_process.hpp"
+#include "compile/compiled_cache.hpp"
+#include "compile/compiler.hpp"
 #include "myriad/host/core/error.hpp"
-#include "myriad/host/core/instruction_set.hpp"
-#include "myriad/version.hpp"
-#include "program/child_process.hpp"
-#include "program/model_cache.hpp"
 
 namespace myriad::programs {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string variable(const char* name) {
-    const char* const value = std::getenv(name);
-    return value != nullptr ? value : "";
-}
-
-void write_file(const fs::path& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    file.close();
-    require(file.good(), path.string(), " cannot be written: is the disk full?");
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// The compiler
-// ---------------------------------------------------------------------------------------------------------------------
-
-std::string find_compiler() {
-    if (const std::string chosen = variable("MYRIAD_CXX"); !chosen.empty()) {
-        const std::string found = find_program(chosen);
-        require(!found.empty(), "MYRIAD_CXX is ", chosen,
-                ", and there is no such program: give the path of a C++ compiler, or unset the variable");
-        return found;
-    }
-    for (const char* name : {"g++", "clang++"})
-        if (const std::string found = find_program(name); !found.empty()) return found;
-    throw error(
-        "there is no C++ compiler to compile the model with: install g++ 12 or clang++ 14 or newer, or name "
-        "one in the environment variable MYRIAD_CXX");
-}
-bool is_clang(const std::string& compiler) { return fs::path(compiler).filename().string().find("clang") == 0; }
-
-/// What tells a file from its next version.
-std::string identity(const fs::path& path) {
-    std::error_code unknown;
-    const fs::path place = fs::canonical(path, unknown);
-    return message(place.string(), ' ', fs::file_size(place, unknown), ' ',
-                   fs::last_write_time(place, unknown).time_since_epoch().count());
-}
-
-openmp::instruction_set wanted_set() {
-    const std::string asked = variable("MYRIAD_INSTRUCTION_SET");
-    for (const openmp::instruction_set set : host::all_instruction_sets)
-        if (host::cpu_has(set) && (asked.empty() || asked == host::name_of(set))) return set;
-    throw error(message("MYRIAD_INSTRUCTION_SET is ", asked, ", which this CPU lacks: unset the variable"));
-}
-/// Spelt out, so that machines that share a cache agree on its meaning.
-const char* architecture_of(openmp::instruction_set set) {
-    switch (set) {
-        case openmp::instruction_set::avx512:
-            return "-march=x86-64-v4";
-        case openmp::instruction_set::avx2:
-            return "-march=x86-64-v3";
-        case openmp::instruction_set::sse2:
-            return "-march=x86-64-v2";
-        default:
-            return "";
-    }
-}
+using compiling::child_process;
+using compiling::compiler;
 
 /// Where the library's headers are.
 struct header_flags {
@@ -122,19 +63,16 @@ header_flags read_flags(const std::string& path) {
     return made;
 }
 
-std::vector<std::string> common_flags(const header_flags& headers) {
-    std::vector<std::string> flags{"-std=c++20", "-fPIC", "-fopenmp", "-DNDEBUG"};
+/// The flags of the file with kernels; OpenMP has the threads.
+std::vector<std::string> kernel_flags(const compiler& by, const header_flags& headers) {
+    std::vector<std::string> flags = by.kernel_flags(compiling::wanted_instruction_set());
+    flags.insert(flags.end(), {"-fopenmp", "-DNDEBUG", "-DMYRIAD_MODEL_FILE"});
     flags.insert(flags.end(), headers.words.begin(), headers.words.end());
     return flags;
 }
-/// As those of MyriadModels.cmake.
-std::vector<std::string> kernel_flags(const header_flags& headers, const std::string& compiler) {
-    std::vector<std::string> flags = common_flags(headers);
-    for (const char* flag : {"-O3", "-ffp-contract=off", "-fno-math-errno", "-DMYRIAD_MODEL_FILE"})
-        flags.emplace_back(flag);
-    const std::string architecture = architecture_of(wanted_set());
-    if (!architecture.empty()) flags.push_back(architecture);
-    flags.emplace_back(is_clang(compiler) ? "-Wno-pass-failed" : "--param=sra-max-scalarization-size-Ospeed=2048");
+std::vector<std::string> host_flags(const header_flags& headers) {
+    std::vector<std::string> flags{"-std=c++20", "-fPIC", "-fopenmp", "-DNDEBUG", "-O1"};
+    flags.insert(flags.end(), headers.words.begin(), headers.words.end());
     return flags;
 }
 
@@ -169,46 +107,33 @@ std::string host_file(const compile_request& wanted) {
                    ", myriad_compiled::method>(); }\n");
 }
 
-/// The errors in a compiler's output, the first of them.
-std::string first_errors(const fs::path& output) {
-    std::ifstream file(output);
-    std::string found, last;
-    int count = 0;
-    for (std::string line; std::getline(file, line);) {
-        if (!line.empty()) last = line;
-        if (line.find("error: ") == std::string::npos || ++count > 5) continue;
-        found += "\n  " + line;
-    }
-    if (found.empty() && last.empty()) return " it failed without a message";
-    return found.empty() ? "\n  " + last : found;
-}
-
-void compile(const compile_request& wanted, const std::string& compiler, const header_flags& headers,
-             const fs::path& folder) {
-    const auto start = [&](const std::string& name, std::vector<std::string> flags, const std::string& text) {
-        write_file(folder / (name + ".cpp"), text);
-        flags.insert(flags.begin(), compiler);
-        for (const std::string& word : {std::string("-c"), (folder / (name + ".cpp")).string(), std::string("-o"),
-                                        (folder / (name + ".o")).string()})
-            flags.push_back(word);
-        return child_process(flags, folder / (name + ".txt"));
+void compile(const compile_request& wanted, const compiler& by, const header_flags& headers, const fs::path& folder) {
+    const auto start = [&](const std::string& name, const std::vector<std::string>& arguments) {
+        std::vector<std::string> words = by.command;
+        words.insert(words.end(), arguments.begin(), arguments.end());
+        return child_process(words, folder / (name + ".txt"));
     };
-    std::vector<std::string> host = common_flags(headers);
-    host.emplace_back("-O1");
-    child_process of_kernels = start("kernels", kernel_flags(headers, compiler), kernel_file(wanted));
-    child_process of_host = start("host", host, host_file(wanted));
-    const int kernels_failed = of_kernels.wait(), host_failed = of_host.wait();
-    const auto refuse = [&](const char* output) {
-        throw error(message(wanted.source.name, " does not compile (", fs::path(compiler).filename().string(),
-                            "):", first_errors(folder / output)));
+    const auto start_file = [&](const std::string& name, std::vector<std::string> flags, const std::string& text) {
+        const std::string file = folder / name;
+        compiling::write_file(file + ".cpp", text);
+        flags.insert(flags.end(), {"-c", file + ".cpp", "-o", file + ".o"});
+        return start(name, flags);
     };
-    if (kernels_failed != 0) refuse("kernels.txt");
-    if (host_failed != 0) refuse("host.txt");
+    const auto finish = [&](child_process& run, const char* name) {
+        if (run.wait() == 0) return;
+        std::string lines;
+        for (const std::string& line : compiling::error_lines(compiling::read_file(folder / name), 5))
+            lines += "\n  " + line;
+        throw error(message(wanted.source.name, " does not compile (", by.name(), "):", lines));
+    };
+    child_process of_kernels = start_file("kernels", kernel_flags(by, headers), kernel_file(wanted));
+    child_process of_host = start_file("host", host_flags(headers), host_file(wanted));
+    finish(of_kernels, "kernels.txt");
+    finish(of_host, "host.txt");
     // Its own functions come first, also where another model of the same name was loaded before.
-    child_process linking({compiler, "-shared", "-fopenmp", "-Wl,-Bsymbolic", folder / "host.o", folder / "kernels.o",
-                           "-o", folder / "model.so"},
-                          folder / "link.txt");
-    if (linking.wait() != 0) refuse("link.txt");
+    child_process linking = start("link", {"-shared", "-fopenmp", "-Wl,-Bsymbolic", folder / "host.o",
+                                           folder / "kernels.o", "-o", folder / "model.so"});
+    finish(linking, "link.txt");
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -216,8 +141,8 @@ void compile(const compile_request& wanted, const std::string& compiler, const h
 // ---------------------------------------------------------------------------------------------------------------------
 
 /// Loads it for the life of the process: its code may be running.
-void load(const compiled_file& file) {
-    void* const handle = ::dlopen(file.path().c_str(), RTLD_NOW | RTLD_LOCAL);
+void load(const std::string& path) {
+    void* const handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     require(handle != nullptr, "the compiled model cannot be loaded: ", handle != nullptr ? "" : ::dlerror());
     const auto add = reinterpret_cast<void (*)()>(::dlsym(handle, register_symbol));
     require(add != nullptr, "what was compiled holds no model: remove the cache of compiled models");
@@ -229,29 +154,22 @@ void load(const compiled_file& file) {
 void compile_and_load(const compile_request& wanted, const std::string& flags, compile_permission permission,
                       const std::function<void(const std::string&)>& tell,
                       const std::function<void(const std::string&)>& warn) {
-    const std::string compiler = find_compiler();
+    const std::optional<compiler> by = compiling::find_compiler();
+    if (!by) throw compiling::no_compiler();
     const header_flags headers = read_flags(flags);
-    std::string made_from = message(MYRIAD_VERSION, '\n', identity(compiler), '\n', headers.state);
-    for (const std::string& flag : kernel_flags(headers, compiler)) made_from += flag + '\n';
-    made_from += kernel_file(wanted) + host_file(wanted);
-
-    const model_cache cache;
-    const std::string key = text_hash(made_from);
-    if (const auto file = cache.find(key, made_from)) return load(*file);
-    require(
-        permission == compile_permission::given || cache.knows(wanted.source.text), wanted.source.name,
-        " was never compiled by you, and what is compiled runs with all your rights: look at it, and give --compile if "
-        "you trust it",
-        cache.objection().empty() ? "" : message(" (", cache.objection(), ')'));
-    if (!cache.objection().empty()) warn(cache.objection());
-    const model_cache::workplace work(cache, key);
-    if (const auto file = cache.find(key, made_from)) return load(*file);  // made by the process that held the lock
-    tell(message("compiling ", wanted.source.name, " with ", wanted.method, ", by ",
-                 fs::path(compiler).filename().string()));
-    compile(wanted, compiler, headers, work.folder());
-    load(work.seal(made_from));
-    work.keep();
-    cache.remember(wanted.source.text);
+    const std::string made_from =
+        compiling::made_from(*by, kernel_flags(*by, headers), headers.state, kernel_file(wanted) + host_file(wanted));
+    compiling::compiled_cache cache;
+    const auto make = [&](const fs::path& folder) {
+        require(permission == compile_permission::given || cache.knows(wanted.source.text), wanted.source.name,
+                " was never compiled by you, and what is compiled runs with all your rights: look at it, and give "
+                "--compile if you trust it",
+                cache.objection().empty() ? "" : message(" (", cache.objection(), ')'));
+        if (!cache.objection().empty()) warn(cache.objection());
+        tell(message("compiling ", wanted.source.name, " with ", wanted.method, ", by ", by->name()));
+        compile(wanted, *by, headers, folder);
+    };
+    if (!cache.obtain(made_from, make, &load)) cache.remember(wanted.source.text);
 }
 
 }  // namespace myriad::programs

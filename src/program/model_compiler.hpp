@@ -27,7 +27,7 @@ enum class compile_permission {
 /// Registers the model with that method. `flags` is the file that says where the library's headers are: a folder, from
 /// its own or absolute, or an option of the compiler in each line. `tell` is called with what takes time, `warn` with
 /// why nothing can be kept. Throws `error` with the first messages of the compiler if it refuses the model, if there is
-/// no compiler, and if there is no permission. What is compiled is kept in the `model_cache`, under a name that depends
+/// no compiler, and if there is no permission. What is compiled is kept in the cache, under a name that depends
 /// on the model, the library, the compiler and the CPU.
 void compile_and_load(const compile_request& wanted, const std::string& flags, compile_permission permission,
                       const std::function<void(const std::string&)>& tell,

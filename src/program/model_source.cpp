@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "compile/compiled_cache.hpp"
 #include "myriad/host/core/error.hpp"
 
 namespace myriad::programs {
@@ -122,14 +123,6 @@ model_source read_model_source(const std::string& path) {
     return {header.filename().string(), std::move(all.joined)};
 }
 
-std::string text_hash(std::string_view text) {
-    std::uint64_t hash = 0xcbf29ce484222325;
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-    std::string digits(16, '0');
-    for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
-    return digits;
-}
-
 std::string model_source::digest() const {
     std::string own;
     for (std::size_t at = 0; at < text.size();) {
@@ -137,7 +130,7 @@ std::string model_source::digest() const {
         if (!text.substr(at, 6).starts_with("#line ")) own.append(text, at, end - at);
         at = end;
     }
-    return text_hash(own);
+    return compiling::text_hash(own);
 }
 
 }  // namespace myriad::programs

@@ -19,7 +19,4 @@ struct model_source {
 /// not there are left to the compiler. Throws `error` if a file cannot be read.
 model_source read_model_source(const std::string& path);
 
-/// FNV-1a of a text, as 16 hexadecimal digits.
-std::string text_hash(std::string_view text);
-
 }  // namespace myriad::programs

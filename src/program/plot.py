@@ -1,9 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws diagrams of a study over one or two of its parameters: what `myriad plot` runs.
-
-Usage: plot.py RESULTS PNG [--variable=NAME] [--over=AXIS[,AXIS]] [--at=AXIS=VALUE]... [--value=WHICH]
-               [--reader=PROGRAM]
+"""Draws diagrams of a study over one or two of its parameters.
 
 RESULTS is the folder of a study, or a netCDF file. Over one axis, every value is a dot: all phases, and all places of
 axes that --at does not fix. Over two, colours show one value for each place, of several the one that --value says.
@@ -25,7 +22,7 @@ if sys.flags.no_user_site:
 
 import figure as figures  # noqa: E402  pylint: disable=wrong-import-position
 
-REDUCTIONS = ("last", "minimum", "maximum", "mean", "distinct")
+VALUES = ("last", "minimum", "maximum", "mean", "distinct")
 
 
 class Folder:
@@ -147,14 +144,6 @@ def choose_axes(data, values, dims, wanted):
     return axes
 
 
-def is_geometric(numpy, values):
-    """Whether values have a constant ratio, so that their axis is logarithmic."""
-    if len(values) < 3 or not (numpy.all(values > 0) or numpy.all(values < 0)):
-        return False
-    ratios = numpy.log(values[1:] / values[:-1])
-    return bool(abs(ratios[0]) > 1e-3 and numpy.allclose(ratios, ratios[0], rtol=1e-6))
-
-
 def distinct(numpy, row):
     """How many values differ by more than a thousandth of their range over all, or of their size."""
     row = numpy.sort(row[numpy.isfinite(row)])
@@ -163,7 +152,7 @@ def distinct(numpy, row):
     return 1 + int(numpy.count_nonzero(numpy.diff(row) > 1e-3 * max(1e-300, float(numpy.abs(row).max()))))
 
 
-def reduce_rows(numpy, rows, which):
+def value_of_rows(numpy, rows, which):
     """One number for each row; phases that an instance did not reach are NaN."""
     if rows.shape[-1] == 1:
         return rows[..., 0]
@@ -176,81 +165,47 @@ def reduce_rows(numpy, rows, which):
     return numpy.ma.filled(take(axis=-1), numpy.nan)
 
 
-def draw_dots(pyplot, numpy, across, rows):
-    figure, axis = pyplot.subplots(figsize=(7.2, 4.4))
-    x = numpy.repeat(across, rows.shape[1])
-    y = rows.ravel()
-    shown = numpy.isfinite(y)
-    if not shown.any():
-        raise figures.PlotError("there is no finite value to draw")
-    size = float(numpy.clip(60 / shown.sum() ** 0.4, 0.35, 2.5))
-    axis.plot(x[shown], y[shown], linestyle="none", marker="o", markersize=size, markeredgewidth=0,
-              color=figures.BLUE, rasterized=True)
-    axis.set_xlim(*sorted((across[0], across[-1])) if len(across) > 1 else (across[0] - 0.5, across[0] + 0.5))
-    axis.set_ylim(*figures.limits(numpy, y))
-    return figure, axis
+def names_of(numpy, attributes, values):
+    """The names of whole numbers that stand for something, or None."""
+    if "flag_meanings" not in attributes:
+        return None
+    flags = (int(flag) for flag in numpy.atleast_1d(attributes["flag_values"]))
+    return {**{int(value): str(value) for value in numpy.unique(values)},
+            **dict(zip(flags, attributes["flag_meanings"].split()))}
 
 
-def draw_map(pyplot, numpy, across, up, values, names):
-    figure, axis = pyplot.subplots(figsize=(6.4, 4.8))
-    axis.set_facecolor("0.85")
-    x, y = ((figures.edges_of_ratios if is_geometric(numpy, side) else figures.edges)(numpy, side)
-            for side in (across, up))
-    if names is None:
-        if not numpy.isfinite(values).any():
-            raise figures.PlotError("there is no finite value to draw")
-        cells = axis.pcolormesh(x, y, numpy.ma.masked_invalid(values).T, cmap="viridis", rasterized=True)
-        return figure, axis, figure.colorbar(cells, ax=axis)
-    from matplotlib.colors import BoundaryNorm, ListedColormap  # pylint: disable=import-outside-toplevel
-    present = numpy.unique(values)
-    colours = ListedColormap([figures.COLOURS[i % len(figures.COLOURS)] for i in range(len(present))])
-    norm = BoundaryNorm(numpy.arange(len(present) + 1) - 0.5, len(present))
-    cells = axis.pcolormesh(x, y, numpy.searchsorted(present, values).T, cmap=colours, norm=norm, rasterized=True)
-    bar = figure.colorbar(cells, ax=axis, ticks=numpy.arange(len(present)))
-    bar.ax.set_yticklabels([names.get(int(value), str(value)) for value in present])
-    bar.ax.minorticks_off()
-    return figure, axis, bar
-
-
-def draw(pyplot, numpy, data, asked):
+def draw(plots, numpy, data, asked):
     """The figure."""
     variable = choose_variable(data, asked.variable)
     values, dims = fix_axes(numpy, data, numpy.asarray(data.read(variable)), data.dims(variable), asked.at)
     if not dims:
         raise figures.PlotError(f"{variable} is one number: name a variable with an axis")
-    over = choose_axes(data, values, dims, asked.over)
-    if not over:
-        over = dims[:1]
+    over = choose_axes(data, values, dims, asked.over) or dims[:1]
     attributes = data.attributes(variable)
-    names = None
-    if "flag_meanings" in attributes:
-        flags = numpy.atleast_1d(attributes["flag_values"])
-        names = dict(zip((int(flag) for flag in flags), attributes["flag_meanings"].split()))
-    elif values.dtype.kind in "iu":
+    names = names_of(numpy, attributes, values)
+    if names is None and values.dtype.kind in "iu":
         fill = attributes.get("_FillValue")
         values = numpy.where(values == fill, numpy.nan, values) if fill is not None else values.astype(float)
+    if not numpy.isfinite(values).any():
+        raise figures.PlotError("there is no finite value to draw")
     order = [dims.index(axis) for axis in over]
     values = values.transpose(order + [i for i in range(len(dims)) if i not in order])
     sides = [axis_values(numpy, data, axis, values.shape[i]) for i, axis in enumerate(over)]
     rows = values.reshape(values.shape[:len(over)] + (-1,))
+    labels, label = [label_of(data, axis) for axis in over], label_of(data, variable)
     if len(over) == 1:
-        figure, axis = draw_dots(pyplot, numpy, sides[0], rows.astype(float))
-        axis.set_ylabel(label_of(data, variable))
-    else:
-        reduced = reduce_rows(numpy, rows, asked.value if names is None else "last")
-        figure, axis, bar = draw_map(pyplot, numpy, *sides, reduced, names)
-        of_several = rows.shape[-1] > 1 and names is None
-        bar.set_label(f"{asked.value} of {label_of(data, variable)}" if of_several else label_of(data, variable))
-        axis.set_ylabel(label_of(data, over[1]))
-        if is_geometric(numpy, sides[1]):
-            axis.set_yscale("log")
-            figures.label_ticks(pyplot, axis.yaxis)
-    axis.set_xlabel(label_of(data, over[0]))
-    if is_geometric(numpy, sides[0]):
-        axis.set_xscale("log")
-        figures.label_ticks(pyplot, axis.xaxis)
-    figure.tight_layout()
-    return figure
+        return plots.bifurcation(sides[0], rows.astype(float), xlabel=labels[0], ylabel=label).figure
+    if rows.shape[-1] > 1 and names is None:
+        label = f"{asked.value} of {label}"
+    reduced = value_of_rows(numpy, rows, asked.value if names is None else "last")
+    return plots.parameter_map(*sides, reduced, names=names, xlabel=labels[0], ylabel=labels[1], zlabel=label).figure
+
+
+def libraries():
+    """The modules that draw, and numpy: those of the Python package, which are beside this file."""
+    _, numpy = figures.import_libraries()
+    from pictures import errors, plots  # pylint: disable=import-outside-toplevel
+    return plots, numpy, errors.Error
 
 
 def import_elsewhere():
@@ -258,31 +213,42 @@ def import_elsewhere():
     try:
         here = os.open(".", os.O_RDONLY)
     except OSError:
-        return figures.import_libraries()
+        return libraries()
     try:
         os.chdir(os.path.dirname(os.path.abspath(__file__)))
-        return figures.import_libraries()
+        return libraries()
     finally:
         os.fchdir(here)
         os.close(here)
 
 
 def main():
-    """Reads the arguments; exit status 2 if something is missing or wrong."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results")
-    parser.add_argument("picture")
-    parser.add_argument("--variable")
-    parser.add_argument("--over")
-    parser.add_argument("--at", action="append", default=[])
-    parser.add_argument("--reader", default="myriad", help="the program that reads folders")
-    parser.add_argument("--value", choices=REDUCTIONS, default="last")
+    """Reads the arguments of `myriad plot`; exit status 2 if something is missing or wrong."""
+    parser = argparse.ArgumentParser("myriad plot", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", nargs="+", help="folders of results, or netCDF files", metavar="RESULTS")
+    parser.add_argument("--output", help="the picture (default: RESULTS.png)", metavar="PNG")
+    parser.add_argument("--variable", help="what to show (default: the first one)", metavar="NAME")
+    parser.add_argument("--over", help="one axis, or two with a comma (default: the longest ones)", metavar="AXES")
+    parser.add_argument("--at", action="append", default=[], metavar="AXIS=VALUE",
+                        help="for another axis the value nearest to this; may be repeated")
+    parser.add_argument("--value", choices=VALUES, default="last",
+                        help="over two axes, of several phases or starts: one of them, or how many values there are")
+    parser.add_argument("--reader", default="myriad", help=argparse.SUPPRESS)  # the program that reads folders
     asked = parser.parse_args()
+    refused = ()
     try:
-        pyplot, numpy = import_elsewhere()
-        data = (Folder if os.path.isdir(asked.results) else File)(numpy, asked.results, asked.reader)
-        figures.save(draw(pyplot, numpy, data, asked), asked.picture, dpi=200)
-    except figures.PlotError as error:
+        if asked.output and len(asked.results) > 1:
+            raise figures.PlotError("--output names one picture, and several results are given")
+        plots, numpy, refused = import_elsewhere()
+        for path in asked.results:
+            path = path.rstrip("/") or "/"
+            is_folder = os.path.isdir(path)  # whose name may have dots
+            picture = asked.output or (path if is_folder else os.path.splitext(path)[0]) + ".png"
+            data = (Folder if is_folder else File)(numpy, path, asked.reader)
+            figures.save(draw(plots, numpy, data, asked), picture, dpi=200)
+            print(f"picture: {picture}")
+    except (figures.PlotError, refused) as error:
         print(error, file=sys.stderr)
         sys.exit(2)
 

@@ -18,8 +18,8 @@ using enum studies::component_kind;
 namespace {
 
 constexpr std::string_view axis_choices =
-    "must be an array of values, or one of {linspace = [first, last, number]}, {logspace = [first, last, number]}, "
-    "{values = [...]}, {random_uniform = [from, to]} and {random_normal = [mean, deviation]}";
+    "must be an array of values, or one of {linspace = [first, last, number]}, {geomspace = [first, last, number]}, "
+    "{values = [...]}, {uniform = [from, to]} and {normal = [mean, deviation]}";
 
 /// The arguments of one of the functions that make axes.
 std::vector<double> arguments_in(const toml_value& v, const std::string& key, std::size_t count, const char* form) {
@@ -40,12 +40,10 @@ axis_values drawn(const toml_value& v, const std::string& key, const char* form,
 using axis_maker = axis_values (*)(const toml_value&, const std::string&);
 constexpr std::pair<std::string_view, axis_maker> axis_makers[] = {
     {"linspace", [](const toml_value& v, const std::string& key) { return spaced(v, key, &linspace); }},
-    {"logspace", [](const toml_value& v, const std::string& key) { return spaced(v, key, &logspace); }},
+    {"geomspace", [](const toml_value& v, const std::string& key) { return spaced(v, key, &geomspace); }},
     {"values", [](const toml_value& v, const std::string& key) { return values(numbers_in(v, key)); }},
-    {"random_uniform",
-     [](const toml_value& v, const std::string& key) { return drawn(v, key, "[from, to]", &random_uniform); }},
-    {"random_normal",
-     [](const toml_value& v, const std::string& key) { return drawn(v, key, "[mean, deviation]", &random_normal); }},
+    {"uniform", [](const toml_value& v, const std::string& key) { return drawn(v, key, "[from, to]", &uniform); }},
+    {"normal", [](const toml_value& v, const std::string& key) { return drawn(v, key, "[mean, deviation]", &normal); }},
 };
 const axis_maker* maker_of(std::string_view name) {
     for (const auto& [known, maker] : axis_makers)
@@ -64,6 +62,9 @@ axis_values axis_in(const toml_value& v, const std::string& key) {
         if (make == nullptr) {
             std::vector<std::string> names;
             for (const auto& [known, maker] : axis_makers) names.emplace_back(known);
+            for (const auto& [old, name] :
+                 {std::pair("logspace", "geomspace"), {"random_uniform", "uniform"}, {"random_normal", "normal"}})
+                if (e.key == old) throw wrong(e.value, message(key, '.', e.key), message("is named ", name));
             throw wrong(e.value, message(key, '.', e.key), "no axis is made in this way" + suggestion(e.key, names));
         }
         placed(e.value, key, [&] { made.push_back((*make)(e.value, key)); });
@@ -177,7 +178,7 @@ void study_file::read_store() {
     from.finish();
 }
 
-void study_file::describe(any_study& study, const program_model& model, const std::vector<device>& instead) {
+void study_file::set_up(any_study& study, const program_model& model, const std::vector<device>& instead) {
     names_ = &model.names;
     read_axes(study);
     read_values(study);

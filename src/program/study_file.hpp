@@ -17,7 +17,7 @@
 
 namespace myriad::programs {
 
-/// A file that describes a study. First `choose_model` says which model is needed; with it, `describe` sets the study.
+/// A file that describes a study. First `choose_model` says which model is needed; with it, `set_up` sets the study.
 class study_file {
 public:
     /// Throws `input_error` where the text is no TOML. `path` is its name in messages.
@@ -40,7 +40,7 @@ public:
 
     /// Sets all that the file says, but for devices if others are given. Throws `input_error` for what is wrong,
     /// unknown keys too.
-    void describe(any_study& study, const program_model& model, const std::vector<device>& instead = {});
+    void set_up(any_study& study, const program_model& model, const std::vector<device>& instead = {});
     /// An error that the study has found, with the place of the key that it is about, as far as that can be told.
     input_error placed_error(const error& found) const;
 

@@ -53,12 +53,12 @@ axis_values linspace(double first, double last, std::int64_t size) {
     check_size("linspace", size);
     return {axis_values::kind::linear, first, last, size};
 }
-axis_values logspace(double first, double last, std::int64_t size) {
-    check_finite("logspace", first);
-    check_finite("logspace", last);
-    require(first != 0 && last != 0 && (first > 0) == (last > 0), "logspace from ", first, " to ", last,
+axis_values geomspace(double first, double last, std::int64_t size) {
+    check_finite("geomspace", first);
+    check_finite("geomspace", last);
+    require(first != 0 && last != 0 && (first > 0) == (last > 0), "geomspace from ", first, " to ", last,
             " passes zero: give two values of one sign (they are the ends, not exponents)");
-    check_size("logspace", size);
+    check_size("geomspace", size);
     axis_values made(axis_values::kind::logarithmic, first, last, size);
     made.first_log_ = std::log(std::fabs(first));
     if (size > 1) made.log_step_ = (std::log(std::fabs(last)) - made.first_log_) / static_cast<double>(size - 1);
@@ -70,16 +70,16 @@ axis_values values(std::vector<double> list) {
     const auto size = static_cast<std::int64_t>(list.size());
     return {axis_values::kind::list, 0, 0, size, std::move(list)};
 }
-axis_values random_uniform(double from, double to) {
-    check_finite("random_uniform", from);
-    check_finite("random_uniform", to);
-    check_finite("random_uniform", to - from);
+axis_values uniform(double from, double to) {
+    check_finite("uniform", from);
+    check_finite("uniform", to);
+    check_finite("uniform", to - from);
     return {axis_values::kind::uniform, from, to, 1};
 }
-axis_values random_normal(double mean, double standard_deviation) {
-    check_finite("random_normal", mean);
-    check_finite("random_normal", standard_deviation);
-    require(standard_deviation > 0, "random_normal is given a standard deviation of ", standard_deviation,
+axis_values normal(double mean, double standard_deviation) {
+    check_finite("normal", mean);
+    check_finite("normal", standard_deviation);
+    require(standard_deviation > 0, "normal is given a standard deviation of ", standard_deviation,
             " (must be positive)");
     return {axis_values::kind::normal, mean, standard_deviation, 1};
 }

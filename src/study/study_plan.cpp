@@ -86,7 +86,7 @@ json numbers(const per_component& all) {
 
 json describe(const axis_values& v) {
     if (v.which() == axis_values::kind::list) return numbers(v.listed());
-    constexpr const char* names[] = {"linspace", "logspace", "values", "random_uniform", "random_normal"};
+    constexpr const char* names[] = {"linspace", "geomspace", "values", "uniform", "normal"};
     std::string text = names[static_cast<int>(v.which())];
     text += '(' + exact_text(v.first()) + ", " + exact_text(v.last());
     if (!v.random()) text += ", " + std::to_string(v.size());

@@ -20,7 +20,7 @@ file=${!#}
 command=(env LC_ALL=C "${@:1:$#-1}" -fno-diagnostics-color)
 
 if [[ $without_cases ]]; then
-    if ! output=$("${command[@]}" -fsyntax-only "$file" 2>&1); then
+    if ! output=$("${command[@]}" -O1 -fsyntax-only "$file" 2>&1); then
         printf '%s does not compile even without its cases:\n%s\n' "$file" "$output"
         exit 1
     fi

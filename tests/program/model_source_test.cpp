@@ -89,12 +89,6 @@ TEST_CASE("what stands for a source changes with its text alone, not with its pl
     CHECK(digest == one.read("joined/model.hpp").digest());
 }
 
-TEST_CASE("the hash of a text is FNV-1a") {
-    CHECK(text_hash("") == "cbf29ce484222325");
-    CHECK(text_hash("a") == "af63dc4c8601ec8c");
-    CHECK(text_hash("foobar") == "85944171f73967e8");
-}
-
 TEST_CASE("a header that cannot be read is refused") {
     const folder here;
     CHECK_THROWS_WITH(here.read("none.hpp"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The models whose results must depend only on the instance: one with events, reductions and an impact law with only +
+// The models whose results must depend only on the instance: one with events, summaries and an impact law with only +
 // - * / and sqrt, one with events, hooks and elementary functions, and one without any hook.
 #pragma once
 
@@ -19,11 +19,11 @@ struct bouncer {
     enum event { wall, turning, n_event };
     enum observed { energy, position, n_observed };
     using to = myriad::over_phase;
-    static constexpr myriad::reduction reductions[] = {{energy, to::maximum, energy_max},
-                                                       {energy, to::time_of_maximum, energy_max_at},
-                                                       {position, to::maximum, x_max},
-                                                       {position, to::minimum, x_min},
-                                                       {energy, to::integral, work}};
+    static constexpr myriad::summary summaries[] = {{energy, to::maximum, energy_max},
+                                                    {energy, to::time_of_maximum, energy_max_at},
+                                                    {position, to::maximum, x_max},
+                                                    {position, to::minimum, x_min},
+                                                    {energy, to::integral, work}};
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {

@@ -99,6 +99,34 @@ expect "tests that failed are counted" 0 '^2 1 0$' in_lib "count_tests '$work/ba
 expect "skipped tests have not passed" 0 '^2 0 1$' in_lib "count_tests '$work/skipped.log' 0"
 expect "a run without tests is a failure" 0 '^0 1 0$' in_lib "count_tests '$work/none.log' 8"
 
+# Steps, with a cmake and a ctest that only say how they were called, and packages that are all there.
+mkdir -p "$work/steps/scripts" "$work/programs"
+cp scripts/test.sh scripts/lib.sh "$work/steps/scripts"
+sed -i 's/^require_packages .*//' "$work/steps/scripts/test.sh"
+cat >"$work/programs/cmake" <<'END'
+#!/bin/sh
+echo "cmake $*" >>calls
+END
+cat >"$work/programs/ctest" <<'END'
+#!/bin/sh
+echo "ctest $*" >>calls
+case $* in
+*exclude*) echo '50% tests passed, 1 tests failed out of 2' && exit 8 ;;
+*) echo '100% tests passed, 0 tests failed out of 3' ;;
+esac
+END
+chmod +x "$work"/programs/*
+run_steps() { PATH=$work/programs:$PATH "$work/steps/scripts/test.sh" "$@" && echo succeeded; }
+last_of_steps() { run_steps "$@" | tail -n 1; }
+expect "test.sh fails where a test does" 1 'ci: 1 passed, 1 failed' run_steps --quick
+expect "test.sh ends with the counts" 1 '^4 passed, 1 failed$' last_of_steps --only programs,ci
+expect "test.sh succeeds where all tests do" 0 '^succeeded$' last_of_steps --only programs
+rm "$work/steps/calls"
+run_steps --only ci,programs >/dev/null
+left_out=$(sed -n 's/^ctest .* --label-exclude ^cuda$|//p' "$work/steps/calls")
+chosen=$(sed -n 's/^ctest .* --label-regex //p' "$work/steps/calls")
+expect "each test of preset ci but cuda's runs in one of two steps" 0 '' test -n "$chosen" -a "$left_out" = "$chosen"
+
 missing='has_package() { return 1; }'
 expect "without root and sudo, packages and command are named" 1 'apt-get install libxsimd-dev catch2' \
     in_lib "$missing; id() { echo 1000; }; has_command() { [[ \$1 == apt-get ]]; }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include <myriad/model/random.hpp>
+#include <myriad/random.hpp>
 #include <myriad/study/axes.hpp>
 
 #include "tests/catch.hpp"
@@ -53,13 +53,13 @@ TEST_CASE("linspace has the values of numpy.linspace, and both ends", "[axes]") 
     const axis_values many = linspace(0, 0.1, 1'000'003);
     CHECK(many[1'000'002] == 0.1);
 }
-TEST_CASE("logspace takes the ends themselves and has a constant ratio", "[axes]") {
-    const axis_values v = logspace(1e-3, 1e3, 7);
+TEST_CASE("geomspace takes the ends themselves and has a constant ratio", "[axes]") {
+    const axis_values v = geomspace(1e-3, 1e3, 7);
     CHECK(v[0] == 1e-3);
     CHECK(v[6] == 1e3);
     for (int i = 0; i < 7; ++i) CHECK(v[i] == Approx(std::pow(10, i - 3)).epsilon(1e-14));  // a few roundings
-    CHECK(logspace(-8, -2, 3)[1] == Approx(-4).epsilon(1e-15));
-    CHECK(logspace(5, 6, 1)[0] == 5);
+    CHECK(geomspace(-8, -2, 3)[1] == Approx(-4).epsilon(1e-15));
+    CHECK(geomspace(5, 6, 1)[0] == 5);
 }
 TEST_CASE("The last axis of a grid varies fastest", "[axes]") {
     axes a(names());
@@ -86,9 +86,9 @@ TEST_CASE("Paired axes are one dimension", "[axes]") {
 }
 TEST_CASE("Any part of the instances has the values that they have as a whole", "[axes]") {
     axes a(names());
-    a.add("k", logspace(1, 1000, 7));
+    a.add("k", geomspace(1, 1000, 7));
     a.zip({{"v", linspace(0, 1, 5)}, {"state.x", linspace(3, 4, 5)}});
-    a.add("parameter.x", random_normal(2, 0.5));
+    a.add("parameter.x", normal(2, 0.5));
     a.repeat(3);
     for (const axes::entry& e : a.entries()) {
         std::vector<double> whole(static_cast<std::size_t>(a.size()));
@@ -104,13 +104,13 @@ TEST_CASE("Any part of the instances has the values that they have as a whole", 
 }
 TEST_CASE("Random values depend on seed, component and instance alone", "[axes]") {
     axes a(names()), b(names());
-    a.add("k", random_uniform(-1, 3));
-    a.add("parameter.x", random_uniform(-1, 3));
+    a.add("k", uniform(-1, 3));
+    a.add("parameter.x", uniform(-1, 3));
     a.repeat(20'000);
     a.seed(7);
     b.repeat(20'000);
-    b.add("v", random_normal(0, 1));
-    b.add("k", random_uniform(-1, 3));
+    b.add("v", normal(0, 1));
+    b.add("k", uniform(-1, 3));
     b.seed(7);
     CHECK(column(a, {parameter, 0}) == column(b, {parameter, 0}));
     CHECK(column(a, {parameter, 0}) != column(a, {parameter, 1}));
@@ -132,7 +132,7 @@ TEST_CASE("Random values depend on seed, component and instance alone", "[axes]"
 }
 TEST_CASE("Random values are not those that hooks draw with the same seed", "[axes]") {
     axes a(names());
-    a.add("state.x", random_uniform(0, 1));  // the first component of the first kind
+    a.add("state.x", uniform(0, 1));  // the first component of the first kind
     a.repeat(3);
     const auto drawn = column(a, {state, 0});
     for (std::int64_t i = 0; i < 3; ++i) {
@@ -176,7 +176,7 @@ TEST_CASE("Mistakes with axes are refused with what is wrong", "[axes]") {
     CHECK_THAT(message_of([&] { a.add("B", linspace(0, 1, 5)); }), Contains("shared.B is the same in all instances"));
     CHECK_THAT(message_of([&] { a.add("count", linspace(0, 1, 5)); }),
                Contains("an integer of 32 bits, but is given 0.25"));
-    CHECK_THAT(message_of([&] { a.add("count", random_uniform(0, 1)); }), Contains("which random values are not"));
+    CHECK_THAT(message_of([&] { a.add("count", uniform(0, 1)); }), Contains("which random values are not"));
     CHECK_THAT(message_of([&] { a.set("power", 1e10); }), Contains("an integer of 32 bits"));
     CHECK_THAT(message_of([&] { a.set("v", std::nan("")); }), Contains("state.v is set to nan"));
     CHECK_THAT(message_of([&] {
@@ -187,7 +187,7 @@ TEST_CASE("Mistakes with axes are refused with what is wrong", "[axes]") {
                    a.zip({{"v", linspace(0, 1, 5)}, {"state.v", linspace(0, 1, 5)}});
                }),
                Contains("state.v is given twice"));
-    CHECK_THAT(message_of([&] { a.zip({{"v", random_uniform(0, 1)}}); }), Contains("cannot be paired"));
+    CHECK_THAT(message_of([&] { a.zip({{"v", uniform(0, 1)}}); }), Contains("cannot be paired"));
     CHECK_THAT(message_of([&] { a.zip({}); }), Contains("no axes"));
     CHECK_THAT(message_of([&] { a.repeat(0); }), Contains("0 values"));
     CHECK_THAT(message_of([&] { a.repeat(2, "k"); }), Contains("two axes are called \"k\""));
@@ -199,9 +199,9 @@ TEST_CASE("Mistakes with axes are refused with what is wrong", "[axes]") {
     CHECK_THAT(message_of([&] { (void)linspace(0, inf, 5); }), Contains("linspace is given inf"));
     CHECK_THAT(message_of([&] { (void)linspace(-1e308, 1e308, 5); }), Contains("finite"));
     CHECK_THAT(message_of([&] { (void)linspace(0, 1, 0); }), Contains("linspace is given 0 values"));
-    CHECK_THAT(message_of([&] { (void)logspace(-1, 1, 5); }), Contains("passes zero"));
+    CHECK_THAT(message_of([&] { (void)geomspace(-1, 1, 5); }), Contains("passes zero"));
     CHECK_THAT(message_of([&] { (void)values({}); }), Contains("values is given 0 values"));
     CHECK_THAT(message_of([&] { (void)values({1, std::nan("")}); }), Contains("finite"));
-    CHECK_THAT(message_of([&] { (void)random_normal(0, 0); }), Contains("must be positive"));
-    CHECK_THAT(message_of([&] { (void)random_uniform(0, inf); }), Contains("finite"));
+    CHECK_THAT(message_of([&] { (void)normal(0, 0); }), Contains("must be positive"));
+    CHECK_THAT(message_of([&] { (void)uniform(0, inf); }), Contains("finite"));
 }

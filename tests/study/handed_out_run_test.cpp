@@ -25,7 +25,7 @@ using study_of_lorenz = study<studied::lorenz, runge_kutta_4, float>;
 struct example : study_of_lorenz {
     example() {
         axis("r", linspace(-1, 27, 20));
-        axis("x", random_normal(1, 0.1));
+        axis("x", normal(1, 0.1));
         set("y", 1);
         set("z", 1);
         repeat(5);

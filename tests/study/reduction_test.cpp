@@ -64,7 +64,7 @@ TEST_CASE("A histogram has numpy's bins, and counts what is outside", "[reductio
     CHECK(data.first_of(histogram_of("x", values({-1, 0, 0.25, 2}))) == std::vector<double>{1, 1, 5});
 }
 TEST_CASE("A histogram puts numbers at and next to an edge into the right bin", "[reduction]") {
-    for (const axis_values& edges : {linspace(0.1, 0.7, 101), logspace(1e-3, 10, 40)}) {
+    for (const axis_values& edges : {linspace(0.1, 0.7, 101), geomspace(1e-3, 10, 40)}) {
         std::vector<double> at, expected(static_cast<std::size_t>(edges.size()) - 1, 2);
         for (std::int64_t i = 0; i < edges.size(); ++i) {
             at.push_back(edges[i]);

@@ -41,7 +41,7 @@ std::string message_of(const study_request& asked) {
 
 TEST_CASE("A study keeps records, last values and statuses along its axes", "[study_plan]") {
     study_request asked = request();
-    asked.axes.add("a", random_normal(0, 1));
+    asked.axes.add("a", normal(0, 1));
     asked.keep.end = {"x", "t"};
     asked.units = {{"state.x", "m"}, {"t", "s"}};
     layout content = plan_study(asked).content;
@@ -66,7 +66,7 @@ TEST_CASE("A study keeps records, last values and statuses along its axes", "[st
 }
 TEST_CASE("Random values are not kept if that is not wanted, and can be reduced", "[study_plan]") {
     study_request asked = request();
-    asked.axes.add("a", random_normal(0, 1));
+    asked.axes.add("a", normal(0, 1));
     asked.keep.random = false;
     asked.reductions = {mean_of("a_begin")};
     CHECK(names_of(plan_study(asked).content) ==
@@ -103,8 +103,8 @@ TEST_CASE("Descriptions differ exactly where results may", "[study_plan]") {
         description([](study_request& s) { s.options.record.from_phase = 5; }),
         description([](study_request& s) { s.axes.set("x", 2.0000000000000004); }),
         description([](study_request& s) { s.axes.repeat(2); }),
-        description([](study_request& s) { s.axes.add("a", random_uniform(0, 1)); }),
-        description([](study_request& s) { s.axes.add("a", random_uniform(0, 1)), s.axes.seed(1); }),
+        description([](study_request& s) { s.axes.add("a", uniform(0, 1)); }),
+        description([](study_request& s) { s.axes.add("a", uniform(0, 1)), s.axes.seed(1); }),
         description([](study_request& s) { s.axes.add("a", values(std::vector<double>(2000, 1))); }),
         description([](study_request& s) {
             std::vector<double> list(2000, 1);

@@ -57,7 +57,7 @@ constexpr std::int64_t ks = 25, omegas = 4;
 void describe(study<duffing, method>& s) {
     s.axis("k", linspace(0.2, 0.3, ks));
     s.axis("omega", values({1, 1.1, 1.3, 0.7}));
-    s.axis("v", random_normal(0, 0.1));
+    s.axis("v", normal(0, 0.1));
     s.set("x", -0.5);
     s.set("B", 0.3);
     s.set("power", 3);

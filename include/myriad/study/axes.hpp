@@ -17,7 +17,7 @@
 
 namespace myriad {
 
-/// The values along one axis: made by `linspace`, `logspace`, `values`, `random_uniform` or `random_normal`.
+/// The values along one axis: made by `linspace`, `geomspace`, `values`, `uniform` or `normal`.
 class axis_values {
 public:
     /// The kinds of values; the last two are random.
@@ -49,10 +49,10 @@ public:
 private:
     friend class axes;
     friend axis_values linspace(double, double, std::int64_t);
-    friend axis_values logspace(double, double, std::int64_t);
+    friend axis_values geomspace(double, double, std::int64_t);
     friend axis_values values(std::vector<double>);
-    friend axis_values random_uniform(double, double);
-    friend axis_values random_normal(double, double);
+    friend axis_values uniform(double, double);
+    friend axis_values normal(double, double);
     axis_values(axis_values::kind kind, double first, double last, std::int64_t size, std::vector<double> list = {});
 
     axis_values::kind kind_;
@@ -67,15 +67,15 @@ private:
 [[nodiscard]] axis_values linspace(double first, double last, std::int64_t size);
 /// `size` values from `first` to `last`, both included, with a constant ratio between neighbours, as numpy.geomspace.
 /// Throws `error` unless both are finite and of one sign, not zero, and `size` is positive.
-[[nodiscard]] axis_values logspace(double first, double last, std::int64_t size);
+[[nodiscard]] axis_values geomspace(double first, double last, std::int64_t size);
 /// These values. Throws `error` if there is none, or one that is not finite.
 [[nodiscard]] axis_values values(std::vector<double> list);
 /// A random value for each instance, evenly distributed between two bounds: see `axes::seed`. Throws `error` unless
 /// both are finite.
-[[nodiscard]] axis_values random_uniform(double from, double to);
+[[nodiscard]] axis_values uniform(double from, double to);
 /// A random value for each instance, normally distributed. Throws `error` unless both are finite and the deviation is
 /// positive.
-[[nodiscard]] axis_values random_normal(double mean, double standard_deviation);
+[[nodiscard]] axis_values normal(double mean, double standard_deviation);
 
 /// The axes of a study, in the order in which they were given: the last one varies fastest. Components that no axis
 /// changes may have a value for all instances.

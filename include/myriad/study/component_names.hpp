@@ -18,24 +18,25 @@ std::string exact_text(double value);
 
 /// What a named value of an instance is.
 enum class component_kind {
-    state,
-    parameter,
-    accessory,
-    integer_accessory,
-    shared,
-    shared_integer,
-    t_begin,
-    t_end,
+    state,              ///< at the start, and at the end
+    parameter,          ///< a parameter of the instance
+    accessory,          ///< a real accessory
+    integer_accessory,  ///< an integer accessory
+    shared,             ///< the same for all instances
+    shared_integer,     ///< the same for all instances, an integer
+    t_begin,            ///< the begin of the time domain
+    t_end,              ///< its end
 };
 /// The word for a kind before the point of a full name, as in "state.x".
 const char* name_of(component_kind kind);
 
 /// A component of a model, or one end of the time domain.
 struct component {
-    component_kind kind;
-    int number = 0;
+    component_kind kind;    ///< what it is
+    int number = 0;         ///< among the components of its kind
     std::string name = {};  ///< of its enumerator; empty if it has none
 
+    /// Whether it is the same component.
     bool operator==(const component& other) const { return kind == other.kind && number == other.number; }
     /// "parameter.k", or "parameter.3" without an enumerator.
     std::string full_name() const;
@@ -50,10 +51,12 @@ public:
 /// All components of one model.
 class component_names {
 public:
+    /// Of a model by its name.
     component_names(std::string model, std::vector<component> all);
 
     /// The name of the model.
     const std::string& model() const { return model_; }
+    /// All of them, kind by kind.
     const std::vector<component>& all() const { return all_; }
     /// The component called "k", "parameter.k" or "parameter.3", among those of the given kinds. Throws `error`, which
     /// lists the names there are, for any other name, and for one that several components have.

@@ -66,16 +66,17 @@ decltype(auto) with_type(element type, Function&& function) {
 
 /// A named dimension. Names are unique in a layout: a dimension of the same name always has the same length.
 struct dimension {
-    std::string name;
-    std::int64_t length = 0;
-    bool operator==(const dimension&) const = default;
+    std::string name;                                   ///< of an axis, "phase", "sample" or another
+    std::int64_t length = 0;                            ///< the number of values along it
+    bool operator==(const dimension&) const = default;  ///< the same name and length
 };
 
 /// Something that readers should know about a variable, as "units" or CF's "flag_values" and "flag_meanings".
 struct attribute {
-    std::string name;
+    std::string name;  ///< as readers know it
+    /// A text, a number or numbers.
     std::variant<std::string, double, std::vector<double>, std::int64_t, std::vector<std::int64_t>> value;
-    bool operator==(const attribute&) const = default;
+    bool operator==(const attribute&) const = default;  ///< the same name and value
 };
 
 /// What there is one item of a variable for.
@@ -93,12 +94,12 @@ enum class role : std::uint8_t {
 
 /// An array of results. Its values are in row-major order, the instance (or chunk) outermost.
 struct variable {
-    std::string name;
-    element type = element::f64;
-    std::vector<dimension> inner = {};  ///< of one item, as {"phase", 32}; none: one value
-    std::vector<attribute> attributes = {};
-    along extent = along::instances;
-    studies::role role = studies::role::data;
+    std::string name;                          ///< unique in a layout
+    element type = element::f64;               ///< of its values
+    std::vector<dimension> inner = {};         ///< of one item, as {"phase", 32}; none: one value
+    std::vector<attribute> attributes = {};    ///< what readers should know about it
+    along extent = along::instances;           ///< what there is one item for
+    studies::role role = studies::role::data;  ///< a result, or where results belong to
 
     /// The number of values of one item.
     std::int64_t values_per_item() const;
@@ -106,12 +107,12 @@ struct variable {
 
 /// Values along one dimension (an axis of the grid or an inner dimension of variables), or a single number.
 struct coordinate {
-    std::string name;
+    std::string name;       ///< that of its dimension, or another one's
     std::string dimension;  ///< its name; empty: a single number
     /// Writes the values of [first, first + size) to `values`. Called again when a study goes on, with equal results;
     /// possibly in parts, so that a long axis is never in memory as a whole.
     std::function<void(std::int64_t first, std::span<double> values)> values;
-    std::vector<attribute> attributes = {};
+    std::vector<attribute> attributes = {};  ///< what readers should know about it
 };
 
 /// A coordinate with the given values.
@@ -125,8 +126,8 @@ struct layout {
     std::vector<dimension> axes;
     /// Instances of a chunk, the last one may have fewer. What a store had from the start when a study goes on.
     std::int64_t chunk = 0;
-    std::vector<variable> variables;
-    std::vector<coordinate> coordinates;
+    std::vector<variable> variables;      ///< all arrays of results
+    std::vector<coordinate> coordinates;  ///< all values along dimensions
     /// A JSON object, as text, of all that determines the contents (model, axes, options, method, type, seed, version),
     /// and nothing else (no devices, threads, chunks): a study goes on only where it is equal. Objects may be nested.
     std::string description = "{}";

@@ -100,9 +100,9 @@ struct store_options {
     /// A process of another machine that has given no sign of life for so long, as this one's clock tells, has lost its
     /// chunks to others. That one of this machine is dead is seen at once, and one that lives keeps them.
     std::chrono::milliseconds expiry = std::chrono::seconds(60);
-    resume_check check = resume_check::sizes;
+    resume_check check = resume_check::sizes;  ///< what is looked at when a study goes on
     arithmetic computed_by = {};  ///< this process'; compared if it has an instruction set and chunks are left
-    other_arithmetic others = other_arithmetic::refuse;
+    other_arithmetic others = other_arithmetic::refuse;  ///< what is done where the digits may differ
     /// For tests: what files are written and read by; null: the operating system.
     file_system* files = nullptr;
 };

@@ -39,11 +39,11 @@ struct with_misspelt_hooks : bare {
     MYRIAD_FUNCTION static void after_steps(auto&) {}
     MYRIAD_FUNCTION static void finalise(auto&) {}
 };
-struct with_reductions : bare {
+struct with_summaries : bare {
     enum accessory { largest, last, n_accessory };
     enum observed { height, n_observed };
-    static constexpr myriad::reduction reductions[] = {{height, myriad::over_phase::maximum, largest},
-                                                       {height, myriad::over_phase::time_of_maximum, last}};
+    static constexpr myriad::summary summaries[] = {{height, myriad::over_phase::maximum, largest},
+                                                    {height, myriad::over_phase::time_of_maximum, last}};
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& y, const auto&) {
         return myriad::vec<R, n_observed>{y[x]};
@@ -143,8 +143,8 @@ TEST_CASE("scalar and generic forms of after_step are told apart", "[describe]")
     CHECK(has(describe<with_generic_after_step_without_result>(), "hooks: rhs, after_step (generic)\n"));
 }
 
-TEST_CASE("observed quantities show with the number of their reductions", "[describe]") {
-    CHECK(has(describe<with_reductions>(), "hooks: rhs, observe (2 reductions)\n"));
+TEST_CASE("observed quantities show with the number of their summaries", "[describe]") {
+    CHECK(has(describe<with_summaries>(), "hooks: rhs, observe (2 summaries)\n"));
 }
 
 TEST_CASE("declarations show, but not those that are denied", "[describe]") {

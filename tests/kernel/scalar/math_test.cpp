@@ -163,8 +163,10 @@ template <class Check>
 void for_sizes(Check check) {
     check.template operator()<1>();
     check.template operator()<2>();
+#if !defined(MYRIAD_ONE_BATCH)  // else preset strict has them, of AVX2, for which packs may be so large
     check.template operator()<3>();
     check.template operator()<4>();
+#endif
 }
 
 /// Numbers that functions, reductions or neighbours treat specially.

@@ -41,9 +41,9 @@ template <class Model>
     };
     add(hooks, detail::gives_jacobian<Model>, "jacobian");
     add(hooks, detail::has_events<Model>, "events");
-    if constexpr (detail::has_reductions<Model>)
-        hooks += message(", observe (", detail::n_reduction<Model>,
-                         detail::n_reduction<Model> == 1 ? " reduction)" : " reductions)");
+    if constexpr (detail::has_summaries<Model>)
+        hooks += message(", observe (", detail::n_summary<Model>,
+                         detail::n_summary<Model> == 1 ? " summary)" : " summaries)");
     add(hooks, detail::has_initialise<Model>, "initialise");
     add(hooks, detail::has_after_step<Model>,
         detail::has_generic_after_step<Model> ? "after_step (generic)" : "after_step (scalar)");

@@ -18,6 +18,9 @@
 /// In the place of MYRIAD_FUNCTION, for a template that is called at several places and so large that copies would cost
 /// more than calls: out of line on the CPU. In device code, whose calls go through a stack, it is inlined too.
 #define MYRIAD_LARGE_FUNCTION MYRIAD_FUNCTION
+/// In the place of MYRIAD_FUNCTION, for what rarely happens: out of line, so that the loop stays short enough for a
+/// GPU's cache of instructions. Arguments are passed by value, as references would give the loop's own data addresses.
+#define MYRIAD_RARE_FUNCTION __host__ __device__ __noinline__
 /// A constant at namespace scope that device code reads from constant memory as an operand of its instructions.
 #define MYRIAD_CONSTANT_MEMORY __constant__
 /// Hides from the compiler that a pointer or index has not changed, so that addresses are recomputed instead of kept in
@@ -56,6 +59,7 @@
 #define MYRIAD_FLATTEN __attribute__((flatten))
 #endif
 #define MYRIAD_LARGE_FUNCTION MYRIAD_FLATTEN __attribute__((noinline))
+#define MYRIAD_RARE_FUNCTION __attribute__((noinline))
 #define MYRIAD_CONSTANT_MEMORY inline constexpr
 #define MYRIAD_FORGET(value) static_cast<void>(value)
 #define MYRIAD_REJOIN static_cast<void>(0)

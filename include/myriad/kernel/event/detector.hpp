@@ -32,12 +32,8 @@ struct event_detector {
         below.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) below.set_negative(j, g1[j]);
-        // A function has crossed if it was above zero and is below, or was below and is above: zero is on either side.
+        // A function has crossed if it was above zero and is below, or was below and is above.
         seen.crossed = ~(e.above ^ below);
-        if (is_pack<S> || MYRIAD_UNLIKELY(any(seen.crossed.any_of()))) {
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) seen.crossed.set(j, seen.crossed[j] & (g1[j] != S(R(0))));
-        }
         seen.busy = e.flags[e.in_question] | (seen.crossed & (sides.asked() | ~e.left)).any_of();
         if (any(sides.s.final_step)) {
             masks far;
@@ -83,6 +79,10 @@ struct event_detector {
         masks crossed = seen.crossed.in(follow);
         // A function whose event was just located, maybe past zero, changes its side after the event's action.
         if constexpr (!is_pack<S>) crossed = crossed & ~events.which;
+        if (is_pack<S> || MYRIAD_UNLIKELY(any(crossed.any_of()))) {
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) crossed.set(j, crossed[j] & (seen.g1[j] != S(R(0))));  // zero is on either side
+        }
         e.above = e.above ^ crossed;
         e.left = e.left | masks::all_in(follow);
     }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/event/crossing.hpp"
 #include "myriad/kernel/event/step_ends.hpp"
 #include "myriad/kernel/scalar/mask_set.hpp"
@@ -31,23 +32,59 @@ MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, F
     return first;
 }
 
-/// The earliest crossing in a step, from the cubic through each event function's values and slopes at both ends. `side`
-/// is the side of zero each function was on, `floor` how near to zero it counts as on the surface, and `tolerance` how
-/// closely the crossing is to be located. A function that starts on the surface and leaves it crosses where it returns.
-template <class Model, class R>
+/// Element j, without an address, so that a GPU thread's stay in registers.
+template <class R, int m>
+MYRIAD_FUNCTION R element(const vec<R, m>& values, int j) {
+    R value = values[0];
+    static_for<1, m>([&](auto k) MYRIAD_LAMBDA {  // nvcc gives values that a loop reads so an address
+        const R other = values[k];
+        if (j == k) value = other;
+    });
+    return value;
+}
+
+/// The fraction of a step at which an event function crosses, from the cubic through its values and slopes at both
+/// ends, which have the signs of a function that falls. One that starts within `floor` of the surface and leaves it
+/// crosses where it returns.
+template <class R>
+MYRIAD_FUNCTION R fraction_at(const function_ends<R>& g, R floor, R close) {
+    const bool on_surface = !(g.value > floor);
+    if (on_surface && !(g.slope > R(0))) return R(0);
+    return detail::crossing_fraction(g, on_surface, R(guess_part) * close);
+}
+
+/// The earliest crossing in a step. `side` is the side of zero each function was on, `near` says how near to zero it
+/// counts as on the surface, and `tolerance` how closely the crossing is to be located.
+template <class Model, class R, class Nearness>
 MYRIAD_FUNCTION located_crossing<R> earliest_crossing(const step_ends<Model, R>& step,
                                                       const vec<R, n_event<Model>>& side,
                                                       const mask_set<bool, n_event<Model>>& crossed,
-                                                      const vec<R, n_event<Model>>& floor,
-                                                      const vec<R, n_event<Model>>& tolerance) {
+                                                      const Nearness& near, const vec<R, n_event<Model>>& tolerance) {
     const auto slope = step.slopes(), slope1 = step.slopes1();
     return detail::first_of<R>(crossed, [&](int j) MYRIAD_LAMBDA {
         const R per_step = side[j] * step.h;
-        const function_ends<R> g{side[j] * step.g[j], per_step * slope[j], side[j] * step.g1[j], per_step * slope1[j]};
-        const bool on_surface = !(g.value > floor[j]);
-        if (on_surface && !(g.slope > R(0))) return R(0);
-        return detail::crossing_fraction(g, on_surface, R(guess_part) * tolerance[j]);
+        return detail::fraction_at<R>(
+            {side[j] * step.g[j], per_step * slope[j], side[j] * step.g1[j], per_step * slope1[j]}, near.floor(j),
+            tolerance[j]);
     });
+}
+
+/// The same if just one function has crossed. Threads of a warp that look at different ones stay together.
+template <class Model, class R, class Nearness>
+MYRIAD_FUNCTION located_crossing<R> only_crossing(const step_ends<Model, R>& step, const vec<R, n_event<Model>>& side,
+                                                  const mask_set<bool, n_event<Model>>& crossed, const Nearness& near,
+                                                  const vec<R, n_event<Model>>& tolerance) {
+    const auto slope = step.slopes(), slope1 = step.slopes1();
+    std::int32_t j = 0;
+    static_for<1, n_event<Model>>([&](auto k) MYRIAD_LAMBDA {
+        if (crossed[k]) j = k;
+    });
+    const R sign = detail::element(side, j), per_step = sign * step.h;
+    const R fraction =
+        detail::fraction_at<R>({sign * detail::element(step.g, j), per_step * detail::element(slope, j),
+                                sign * detail::element(step.g1, j), per_step * detail::element(slope1, j)},
+                               near.floor(j), tolerance[j]);
+    return {fraction, j};
 }
 
 /// The same for crossings found between the fractions `low` and `high` of a step, by the secants between these points.

@@ -43,8 +43,8 @@ inline constexpr R rounding_weight = [] {
 /// States too small for normal numbers have that of the smallest. Zero where the functions have no finite derivative,
 /// or are constant but for jumps.
 template <class Model, class R>
-MYRIAD_FUNCTION vec<R, n_event<Model>> event_roundings(const R& t, const vec<R, n_state<Model>>& y,
-                                                       const vec<R, n_state<Model>>& size, const inputs<Model, R>& p) {
+MYRIAD_RARE_FUNCTION vec<R, n_event<Model>> event_roundings(R t, vec<R, n_state<Model>> y, vec<R, n_state<Model>> size,
+                                                            inputs<Model, R> p) {
     constexpr R least = smallest_normal_of<R> / epsilon_of<R>;
     vec<dual<R>, n_state<Model>> y_dual;
     static_for<0, n_state<Model>>([&](auto c) MYRIAD_LAMBDA {

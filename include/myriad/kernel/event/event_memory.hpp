@@ -4,19 +4,11 @@
 
 #include <cstdint>
 
+#include "myriad/kernel/event/event_nearness.hpp"
 #include "myriad/kernel/event/redone_step.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
-
-/// How near to zero event functions are in a trial.
-template <class R, int events>
-struct event_nearness {
-    vec<R, events> rounding;  // their rounding errors at its end
-    vec<R, events> floor;     // a function that starts no farther from zero starts on the surface
-    vec<R, events> band;      // an event is located within this
-    vec<R, events> past;      // a function past zero by no more than this has not crossed
-};
 
 template <class Model, class R>
 struct event_memory {
@@ -33,6 +25,15 @@ struct event_memory {
     R jump_time;    // that it takes to pass it
     std::int32_t waited;                         // turns that it has waited for other threads' events
     vec<std::int32_t, n_event<Model>> lingered;  // how often in a row the event has fired without its function leaving
+
+    /// As at the start of a phase in which no function is on its surface or at a jump.
+    MYRIAD_FUNCTION void clear() {
+        redo.clear();
+        locating = false;
+        open.clear(), held.clear(), fired_last.clear(), fresh.clear(), on_jump.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < n_event<Model>; ++j) lingered[j] = 0;
+    }
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

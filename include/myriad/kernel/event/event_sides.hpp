@@ -30,6 +30,8 @@ public:
     MYRIAD_FUNCTION bool above() const { return code_ % 2 != 0; }
     MYRIAD_FUNCTION kept_side kind() const { return static_cast<kept_side>(code_ / 2 % 8); }
     MYRIAD_FUNCTION std::int32_t lingered() const { return code_ / 16; }
+    /// Whether a function that is not on its surface now is on the side that it shows, and nothing else is known.
+    MYRIAD_FUNCTION bool is_plain() const { return kind() == kept_side::unknown || kind() == kept_side::beyond; }
 
 private:
     static constexpr std::int32_t most = 2047;  // a larger number is kept as this
@@ -44,6 +46,7 @@ struct event_sides {
     enum lane_flag {
         in_question,  // every trial has to be looked at closely: event_memory says why
         undefined,    // a function is NaN at the committed state
+        kept_plain,   // the last phase of the instance has kept all functions as beyond zero, or a hook has moved them
         lane_flags
     };
     masks above;  // last seen on the positive side

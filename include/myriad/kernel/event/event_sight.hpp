@@ -11,7 +11,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class S, int events>
 struct event_sight {
     vec<S, events> g1;
-    mask_set<mask_of<S>, events> crossed;  // on the other side than it was
+    mask_set<mask_of<S>, events> crossed;  // on the other side than it was, by the sign of its value
     mask_of<S> busy;                       // an accepted trial has to be looked at more closely
 };
 template <class S>

@@ -8,6 +8,7 @@
 
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/earliest_crossing.hpp"
+#include "myriad/kernel/event/event_nearness.hpp"
 #include "myriad/kernel/event/event_sight.hpp"
 #include "myriad/kernel/event/side_follower.hpp"
 
@@ -61,104 +62,23 @@ struct event_locator {
     /// Checks the trial of one lane in which an event may have fired.
     MYRIAD_FUNCTION trial_outcome look_closer(int i, const trial_ends<Model, S>& ends, const event_sight<S, m>& seen,
                                               fired& events) {
-        const auto& args = sides.args;
-        auto& s = sides.s;
-        auto& e = sides.e;
         const auto& p = sides.inputs_of(i);
         ends_of_step step(p);
-        step.t = get_lane(s.now(), i);
-        step.h = get_lane(s.h, i);
+        step.t = get_lane(sides.s.now(), i);
+        step.h = get_lane(sides.s.h, i);
         step.t1 = get_lane(ends.t1, i);
-        step.y = get_lanes<R>(s.data.y, i);
+        step.y = get_lanes<R>(sides.s.data.y, i);
         step.y1 = get_lanes<R>(ends.y, i);
         step.slope = get_lanes<R>(ends.slope_start, i);
-        const bool scans = args.sub_samples > 1, locating = sides.memory_of(i).locating;
-        bool sides_are_known = false;
         if constexpr (!is_pack<S>) {
-            const auto& own = sides.memory_of(i);
             step.g1 = ends.g;
-            sides_are_known = !scans && !(own.open | own.on_jump).any_of() && is_clear(i, step, locating);
+            flags crossed = seen.crossed & sides.asked();
+            if (is_plain(i, step, crossed)) return look_plainly(i, step, ends, crossed, events);
         } else {
             // Not the pack's values, which may round differently from those they are compared with.
             step.g1 = detail::evaluate_events<Model>(step.t1, step.y1, p);
         }
-        reals side;
-        flags crossed;
-        if (sides_are_known) {
-            auto& near = sides.memory_of(i).near;
-            if constexpr (!is_pack<S>) crossed = seen.crossed & sides.asked();
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) {
-                side[j] = e.above.get(j, i) ? R(1) : R(-1);
-                const R tolerance = location_tolerance(j, i, locating);
-                near.rounding[j] = near.floor[j] = R(0);
-                near.band[j] = near.past[j] = tolerance;
-                if (!(abs(step.g1[j]) > tolerance)) crossed.set(j, false);
-            }
-        } else {
-            auto& near = sides.memory_of(i).near;
-            step.g = detail::evaluate_events<Model>(step.t, step.y, p);
-            near.rounding = step.roundings();
-            sides.settle_open_sides(i, step, near.rounding);
-            const auto& redo = sides.memory_of(i).redo;
-            crossed.clear();
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) {
-                side[j] = sides.side_of(j, i);
-                // Only as far as it was on the other side at the start may a function be there without having crossed.
-                const R start = sides.memory_of(i).on_jump[j] ? R(0) : -side[j] * step.g[j];
-                near.floor[j] = max(near.rounding[j], start);
-                near.band[j] = max(location_tolerance(j, i, locating), near.floor[j]);
-                const bool located = locating && (redo.target == j || redo.crossed[j]);
-                near.past[j] = located ? near.band[j] : near.floor[j];
-                crossed.set(j, sides.crosses(j, side[j], step.g1[j], near.past[j]) && !sides.is_at_jump(j, i, step.h));
-            }
-        }
-        const bool is_last = get_lane(s.final_step, i) && ends_near_root(i, step);
-        arrival reached{};
-        if (locating) reached = arrival_of(i, step, side);
-        if (scans || crossed.any_of() || (locating ? !reached.is_plain() : is_last)) {
-            if constexpr (Method::first_same_as_last) {
-                step.slope1 = get_lanes<R>(ends.slope_end, i);
-            } else {
-                step.slope1 = detail::evaluate_rhs<Model>(step.t1, step.y1, p);
-                add_to_count(s.extra_evaluations, i);
-            }
-        }
-        R low = R(0), high = R(1);
-        if (MYRIAD_UNLIKELY(scans)) {
-            crossed = scan(i, step, side, low, high);
-            if (locating) {
-                reached = arrival_of(i, step, side);
-                // At a root in the other direction, to which a long step has come, the event's is anywhere beyond.
-                MYRIAD_UNROLL
-                for (int j = 0; j < m; ++j)
-                    if (sides.memory_of(i).redo.target == j && !sides.is_asked(j, side[j]))
-                        reached.gap = infinity_of<R>;
-            }
-        }
-        if (crossed.any_of()) {
-            know_start(i, step, side);
-            begin_or_shorten(i, step, side, crossed, low, high, events);
-            return trial_outcome::is_redone;
-        }
-        if (locating) {
-            if (sides_are_known && reached.is_plain()) {
-                auto& own = sides.memory_of(i);
-                own.at_jump.clear();
-                MYRIAD_UNROLL
-                for (int j = 0; j < m; ++j) events.put(j, i, own.redo.target == j, step.g1[j]);
-                end_location(i);
-                return trial_outcome::stands_before_sides;
-            }
-            if (arrive(i, step, side, reached, events) == trial_outcome::is_redone) return trial_outcome::is_redone;
-        } else if (is_last) {
-            know_start(i, step, side);
-            end_on_root(i, step, side, events);
-        }
-        sides.follow(i, step, side);
-        sides.note(i);
-        return trial_outcome::stands;
+        return look_carefully(i, step, ends, events);
     }
 
     /// A redone step that failed its error test is not redone: the controller sets the length of the next.
@@ -178,25 +98,109 @@ struct event_locator {
     }
 
 private:
-    /// How closely event j is to be located: as its options say, unless that is more than a small part of the
-    /// function's change in the step.
-    MYRIAD_FUNCTION R location_tolerance(int j, int i, bool locating) const {
-        return locating ? sides.memory_of(i).redo.tolerance[j] : sides.args.event[j].tolerance;
-    }
-    /// Whether what happens in a trial can be told without the rounding errors of the event functions, as these are
-    /// smaller than tolerances that were given: every function has left its surface since its event and is beyond its
-    /// tolerance, or at the event that is located.
-    MYRIAD_FUNCTION bool is_clear(int i, const ends_of_step& step, bool locating) const {
-        const auto& redo = sides.memory_of(i).redo;
-        bool clear = true;
+    /// The part of a step, in fractions of it, that contains the crossings.
+    struct step_part {
+        R low = R(0), high = R(1);
+        bool scanned = false;  // found by a look at points inside the step, and the slope at its end is known
+    };
+
+    /// Whether a trial does what nearly all do that are looked at: one function, of those in `crossed`, has crossed, or
+    /// the step ends close to its event. That can be told without the rounding errors of the event functions if these
+    /// are smaller than tolerances that were given: every function has a side and is beyond its tolerance, or at the
+    /// event. One that has not left its surface since its event must be on the side that it was heading for.
+    MYRIAD_FUNCTION bool is_plain(int i, const ends_of_step& step, flags& crossed) const {
+        const auto& own = sides.memory_of(i);
+        bool plain = sides.args.sub_samples <= 1 && !(own.open | own.on_jump).any_of();
+        bool arrives = false, others = false;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const R tolerance = location_tolerance(j, i, locating), g = abs(step.g1[j]);
-            const bool arrives = locating && redo.target == j && g <= R(arrival_part) * tolerance;
-            clear = clear && sides.e.left.get(j, i) && tolerance > R(0) && (g > tolerance || arrives);
+            const R tolerance = sides.args.event[j].tolerance, g = abs(step.g1[j]);
+            const bool left = sides.e.left.get(j, i), stays = (step.g1[j] > R(0)) == sides.e.above.get(j, i);
+            const bool is_target = own.redo.target == j;
+            const bool here = own.locating && is_target && left && g <= R(arrival_part) * own.redo.tolerance[j];
+            plain = plain && tolerance > R(0) && (here || (g > tolerance && (left || stays)));
+            arrives = arrives || here;
+            others = others || !left || (!is_target && own.redo.crossed[j]);
+            if (here) crossed.set(j, false);
         }
-        return clear;
+        return plain && (crossed.any_of() ? !crossed.several() : arrives && !others);
     }
+    /// Looks at a trial for which `is_plain` holds.
+    MYRIAD_FUNCTION trial_outcome look_plainly(int i, ends_of_step& step, const trial_ends<Model, S>& ends,
+                                               const flags& crossed, fired& events) {
+        auto& own = sides.memory_of(i);
+        if (crossed.any_of()) {
+            reals side;
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) side[j] = sides.e.above.get(j, i) ? R(1) : R(-1);
+            step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
+            know_end_slope(i, step, ends);
+            begin_or_shorten(i, step, side, crossed, step_part{}, plain_nearness<Model, R>{sides.args}, events);
+            return trial_outcome::is_redone;
+        }
+        own.at_jump.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) events.put(j, i, own.redo.target == j, step.g1[j]);
+        end_location(i);
+        return trial_outcome::stands_before_sides;
+    }
+    /// Looks at any trial, with the rounding errors of the event functions.
+    MYRIAD_FUNCTION trial_outcome look_carefully(int i, ends_of_step& step, const trial_ends<Model, S>& ends,
+                                                 fired& events) {
+        auto& own = sides.memory_of(i);
+        auto& near = own.near;
+        step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
+        near.roundings = step.roundings();
+        sides.settle_open_sides(i, step, near.roundings);
+        reals side;
+        flags crossed;
+        crossed.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            side[j] = sides.side_of(j, i);
+            // Only as far as it was on the other side at the start may a function be there without having crossed.
+            const R start = own.on_jump[j] ? R(0) : -side[j] * step.g[j];
+            const R tolerance = own.locating ? own.redo.tolerance[j] : sides.args.event[j].tolerance;
+            near.floors[j] = max(near.roundings[j], start);
+            near.bands[j] = max(tolerance, near.floors[j]);
+            const bool located = own.locating && (own.redo.target == j || own.redo.crossed[j]);
+            near.pasts[j] = located ? near.bands[j] : near.floors[j];
+            crossed.set(j, sides.crosses(j, side[j], step.g1[j], near.past(j)) && !sides.is_at_jump(j, i, step.h));
+        }
+        step_part part;
+        if (MYRIAD_UNLIKELY(sides.args.sub_samples > 1)) {
+            know_end_slope(i, step, ends);
+            part.scanned = true;
+            crossed = scan(i, step, side, part);
+        }
+        const bool locating = own.locating;
+        const bool is_last = get_lane(sides.s.final_step, i) && ends_near_root(i, step);
+        arrival reached{};
+        if (locating) {
+            reached = arrival_of(i, step, side);
+            // At a root in the other direction, to which a long step has come, the event's is anywhere beyond.
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j)
+                if (part.scanned && own.redo.target == j && !sides.is_asked(j, side[j])) reached.gap = infinity_of<R>;
+        }
+        if (!part.scanned && (crossed.any_of() || (locating ? !reached.is_plain() : is_last)))
+            know_end_slope(i, step, ends);
+        if (crossed.any_of()) {
+            know_start(i, step, side);
+            begin_or_shorten(i, step, side, crossed, part, near, events);
+            return trial_outcome::is_redone;
+        }
+        if (locating) {
+            if (arrive(i, step, side, reached, events) == trial_outcome::is_redone) return trial_outcome::is_redone;
+        } else if (is_last) {
+            know_start(i, step, side);
+            end_on_root(i, step, side, events);
+        }
+        sides.follow(i, step, side);
+        sides.note(i);
+        return trial_outcome::stands;
+    }
+
     /// Whether an event may happen at the end of the domain.
     MYRIAD_FUNCTION bool ends_near_root(int i, const ends_of_step& step) const {
         const auto& near = sides.memory_of(i).near;
@@ -204,7 +208,7 @@ private:
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool given = sides.args.event[j].tolerance > R(0);
-            const R close = given ? near.band[j] : max(near.band[j], R(last_part) * abs(step.g[j] - step.g1[j]));
+            const R close = given ? near.band(j) : max(near.band(j), R(last_part) * abs(step.g[j] - step.g1[j]));
             any_near = any_near || abs(step.g1[j]) <= close;
         }
         return any_near;
@@ -219,6 +223,14 @@ private:
         stepping<Model, Method, S>{sides.args, sides.s}.resume(i, sides.memory_of(i).redo.resume);
     }
 
+    MYRIAD_FUNCTION void know_end_slope(int i, ends_of_step& step, const trial_ends<Model, S>& ends) {
+        if constexpr (Method::first_same_as_last) {
+            step.slope1 = get_lanes<R>(ends.slope_end, i);
+        } else {
+            step.slope1 = detail::evaluate_rhs<Model>(step.t1, step.y1, step.p);
+            add_to_count(sides.s.extra_evaluations, i);
+        }
+    }
     /// Evaluates the event functions at the start of the step. A function at a jump that no step has passed yet counts
     /// as infinite.
     MYRIAD_FUNCTION void know_start(int i, ends_of_step& step, const reals& side) const {
@@ -227,9 +239,9 @@ private:
         for (int j = 0; j < m; ++j)
             if (sides.memory_of(i).on_jump[j]) step.g[j] = copysign(R(infinity_of<R>), side[j]);
     }
-    /// Checks `sub_samples` points of the step for the first crossing, updates the sides up to it, and sets [low, high]
-    /// to the part of the step that contains it.
-    MYRIAD_FUNCTION flags scan(int i, const ends_of_step& step, reals& side, R& low, R& high) {
+    /// Checks `sub_samples` points of the step for the first crossing, updates the sides up to it, and sets `part` to
+    /// the part of the step that contains it.
+    MYRIAD_FUNCTION flags scan(int i, const ends_of_step& step, reals& side, step_part& part) {
         const auto& args = sides.args;
         const auto& near = sides.memory_of(i).near;
         auto& e = sides.e;
@@ -242,15 +254,15 @@ private:
             const reals g = last ? step.g1 : step.values_at(theta);
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j)
-                crossed.set(j, sides.crosses(j, side[j], g[j], near.past[j]) && !sides.is_at_jump(j, i, length));
+                crossed.set(j, sides.crosses(j, side[j], g[j], near.past(j)) && !sides.is_at_jump(j, i, length));
             if (crossed.any_of()) {
-                high = theta;
+                part.high = theta;
                 break;
             }
-            if (!last) low = theta;
+            if (!last) part.low = theta;
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {
-                if (!(abs(g[j]) > near.past[j]) || sides.is_at_jump(j, i, length)) continue;
+                if (!(abs(g[j]) > near.past(j)) || sides.is_at_jump(j, i, length)) continue;
                 side[j] = sign_of(g[j]);
                 if (!sides.is_timeless(i, length) && !sides.memory_of(i).on_jump[j]) e.left.set(j, i, true);
             }
@@ -259,27 +271,29 @@ private:
     }
 
     /// Sets up a lane whose trial crossed: either a redone step, or an event at the start of the step.
+    template <class Nearness>
     MYRIAD_FUNCTION void begin_or_shorten(int i, const ends_of_step& step, const reals& side, const flags& crossed,
-                                          R low, R high, fired& events) {
+                                          const step_part& part, const Nearness& near, fired& events) {
         const auto& args = sides.args;
         auto& s = sides.s;
         auto& own = sides.memory_of(i);
         auto& redo = own.redo;
-        const auto& near = own.near;
         const bool again = own.locating;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= near.band[j];
+            const bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= near.band(j);
             redo.crossed.set(j, crossed[j] || undecided);
             if (again) continue;
             const R change = abs(step.g1[j] - step.g[j]);
             redo.tolerance[j] = min(args.event[j].tolerance, R(largest_part) * change);
         }
         located_crossing<R> first;
-        if (MYRIAD_UNLIKELY(args.sub_samples > 1 && !again)) {
-            first = detail::earliest_crossing_between(low, high, step, crossed);
+        if (MYRIAD_UNLIKELY(part.scanned && !again)) {
+            first = detail::earliest_crossing_between(part.low, part.high, step, crossed);
+        } else if constexpr (Nearness::is_plain) {
+            first = detail::only_crossing(step, side, crossed, near, redo.tolerance);
         } else {
-            first = detail::earliest_crossing(step, side, crossed, near.floor, redo.tolerance);
+            first = detail::earliest_crossing(step, side, crossed, near, redo.tolerance);
         }
         redo.target = first.event;
         const R guess = step.h * first.fraction;
@@ -295,7 +309,7 @@ private:
         if (!here) return;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool close = abs(step.g[j]) <= max(redo.tolerance[j], near.floor[j]);
+            const bool close = abs(step.g[j]) <= max(redo.tolerance[j], near.floor(j));
             const bool happens = redo.target == j || (redo.crossed[j] && (close || redo.narrow));
             events.put(j, i, happens, step.g[j]);
             own.at_jump.set(j, happens && !close);
@@ -315,17 +329,16 @@ private:
         MYRIAD_FUNCTION bool is_plain() const { return is_close() && !others && all_left; }
     };
     MYRIAD_FUNCTION arrival arrival_of(int i, const ends_of_step& step, const reals& side) const {
-        const auto& own = sides.memory_of(i);
-        const auto& redo = own.redo;
-        const auto& near = own.near;
+        const auto& redo = sides.memory_of(i).redo;
+        const auto& near = sides.memory_of(i).near;
         arrival reached{R(0), R(0), R(0), false, true};
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             reached.all_left = reached.all_left && sides.e.left.get(j, i);
             if (redo.target == j) {
                 reached.gap = side[j] * step.g1[j];
-                reached.band = near.band[j];
-                reached.close = max(R(arrival_part) * redo.tolerance[j], R(0.5) * near.rounding[j]);
+                reached.band = near.band(j);
+                reached.close = max(R(arrival_part) * redo.tolerance[j], R(0.5) * near.rounding(j));
             } else {
                 reached.others = reached.others || redo.crossed[j];
             }
@@ -367,7 +380,7 @@ private:
         const bool timeless = sides.is_timeless(i, step.h);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const R band = near.band[j];
+            const R band = near.band(j);
             const bool heads = abs(step.g1[j]) <= band && side[j] * slope[j] * step.h < R(0);
             const bool jumps = narrow && side[j] * step.g1[j] > band;
             const bool happens = redo.target == j || (redo.crossed[j] && (heads || jumps));
@@ -396,7 +409,7 @@ private:
             const bool close = abs(g) <= sides.end_tolerance(j);
             // The discriminant of the parabola through the last step's start, with the slope at its end.
             const R bend = (last_speed - speed) / abs(step.h);
-            const bool turns = speed * speed <= R(8) * bend * (abs(g) + own.near.rounding[j]);
+            const bool turns = speed * speed <= R(8) * bend * (abs(g) + own.near.rounding(j));
             events.put(j, i, sides.is_asked(j, side[j]) && close && speed > R(0) && at_zero && !turns, step.g1[j]);
         }
     }

@@ -28,6 +28,12 @@ struct redone_step {
     mask_set<bool, events> crossed;  // the events that crossed in the trial that found the target
     vec<R, events> tolerance;        // of event functions in this step
 
+    /// No location has been.
+    MYRIAD_FUNCTION void clear() {
+        before = beyond = R(0);
+        tries = 0;
+        narrow = false;
+    }
     /// A trial of length h ended beyond an event.
     MYRIAD_FUNCTION void begin(R h, R guess, R h_next) {
         resume = h_next;

@@ -61,21 +61,18 @@ struct side_follower {
     /// Stores the sides of lane i for its next phase. A phase without a step has not evaluated its event functions.
     MYRIAD_FUNCTION void keep(int i) const {
         if (s.iterations_of(args, i) == 0) return;
-        const auto& p = inputs_of(i);
         const auto& own = memory_of(i);
-        const R t = get_lane(s.data.t, i);
-        const state y = get_lanes<R>(s.data.y, i);
-        const reals g = detail::evaluate_events<Model>(t, y, p), rounding = roundings_if_needed(t, y, g, p);
+        const reals g = detail::evaluate_events<Model>(get_lane(s.data.t, i), get_lanes<R>(s.data.y, i), inputs_of(i));
+        const flags above = e.above.of_lane(i);
+        const bool clear = (above ^ negative(g)).all_of() && e.left.of_lane(i).all_of() && are_beyond_tolerances(g) &&
+                           !(own.open | own.on_jump).any_of();
+        e.flags.set(e.kept_plain, i, clear);
+        if (MYRIAD_UNLIKELY(!clear)) return keep_carefully(i, g);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            const R side = side_of(j, i);
-            kept_side kept = side * g[j] > rounding[j] ? kept_side::beyond : kept_side::within;
-            if (is_fresh(j, i)) kept = kept_side::fired;
-            if (!e.left.get(j, i) && own.on_jump[j]) kept = kept_side::on_jump;
-            if (side == R(0)) kept = kept_side::unknown;
-            kept_at(j, i) = kept_event(side > R(0), kept, e.left.get(j, i) ? 0 : own.lingered[j]).code();
-        }
+        for (int j = 0; j < m; ++j) kept_at(j, i) = kept_event(above[j], kept_side::beyond, 0).code();
     }
+    /// Takes the sides of an instance that is new in lane i from where an earlier call has kept them.
+    MYRIAD_FUNCTION void load(int i) const { e.flags.set(e.kept_plain, i, false); }
     /// Makes the next phase of lane i begin with all sides unknown.
     MYRIAD_FUNCTION void forget(int i) const {
         MYRIAD_UNROLL
@@ -90,13 +87,17 @@ struct side_follower {
         for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA {
             auto& own = memory_of(i);
             bool undefined = false;
-            const reals rounding =
-                roundings_if_needed(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), get_lanes<R>(g, i), inputs_of(i));
+            flags moved;
+            moved.clear();
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j)
+                moved.set(j, !events.which.get(j, i) && !own.on_jump[j] && get_lane(g[j], i) != get_lane(before[j], i));
+            const reals rounding = roundings_if_needed(i, get_lanes<R>(g, i), moved);
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) {
                 const R now = get_lane(g[j], i), then = get_lane(before[j], i);
                 undefined = undefined || now != now;
-                if (events.which.get(j, i) || own.on_jump[j] || now == then) continue;
+                if (!moved[j]) continue;
                 const bool is_there = abs(now) <= rounding[j], was_there = abs(then) <= rounding[j];
                 // Right after its event a function that a hook hardly moves is as good as on the surface.
                 const bool keeps = is_there ? was_there : !e.left.get(j, i) && abs(now) <= R(2) * abs(then);
@@ -114,20 +115,14 @@ struct side_follower {
     /// right before the jump: a look ahead tells whether it is about to pass it. The same holds for one that fired at a
     /// jump earlier, as this action may have moved the state.
     MYRIAD_FUNCTION void settle(int i, const fired& events, const lane_data<Model, S>& before) {
-        bool passes = !get_lane(events.changed, i) && !e.flags.get(e.in_question, i);
         auto& own = memory_of(i);
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            if (events.which.get(j, i)) own.fresh.set(j, true);
-            passes = passes && (!events.which.get(j, i) || (e.left.get(j, i) && !own.at_jump[j]));
-        }
+        const flags which = events.which.of_lane(i), left = e.left.of_lane(i);
+        own.fresh = own.fresh | which;
+        const bool passes =
+            !get_lane(events.changed, i) && !e.flags.get(e.in_question, i) && !(which & (~left | own.at_jump)).any_of();
         if (!passes) return settle_with_care(i, events, before);
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            if (!events.which.get(j, i)) continue;
-            e.above.set(j, i, !e.above.get(j, i));
-            e.left.set(j, i, false);
-        }
+        e.above.set_of_lane(i, e.above.of_lane(i) ^ which);
+        e.left.set_of_lane(i, left & ~which);
     }
 
     /// The inputs of lane i's event functions beside t and y.
@@ -207,26 +202,61 @@ struct side_follower {
             if (is_at_jump(j, i, step.h)) continue;  // after the trial it is still at the jump where it fired
             own.on_jump.set(j, false);
             own.fresh.set(j, false);
-            put_side(j, i, abs(step.g1[j]) > own.near.past[j] ? sign_of(step.g1[j]) : side[j]);
-            e.left.set(j, i, e.left.get(j, i) || (abs(step.g1[j]) > own.near.band[j] && !timeless));
+            put_side(j, i, abs(step.g1[j]) > own.near.past(j) ? sign_of(step.g1[j]) : side[j]);
+            e.left.set(j, i, e.left.get(j, i) || (abs(step.g1[j]) > own.near.band(j) && !timeless));
         }
     }
 
 private:
+    /// The same if a function may be on its surface or at a jump.
+    MYRIAD_FUNCTION void keep_carefully(int i, const reals& g) const {
+        const auto& own = memory_of(i);
+        flags in_question;
+        in_question.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) in_question.set(j, !is_fresh(j, i));
+        const reals rounding = roundings_if_needed(i, g, in_question);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const R side = side_of(j, i);
+            kept_side kept = side * g[j] > rounding[j] ? kept_side::beyond : kept_side::within;
+            if (is_fresh(j, i)) kept = kept_side::fired;
+            if (!e.left.get(j, i) && own.on_jump[j]) kept = kept_side::on_jump;
+            if (side == R(0)) kept = kept_side::unknown;
+            kept_at(j, i) = kept_event(side > R(0), kept, e.left.get(j, i) ? 0 : own.lingered[j]).code();
+        }
+    }
     MYRIAD_FUNCTION std::int16_t& kept_at(int j, int i) const {
         return args.side[static_cast<std::int64_t>(j) * args.size + s.instance[i]];
     }
     MYRIAD_FUNCTION bool fires_at_jump(int j, int i, const fired& events) const {
         return events.which.get(j, i) && memory_of(i).at_jump[j];
     }
-    /// The rounding errors of the event functions g at (t, y), or zero if all are farther from the surface than the
-    /// tolerances that were given, and so than rounding.
-    MYRIAD_FUNCTION reals roundings_if_needed(R t, const state& y, const reals& g, const inputs<Model, R>& p) const {
+    /// The rounding errors of the event functions g at the committed state, or zero if those in question are farther
+    /// from the surface than the tolerances that were given, and so than rounding.
+    MYRIAD_FUNCTION reals roundings_if_needed(int i, const reals& g, const flags& in_question) const {
         bool clear = true;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
-            clear = clear && abs(g[j]) > args.event[j].tolerance && args.event[j].tolerance > R(0);
-        return clear ? reals{} : detail::event_roundings<Model>(t, y, p);
+        for (int j = 0; j < m; ++j) clear = clear && (!in_question[j] || is_beyond_tolerance(j, g[j]));
+        if (clear) return reals{};
+        return detail::event_roundings<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), inputs_of(i));
+    }
+    /// Whether a value is farther from the surface than the tolerance that was given.
+    MYRIAD_FUNCTION bool is_beyond_tolerance(int j, R g) const {
+        return abs(g) > args.event[j].tolerance && args.event[j].tolerance > R(0);
+    }
+    static MYRIAD_FUNCTION flags negative(const reals& g) {
+        flags below;
+        below.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) below.set_negative(j, g[j]);
+        return below;
+    }
+    MYRIAD_FUNCTION bool are_beyond_tolerances(const reals& g) const {
+        bool beyond = true;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) beyond = beyond && is_beyond_tolerance(j, g[j]);
+        return beyond;
     }
     /// Whether event j fired at the committed state. After an ordinary step every function has left.
     MYRIAD_FUNCTION bool is_fresh(int j, int i) const { return memory_of(i).fresh[j] && !e.left.get(j, i); }
@@ -269,9 +299,15 @@ private:
             g = detail::evaluate_events<Model>(t, y, p);
             slope = detail::event_slopes<Model>(t, y, along, p);
         }
-        const reals rounding = roundings_if_needed(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), g, inputs_of(i));
-        flags at_jump;
+        flags at_jump, in_question;
         at_jump.clear();
+        in_question.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool moved = g[j] != get_lane(events.value[j], i);
+            in_question.set(j, moved || on_jump[j] || fires_at_jump(j, i, events));
+        }
+        const reals rounding = roundings_if_needed(i, g, in_question);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool fires = events.which.get(j, i), waits = !fires && on_jump[j];
@@ -306,13 +342,32 @@ private:
     }
 
     MYRIAD_FUNCTION void begin_lane(int i) {
-        const auto& p = inputs_of(i);
+        memory_of(i).clear();
+        const reals g = detail::evaluate_events<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), inputs_of(i));
+        e.above.set_of_lane(i, ~negative(g));
+        e.left.set_of_lane(i, flags::all_in(true));
+        e.flags.set(e.undefined, i, false);
+        e.flags.set(e.in_question, i, args.sub_samples > 1);
+        bool clear = are_beyond_tolerances(g);
+        if (!e.flags.get(e.kept_plain, i)) {
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) clear = clear && kept_event(kept_at(j, i)).is_plain();
+        }
+        if (MYRIAD_UNLIKELY(!clear)) begin_carefully(i, g);
+    }
+    /// The same if a function may be on its surface, at a jump, or undefined.
+    MYRIAD_FUNCTION void begin_carefully(int i, const reals& g) {
         auto& own = memory_of(i);
-        const reals g = detail::evaluate_events<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), p);
-        const reals rounding = roundings_if_needed(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), g, p);
         bool undefined = false;
-        flags at_jump;
+        flags at_jump, in_question;
         at_jump.clear();
+        in_question.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool fired_there = kept_event(kept_at(j, i)).kind() == kept_side::fired;
+            in_question.set(j, !(fired_there && args.event[j].tolerance > R(0)));
+        }
+        const reals rounding = roundings_if_needed(i, g, in_question);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const kept_event kept(kept_at(j, i));
@@ -333,13 +388,7 @@ private:
             }
         }
         e.flags.set(e.undefined, i, undefined);
-        own.on_jump.clear();
-        own.fresh.clear();
-        own.locating = false;
-        own.redo.begin(R(0), R(0), R(0));
-        if (MYRIAD_UNLIKELY(at_jump.any_of())) {
-            look_beyond(i, at_jump, g, s.slope_of(i));
-        }
+        if (at_jump.any_of()) look_beyond(i, at_jump, g, s.slope_of(i));
         note(i);
     }
 

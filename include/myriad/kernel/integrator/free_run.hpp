@@ -8,9 +8,8 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 template <class Model, class Method>
-inline constexpr bool runs_freely =
-    !is_adaptive<Method> && !has_events<Model> && !has_after_step<Model> && !samples_trajectory<Method> &&
-    !has_reductions<Model> && !Method::first_same_as_last;
+inline constexpr bool runs_freely = !is_adaptive<Method> && !has_events<Model> && !has_after_step<Model> &&
+                                    !samples_trajectory<Method> && !has_summaries<Model> && !Method::first_same_as_last;
 
 template <class Model, class Method, class S>
 struct free_run {

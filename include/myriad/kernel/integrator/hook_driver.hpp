@@ -58,8 +58,8 @@ struct hook_driver {
         }
     }
 
-    /// Handles lanes in which a reduction has changed an accessory that rhs or events may read.
-    MYRIAD_FUNCTION void follow_reductions(const mask& changed) {
+    /// Handles lanes in which a summary has changed an accessory that rhs or events may read.
+    MYRIAD_FUNCTION void follow_summaries(const mask& changed) {
         if (any(changed)) follow_up(changed, s.data);
     }
 

@@ -14,8 +14,8 @@
 #include "myriad/kernel/integrator/hook_driver.hpp"
 #include "myriad/kernel/integrator/phase.hpp"
 #include "myriad/kernel/integrator/phase_watch.hpp"
-#include "myriad/kernel/output/reducer.hpp"
 #include "myriad/kernel/output/sampler.hpp"
+#include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 #include "myriad/kernel/stepper/step.hpp"
 
@@ -65,15 +65,15 @@ struct integrator {
             mask accepted = judge(trial, seen, locator, events);
             if constexpr (samples)
                 sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted, any_event(events));
-            mask reduced;
-            if constexpr (has_reductions<Model>)
-                reduced = reducer<Model, Method, S>{s}.reduce(trial, end_time(), accepted);
+            mask summarised;
+            if constexpr (has_summaries<Model>)
+                summarised = summariser<Model, Method, S>{s}.summarise(trial, end_time(), accepted);
             if constexpr (!is_pack<S>) {
                 if (!accepted && !any_event(events)) continue;
             }
             commit(trial, accepted, events);
             hook_driver<Model, Method, S> hooks{args, s, locator.sides, events};
-            if constexpr (sees_reductions<Model>) hooks.follow_reductions(reduced);
+            if constexpr (sees_summaries<Model>) hooks.follow_summaries(summarised);
             if constexpr (has_after_step<Model>) hooks.after_step(accepted);
             if constexpr (has_events<Model>) hooks.act_on_events();
         }

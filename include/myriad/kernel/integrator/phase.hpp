@@ -6,8 +6,8 @@
 
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/side_follower.hpp"
-#include "myriad/kernel/output/reducer.hpp"
 #include "myriad/kernel/output/sampler.hpp"
+#include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -117,6 +117,7 @@ private:
             set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
         stepping_type{args, s}.load(i);
+        if constexpr (m > 0) sides.load(i);
         set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(args.first_index + index));
         s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases - args.first_phase;
     }
@@ -193,7 +194,7 @@ private:
         }
         const R t = get_lane(s.data.t, i);
         args.t[index] = t;
-        if constexpr (has_reductions<Model>) reducer<Model, Method, S>{s}.begin(i);
+        if constexpr (has_summaries<Model>) summariser<Model, Method, S>{s}.begin(i);
         steps.begin(i, t);
         if constexpr (m > 0) {
             if (phase == 0) sides.forget(i);

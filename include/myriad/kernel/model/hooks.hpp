@@ -10,7 +10,7 @@
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/lane.hpp"
-#include "myriad/kernel/model/reductions.hpp"
+#include "myriad/kernel/model/summaries.hpp"
 #include "myriad/kernel/scalar/matrix_loop.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -44,7 +44,7 @@ template <class Model, class R>
 constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inputs<Model, R>* p = nullptr,
                            lane<Model, R>* l = nullptr) {
     check_model<Model>();
-    check_reductions<Model>();
+    check_summaries<Model>();
     static_cast<void>(y), static_cast<void>(p), static_cast<void>(l);
     using slopes = vec<R, n_state<Model>>;
     using square = matrix<R, n_state<Model>>;

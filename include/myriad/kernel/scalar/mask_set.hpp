@@ -34,7 +34,7 @@ public:
     }
     MYRIAD_FUNCTION const M& operator[](int j) const { return masks_[j]; }
     MYRIAD_FUNCTION void set(int j, const M& value) { masks_[j] = value; }
-    /// Sets mask j, which must not be set yet, where x, which is not zero, is negative.
+    /// Sets mask j, which must not be set yet, where x is negative. Zeros may count as either.
     template <class S>
     MYRIAD_FUNCTION void set_negative(int j, const S& x) {
         masks_[j] = x < S(0);
@@ -70,6 +70,18 @@ public:
     }
     MYRIAD_FUNCTION bool get(int j, int lane) const { return get_lane(masks_[j], lane); }
     MYRIAD_FUNCTION void set(int j, int lane, bool value) { set_lane(masks_[j], lane, value); }
+    /// The masks of one lane.
+    MYRIAD_FUNCTION mask_set<bool, size> of_lane(int lane) const {
+        mask_set<bool, size> made;
+        made.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < size; ++j) made.set(j, get(j, lane));
+        return made;
+    }
+    MYRIAD_FUNCTION void set_of_lane(int lane, const mask_set<bool, size>& values) {
+        MYRIAD_UNROLL
+        for (int j = 0; j < size; ++j) set(j, lane, values[j]);
+    }
 
 private:
     template <class Combine>
@@ -148,6 +160,18 @@ public:
     }
     MYRIAD_FUNCTION bool get(int j, int) const { return (*this)[j]; }
     MYRIAD_FUNCTION void set(int j, int, bool value) { set(j, value); }
+    MYRIAD_FUNCTION mask_set of_lane(int) const { return *this; }
+    /// Whether more than one mask holds.
+    MYRIAD_FUNCTION bool several() const {
+        std::uint32_t more = 0;
+        MYRIAD_UNROLL
+        for (int k = 0, before = 0; k < count; ++k) {
+            more |= (words_[k] & (words_[k] - 1)) | (before != 0 ? words_[k] : 0u);
+            before |= static_cast<int>(words_[k] != 0);
+        }
+        return more != 0;
+    }
+    MYRIAD_FUNCTION void set_of_lane(int, const mask_set& values) { *this = values; }
 
 private:
     static constexpr int count = words_for(size);

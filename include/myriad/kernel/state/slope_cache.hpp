@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Known values of the slope f(t, y) at the ends of a step: at the start where it is the last of the step before, at the
-// end where samples or reductions need it, for the next step.
+// end where samples or summaries need it, for the next step.
 #pragma once
 
 #include "myriad/kernel/methods/dense.hpp"
 #include "myriad/kernel/model/hooks.hpp"
-#include "myriad/kernel/model/reductions.hpp"
+#include "myriad/kernel/model/summaries.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
 #include "myriad/kernel/stepper/step.hpp"
 
@@ -27,8 +27,8 @@ public:
     using state = vec<S, n>;
     using data = lane_data<Model, S>;
 
-    /// Samples and reductions may need the slope at the end of a step, which is then the first of the next.
-    static constexpr bool knows_end = samples_trajectory<Method> || has_reductions<Model>;
+    /// Samples and summaries may need the slope at the end of a step, which is then the first of the next.
+    static constexpr bool knows_end = samples_trajectory<Method> || has_summaries<Model>;
     /// Slopes are kept if the last of a step is the first of the next. Else every trial evaluates its own, a repeated
     /// one too: in a pack or a warp another lane needs it anyway.
     static constexpr bool keeps_start = Method::first_same_as_last || knows_end;
@@ -141,7 +141,7 @@ private:
 
     /// Within a phase too, the slope at the start may have to be evaluated again.
     static constexpr bool loses_start =
-        !Method::first_same_as_last || has_after_step<Model> || has_events<Model> || sees_reductions<Model>;
+        !Method::first_same_as_last || has_after_step<Model> || has_events<Model> || sees_summaries<Model>;
 
     state start_, end_;
     mask start_known_, end_known_;

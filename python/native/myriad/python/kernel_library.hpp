@@ -13,10 +13,10 @@
 #include "myriad/kernel/study/generator.hpp"
 #include "myriad/methods.hpp"
 #include "myriad/model.hpp"
-#include "myriad/model/random.hpp"
-#include "myriad/model/tangent.hpp"
 #include "myriad/openmp/packs.hpp"
 #include "myriad/python/facts_of.hpp"
+#include "myriad/random.hpp"
+#include "myriad/tangent.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 

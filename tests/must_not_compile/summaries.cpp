@@ -1,23 +1,23 @@
-// case: reduction_into_an_accessory_that_is_not_there
-// expect: a reduction goes into an accessory that the model does not have
-// case: reduction_of_a_quantity_that_is_not_observed
-// expect: a reduction names a quantity that is not observed
-// case: reduction_with_accessory_and_quantity_exchanged
-// expect: a reduction names a quantity that is not observed
+// case: summary_into_an_accessory_that_is_not_there
+// expect: a summary goes into an accessory that the model does not have
+// case: summary_of_a_quantity_that_is_not_observed
+// expect: a summary names a quantity that is not observed
+// case: summary_with_accessory_and_quantity_exchanged
+// expect: a summary names a quantity that is not observed
 // case: time_of_a_maximum_without_the_maximum
 // expect: the time of an extremum needs the extremum itself
-// case: two_reductions_into_one_accessory
-// expect: two reductions go into the same accessory
+// case: two_summaries_into_one_accessory
+// expect: two summaries go into the same accessory
 // case: observe_with_a_result_of_the_wrong_size
 // expect: observe has a wrong signature: it must be
 // case: observe_with_a_wrong_signature
 // expect: observe has a wrong signature: it must be
-// case: observe_without_reductions
+// case: observe_without_summaries
 // expect: a model that observes has all three of
-// case: reductions_without_observe
+// case: summaries_without_observe
 // expect: a model that observes has all three of
 // SPDX-License-Identifier: MIT
-// Quantities that cannot be observed or reduced.
+// Quantities that cannot be observed or summarised.
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 
@@ -28,19 +28,18 @@ struct decay {
     enum observed { height, n_observed };
 
     using over = myriad::over_phase;
-#if defined CASE_reduction_into_an_accessory_that_is_not_there
-    static constexpr myriad::reduction reductions[] = {{height, over::maximum, n_accessory}};
-#elif defined CASE_reduction_of_a_quantity_that_is_not_observed
-    static constexpr myriad::reduction reductions[] = {{n_observed, over::maximum, largest}};
-#elif defined CASE_reduction_with_accessory_and_quantity_exchanged
-    static constexpr myriad::reduction reductions[] = {{largest, over::maximum, height}};
+#if defined CASE_summary_into_an_accessory_that_is_not_there
+    static constexpr myriad::summary summaries[] = {{height, over::maximum, n_accessory}};
+#elif defined CASE_summary_of_a_quantity_that_is_not_observed
+    static constexpr myriad::summary summaries[] = {{n_observed, over::maximum, largest}};
+#elif defined CASE_summary_with_accessory_and_quantity_exchanged
+    static constexpr myriad::summary summaries[] = {{largest, over::maximum, height}};
 #elif defined CASE_time_of_a_maximum_without_the_maximum  // its accessory stores the largest value so far
-    static constexpr myriad::reduction reductions[] = {{height, over::time_of_maximum, at}};
-#elif defined CASE_two_reductions_into_one_accessory      // one would overwrite the other
-    static constexpr myriad::reduction reductions[] = {{height, over::maximum, largest},
-                                                       {height, over::minimum, largest}};
-#elif !defined CASE_observe_without_reductions            // the observed quantities would go nowhere
-    static constexpr myriad::reduction reductions[] = {{height, over::maximum, largest}};
+    static constexpr myriad::summary summaries[] = {{height, over::time_of_maximum, at}};
+#elif defined CASE_two_summaries_into_one_accessory       // one would overwrite the other
+    static constexpr myriad::summary summaries[] = {{height, over::maximum, largest}, {height, over::minimum, largest}};
+#elif !defined CASE_observe_without_summaries             // the observed quantities would go nowhere
+    static constexpr myriad::summary summaries[] = {{height, over::maximum, largest}};
 #endif
 
     template <class R>
@@ -57,7 +56,7 @@ struct decay {
     MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& y) {
         return myriad::vec<R, n_observed>{y[x]};
     }
-#elif !defined CASE_reductions_without_observe
+#elif !defined CASE_summaries_without_observe
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& y, const auto&) {
         return myriad::vec<R, n_observed>{y[x]};

@@ -7,7 +7,7 @@
 #include "myriad/kernel/model/tangent.hpp"
 #include "tests/support/problems.hpp"
 
-namespace reduced {
+namespace summarised {
 
 using to = myriad::over_phase;
 
@@ -17,11 +17,11 @@ struct swing : plain_swing {
     static constexpr bool accessories_are_outputs = true;
     enum accessory { x_max, t_max, x_min, t_min, square, n_accessory };
     enum observed { position, power, n_observed };
-    static constexpr myriad::reduction reductions[] = {{position, to::maximum, x_max},
-                                                       {position, to::time_of_maximum, t_max},
-                                                       {position, to::minimum, x_min},
-                                                       {position, to::time_of_minimum, t_min},
-                                                       {power, to::integral, square}};
+    static constexpr myriad::summary summaries[] = {{position, to::maximum, x_max},
+                                                    {position, to::time_of_maximum, t_max},
+                                                    {position, to::minimum, x_min},
+                                                    {position, to::time_of_minimum, t_min},
+                                                    {power, to::integral, square}};
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& y, const auto&) {
@@ -33,7 +33,7 @@ struct peak_of_swing : plain_swing {
     static constexpr bool accessories_are_outputs = true;
     enum accessory { x_max, n_accessory };
     enum observed { position, n_observed };
-    static constexpr myriad::reduction reductions[] = {{position, to::maximum, x_max}};
+    static constexpr myriad::summary summaries[] = {{position, to::maximum, x_max}};
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& y, const auto&) {
@@ -60,7 +60,7 @@ struct timed {
         n_accessory
     };
     enum observed { hill, wave, logarithm, level, line, power, n_observed };
-    static constexpr myriad::reduction reductions[] = {
+    static constexpr myriad::summary summaries[] = {
         {hill, to::maximum, hill_max},     {hill, to::time_of_maximum, hill_at},
         {wave, to::maximum, wave_max},     {wave, to::minimum, wave_min},
         {logarithm, to::maximum, log_max}, {logarithm, to::integral, log_integral},
@@ -89,10 +89,10 @@ struct ball {
     enum accessory { height, height_at, lowest, fastest, n_accessory };
     enum event { impact, n_event };
     enum observed { position, speed, n_observed };
-    static constexpr myriad::reduction reductions[] = {{position, to::maximum, height},
-                                                       {position, to::time_of_maximum, height_at},
-                                                       {position, to::minimum, lowest},
-                                                       {speed, to::maximum, fastest}};
+    static constexpr myriad::summary summaries[] = {{position, to::maximum, height},
+                                                    {position, to::time_of_maximum, height_at},
+                                                    {position, to::minimum, lowest},
+                                                    {speed, to::maximum, fastest}};
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto&) {
@@ -111,12 +111,12 @@ struct ball {
         lane.y[v] = -lane.shared[kept] * lane.y[v];
     }
 };
-/// Slowed by its largest speed so far: rhs reads the result of a reduction, as accessories are not outputs here.
+/// Slowed by its largest speed so far: rhs reads the result of a summary, as accessories are not outputs here.
 struct remembering {
     enum state { x, n_state };
     enum accessory { largest, n_accessory };
     enum observed { position, n_observed };
-    static constexpr myriad::reduction reductions[] = {{position, to::maximum, largest}};
+    static constexpr myriad::summary summaries[] = {{position, to::maximum, largest}};
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto& p) {
@@ -145,4 +145,4 @@ struct remembering_by_hook {
 
 using swing_with_tangents = myriad::with_tangents<swing, 2>;
 
-}  // namespace reduced
+}  // namespace summarised

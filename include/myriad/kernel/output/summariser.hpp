@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reductions of observed quantities along the solution: extrema, their times and integrals over the phase, computed on
+// Summaries of observed quantities along the solution: extrema, their times and integrals over the phase, computed on
 // the interpolant of each committed step. Their current values are stored only in their accessories. Only in kernels of
-// models that declare `reductions`.
+// models that declare `summaries`.
 #pragma once
 
 #include "myriad/kernel/scalar/dual.hpp"
@@ -10,7 +10,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// A committed step as the reductions see it: its interpolant, with the term that raises a cubic to order four.
+/// A committed step as the summaries see it: its interpolant, with the term that raises a cubic to order four.
 template <class Method, class S, int n>
 struct observed_step {
     // The cubic Hermite polynomial is of lower order than the steps of a method of order five. One more evaluation
@@ -34,12 +34,12 @@ struct observed_step {
 };
 
 template <class Model, class Method, class S>
-struct reducer {
+struct summariser {
     using R = real_of<S>;
     using mask = mask_of<S>;
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_observed<Model>;
-    static constexpr bool integrates = reduces_any<Model, over_phase::integral>;
+    static constexpr bool integrates = summarises_any<Model, over_phase::integral>;
     using step_type = observed_step<Method, S, n>;
     using values = vec<S, m>;
     using slopes = vec<dual<S>, m>;
@@ -51,17 +51,17 @@ struct reducer {
         const lane_data<Model, R> one = detail::extract_lane(s.data, i);
         const inputs<Model, R>& p = one;
         const vec<R, m> q = Model::template observe<R>(one.t, one.y, p);
-        static_for<0, n_reduction<Model>>([&](auto r) MYRIAD_LAMBDA {
-            constexpr unmarked_reduction what = reduction_at<Model, decltype(r)::value>;
+        static_for<0, n_summary<Model>>([&](auto r) MYRIAD_LAMBDA {
+            constexpr unmarked_summary what = summary_at<Model, decltype(r)::value>;
             constexpr bool time = what.kind == over_phase::time_of_maximum || what.kind == over_phase::time_of_minimum;
             set_lane(s.data.accessory[what.accessory], i,
                      time ? one.t : (what.kind == over_phase::integral ? R(0) : q[what.quantity]));
         });
     }
 
-    /// Updates the reductions with the accepted trial steps, which end at t1, before they are committed. Returns the
+    /// Updates the summaries with the accepted trial steps, which end at t1, before they are committed. Returns the
     /// lanes in which an accessory has changed.
-    MYRIAD_FUNCTION mask reduce(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
+    MYRIAD_FUNCTION mask summarise(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
         const auto before = s.data.accessory;
         step_type step{{s.now(), s.h, s.data.y, trial, s.slopes.end(), {}}, {}};
         if constexpr (interpolates_with_slope_end<Method> ||
@@ -94,7 +94,7 @@ struct reducer {
         if constexpr (integrates) integrate_step(step, first, last, accepted);
 
         mask changed = mask(false);
-        if constexpr (sees_reductions<Model>) {
+        if constexpr (sees_summaries<Model>) {
             MYRIAD_UNROLL
             for (int a = 0; a < n_accessory<Model>; ++a)
                 changed = changed | (accepted & differs_in_bits(before[a], s.data.accessory[a]));
@@ -104,7 +104,7 @@ struct reducer {
 
 private:
     template <int q, over_phase kind>
-    static constexpr bool extreme = reduces<Model>(q, kind);
+    static constexpr bool extreme = summarises<Model>(q, kind);
 
     /// The quantities at theta = `end`, with their slopes along the solution per step.
     template <int end>
@@ -163,12 +163,12 @@ private:
     template <int q, over_phase kind, over_phase its_time>
     MYRIAD_FUNCTION void consider_for(const mask& lanes, const S& value, const S& t) {
         if constexpr (extreme<q, kind>) {
-            S& best = s.data.accessory[reduced_into<Model, q, kind>];
+            S& best = s.data.accessory[summarised_into<Model, q, kind>];
             const mask better =
                 lanes & ((kind == over_phase::maximum ? value > best : value < best) | (value != value));
             best = select(better, value, best);
             if constexpr (extreme<q, its_time>) {
-                S& when = s.data.accessory[reduced_into<Model, q, its_time>];
+                S& when = s.data.accessory[summarised_into<Model, q, its_time>];
                 when = select(better, t, when);
             }
         }
@@ -284,7 +284,7 @@ private:
         static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
             constexpr int q = decltype(j)::value;
             if constexpr (extreme<q, over_phase::integral>) {
-                S& integral = s.data.accessory[reduced_into<Model, q, over_phase::integral>];
+                S& integral = s.data.accessory[summarised_into<Model, q, over_phase::integral>];
                 integral = select(lanes, fma(step.data.h, sum[q], integral), integral);
             }
         });

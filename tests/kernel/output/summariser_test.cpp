@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "tests/catch.hpp"
-#include "tests/kernel/output/reduced.hpp"
+#include "tests/kernel/output/summarised.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/device.hpp"
 
-using namespace reduced;
+using namespace summarised;
 using myriad::cash_karp;
 using myriad::dense;
 using myriad::dormand_prince_5;
@@ -91,8 +91,7 @@ void each(Test test) {
 
 }  // namespace
 
-TEST_CASE("the largest and smallest value of an oscillation are as good as the steps, not as their ends",
-          "[reduction]") {
+TEST_CASE("the largest and smallest value of an oscillation are as good as the steps, not as their ends", "[summary]") {
     // docs/numerics.md has this.
     each([]<class Method> {
         const errors error = swing_errors<Method>(1e-8);
@@ -105,7 +104,7 @@ TEST_CASE("the largest and smallest value of an oscillation are as good as the s
     });
 }
 
-TEST_CASE("the largest value at ends of steps is off by the square of a step", "[reduction]") {
+TEST_CASE("the largest value at ends of steps is off by the square of a step", "[summary]") {
     auto e = swings<plain_swing>();
     options o = compare::with_tolerance(1e-8);
     o.samples = {.states = {plain_swing::x}, .capacity = 200, .every = 1};
@@ -117,7 +116,7 @@ TEST_CASE("the largest value at ends of steps is off by the square of a step", "
     CHECK(worst < 3.2e-2);
 }
 
-TEST_CASE("extrema and integrals fall with the tolerance as the states do", "[reduction]") {
+TEST_CASE("extrema and integrals fall with the tolerance as the states do", "[summary]") {
     each([]<class Method> {
         if constexpr (Method::embedded_order > 0 && !std::is_same_v<Method, rosenbrock_23>) {
             const errors coarse = swing_errors<Method>(1e-6), fine = swing_errors<Method>(1e-10);
@@ -128,7 +127,7 @@ TEST_CASE("extrema and integrals fall with the tolerance as the states do", "[re
     });
 }
 
-TEST_CASE("backwards in time extrema are the same and integrals negative", "[reduction]") {
+TEST_CASE("backwards in time extrema are the same and integrals negative", "[summary]") {
     each([]<class Method> {
         const errors error = swing_errors<Method>(1e-8, -17);
         CHECK(error.extremum <= 2 * error.state);
@@ -137,7 +136,7 @@ TEST_CASE("backwards in time extrema are the same and integrals negative", "[red
     });
 }
 
-TEST_CASE("extrema and integrals are there in single precision", "[reduction]") {
+TEST_CASE("extrema and integrals are there in single precision", "[summary]") {
     const auto check = []<class Method> {
         auto e = swings<swing, float>();
         solve<Method>(tests::test_device(), e, compare::with_tolerance(1e-5));
@@ -150,7 +149,7 @@ TEST_CASE("extrema and integrals are there in single precision", "[reduction]") 
     check.template operator()<dormand_prince_5>();
 }
 
-TEST_CASE("reductions change no bit of the states and no step", "[reduction]") {
+TEST_CASE("summaries change no bit of the states and no step", "[summary]") {
     compare::each_method([]<class Method> {
         auto with = swings<swing>();
         auto without = swings<plain_swing>();
@@ -163,8 +162,8 @@ TEST_CASE("reductions change no bit of the states and no step", "[reduction]") {
     });
 }
 
-TEST_CASE("what reductions evaluate is counted, and the slope at the end of a step is the next one's first",
-          "[reduction]") {
+TEST_CASE("what summaries evaluate is counted, and the slope at the end of a step is the next one's first",
+          "[summary]") {
     const options o = compare::with_tolerance(1e-7);
     const auto evaluations = [&]<class Method, class Model> {
         auto e = swings<Model>();
@@ -183,7 +182,7 @@ TEST_CASE("what reductions evaluate is counted, and the slope at the end of a st
           evaluations.template operator()<tsitouras_5, plain_swing>());
 }
 
-TEST_CASE("reductions begin anew with each phase, at its start", "[reduction]") {
+TEST_CASE("summaries begin anew with each phase, at its start", "[summary]") {
     const options o = compare::with_tolerance(1e-9);
     auto e = swings<swing>();
     e.t_end() = 1;
@@ -212,7 +211,7 @@ TEST_CASE("reductions begin anew with each phase, at its start", "[reduction]") 
     CHECK(compare::difference(e, in_calls) == "");
 }
 
-TEST_CASE("a phase without a step has the values at its start", "[reduction]") {
+TEST_CASE("a phase without a step has the values at its start", "[summary]") {
     auto e = swings<swing>();
     e.t_begin() = 2;
     e.t_end() = 2;
@@ -223,7 +222,7 @@ TEST_CASE("a phase without a step has the values at its start", "[reduction]") {
     CHECK((e.accessory(swing::square) == 0.0).all());
 }
 
-TEST_CASE("samples and reductions do not disturb each other", "[reduction]") {
+TEST_CASE("samples and summaries do not disturb each other", "[summary]") {
     auto alone = swings<swing>(), sampled = swings<swing>();
     options o = compare::with_tolerance(1e-7);
     solve<cash_karp>(tests::test_device(), alone, o);
@@ -236,7 +235,7 @@ TEST_CASE("samples and reductions do not disturb each other", "[reduction]") {
     CHECK((sampled.samples().state(swing::x).rowwise().maxCoeff() <= sampled.accessory(swing::x_max) + 1e-5).all());
 }
 
-TEST_CASE("one step can hold a maximum and a minimum, and a quantity may depend on time alone", "[reduction]") {
+TEST_CASE("one step can hold a maximum and a minimum, and a quantity may depend on time alone", "[summary]") {
     const auto check = []<class Method>(double begin, double end) {
         ensemble<timed> e(3);
         e.state(timed::y0) = 0;
@@ -260,7 +259,7 @@ TEST_CASE("one step can hold a maximum and a minimum, and a quantity may depend 
     check.template operator()<runge_kutta_4>(0, 0.8);
 }
 
-TEST_CASE("a quantity that never changes has its extremum at the start", "[reduction]") {
+TEST_CASE("a quantity that never changes has its extremum at the start", "[summary]") {
     ensemble<timed> e(3);
     e.state(timed::y0) = 0;
     e.shared(timed::from) = 0;
@@ -270,7 +269,7 @@ TEST_CASE("a quantity that never changes has its extremum at the start", "[reduc
     CHECK(e.accessory(timed::level_at)[2] == 0.6);
 }
 
-TEST_CASE("a quantity that is NaN on the way makes its own reductions NaN and no others", "[reduction]") {
+TEST_CASE("a quantity that is NaN on the way makes its own summaries NaN and no others", "[summary]") {
     ensemble<timed> e(3);
     e.state(timed::y0) = 0;
     e.shared(timed::from) = 0;
@@ -282,7 +281,7 @@ TEST_CASE("a quantity that is NaN on the way makes its own reductions NaN and no
     CHECK(e.accessory(timed::slope_max)[0] == 3);
 }
 
-TEST_CASE("extrema never lie beyond an event, and the state that an action leaves counts", "[reduction]") {
+TEST_CASE("extrema never lie beyond an event, and the state that an action leaves counts", "[summary]") {
     compare::each_method([]<class Method> {
         ensemble<ball> e(5);
         e.state(ball::x) = 0.5;
@@ -314,7 +313,7 @@ TEST_CASE("extrema never lie beyond an event, and the state that an action leave
     });
 }
 
-TEST_CASE("a right-hand side may read what a reduction writes, as what a hook writes", "[reduction]") {
+TEST_CASE("a right-hand side may read what a summary writes, as what a hook writes", "[summary]") {
     const auto check = []<class Method> {
         ensemble<remembering> e(5);
         ensemble<remembering_by_hook> by_hook(5);
@@ -335,7 +334,7 @@ TEST_CASE("a right-hand side may read what a reduction writes, as what a hook wr
     check.template operator()<tsitouras_5>();
 }
 
-TEST_CASE("a model with tangents keeps the reductions of its own", "[reduction]") {
+TEST_CASE("a model with tangents keeps the summaries of its own", "[summary]") {
     auto e = swings<swing_with_tangents>();
     myriad::initial_tangents(e);
     auto alone = swings<swing>();

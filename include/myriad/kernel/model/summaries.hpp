@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reductions: extrema of quantities of a model's `observe`, the times of extrema, and integrals over the phase, each
+// Summaries: extrema of quantities of a model's `observe`, the times of extrema, and integrals over the phase, each
 // with the accessory that receives it. Declared in the model, read at compile time.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace myriad {
 
-/// The reductions of an observed quantity over a phase, along the solution and not only at the ends of steps.
+/// The summaries of an observed quantity over a phase, along the solution and not only at the ends of steps.
 enum class over_phase : std::uint8_t {
     maximum,          ///< the largest value; the ends of the phase count too
     minimum,          ///< the smallest value, likewise
@@ -34,8 +34,8 @@ inline constexpr char type_mark = 0;
 namespace myriad {
 
 /// An observed quantity, what to compute from it, and the accessory that receives it: `static constexpr
-/// myriad::reduction reductions[] = {{height, myriad::over_phase::maximum, highest}};`
-struct reduction {
+/// myriad::summary summaries[] = {{height, myriad::over_phase::maximum, highest}};`
+struct summary {
     int quantity;                ///< number of the observed quantity
     over_phase kind;             ///< what is computed from it
     int accessory;               ///< number of the accessory that receives it
@@ -44,7 +44,7 @@ struct reduction {
 
     /// From enumerators of `observed` and `accessory`.
     template <class Q, class A>
-    constexpr reduction(Q observed, over_phase kind_, A receiver)
+    constexpr summary(Q observed, over_phase kind_, A receiver)
         : quantity(static_cast<int>(observed)), kind(kind_), accessory(static_cast<int>(receiver)),
           quantity_type(&detail::type_mark<Q>), accessory_type(&detail::type_mark<A>) {}
 };
@@ -54,27 +54,27 @@ struct reduction {
 namespace myriad::detail {
 
 template <class Model>
-constexpr int n_reduction_of() {
-    if constexpr (requires { std::size(Model::reductions); }) {
-        return static_cast<int>(std::size(Model::reductions));
+constexpr int n_summary_of() {
+    if constexpr (requires { std::size(Model::summaries); }) {
+        return static_cast<int>(std::size(Model::summaries));
     } else {
         return 0;
     }
 }
-/// Number of reductions that a model declares.
+/// Number of summaries that a model declares.
 template <class Model>
-inline constexpr int n_reduction = n_reduction_of<Model>();
+inline constexpr int n_summary = n_summary_of<Model>();
 template <class Model>
-inline constexpr bool has_reductions = n_reduction<Model> > 0;
-/// A reduction without the type tags, which device code cannot use.
-struct unmarked_reduction {
+inline constexpr bool has_summaries = n_summary<Model> > 0;
+/// A summary without the type tags, which device code cannot use.
+struct unmarked_summary {
     int quantity;
     over_phase kind;
     int accessory;
 };
 template <class Model, int i>
-inline constexpr unmarked_reduction reduction_at = {Model::reductions[i].quantity, Model::reductions[i].kind,
-                                                    Model::reductions[i].accessory};
+inline constexpr unmarked_summary summary_at = {Model::summaries[i].quantity, Model::summaries[i].kind,
+                                                Model::summaries[i].accessory};
 
 /// Whether a type tag is that of a number, or of the model's enumeration of such components.
 template <class Model>
@@ -90,87 +90,86 @@ constexpr bool marks_accessory(const char* mark) {
     return own;
 }
 
-/// Whether the model has this reduction of the quantity.
+/// Whether the model has this summary of the quantity.
 template <class Model>
-constexpr bool reduces(int quantity, over_phase kind) {
-    if constexpr (has_reductions<Model>) {
-        for (const reduction& r : Model::reductions)
+constexpr bool summarises(int quantity, over_phase kind) {
+    if constexpr (has_summaries<Model>) {
+        for (const summary& r : Model::summaries)
             if (r.quantity == quantity && r.kind == kind) return true;
     }
     return false;
 }
-/// The accessory that receives this reduction, or -1.
+/// The accessory that receives this summary, or -1.
 template <class Model, int quantity, over_phase kind>
-inline constexpr int reduced_into = [] {
-    for (const reduction& r : Model::reductions)
+inline constexpr int summarised_into = [] {
+    for (const summary& r : Model::summaries)
         if (r.quantity == quantity && r.kind == kind) return r.accessory;
     return -1;
 }();
-/// Whether the model has a reduction of this kind.
+/// Whether the model has a summary of this kind.
 template <class Model, over_phase kind>
-inline constexpr bool reduces_any = [] {
+inline constexpr bool summarises_any = [] {
     bool found = false;
-    for (int quantity = 0; quantity < n_observed<Model>; ++quantity) found = found || reduces<Model>(quantity, kind);
+    for (int quantity = 0; quantity < n_observed<Model>; ++quantity) found = found || summarises<Model>(quantity, kind);
     return found;
 }();
 template <class Model>
 inline constexpr bool seeks_extrema =
-    reduces_any<Model, over_phase::maximum> || reduces_any<Model, over_phase::minimum>;
+    summarises_any<Model, over_phase::maximum> || summarises_any<Model, over_phase::minimum>;
 
-/// Whether rhs and events may read the accessories that reductions write.
+/// Whether rhs and events may read the accessories that summaries write.
 template <class Model>
-inline constexpr bool sees_reductions = has_reductions<Model> && !accessories_are_outputs<Model>;
+inline constexpr bool sees_summaries = has_summaries<Model> && !accessories_are_outputs<Model>;
 
-/// Checks a model's reductions as far as possible without calling `observe`.
+/// Checks a model's summaries as far as possible without calling `observe`.
 template <class Model>
-constexpr bool check_reductions() {
-    constexpr bool declared = requires { Model::reductions; };
+constexpr bool check_summaries() {
+    constexpr bool declared = requires { Model::summaries; };
     static_assert(
         has_observe<Model> == (n_observed<Model> > 0) && has_observe<Model> == declared,
         "a model that observes has all three of `enum observed { ..., n_observed };`, a function `observe`, and "
-        "`static constexpr myriad::reduction reductions[] = {{quantity, myriad::over_phase::maximum, accessory}};`");
+        "`static constexpr myriad::summary summaries[] = {{quantity, myriad::over_phase::maximum, accessory}};`");
     if constexpr (declared) {
-        static_assert(std::is_same_v<std::remove_cvref_t<decltype(*std::begin(Model::reductions))>, reduction>,
-                      "reductions must be `static constexpr myriad::reduction reductions[] = {{quantity, "
+        static_assert(std::is_same_v<std::remove_cvref_t<decltype(*std::begin(Model::summaries))>, summary>,
+                      "summaries must be `static constexpr myriad::summary summaries[] = {{quantity, "
                       "myriad::over_phase::maximum, accessory}};`, with one entry or more");
         constexpr auto all_of = [](auto holds) {
-            for (const reduction& r : Model::reductions)
+            for (const summary& r : Model::summaries)
                 if (!holds(r)) return false;
             return true;
         };
         static_assert(n_accessory<Model> > 0,
-                      "a reduction goes into an accessory that the model does not have: give it "
+                      "a summary goes into an accessory that the model does not have: give it "
                       "`enum accessory { ..., n_accessory };`");
-        static_assert(all_of([](const reduction& r) {
+        static_assert(all_of([](const summary& r) {
                           return r.quantity >= 0 && r.quantity < n_observed<Model> &&
                                  marks_observed<Model>(r.quantity_type);
                       }),
-                      "a reduction names a quantity that is not observed: the first of its three is an enumerator of "
+                      "a summary names a quantity that is not observed: the first of its three is an enumerator of "
                       "`observed`");
-        static_assert(all_of([](const reduction& r) {
+        static_assert(all_of([](const summary& r) {
                           return r.accessory >= 0 && r.accessory < n_accessory<Model> &&
                                  marks_accessory<Model>(r.accessory_type);
                       }),
-                      "a reduction goes into an accessory that the model does not have: the last of its three is an "
+                      "a summary goes into an accessory that the model does not have: the last of its three is an "
                       "enumerator of `accessory`");
-        static_assert(all_of([](const reduction& r) {
+        static_assert(all_of([](const summary& r) {
                           int same = 0;
-                          for (const reduction& other : Model::reductions)
-                              same += other.accessory == r.accessory ? 1 : 0;
+                          for (const summary& other : Model::summaries) same += other.accessory == r.accessory ? 1 : 0;
                           return same == 1;
                       }),
-                      "two reductions go into the same accessory: give each its own");
-        static_assert(all_of([](const reduction& r) {
+                      "two summaries go into the same accessory: give each its own");
+        static_assert(all_of([](const summary& r) {
                           int same = 0;
-                          for (const reduction& other : Model::reductions)
+                          for (const summary& other : Model::summaries)
                               same += other.quantity == r.quantity && other.kind == r.kind ? 1 : 0;
                           return same == 1;
                       }),
-                      "a reduction is declared twice: one accessory receives it");
+                      "a summary is declared twice: one accessory receives it");
         static_assert(
-            all_of([](const reduction& r) {
-                return (r.kind != over_phase::time_of_maximum || reduces<Model>(r.quantity, over_phase::maximum)) &&
-                       (r.kind != over_phase::time_of_minimum || reduces<Model>(r.quantity, over_phase::minimum));
+            all_of([](const summary& r) {
+                return (r.kind != over_phase::time_of_maximum || summarises<Model>(r.quantity, over_phase::maximum)) &&
+                       (r.kind != over_phase::time_of_minimum || summarises<Model>(r.quantity, over_phase::minimum));
             }),
             "the time of an extremum needs the extremum itself, by which it is found: declare the `maximum` or "
             "`minimum` of the quantity as well");

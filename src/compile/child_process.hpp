@@ -2,12 +2,16 @@
 // Other programs that this one starts: compilers and Python. Host code only.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <sys/types.h>
 
-namespace myriad::programs {
+namespace myriad::compiling {
+
+/// Called where a signal has interrupted a wait; throws to give it up.
+using signal_check = std::function<void()>;
 
 /// A program that runs beside this one.
 class child_process {
@@ -17,17 +21,24 @@ public:
     explicit child_process(const std::vector<std::string>& words, const std::string& output = "");
     child_process(child_process&& other) noexcept : id_(other.id_) { other.id_ = -1; }
     child_process& operator=(child_process&&) = delete;
-    ~child_process() { wait(); }
+    /// Ends the program if nobody has waited for it.
+    ~child_process();
 
     /// Its exit status; 127 if there is no such program, 128 if a signal ended it.
-    int wait();
+    int wait(const signal_check& check = {});
 
 private:
     pid_t id_ = -1;
     int status_ = 127;
 };
 
+/// What a program prints on standard output; empty if it fails.
+std::string output_of(const std::vector<std::string>& words);
+
 /// The path of a program on the PATH, or of a file that can be run; empty if there is none.
 std::string find_program(const std::string& name);
 
-}  // namespace myriad::programs
+/// The words of a command as a shell divides it, with quotes and backslashes. Throws `error` if a quote has no end.
+std::vector<std::string> words_of(const std::string& command);
+
+}  // namespace myriad::compiling

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: MIT
+# What kernels are compiled with, wherever that is done: by CMake in myriad_add_models(), and at run time by the program
+# `myriad` and the Python package (src/compile). Functions include it, since where they are called its variables are not
+# known.
+
+# -ffast-math is never among them: NaN must stay visible. With contraction left to the compiler, results were found to
+# depend on the pack size; the library writes its fused multiply-adds itself.
+set(myriad_kernel_flags -O3 -ffp-contract=off -fno-math-errno)
+# g++ keeps large objects that are copied as a whole in memory, including dual numbers of packs. In registers, a
+# Runge-Kutta 4 step of Lorenz' equations with three tangents takes 7.5 ns instead of 20 (Zen 4, AVX-512).
+set(myriad_kernel_flags_GNU --param=sra-max-scalarization-size-Ospeed=2048)
+set(myriad_kernel_flags_Clang -Wno-pass-failed)
+
+# -march= of the instruction sets, at run time.
+set(myriad_architecture_AVX512 x86-64-v4)
+set(myriad_architecture_AVX2 x86-64-v3)
+set(myriad_architecture_SSE2 x86-64-v2)
+
+set(myriad_oldest_GNU 12)
+set(myriad_oldest_Clang 14)
