@@ -264,7 +264,7 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
                 std::vector<std::string> shared_integers, std::vector<std::string> accessories,
                 std::vector<std::string> integer_accessories, std::vector<std::string> events, std::int64_t size) {
                  new (self) ensemble<R>(
-                     kernel.facts(),
+                     kernel.facts().model,
                      {std::move(states), std::move(parameters), std::move(shared), std::move(shared_integers),
                       std::move(accessories), std::move(integer_accessories), std::move(events)},
                      size);
@@ -431,8 +431,8 @@ NB_MODULE(_core, m) {
         .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
         .def("__init__", [](library* self, const nb::bytes& image,
                             int device) { new (self) library(std::string(image.c_str(), image.size()), device); })
-        .def_prop_ro("samples_trajectory", [](const library& l) { return l.facts().samples_trajectory; })
-        .def_prop_ro("adaptive", [](const library& l) { return l.facts().embedded_order > 0; })
+        .def_prop_ro("samples_trajectory", [](const library& l) { return l.facts().call.samples_trajectory; })
+        .def_prop_ro("adaptive", [](const library& l) { return l.facts().call.adaptive(); })
         .def_prop_ro("instruction_set", [](const library& l) {
             return std::string(host::name_of(static_cast<openmp::instruction_set>(l.cpu().instruction_set)));
         });

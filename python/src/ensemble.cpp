@@ -28,7 +28,7 @@ public:
     data_type take(const host::model_shape& shape, std::int64_t size) {
         const std::lock_guard lock(mutex_);
         for (auto e = entries_.begin(); e != entries_.end(); ++e) {
-            if (e->data.size != size || !e->is_for(shape)) continue;
+            if (e->data.size != size || e->model != shape) continue;
             data_type found = std::move(e->data);
             const bool clean = e->clean;
             entries_.erase(e);
@@ -63,16 +63,9 @@ public:
 
 private:
     struct entry {
-        host::model_shape shape;
+        detail::model_numbers model;
         data_type data;
         bool clean;
-
-        bool is_for(const host::model_shape& s) const {
-            return shape.n_state == s.n_state && shape.n_parameter == s.n_parameter && shape.n_shared == s.n_shared &&
-                   shape.n_shared_integer == s.n_shared_integer && shape.n_accessory == s.n_accessory &&
-                   shape.n_integer_accessory == s.n_integer_accessory && shape.n_event == s.n_event &&
-                   shape.writes_parameters == s.writes_parameters && shape.writes_time_domain == s.writes_time_domain;
-        }
     };
 
     std::mutex mutex_;
@@ -82,7 +75,7 @@ private:
 }  // namespace
 
 template <class R>
-ensemble<R>::ensemble(const model_facts& of, component_names names, std::int64_t size)
+ensemble<R>::ensemble(const detail::model_numbers& of, component_names names, std::int64_t size)
     : shape(std::make_shared<named_shape>(of, std::move(names))), data(kept_memory<R>::all().take(*shape, size)) {}
 
 template <class R>

@@ -29,32 +29,24 @@ cudaError_t launch_over(const void* kernel, std::int64_t size, void** arguments,
 }  // namespace
 
 template <class R>
-resident<R>::resident(const library& kernel, const device& where, const options& o,
-                      std::shared_ptr<prepared_call<R>> call)
-    : program_(*kernel.gpu()), how_(engine_options_for(program_, where.number(), o)), call_(std::move(call)) {}
+resident<R>::resident(const library& kernel, const host::called_model<R>& model, const host::solve_call<R>& call)
+    : program_(*kernel.gpu()), source_(model.on_gpu), call_(call.prepared()) {}
 
 template <class R>
 resident<R>::~resident() {
     if (engine_ == nullptr) return;
     try {
-        const cuda::current_device here(how_.device);
+        const cuda::current_device here(number());
         scratch_.release();
         engine_->wait();
-        host::give_idle_engine(key(), how_, std::move(engine_));
+        source_.give(std::move(engine_));
     } catch (const error&) {  // the next call finds it too, and says so
     }
 }
 
 template <class R>
-void resident<R>::take_engine() {
-    auto idle = host::take_idle_engine(key(), how_);
-    if (idle == nullptr) idle = engines_of<R>(program_)(how_);
-    engine_.reset(static_cast<device_engine<R>*>(idle.release()));
-}
-
-template <class R>
 std::size_t resident<R>::bytes_per_instance() const {
-    shaped_arguments<R> all = call_->arguments;
+    detail::any_arguments<R> all = call_->arguments;
     std::size_t bytes = 0;
     const auto add = [&](auto* array, std::int64_t components, array_access, array_kind) {
         bytes += static_cast<std::size_t>(components) * sizeof(*array);
@@ -67,10 +59,10 @@ std::size_t resident<R>::bytes_per_instance() const {
 template <class R>
 bool resident<R>::fits(const ensemble<R>& instances) {
     constexpr std::int64_t many = 16;
-    take_engine();
+    engine_.reset(static_cast<cuda::study_engine<R>*>(source_.take().release()));
     const auto room = engine_->affordable(static_cast<std::int64_t>(bytes_per_instance()));
     if (instances.data.size <= (instances.on_device.empty() ? room / many : room)) return true;
-    host::give_idle_engine(key(), how_, std::move(engine_));
+    source_.give(std::move(engine_));
     return false;
 }
 
@@ -81,10 +73,10 @@ void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
             "arrays on a GPU cannot be marked where they are not finite: copy them to the host, or give "
             "invalid=\"refuse\"");
     constexpr unsigned long long none = std::numeric_limits<unsigned long long>::max();
-    const device_program::kernels& all = program_.on(how_.device);
+    const device_program::kernels& all = program_.on(number());
     const std::int64_t size = instances.data.size;
     const auto stream = engine_->in_stream();
-    const cuda::current_device here(how_.device);
+    const cuda::current_device here(number());
     scratch_.reserve(sizeof none);
     for (const device_input<R>& input : instances.on_device) {
         std::byte* const to = engine_->find(call_->arguments, input.component).address;
@@ -128,7 +120,7 @@ host::work_count resident<R>::work() {
     const std::array<const std::int64_t*, 4> counters{a.accepted, a.rejected, a.located, a.evaluations};
     host::work_count sums{};
     const auto stream = engine_->in_stream();
-    const cuda::current_device here(how_.device);
+    const cuda::current_device here(number());
     scratch_.reserve(sizeof sums);
     MYRIAD_CUDA(cudaMemsetAsync(scratch_.data(), 0, sizeof sums, stream));
     std::int64_t size = a.size;
@@ -136,7 +128,7 @@ host::work_count resident<R>::work() {
         if (counters[c] == nullptr) continue;
         void *values = engine_->find(a, counters[c]).address, *sum = static_cast<std::int64_t*>(scratch_.data()) + c;
         void* arguments[] = {&values, &size, &sum};
-        cuda::check(launch_over(program_.on(how_.device).sum, size, arguments, stream), "the sum of all steps");
+        cuda::check(launch_over(program_.on(number()).sum, size, arguments, stream), "the sum of all steps");
     }
     engine_->copy_to_host(&sums, static_cast<const std::byte*>(scratch_.data()), sizeof sums);
     return sums;
@@ -180,7 +172,7 @@ void resident<R>::integrate(ensemble<R>& instances, const options& o, host::data
     result.kernel = engine_->facts();
     result.kernel_seconds = engine_->kernel_seconds();
     result.seconds = std::chrono::duration<double>(clock::now() - begin).count();
-    result.device = device::cuda(how_.device).name();
+    result.device = device::cuda(number()).name();
     if (failure) std::rethrow_exception(failure);
 }
 

@@ -9,13 +9,12 @@
 #include <set>
 
 #include "device_library.hpp"
-#include "myriad/host/backend/device.hpp"
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report_of.hpp"
-#include "prepared_call.hpp"
+#include "myriad/host/solve/solve_call.hpp"
 #include "run.hpp"
 
 namespace myriad::python {
@@ -25,7 +24,7 @@ template <class R>
 class resident {
 public:
     /// The memory of the arguments is the ensemble's, which lives longer, and the call's.
-    resident(const library& kernel, const device& where, const options& o, std::shared_ptr<prepared_call<R>> call);
+    resident(const library& kernel, const host::called_model<R>& model, const host::solve_call<R>& call);
     resident(const resident&) = delete;
     resident& operator=(const resident&) = delete;
     ~resident();
@@ -42,22 +41,20 @@ public:
     bool left_bookkeeping(const host::ensemble_data<R>& data) const;
     /// Where the device has that; null if it has not.
     void* on_device(const void* values) { return engine_ ? engine_->find(call_->arguments, values).address : nullptr; }
-    int number() const { return how_.device; }
+    int number() const { return source_.how.device; }
 
 private:
     using clock = host::progress_relay::clock;
 
-    host::engine_key key() const { return &program_; }
-    void take_engine();
     std::size_t bytes_per_instance() const;
     void take_inputs(const ensemble<R>& instances, bool mark_invalid);
     void wait(const options& o, std::int64_t size, clock::time_point deadline);
     host::work_count work();
 
     device_program& program_;
-    cuda::engine_options how_;
-    std::shared_ptr<prepared_call<R>> call_;
-    std::unique_ptr<device_engine<R>> engine_;
+    host::engine_source<R> source_;
+    std::shared_ptr<host::prepared_call<R>> call_;
+    std::unique_ptr<cuda::study_engine<R>> engine_;
     std::set<const void*> given_there_, brought_;
     cuda::device_memory scratch_;
 };

@@ -11,13 +11,13 @@
 
 #include "device_library.hpp"
 #include "interpreted.hpp"
-#include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/ensemble/ensemble_data.hpp"
 #include "myriad/host/ensemble/sample_data.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report_of.hpp"
+#include "myriad/host/solve/solve_call.hpp"
 #include "myriad/python/kernel_interface.hpp"
 
 namespace myriad::python {
@@ -34,7 +34,7 @@ public:
     /// A program that NVRTC made, loaded on a GPU. Throws `error` if its driver refuses it.
     library(std::string image, int device);
 
-    const model_facts& facts() const { return cpu_.model; }
+    const compiled_facts& facts() const { return cpu_.facts; }
     /// The kernel of a shared object or the interpreter.
     const kernel_library& cpu() const { return cpu_; }
     /// What an interpreter runs; null for compiled kernels.
@@ -55,8 +55,9 @@ struct component_names {
 
 /// The shape of a model with names of its own.
 struct named_shape : host::model_shape {
-    named_shape(const model_facts& of, component_names its_names);
+    named_shape(const detail::model_numbers& of, component_names its_names);
     component_names names;
+    host::model_components components;
 };
 
 /// An array of a component's values, one per instance, in the memory of a GPU.
@@ -73,7 +74,7 @@ class resident;
 /// An ensemble of a model that is known by its shape. Its memory is kept for the next one of its kind.
 template <class R>
 struct ensemble {
-    ensemble(const model_facts& of, component_names names, std::int64_t size);
+    ensemble(const detail::model_numbers& of, component_names names, std::int64_t size);
     ensemble(const ensemble&) = delete;
     ensemble& operator=(const ensemble&) = delete;
     ~ensemble();
@@ -98,16 +99,10 @@ struct report : report_of<R> {
 /// Thrown by a progress function: the call ends with what is done.
 struct interruption {};
 
-/// Throws `error` if an option is invalid.
+/// A model and its kernel as calls on that device see them.
 template <class R>
-void check_options(const named_shape& shape, const model_facts& kernel, const options& o);
-/// Adds the notes of a call that has left its results in the ensemble.
-template <class R>
-void add_notes(report_of<R>& r, ensemble<R>& instances, shaped_arguments<R>& arguments, const library& kernel,
-               const options& o);
-/// Bytes of memory that an instance and a call for it take.
-template <class R>
-double bytes_per_instance(const named_shape& shape, const model_facts& kernel, const options& o);
+host::called_model<R> called_for(const library& kernel, const named_shape& shape, const device& where,
+                                 const options& o);
 
 /// Where the results of a GPU are after a call.
 enum class results_are {

@@ -47,19 +47,15 @@ struct parts_of_call {
 /// The work of one GPU: one part is copied while another one is integrated.
 template <class R>
 class gpu_worker {
-    using chunks = host::chunks_of<shaped_arguments<R>, engine_source<R>>;
-
 public:
-    gpu_worker(const placed_kernel& on, shaped_arguments<R>& arguments, const options& o, parts_of_call& all)
-        : chunks_(on.kernel->gpu(), engines_of<R>(*on.kernel->gpu()),
-                  engine_options_for(*on.kernel->gpu(), on.where.number(), o), arguments),
-          all_(all) {
-        slots_[0].engine = chunks_.take();
+    gpu_worker(const host::called_model<R>& model, const detail::any_arguments<R>& arguments, parts_of_call& all)
+        : source_(model.on_gpu), arguments_(arguments), all_(all) {
+        slots_[0].engine = source_.take();
         clock_ = slots_[0].engine->start_clock();
     }
 
     /// Instances of the largest part that it takes.
-    std::int64_t largest(const options& o) { return chunks_.plan(o, *slots_[0].engine).largest(); }
+    std::int64_t largest(const options& o) { return host::chunk_plan(o, arguments_, *slots_[0].engine).largest(); }
 
     /// From the part that begins with that instance on.
     void work(std::int64_t first) {
@@ -67,10 +63,11 @@ public:
             for (std::size_t turn = 0; first < all_.size && !all_.stopped; ++turn) {
                 slot& s = slots_[turn % slots_.size()];
                 take_back(s);
-                if (s.engine == nullptr) s.engine = chunks_.take();
+                if (s.engine == nullptr) s.engine = source_.take();
                 s.count = std::min(all_.part, all_.size - first);
-                chunks_.begin(*s.engine, first, s.count, all_.past);
-                chunks_.download(*s.engine);
+                s.engine->upload(arguments_, first, s.count, all_.past);
+                s.engine->integrate(arguments_);
+                s.engine->download(arguments_);
                 first = all_.next.fetch_add(all_.part);
             }
             for (slot& s : slots_) take_back(s);
@@ -79,7 +76,7 @@ public:
             all_.kernel_seconds = std::max(all_.kernel_seconds, kernel_seconds_);
             all_.facts = slots_[0].engine->facts();
             for (slot& s : slots_)
-                if (s.engine != nullptr) chunks_.give(std::move(s.engine));
+                if (s.engine != nullptr) source_.give(std::move(s.engine));
         } catch (...) {
             const std::lock_guard lock(all_.mutex);
             if (!all_.failure) all_.failure = std::current_exception();
@@ -92,7 +89,7 @@ public:
 
 private:
     struct slot {
-        std::unique_ptr<cuda::any_engine> engine;
+        std::unique_ptr<cuda::engine<R>> engine;
         std::int64_t count = 0;  // instances under way
     };
 
@@ -111,7 +108,8 @@ private:
         kernels_until_ = std::max(kernels_until_, to);
     }
 
-    chunks chunks_;
+    const host::engine_source<R>& source_;
+    const detail::any_arguments<R>& arguments_;
     parts_of_call& all_;
     std::array<slot, 2> slots_;
     detail::stop_request told_ = detail::stop_request::none;  // to the engines
@@ -140,15 +138,16 @@ void leave(host::ensemble_data<R>& data, parts_of_call& all) {
 }  // namespace
 
 template <class R>
-void integrate_on_several(const std::vector<placed_kernel>& on, shaped_arguments<R>& arguments, const options& o,
-                          host::ensemble_data<R>& data, host::data_check<R>& check, report_of<R>& result) {
+void integrate_on_several(const std::vector<placed_kernel>& on, const std::vector<host::called_model<R>>& models,
+                          const options& o, host::ensemble_data<R>& data, host::solve_call<R>& call,
+                          report_of<R>& result) {
     const auto begin = std::chrono::steady_clock::now();
     const auto deadline = host::progress_relay::deadline_in(o.time_limit);
-    if (!check.passes(0, data.size)) check.run();
+    if (!call.check().passes(0, data.size)) call.check().run();
     const host::work_count before = data.untouched ? host::work_count{} : host::counted_work(data, data.size);
     parts_of_call all(data.size, data.untouched ? cuda::past::none : cuda::past::kept);
     std::vector<std::unique_ptr<gpu_worker<R>>> workers;
-    for (const placed_kernel& k : on) workers.push_back(std::make_unique<gpu_worker<R>>(k, arguments, o, all));
+    for (const auto& m : models) workers.push_back(std::make_unique<gpu_worker<R>>(m, call.arguments(), all));
     // As many for each GPU as on one alone, so that the faster ones take more of them, but none too small.
     constexpr std::int64_t worth_a_part = 65'536, most = 8;
     const auto gpus = static_cast<std::int64_t>(on.size());
@@ -203,9 +202,11 @@ void integrate_on_several(const std::vector<placed_kernel>& on, shaped_arguments
     result.device = names_of(on);
     if (relay.failure) std::rethrow_exception(relay.failure);
 }
-template void integrate_on_several(const std::vector<placed_kernel>&, shaped_arguments<double>&, const options&,
-                                   host::ensemble_data<double>&, host::data_check<double>&, report_of<double>&);
-template void integrate_on_several(const std::vector<placed_kernel>&, shaped_arguments<float>&, const options&,
-                                   host::ensemble_data<float>&, host::data_check<float>&, report_of<float>&);
+template void integrate_on_several(const std::vector<placed_kernel>&, const std::vector<host::called_model<double>>&,
+                                   const options&, host::ensemble_data<double>&, host::solve_call<double>&,
+                                   report_of<double>&);
+template void integrate_on_several(const std::vector<placed_kernel>&, const std::vector<host::called_model<float>>&,
+                                   const options&, host::ensemble_data<float>&, host::solve_call<float>&,
+                                   report_of<float>&);
 
 }  // namespace myriad::python

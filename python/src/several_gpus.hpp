@@ -21,7 +21,8 @@ std::string names_of(const std::vector<placed_kernel>& on);
 /// `error` if an input is invalid or a GPU fails, and what the progress function throws, once the parts under way are
 /// done.
 template <class R>
-void integrate_on_several(const std::vector<placed_kernel>& on, shaped_arguments<R>& arguments, const options& o,
-                          host::ensemble_data<R>& data, host::data_check<R>& check, report_of<R>& result);
+void integrate_on_several(const std::vector<placed_kernel>& on, const std::vector<host::called_model<R>>& models,
+                          const options& o, host::ensemble_data<R>& data, host::solve_call<R>& call,
+                          report_of<R>& result);
 
 }  // namespace myriad::python

@@ -32,14 +32,12 @@
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/study/axes.hpp"
-#include "myriad/study/chunk_solver.hpp"
 #include "myriad/study/export.hpp"
 #include "myriad/study/reduction.hpp"
 #include "myriad/study/store.hpp"
 #include "myriad/study/study.hpp"
 #include "run.hpp"
-#include "study_instances.hpp"
-#include "study_on_device.hpp"
+#include "studied.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -64,88 +62,19 @@ std::vector<studies::component> components_of(const model_of_study& model) {
     return all;
 }
 
-/// A model with a kernel for each device that a run uses.
-class study_model final : public studies::any_model {
-public:
-    study_model(model_of_study model, element real, std::string name, std::string method)
-        : model_(std::move(model)), real_(real), names_(std::move(name), components_of(model_)),
-          method_(std::move(method)) {}
-
-    /// Kernels that are used already stay as they are.
-    void add_kernel(const device& where, const library& kernel, component_names names) {
-        kernels_.try_emplace(place_of(where), kernel, std::move(names));
-    }
-
-    const studies::component_names& names() const override { return names_; }
-    std::string method() const override { return method_; }
-    element real() const override { return real_; }
-    void check(const device& where, const options& o) const override {
-        const study_kernel& k = kernel_for(where);
-        with_real([&]<class R>(R) { check_options<R>(k.shape, k.kernel->facts(), k.fitted(o)); });
-    }
-    double bytes_per_instance(const options& o) const override {
-        double most = 0;
-        for (const auto& [place, k] : kernels_)
-            with_real([&]<class R>(R) {
-                most = std::max(most, python::bytes_per_instance<R>(k.shape, k.kernel->facts(), k.fitted(o)));
-            });
-        return most;
-    }
-    std::unique_ptr<studies::chunk_solver> make_solver(const studies::study_plan& plan,
-                                                       const device& where) const override {
-        std::unique_ptr<studies::chunk_solver> made;
-        with_real([&]<class R>(R) {
-            made = std::make_unique<studies::chunk_solver_of<R>>(
-                plan, [this, &kernel = kernel_for(where)](std::int64_t size) {
-                    return std::make_unique<study_instances<R>>(model_, kernel, size);
-                });
-        });
-        return made;
-    }
-    std::unique_ptr<studies::chunk_solver> make_device_solver(const studies::study_plan& plan,
-                                                              const device& where) const override {
-        if (where.which() == device::kind::cpu) return nullptr;
-        const study_kernel& kernel = kernel_for(where);
-        const model_facts& facts = kernel.kernel->facts();
-        if (!studies::can_be_on_device(plan.asked, may_end_early(facts, kernel.fitted(plan.asked.options))))
-            return nullptr;
-        std::unique_ptr<studies::chunk_solver> made;
-        with_real([&]<class R>(R) {
-            made = std::make_unique<studies::device_solver_of<R>>(
-                plan, generates_itself(), [this, &kernel, &plan, where](std::int64_t few) {
-                    return std::make_unique<study_on_device<R>>(model_, kernel, where, plan, few);
-                });
-        });
-        return made;
-    }
-    studies::arithmetic arithmetic_on(const device& where) const override {
-        if (where.which() != device::kind::cpu) return studies::arithmetic::of_kernel("", "");
-        const kernel_library& kernel = kernel_for(where).kernel->cpu();
-        return studies::arithmetic::of_kernel(
-            host::name_of(static_cast<openmp::instruction_set>(kernel.instruction_set)), kernel.compiler);
-    }
-    std::string generator() const override { return model_.generator; }
-    bool generates_itself() const override { return !model_.generator.empty(); }
-
-private:
-    using place = std::pair<device::kind, int>;
-    static place place_of(const device& where) { return {where.which(), where.number()}; }
-    const study_kernel& kernel_for(const device& where) const {
-        const auto found = kernels_.find(place_of(where));
-        require(found != kernels_.end(), "the study has no kernel for ", where.name());
-        return found->second;
-    }
-    template <class Function>
-    void with_real(Function&& function) const {
-        real_ == element::f64 ? function(double{}) : function(float{});
-    }
-
-    model_of_study model_;
-    element real_;
-    studies::component_names names_;
-    std::string method_;
-    std::map<place, study_kernel> kernels_;
+/// A model whose real type is known only at run time: for studies, and what kernels are added to.
+struct made_model {
+    std::shared_ptr<const studies::any_model> studied;
+    std::shared_ptr<study_model> kernels;
 };
+made_model model_from(model_of_study model, element real, std::string name, std::string method) {
+    studies::component_names names(std::move(name), components_of(model));
+    const auto make = [&]<class R>(R) -> made_model {
+        const auto made = std::make_shared<study_model_of<R>>(std::move(model), std::move(names), std::move(method));
+        return {made, made};
+    };
+    return real == element::f64 ? make(double{}) : make(float{});
+}
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Values for Python
@@ -298,8 +227,8 @@ nb::object or_none(const nb::object& o) { return o.is_valid() ? o : nb::none(); 
 
 /// A study from Python.
 struct python_study {
-    explicit python_study(const std::shared_ptr<study_model>& of) : model(of), study(of) {}
-    std::shared_ptr<study_model> model;
+    explicit python_study(const made_model& of) : kernels(of.kernels), study(of.studied) {}
+    std::shared_ptr<study_model> kernels;
     any_study study;
 
     void set_run(const std::vector<std::string>& devices, std::int64_t chunk) {
@@ -459,15 +388,15 @@ void bind_study(nb::module_& m) {
         .def("__init__",
              [](python_study* self, const names_of_kinds& names, std::vector<double> tables, std::string generator,
                 const std::string& real, std::string name, std::string method) {
-                 new (self) python_study(std::make_shared<study_model>(
-                     model_of_study{names_from(names), std::move(tables), std::move(generator)},
-                     real == studies::name_of(element::f64) ? element::f64 : element::f32, std::move(name),
-                     std::move(method)));
+                 new (self)
+                     python_study(model_from({names_from(names), std::move(tables), std::move(generator)},
+                                             real == studies::name_of(element::f64) ? element::f64 : element::f32,
+                                             std::move(name), std::move(method)));
              })
         .def(
             "add_kernel",
             [](python_study& s, const std::string& where, const library& kernel, const names_of_kinds& names) {
-                s.model->add_kernel(device::parse(where), kernel, names_from(names));
+                s.kernels->add_kernel(device::parse(where), kernel, names_from(names));
             },
             nb::keep_alive<1, 3>())
         .def("axis", [](python_study& s, const std::string& name, const axis_values& v) { s.study.axis(name, v); })

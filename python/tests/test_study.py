@@ -140,12 +140,13 @@ def test_random_values_depend_on_the_seed_and_the_instance():
 
 def test_random_values_in_a_grid_are_those_of_a_sweep():
     def drawn(sweep):
-        return my.study(duffing(), sweep, start={x: 1, v: 0}, time=(0, 0), seed=3).run()["B"]
-    values = my.linspace(0, 1, 50)
-    np.testing.assert_array_equal(drawn(my.grid({k: values}, {B: my.normal(2, 0.5)})),
-                                  drawn({k: values, B: my.normal(2, 0.5)}))
+        return my.study(duffing(), sweep, start={v: 0}, time=(0, 0), seed=3).run()["x_end"]
+    values, others = my.linspace(0, 1, 50), {B: 0.3, x: my.normal(2, 0.5)}
+    first = drawn(my.grid({k: values}, others))
+    assert len(set(first)) == 50
+    np.testing.assert_array_equal(first, drawn({k: values, **others}))
     with pytest.raises(my.Error, match=r"`uniform\(0, k\)` is given in a sweep.*draw it in generate="):
-        my.study(duffing(), {k: values, B: my.uniform(0, k)}, start={x: 1, v: 0}, time=(0, 1))
+        my.study(duffing(), {k: values, B: 0.3, x: my.uniform(0, k)}, start={v: 0}, time=(0, 1))
 
 
 def test_former_names_say_the_new_ones():

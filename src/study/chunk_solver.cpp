@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Fills ensembles from axes, and copies what is kept of them.
-#include "myriad/study/chunk_solver.hpp"
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
+#include <memory>
 #include <utility>
+#include <vector>
 
+#include "myriad/host/threads/default_arithmetic.hpp"
 #include "myriad/host/threads/parallel.hpp"
 #include "myriad/kernel/core/abi.hpp"
+#include "myriad/study/studied_model.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
@@ -51,9 +53,10 @@ void mark_missing_phases(const std::int32_t* phases_done, std::int64_t from_phas
 }  // namespace
 
 template <class R>
-void set_instances(model_instances<R>& instances, const axes& all, std::int64_t first) {
-    instances.restart();
-    auto& data = instances.data();
+void host_instances<R>::set(const axes& all, std::int64_t first) {
+    auto& data = this->data();
+    if (!data.untouched) samples().clear();
+    data.restart();
     data.t.fill_instances(0, data.size, host::ensemble_data<R>::unset);  // which restart leaves as it was
     data.first_index = first;
     using enum component_kind;
@@ -63,7 +66,7 @@ void set_instances(model_instances<R>& instances, const axes& all, std::int64_t 
         return nullptr;
     };
     // What no axis sets is what a new ensemble has, since the last integration has changed it.
-    const auto set = [&](component_kind kind, auto& array, auto unset) {
+    const auto set_all = [&](component_kind kind, auto& array, auto unset) {
         for (int c = 0; c < array.components(); ++c) {
             const axes::entry* const e = entry_of(kind, c);
             if (e == nullptr) {
@@ -74,10 +77,10 @@ void set_instances(model_instances<R>& instances, const axes& all, std::int64_t 
         }
     };
     const R unset = host::ensemble_data<R>::unset;
-    set(state, data.state, unset);
-    set(parameter, data.parameter, unset);
-    set(accessory, data.accessory, unset);
-    set(integer_accessory, data.integer_accessory, std::int32_t{0});
+    set_all(state, data.state, unset);
+    set_all(parameter, data.parameter, unset);
+    set_all(accessory, data.accessory, unset);
+    set_all(integer_accessory, data.integer_accessory, std::int32_t{0});
     R begin = unset, end = unset;
     bool varies = false;
     for (const axes::entry& e : all.entries()) {
@@ -96,32 +99,75 @@ void set_instances(model_instances<R>& instances, const axes& all, std::int64_t 
             if (e.what.kind == t_end) all.fill(e, first, data.size, own.t_end.data());
         }
     }
-    instances.generate(first, all.seed());
+    model_.set_others(*memory_, first);
+    if (!model_.generates_itself()) return;
+    const host::called_model<R> model = model_.called_for(where_, {});
+    // A GPU's kernel that was compiled at run time has no part for the host.
+    if (where_.which() == device::kind::cpu || model.functions.generate != nullptr) model.generate(data, all.seed());
 }
-template void set_instances(model_instances<double>&, const axes&, std::int64_t);
-template void set_instances(model_instances<float>&, const axes&, std::int64_t);
 
 template <class R>
-void chunk_solver_of<R>::prepare(std::int64_t first, std::int64_t count) {
+report_of<R> host_instances<R>::solve(const device& where, const options& o) {
+    const detail::default_arithmetic here;
+    const host::called_model<R> model = model_.called_for(where, o);
+    report_of<R> made;
+    host::solve_call<R> call(where, o, model, data(), samples(), records_);
+    call.integrate(made);
+    call.add_notes(made);
+    return made;
+}
+
+template class host_instances<double>;
+template class host_instances<float>;
+
+namespace {
+
+/// The solver of instances in the host's memory. Plan and model must outlive it.
+template <class R>
+class host_solver final : public chunk_solver {
+public:
+    host_solver(const study_plan& plan, const studied_model<R>& model, const device& where)
+        : plan_(plan), model_(model), where_(where) {}
+
+    void prepare(std::int64_t first, std::int64_t count) override;
+    solved integrate(const device& where, const std::function<void(std::int64_t done)>& progress) override;
+    void copy(const quantity& what, std::byte* to) const override;
+    void clear() override { instances_.reset(); }
+
+private:
+    const study_plan& plan_;
+    const studied_model<R>& model_;
+    device where_;
+    std::unique_ptr<host_instances<R>> instances_;
+    std::int64_t first_ = 0;
+};
+
+template <class R>
+void host_solver<R>::prepare(std::int64_t first, std::int64_t count) {
     if (instances_ != nullptr && instances_->data().size != count) instances_.reset();
-    if (instances_ == nullptr) instances_ = make_(count);
+    if (instances_ == nullptr) instances_ = std::make_unique<host_instances<R>>(model_, where_, count);
     first_ = first;
-    set_instances(*instances_, plan_.asked.axes, first);
+    instances_->set(plan_.asked.axes, first);
 }
 
 template <class R>
-solved chunk_solver_of<R>::integrate(const device& where, const std::function<void(std::int64_t done)>& progress) {
-    options o = plan_.asked.options;
+solved host_solver<R>::integrate(const device& where, const std::function<void(std::int64_t done)>& progress) {
+    options o = model_.options_for(where, plan_.asked.options);
     o.progress = [&progress](std::int64_t done, std::int64_t) { progress(done); };
     report_of<R> report = instances_->solve(where, o);
     return {report.by_status, std::move(report.notes)};
 }
 
 template <class R>
-void chunk_solver_of<R>::copy(const quantity& what, std::byte* to) const {
+void host_solver<R>::copy(const quantity& what, std::byte* to) const {
     auto& data = instances_->data();
     const std::int64_t size = data.size, inner = what.as.values_per_item();
     const component& c = what.what;
+    const host::record_data<R>& r = instances_->records();
+    const host::sample_data<R>& s = instances_->samples();
+    const auto recorded = [&](const std::vector<std::int16_t>& columns, const char* kind) {
+        return r.values.component(r.find(columns, c.number, kind));
+    };
     switch (what.from) {
         case origin::axis: {
             const auto& entries = plan_.asked.axes.entries();
@@ -131,18 +177,21 @@ void chunk_solver_of<R>::copy(const quantity& what, std::byte* to) const {
         }
         case origin::record:
             if (c.kind == component_kind::integer_accessory) {
-                transpose(instances_->recorded_integers(c.number), size, inner, to);
+                transpose(r.integers.component(r.find(r.integer_accessory, c.number, "integer accessory")), size, inner,
+                          to);
                 return mark_missing_phases(data.phase.data(), plan_.asked.options.record.from_phase, size, inner, to);
             }
-            return transpose(instances_->recorded(c.kind, c.number), size, inner, to);
+            return transpose(
+                c.kind == component_kind::state ? recorded(r.state, "state") : recorded(r.accessory, "accessory"), size,
+                inner, to);
         case origin::record_time:
-            return transpose(instances_->record_times(), size, inner, to);
+            return transpose(r.values.component(r.time), size, inner, to);
         case origin::sample:
-            return transpose(instances_->sampled(c.number), size, inner, to);
+            return transpose(s.component(c.number), size, inner, to);
         case origin::sample_time:
-            return transpose(instances_->sample_times(), size, inner, to);
+            return transpose(s.time.data(), size, inner, to);
         case origin::samples_stored:
-            return transpose(instances_->samples_stored(), size, 1, to);
+            return transpose(s.stored.data(), size, 1, to);
         case origin::end:
             switch (c.kind) {
                 case component_kind::state:
@@ -171,7 +220,14 @@ void chunk_solver_of<R>::copy(const quantity& what, std::byte* to) const {
     }
 }
 
-template class chunk_solver_of<double>;
-template class chunk_solver_of<float>;
+}  // namespace
+
+template <class R>
+std::unique_ptr<chunk_solver> solver_on_host(const study_plan& plan, const studied_model<R>& model,
+                                             const device& where) {
+    return std::make_unique<host_solver<R>>(plan, model, where);
+}
+template std::unique_ptr<chunk_solver> solver_on_host(const study_plan&, const studied_model<double>&, const device&);
+template std::unique_ptr<chunk_solver> solver_on_host(const study_plan&, const studied_model<float>&, const device&);
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/host/threads/default_arithmetic.hpp"
+#include "myriad/host/threads/polling_backoff.hpp"
 #include "myriad/kernel/core/abi.hpp"
-#include "myriad/study/chunk_solver.hpp"
+#include "myriad/study/studied_model.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
@@ -22,8 +24,7 @@ detail::value_type type_of(element type) {
     return types[static_cast<int>(type)];
 }
 
-}  // namespace
-
+/// Whether the inputs of a study can be left to a GPU. `endless`: something can end a phase before t_end.
 bool can_be_on_device(const study_request& asked, bool endless) {
     double begin = 0, end = 0;
     bool varies = false;
@@ -38,23 +39,141 @@ bool can_be_on_device(const study_request& asked, bool endless) {
     return !(varies && looked_at) && std::isfinite(begin) && (std::isfinite(end) || endless || o.phase_length > 0);
 }
 
+}  // namespace
+
 template <class R>
-void device_solver_of<R>::start() {
+device_instances<R>::device_instances(const studied_model<R>& model, const device& where, const study_plan& plan,
+                                      std::int64_t few)
+    : options_(model.options_for(where, plan.asked.options)), model_(model.called_for(where, options_)),
+      few_(model, where, few), call_(with_domains(plan.asked.axes), few_.samples(), records_, options_, model_.facts) {
+    model_.check_kernel(where);
+    engine_ = model_.on_gpu.take();
+}
+template <class R>
+device_instances<R>::~device_instances() {
+    if (fine_) model_.on_gpu.give(std::move(engine_));
+}
+
+template <class R>
+void device_instances<R>::check(std::int64_t count) {
+    const detail::default_arithmetic here;
+    model_.check_uses(few_.data(), options_, count).require_for(0, options_.phases);
+    model_.values_of(few_.data(), options_, count).run();
+}
+template <class R>
+std::vector<std::string> device_instances<R>::notes(std::int64_t count) {
+    const detail::default_arithmetic here;
+    report_of<R> found;
+    if (model_.looks_at_results()) {
+        use([&] { engine_->fetch_first(call_.arguments, count); });
+        few_.data().untouched = false;
+        if (options_.counting == counting::on)
+            host::set_work(found, host::work_count{}, host::counted_work(few_.data(), count));
+    }
+    model_.add_notes(found, few_.data(), options_, call_.arguments);
+    return found.notes;
+}
+template <class R>
+std::int64_t device_instances<R>::affordable() const {
+    std::int64_t bytes = 64;  // for what is drawn again, gathered and scheduled
+    const auto add = [&](auto* array, std::int64_t components, auto...) {
+        bytes += components * static_cast<std::int64_t>(sizeof(*array));
+    };
+    auto arguments = call_.arguments;  // a copy
+    for_each_array(arguments, add);
+    for_each_record(arguments, add);
+    return engine_->affordable(2 * bytes);
+}
+template <class R>
+template <class Work>
+void device_instances<R>::use(Work&& work) {
+    const bool before = std::exchange(fine_, false);
+    work();
+    fine_ = before;
+}
+template <class R>
+void device_instances<R>::generate(const std::shared_ptr<const cuda::generation>& how, std::int64_t first,
+                                   std::int64_t count) {
+    use([&] { engine_->generate(call_.arguments, how, first, count); });
+}
+template <class R>
+void device_instances<R>::integrate(const std::function<void()>& watch) {
+    use([&] {
+        engine_->integrate(call_.arguments);
+        try {
+            for (host::polling_backoff waiting; !engine_->idle(); waiting.pause()) watch();
+        } catch (...) {
+            engine_->stop(detail::stop_request::end_now);
+            engine_->wait();
+            throw;
+        }
+        engine_->wait();
+    });
+}
+template <class R>
+void device_instances<R>::fetch(const cuda::device_values& what, std::byte* to) {
+    use([&] { engine_->fetch(call_.arguments, what, to); });
+}
+template <class R>
+std::vector<std::int64_t> device_instances<R>::reduce(const cuda::device_values& what,
+                                                      const cuda::device_reduction& how) {
+    std::vector<std::int64_t> found;
+    use([&] { found = engine_->reduce(call_.arguments, what, how); });
+    return found;
+}
+template class device_instances<double>;
+template class device_instances<float>;
+
+namespace {
+
+/// The solver that sets, integrates and reduces instances on a GPU. Plan and model must outlive it.
+template <class R>
+class device_solver final : public chunk_solver {
+public:
+    device_solver(const study_plan& plan, const studied_model<R>& model, const device& where)
+        : plan_(plan), model_(model), where_(where) {}
+
+    void prepare(std::int64_t first, std::int64_t count) override;
+    solved integrate(const device& where, const std::function<void(std::int64_t done)>& progress) override;
+    void copy(const quantity& what, std::byte* to) const override;
+    void clear() override { instances_.reset(); }
+    bool on_device() const override { return true; }
+    std::int64_t most_at_a_time() override;
+    bool reduce(std::size_t number, reduction_state& to) override;
+
+private:
+    void start();
+    std::shared_ptr<const cuda::generation> describe();
+    cuda::device_values values_of(const quantity& what) const;
+
+    const study_plan& plan_;
+    const studied_model<R>& model_;
+    device where_;
+    std::vector<detail::axis_rule> rules_;  // of the entries of the axes
+    std::shared_ptr<const cuda::generation> how_;
+    std::unique_ptr<device_instances<R>> instances_;
+    std::int64_t first_ = 0, count_ = 0;
+    bool noted_ = false;
+};
+
+template <class R>
+void device_solver<R>::start() {
     if (instances_ != nullptr) return;
-    instances_ = make_(std::min(plan_.content.instances(), most_looked_at));
+    const std::int64_t few = std::min(plan_.content.instances(), most_looked_at);
+    instances_ = std::make_unique<device_instances<R>>(model_, where_, plan_, few);
     how_ = describe();
 }
 
 template <class R>
-std::shared_ptr<const cuda::generation> device_solver_of<R>::describe() {
+std::shared_ptr<const cuda::generation> device_solver<R>::describe() {
     using enum component_kind;
     using valid = cuda::generated_component::valid;
     const axes& all = plan_.asked.axes;
-    const auto& arrays = instances_->arrays();
+    const auto& arrays = instances_->arguments();
     const auto& data = instances_->looked_at().data();
     auto made = std::make_shared<cuda::generation>();
     made->seed = all.seed();
-    made->calls_model = calls_model_;
+    made->calls_model = model_.generates_itself();
     rules_.clear();
     for (const axes::entry& e : all.entries()) rules_.push_back(all.rule(e));
     const auto set = [&](component_kind kind, const void* array, int components, double unset, valid must_be) {
@@ -69,7 +188,7 @@ std::shared_ptr<const cuda::generation> device_solver_of<R>::describe() {
     };
     const double unset = static_cast<double>(host::ensemble_data<R>::unset);
     // What the model's `generate` is to set is checked after it.
-    const valid finite = calls_model_ ? valid::any : valid::finite;
+    const valid finite = made->calls_model ? valid::any : valid::finite;
     set(state, arrays.state, data.state.components(), unset, finite);
     set(parameter, arrays.parameter, data.parameter.components(), unset, finite);
     set(accessory, arrays.accessory, data.accessory.components(), unset, valid::any);
@@ -84,24 +203,24 @@ std::shared_ptr<const cuda::generation> device_solver_of<R>::describe() {
 }
 
 template <class R>
-std::int64_t device_solver_of<R>::most_at_a_time() {
+std::int64_t device_solver<R>::most_at_a_time() {
     start();
     return std::max(instances_->affordable(), std::int64_t{1});
 }
 
 template <class R>
-void device_solver_of<R>::prepare(std::int64_t first, std::int64_t count) {
+void device_solver<R>::prepare(std::int64_t first, std::int64_t count) {
     start();
     first_ = first;
     count_ = count;
-    model_instances<R>& few = instances_->looked_at();
-    set_instances(few, plan_.asked.axes, first);
+    host_instances<R>& few = instances_->looked_at();
+    few.set(plan_.asked.axes, first);
     instances_->check(std::min<std::int64_t>(few.data().size, count));
     instances_->generate(how_, first, count);
 }
 
 template <class R>
-solved device_solver_of<R>::integrate(const device&, const std::function<void(std::int64_t done)>& progress) {
+solved device_solver<R>::integrate(const device&, const std::function<void(std::int64_t done)>& progress) {
     instances_->integrate([&] { progress(0); });
     solved how;
     const std::vector<std::int64_t> found = instances_->reduce({}, {detail::reduction_kind::statuses});
@@ -113,9 +232,9 @@ solved device_solver_of<R>::integrate(const device&, const std::function<void(st
 }
 
 template <class R>
-cuda::device_values device_solver_of<R>::values_of(const quantity& what) const {
-    const auto& arrays = instances_->arrays();
-    const result_arrays& results = instances_->results();
+cuda::device_values device_solver<R>::values_of(const quantity& what) const {
+    const auto& arrays = instances_->arguments();
+    const host::record_data<R>& records = instances_->records();
     const component& c = what.what;
     const auto number = static_cast<std::size_t>(c.number);
     cuda::device_values made;
@@ -133,25 +252,25 @@ cuda::device_values device_solver_of<R>::values_of(const quantity& what) const {
             break;
         case origin::record:
             if (c.kind == component_kind::integer_accessory) {
-                at(results.record_integers, results.integers[number] * made.inner);
+                at(arrays.record.integers, records.integer_accessory[number] * made.inner);
                 made.ends_with_phases = true;
                 made.from_phase = static_cast<std::int32_t>(plan_.asked.options.record.from_phase);
             } else {
-                const auto& columns = c.kind == component_kind::state ? results.states : results.accessories;
-                at(results.records, columns[number] * made.inner);
+                const auto& columns = c.kind == component_kind::state ? records.state : records.accessory;
+                at(arrays.record.values, columns[number] * made.inner);
             }
             break;
         case origin::record_time:
-            at(results.records, results.time * made.inner);
+            at(arrays.record.values, records.time * made.inner);
             break;
         case origin::sample:
-            at(results.samples, results.sampled[number] * made.inner);
+            at(arrays.sample.values, instances_->looked_at().samples().column[number] * made.inner);
             break;
         case origin::sample_time:
-            at(results.sample_times);
+            at(arrays.sample.time);
             break;
         case origin::samples_stored:
-            at(results.samples_stored);
+            at(arrays.sample.stored);
             break;
         case origin::end:
             at(c.kind == component_kind::state       ? static_cast<const void*>(arrays.state)
@@ -186,7 +305,7 @@ cuda::device_values device_solver_of<R>::values_of(const quantity& what) const {
 }
 
 template <class R>
-void device_solver_of<R>::copy(const quantity& what, std::byte* to) const {
+void device_solver<R>::copy(const quantity& what, std::byte* to) const {
     const cuda::device_values values = values_of(what);
     if (values.array == nullptr && values.rule == nullptr) {  // counters of what there is nothing to count of
         std::memset(to, 0, static_cast<std::size_t>(count_) * size_of(what.as.type));
@@ -196,7 +315,7 @@ void device_solver_of<R>::copy(const quantity& what, std::byte* to) const {
 }
 
 template <class R>
-bool device_solver_of<R>::reduce(std::size_t number, reduction_state& to) {
+bool device_solver<R>::reduce(std::size_t number, reduction_state& to) {
     const reduction_plan& plan = plan_.reductions[number];
     if (!plan.on_device) return false;
     const std::string& name = plan_.asked.reductions[number].definition().inputs.front();
@@ -206,12 +325,16 @@ bool device_solver_of<R>::reduce(std::size_t number, reduction_state& to) {
     return true;
 }
 
-template <class R>
-void device_solver_of<R>::clear() {
-    instances_.reset();
-}
+}  // namespace
 
-template class device_solver_of<double>;
-template class device_solver_of<float>;
+template <class R>
+std::unique_ptr<chunk_solver> solver_on_device(const study_plan& plan, const studied_model<R>& model,
+                                               const device& where) {
+    const options o = model.options_for(where, plan.asked.options);
+    if (!can_be_on_device(plan.asked, model.called_for(where, o).may_end_early(o))) return nullptr;
+    return std::make_unique<device_solver<R>>(plan, model, where);
+}
+template std::unique_ptr<chunk_solver> solver_on_device(const study_plan&, const studied_model<double>&, const device&);
+template std::unique_ptr<chunk_solver> solver_on_device(const study_plan&, const studied_model<float>&, const device&);
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

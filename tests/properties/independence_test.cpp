@@ -14,6 +14,7 @@
 #include "tests/properties/models.hpp"
 #include "tests/properties/pack_sizes.hpp"
 #include "tests/support/device.hpp"
+#include "tests/support/prepared.hpp"
 
 namespace {
 
@@ -103,12 +104,9 @@ std::vector<unsigned char> bits_of(const ensemble<Model, R>& e, std::int64_t i) 
 
 template <class Model, class Method, class R>
 void run(int batches, ensemble<Model, R>& e, const options& o, int threads = 2) {
-    myriad::detail::kernel_arguments<Model, R> arguments{};
-    myriad::host::describe_options<Model, Method, R>(arguments, o);
-    myriad::host::ensemble_access::describe(e, arguments, o.counting);
     myriad::detail::run_options how;
     how.threads = threads;
-    run_with_packs<Model, Method, R>(batches, arguments, how);
+    run_with_packs<Model, Method, R>(batches, tests::prepare<Method>(e, o).arguments(), how);
 }
 
 template <class Model, class Method, class R>

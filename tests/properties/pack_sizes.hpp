@@ -18,7 +18,7 @@ inline constexpr bool compiles_large_packs = !myriad::detail::has_events<Model>;
 
 /// Like the backend, but with `batches` batches per pack; 0: one instance at a time.
 template <class Model, class Method, class R>
-myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail::kernel_arguments<Model, R>& arguments,
+myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail::any_arguments<R>& arguments,
                                               const myriad::detail::run_options& options);
 
 }  // namespace properties

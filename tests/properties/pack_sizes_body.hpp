@@ -11,7 +11,7 @@ namespace properties {
 
 /// The backend's default size has its own kernel, compiled elsewhere.
 template <class Model, class Method, class R, int batches>
-myriad::detail::run_statistics run_with(const myriad::detail::kernel_arguments<Model, R>& arguments,
+myriad::detail::run_statistics run_with(const myriad::detail::any_arguments<R>& arguments,
                                         const myriad::detail::run_options& options) {
     if constexpr (batches == myriad::detail::default_batches<Model, Method>()) {
         using namespace myriad::openmp;
@@ -22,7 +22,7 @@ myriad::detail::run_statistics run_with(const myriad::detail::kernel_arguments<M
 }
 
 template <class Model, class Method, class R>
-myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail::kernel_arguments<Model, R>& arguments,
+myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail::any_arguments<R>& arguments,
                                               const myriad::detail::run_options& options) {
     if (batches == 0) return run_with<Model, Method, R, 0>(arguments, options);
     if (batches == 1) return run_with<Model, Method, R, 1>(arguments, options);
@@ -35,7 +35,7 @@ myriad::detail::run_statistics run_with_packs(int batches, const myriad::detail:
 
 }  // namespace properties
 
-#define RUN_WITH_PACKS(Model, Method, R)                                                                 \
-    extern MYRIAD_BACKEND_KERNEL(Model, Method, R) template myriad::detail::run_statistics               \
-    properties::run_with_packs<Model, Method, R>(int, const myriad::detail::kernel_arguments<Model, R>&, \
+#define RUN_WITH_PACKS(Model, Method, R)                                                       \
+    extern MYRIAD_BACKEND_KERNEL(Model, Method, R) template myriad::detail::run_statistics     \
+    properties::run_with_packs<Model, Method, R>(int, const myriad::detail::any_arguments<R>&, \
                                                  const myriad::detail::run_options&);

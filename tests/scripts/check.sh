@@ -116,7 +116,9 @@ case $* in
 esac
 END
 chmod +x "$work"/programs/*
+# shellcheck disable=SC2317 # called through expect
 run_steps() { PATH=$work/programs:$PATH "$work/steps/scripts/test.sh" "$@" && echo succeeded; }
+# shellcheck disable=SC2317 # called through expect
 last_of_steps() { run_steps "$@" | tail -n 1; }
 expect "test.sh fails where a test does" 1 'ci: 1 passed, 1 failed' run_steps --quick
 expect "test.sh ends with the counts" 1 '^4 passed, 1 failed$' last_of_steps --only programs,ci

@@ -11,20 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "myriad/host/backend/backend.hpp"
-#include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/core/declarations.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
-#include "myriad/host/memory/memory_need.hpp"
 #include "myriad/host/model/numbering.hpp"
-#include "myriad/host/options/option_checks.hpp"
-#include "myriad/host/solve/prepared_arguments.hpp"
+#include "myriad/host/solve/solve.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/study/generator.hpp"
-#include "myriad/study/chunk_solver.hpp"
 #include "myriad/study/component_names.hpp"
-#include "myriad/study/instances_on_device.hpp"
-#include "myriad/study/instances_on_host.hpp"
+#include "myriad/study/studied_model.hpp"
 #include "myriad/study/study.hpp"
 
 namespace myriad {
@@ -55,50 +49,50 @@ inline constexpr const char* compiler_name = __VERSION__;
 inline constexpr const char* compiler_name = "g++ " __VERSION__;
 #endif
 
+/// What sets instances after the axes: a function of the user's, where `first` is the number of the first one, or the
+/// model's own.
+template <class Model, class R>
+struct generator {
+    std::string name;
+    std::function<void(std::int64_t first, ensemble<Model, R>& instances)> function = {};
+    bool calls_model = false;
+};
+
 template <class Model, class Method, class R>
-class model_of final : public any_model {
+class model_of final : public studied_model<R> {
 public:
     const component_names& names() const override { return names_; }
     std::string method() const override { return std::string(host::enumeration_name<Method>()); }
-    element real() const override { return element_of<R>; }
-    void check(const device& where, const options& o) const override {
-        host::check_options<Model, Method, R>(o);
-        host::require_kernel<Model, Method, R>(where);
-    }
     double bytes_per_instance(const options& o) const override {
-        host::memory_need need = host::ensemble_data<R>::memory_of(host::shape_of<Model>, 1);
-        host::add_memory_of_call<Model, R>(need, 1, nullptr, o, host::traits_of<Method>);
-        return need.bytes();
+        return host::called<Model, Method, R>().bytes_per_instance(o);
     }
-    std::unique_ptr<chunk_solver> make_solver(const study_plan& plan, const device&) const override {
-        return std::make_unique<chunk_solver_of<R>>(plan, [generate = generate_](std::int64_t size) {
-            return std::make_unique<instances_on_host<Model, Method, R>>(size, generate);
-        });
-    }
-    std::unique_ptr<chunk_solver> make_device_solver(const study_plan& plan, const device& where) const override {
-        const bool endless = host::may_end_early<Model, R>(plan.asked.options);
-        if (where.which() == device::kind::cpu || generate_->function || !can_be_on_device(plan.asked, endless))
-            return nullptr;
-        return std::make_unique<device_solver_of<R>>(
-            plan, generate_->calls_model, [&plan, where, generate = generate_](std::int64_t few) {
-                return std::make_unique<instances_on_device<Model, Method, R>>(few, where, plan, generate);
-            });
-    }
-    arithmetic arithmetic_on(const device& where) const override {
-        if (where.which() != device::kind::cpu) return arithmetic::of_kernel("", compiler_name);
-        return arithmetic::of_kernel(host::name_of(host::choose_cpu_kernel<Model, Method, R>().set), compiler_name);
-    }
-    std::string generator() const override { return generate_->name; }
-    bool generates_itself() const override { return generate_->calls_model; }
+    std::string generator() const override { return generate_.name; }
+    bool generates_itself() const override { return generate_.calls_model; }
 
-    void set_generator(studies::generator<Model, R> generate) {
-        generate_ = std::make_shared<const studies::generator<Model, R>>(std::move(generate));
+    host::called_model<R> called_for(const device& where, const options& o) const override {
+        return host::called_for<Model, Method, R>(where, o);
     }
+    std::unique_ptr<instance_memory<R>> allocate(const device&, std::int64_t size) const override {
+        return std::make_unique<memory>(size);
+    }
+    std::string compiler_for(const device&) const override { return compiler_name; }
+    void set_others(instance_memory<R>& instances, std::int64_t first) const override {
+        if (sets_others()) generate_.function(first, static_cast<memory&>(instances).all);
+    }
+    bool sets_others() const override { return generate_.function != nullptr; }
+
+    void set_generator(studies::generator<Model, R> generate) { generate_ = std::move(generate); }
 
 private:
+    struct memory final : instance_memory<R> {
+        explicit memory(std::int64_t size) : all(size) {}
+        host::ensemble_data<R>& data() override { return host::ensemble_access::data(all); }
+        host::sample_data<R>& samples() override { return host::ensemble_access::samples(all); }
+        ensemble<Model, R> all;
+    };
+
     component_names names_ = names_of_components<Model>();
-    std::shared_ptr<const studies::generator<Model, R>> generate_ =
-        std::make_shared<const studies::generator<Model, R>>();
+    studies::generator<Model, R> generate_;
 };
 
 }  // namespace studies::inline MYRIAD_ABI

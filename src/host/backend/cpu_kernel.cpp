@@ -36,7 +36,8 @@ openmp::instruction_set choose_instruction_set(const compiled_sets& compiled) {
 namespace {
 
 /// The first phase counts each instance's steps; the other phases take the instances in the order of that count.
-run_statistics run_by_cost(const any_run& all, const run_options& options) {
+template <class R>
+run_statistics run_by_cost(const cpu_kernel<R>& kernel, any_arguments<R> all, const run_options& options) {
     const std::int64_t count = options.count > 0 ? options.count : all.size;
     memory_need need;
     need.add("costs", static_cast<double>(all.size + count) * sizeof(std::uint32_t));
@@ -46,35 +47,41 @@ run_statistics run_by_cost(const any_run& all, const run_options& options) {
     std::vector<std::uint32_t> cost(static_cast<std::size_t>(all.size));
     run_options silent = options;  // no instance is done after its first phase
     silent.progress = nullptr;
-    const part_of_run first_phase{true, cost.data(), nullptr};
-    const run_statistics first = all.run(all, silent, &first_phase);
+    any_arguments<R> first_phase = all;
+    first_phase.cost = cost.data();
+    first_phase.phases = 1;
+    const run_statistics first = kernel.run(first_phase, silent);
     if (first.failed || first.least_stack < first.stack) return first;
     const stop_request asked = options.stop != nullptr ? options.stop(options.context) : stop_request::none;
     if (asked == stop_request::begin_no_more || asked == stop_request::end_now) return first;
     const std::vector<std::uint32_t> order = order_by_cost(cost.data(), count);
-    const part_of_run other_phases{false, nullptr, order.data()};
-    run_statistics used = all.run(all, options, &other_phases);
+    all.first_phase = 1;
+    all.order = order.data();
+    run_statistics used = kernel.run(all, options);
     used.lane_turns += first.lane_turns;
     return used;
 }
 
 }  // namespace
 
-run_statistics run_kernel(const any_run& all, const run_options& options) {
-    require(all.run != nullptr, "this model was not instantiated for this method and real type");
+template <class R>
+run_statistics run_kernel(const cpu_kernel<R>& kernel, const any_arguments<R>& all, const run_options& options) {
+    require(kernel.run != nullptr, "this model was not instantiated for this method and real type");
     const bool sorted = options.schedule == schedule::by_cost && all.phases > 1 && all.size <= most_sorted;
     std::exception_ptr failure;
     run_options watched = options;
     watched.failure = &failure;
     watched.caught = [](void* kept) { *static_cast<std::exception_ptr*>(kept) = std::current_exception(); };
-    run_statistics used = sorted ? run_by_cost(all, watched) : all.run(all, watched, nullptr);
+    run_statistics used = sorted ? run_by_cost(kernel, all, watched) : kernel.run(all, watched);
     require(used.computed_as_written, "the model's file ", not_as_written);
     require(used.least_stack >= used.stack, "a thread has ", used.least_stack,
             " bytes of stack, and the kernel of this model and method takes about ", used.stack,
             ": set OMP_STACKSIZE to more, such as 8M, or unset it; a thread of your own that solves needs as much");
     if (failure) std::rethrow_exception(failure);
-    used.instruction_set = name_of(all.set);
+    used.instruction_set = name_of(kernel.set);
     return used;
 }
+template run_statistics run_kernel(const cpu_kernel<double>&, const any_arguments<double>&, const run_options&);
+template run_statistics run_kernel(const cpu_kernel<float>&, const any_arguments<float>&, const run_options&);
 
 }  // namespace myriad::host::inline MYRIAD_ABI

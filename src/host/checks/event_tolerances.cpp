@@ -13,7 +13,8 @@ namespace myriad::host::inline MYRIAD_ABI {
 
 template <class R>
 void check_event_tolerances(const ensemble_data<R>& e, const options& o, std::int64_t count,
-                            const any_event_resolution<R>& resolution) {
+                            const single_instances<R>& of) {
+    if (of.call.event_resolution == nullptr) return;
     struct doubtful {
         std::int64_t instances = 0, worst = 0;
         double least = 0;
@@ -32,7 +33,7 @@ void check_event_tolerances(const ensemble_data<R>& e, const options& o, std::in
     for (std::int64_t i = 0; i < count; i += stride) {
         if (e.ended.data()[i] != 0) continue;
         ++looked_at;
-        resolution.evaluate(resolution.of, i, finest.data());
+        of.call.event_resolution(of.arguments, i, finest.data());
         for (std::size_t j = 0; j < events; ++j) {
             const double least = static_cast<double>(finest[j]);
             if (tolerance_of(j) == 0 || tolerance_of(j) >= least) continue;
@@ -52,8 +53,8 @@ void check_event_tolerances(const ensemble_data<R>& e, const options& o, std::in
 }
 
 template void check_event_tolerances(const ensemble_data<double>&, const options&, std::int64_t,
-                                     const any_event_resolution<double>&);
+                                     const single_instances<double>&);
 template void check_event_tolerances(const ensemble_data<float>&, const options&, std::int64_t,
-                                     const any_event_resolution<float>&);
+                                     const single_instances<float>&);
 
 }  // namespace myriad::host::inline MYRIAD_ABI

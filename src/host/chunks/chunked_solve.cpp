@@ -23,13 +23,14 @@ namespace {
 /// One call of `solve` on a GPU.
 template <class R>
 class chunked_solve {
-    using engine = cuda::any_engine;
+    using engine = cuda::engine<R>;
 
 public:
-    chunked_solve(const options& o, chunk_source& source, ensemble_data<R>& instances, data_check<R>& check,
-                  progress_relay& relay, report_of<R>& result)
-        : options_(o), source_(source), instances_(instances), check_(check), relay_(relay), result_(result),
-          size_(instances.size), checked_(size_ <= worth_chunks ? size_ : 0),  // `solve` has checked small ensembles
+    chunked_solve(const options& o, const engine_source<R>& source, const any_arguments<R>& arguments,
+                  ensemble_data<R>& instances, data_check<R>& check, progress_relay& relay, report_of<R>& result)
+        : options_(o), source_(source), arguments_(arguments), instances_(instances), check_(check), relay_(relay),
+          result_(result), size_(instances.size),
+          checked_(size_ <= worth_chunks ? size_ : 0),  // `solve` has checked small ensembles
           past_(instances.untouched ? cuda::past::none : cuda::past::kept) {}
 
     /// Nothing is written to the ensemble before all of its data are checked.
@@ -38,14 +39,14 @@ public:
         engines_.push_back(source_.take());
         engine& first = *engines_.front();
         clock_ = first.start_clock();
-        plan_ = source_.plan(options_, first);
-        source_.reserve(first, plan_.largest());
+        plan_ = chunk_plan(options_, arguments_, first);
+        first.reserve(arguments_, plan_.largest());
         check(plan_.count_from(0));
         if (plan_.has_one_chunk()) {
             count_earlier_work();
             instances_.untouched = false;
             begin(first, 0, size_);
-            source_.download(first);
+            first.download(arguments_);
             for (polling_backoff waiting; relay_.may_stop() && !first.idle(); waiting.pause()) ask_whether_to_stop();
             first.wait();
             take_back(first, size_);
@@ -101,7 +102,7 @@ private:
             begin(*worker, first, count);
             auto asked = background_->ask([this, worker] {
                 checking_.get();  // nothing is downloaded if the inputs were refused
-                source_.download(*worker);
+                worker->download(arguments_);
             });
             if (!under_way_.empty()) ask_back(under_way_.back());
             under_way_.emplace_back(first + count, worker, asked.share());
@@ -164,7 +165,7 @@ private:
     }
     engine& add_engine() {
         auto another = source_.take();
-        source_.reserve(*another, plan_.largest());
+        another->reserve(arguments_, plan_.largest());
         engines_.push_back(std::move(another));
         return *engines_.back();
     }
@@ -204,7 +205,11 @@ private:
         if (past_ == cuda::past::kept) add_work(work_before_, 0, size_);
     }
 
-    void begin(engine& worker, std::int64_t first, std::int64_t count) { source_.begin(worker, first, count, past_); }
+    /// Copies a chunk to the device, and integrates it.
+    void begin(engine& worker, std::int64_t first, std::int64_t count) {
+        worker.upload(arguments_, first, count, past_);
+        worker.integrate(arguments_);
+    }
 
     /// To be called in the order of chunks, when the results up to instance `end` are in the ensemble.
     void take_back(engine& worker, std::int64_t end) {
@@ -241,7 +246,8 @@ private:
     }
 
     const options& options_;
-    chunk_source& source_;
+    const engine_source<R>& source_;
+    const any_arguments<R>& arguments_;
     ensemble_data<R>& instances_;
     data_check<R>& check_;
     progress_relay& relay_;
@@ -265,13 +271,13 @@ private:
 }  // namespace
 
 template <class R>
-void solve_in_chunks(const options& o, chunk_source& source, ensemble_data<R>& instances, data_check<R>& check,
-                     progress_relay& relay, report_of<R>& result) {
-    chunked_solve<R>(o, source, instances, check, relay, result).run();
+void solve_in_chunks(const options& o, const engine_source<R>& source, const any_arguments<R>& arguments,
+                     ensemble_data<R>& instances, data_check<R>& check, progress_relay& relay, report_of<R>& result) {
+    chunked_solve<R>(o, source, arguments, instances, check, relay, result).run();
 }
-template void solve_in_chunks(const options&, chunk_source&, ensemble_data<double>&, data_check<double>&,
-                              progress_relay&, report_of<double>&);
-template void solve_in_chunks(const options&, chunk_source&, ensemble_data<float>&, data_check<float>&, progress_relay&,
-                              report_of<float>&);
+template void solve_in_chunks(const options&, const engine_source<double>&, const any_arguments<double>&,
+                              ensemble_data<double>&, data_check<double>&, progress_relay&, report_of<double>&);
+template void solve_in_chunks(const options&, const engine_source<float>&, const any_arguments<float>&,
+                              ensemble_data<float>&, data_check<float>&, progress_relay&, report_of<float>&);
 
 }  // namespace myriad::host::inline MYRIAD_ABI

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "myriad/host/chunks/chunk_plan.hpp"
+#include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/object_pool.hpp"
 #include "myriad/kernel/core/abi.hpp"
 
@@ -29,6 +30,12 @@ bool may_use_gpus() {
     static std::atomic<pid_t> user{0};
     pid_t first = 0;
     return user.compare_exchange_strong(first, getpid()) || first == getpid();
+}
+
+void check_may_use_gpus() {
+    require(may_use_gpus(),
+            "this process was forked from one that has used a GPU, which a fork cannot: fork before that, use the CPU, "
+            "or start a new program (exec)");
 }
 
 std::unique_ptr<cuda::any_engine> take_idle_engine(engine_key kind, const cuda::engine_options& how) {

@@ -23,12 +23,12 @@ using column = std::vector<double>;
 template <class R>
 class instance_rhs {
 public:
-    instance_rhs(const any_rhs<R>& all, std::int64_t i, int n)
+    instance_rhs(const single_instances<R>& all, std::int64_t i, int n)
         : all_(all), i_(i), at_(static_cast<std::size_t>(n)), slopes_(at_.size()) {}
 
     void operator()(double t, const column& y, column& slopes) {
         for (std::size_t c = 0; c < at_.size(); ++c) at_[c] = static_cast<R>(y[c]);
-        all_.evaluate(all_.of, i_, static_cast<R>(t), at_.data(), slopes_.data());
+        all_.call.rhs(all_.arguments, i_, static_cast<R>(t), at_.data(), slopes_.data());
         for (std::size_t c = 0; c < at_.size(); ++c) slopes[c] = static_cast<double>(slopes_[c]);
     }
     column operator()(double t, const column& y) {
@@ -38,7 +38,7 @@ public:
     }
 
 private:
-    const any_rhs<R>& all_;
+    const single_instances<R>& all_;
     std::int64_t i_;
     std::vector<R> at_, slopes_;
 };
@@ -67,7 +67,7 @@ double length(const column& x) {
 /// h lambda of the fastest mode of an instance for its next step, if that mode decays, and faster than it rotates;
 /// otherwise 0.
 template <class R>
-double fastest_decay(const ensemble_data<R>& e, std::int64_t i, const any_rhs<R>& all) {
+double fastest_decay(const ensemble_data<R>& e, std::int64_t i, const single_instances<R>& all) {
     const column y = state_of(e, i);
     const std::size_t n = y.size();
     instance_rhs<R> rhs(all, i, e.shape->n_state);
@@ -155,7 +155,7 @@ private:
 template <class R>
 class stiff_trial {
 public:
-    stiff_trial(const ensemble_data<R>& e, std::int64_t i, const any_rhs<R>& all)
+    stiff_trial(const ensemble_data<R>& e, std::int64_t i, const single_instances<R>& all)
         : rhs_(all, i, e.shape->n_state), begin_(static_cast<double>(e.t_begin_of(i))),
           t0_(static_cast<double>(e.t.data()[i])), t_(t0_), y_(state_of(e, i)) {}
 
@@ -225,7 +225,7 @@ private:
 /// method has left of the fast modes, and what reversing time excites, decays in first steps of the same length.
 template <class R>
 bool accuracy_allows_more(const ensemble_data<R>& e, std::int64_t i, double h, const options& o,
-                          const any_rhs<R>& rhs) {
+                          const single_instances<R>& rhs) {
     const double scale = e.scales_tolerances() ? static_cast<double>(e.tolerance_scale.data()[i]) : 1;
     stiff_trial<R> trial(e, i, rhs);
     double error = trial.step(h, o, scale);
@@ -244,7 +244,7 @@ bool accuracy_allows_more(const ensemble_data<R>& e, std::int64_t i, double h, c
 }  // namespace
 
 template <class R>
-stiffness find_stiffness(const ensemble_data<R>& e, const options& o, double limit, const any_rhs<R>& rhs) {
+stiffness find_stiffness(const ensemble_data<R>& e, const options& o, double limit, const single_instances<R>& rhs) {
     stiffness found;
     const std::int64_t size = e.size, stride = std::max<std::int64_t>(size / 64, 1);
     for (std::int64_t i = 0; i < size; i += stride) {
@@ -260,19 +260,19 @@ stiffness find_stiffness(const ensemble_data<R>& e, const options& o, double lim
 }
 
 template <class R>
-void note_stiffness(report_of<R>& r, const ensemble_data<R>& e, const options& o, double (*limit)(),
-                    const any_rhs<R>& rhs) {
+void note_stiffness(report_of<R>& r, const ensemble_data<R>& e, const options& o, const single_instances<R>& of) {
     constexpr std::int64_t worthwhile = 200;
-    if (o.advice == advice::off) return;
+    if (of.call.rhs == nullptr || o.advice == advice::off) return;
     if (r.accepted_steps + r.rejected_steps < worthwhile * e.size) return;
-    add_note(r.notes, find_stiffness(e, o, limit(), rhs));
+    add_note(r.notes, find_stiffness(e, o, of.call.stability_limit(), of));
 }
 
-template stiffness find_stiffness(const ensemble_data<double>&, const options&, double, const any_rhs<double>&);
-template stiffness find_stiffness(const ensemble_data<float>&, const options&, double, const any_rhs<float>&);
-template void note_stiffness(report_of<double>&, const ensemble_data<double>&, const options&, double (*)(),
-                             const any_rhs<double>&);
-template void note_stiffness(report_of<float>&, const ensemble_data<float>&, const options&, double (*)(),
-                             const any_rhs<float>&);
+template stiffness find_stiffness(const ensemble_data<double>&, const options&, double,
+                                  const single_instances<double>&);
+template stiffness find_stiffness(const ensemble_data<float>&, const options&, double, const single_instances<float>&);
+template void note_stiffness(report_of<double>&, const ensemble_data<double>&, const options&,
+                             const single_instances<double>&);
+template void note_stiffness(report_of<float>&, const ensemble_data<float>&, const options&,
+                             const single_instances<float>&);
 
 }  // namespace myriad::host::inline MYRIAD_ABI

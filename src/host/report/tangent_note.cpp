@@ -17,9 +17,10 @@ namespace {
 /// The error of a step relative to the tangents, which have length one at the start of a phase: their tolerance, or, if
 /// they take no part in the error test, that of the model's states; with fixed steps, rounding.
 template <class R>
-double tangent_error(const options& o, const tangent_places& in) {
+double tangent_error(const options& o, const call_facts& facts) {
+    const tangent_places& in = facts.tangents;
     const auto rounding = static_cast<double>(std::numeric_limits<R>::epsilon());
-    if (!in.adaptive) return rounding;
+    if (!facts.adaptive()) return rounding;
     const auto original = static_cast<std::size_t>(in.n_original),
                all = original * static_cast<std::size_t>(1 + in.n_vectors);
     double error = rounding;
@@ -34,10 +35,11 @@ double tangent_error(const options& o, const tangent_places& in) {
 }  // namespace
 
 template <class R>
-void note_exponents(report_of<R>& r, const ensemble_data<R>& e, const options& o, const tangent_places& in) {
+void note_exponents(report_of<R>& r, const ensemble_data<R>& e, const options& o, const call_facts& facts) {
+    const tangent_places& in = facts.tangents;
     constexpr double limit = 1e-4;
     if (in.n_vectors < 2 || o.advice == advice::off) return;
-    const double error = tangent_error<R>(o, in);
+    const double error = tangent_error<R>(o, facts);
     const std::int64_t size = e.size, stride = std::max<std::int64_t>(size / 1024, 1);
     std::int64_t looked_at = 0, doubtful = 0;
     double worst = 0;
@@ -65,7 +67,7 @@ void note_exponents(report_of<R>& r, const ensemble_data<R>& e, const options& o
                               "): take shorter phases or smaller tolerances, and see whether it changes"));
 }
 
-template void note_exponents(report_of<double>&, const ensemble_data<double>&, const options&, const tangent_places&);
-template void note_exponents(report_of<float>&, const ensemble_data<float>&, const options&, const tangent_places&);
+template void note_exponents(report_of<double>&, const ensemble_data<double>&, const options&, const call_facts&);
+template void note_exponents(report_of<float>&, const ensemble_data<float>&, const options&, const call_facts&);
 
 }  // namespace myriad::host::inline MYRIAD_ABI

@@ -126,7 +126,7 @@ TEST_CASE("a pinned ensemble of many chunks, of which more are begun while the l
     bad.state(drift::x)(many - 1) = std::numeric_limits<double>::infinity();
     refused([&] { myriad::solve<runge_kutta_4>(test_device(), bad, o); }, {"state 0", "instance 1300002"});
     CHECK((bad.phases_done() == 0).all());
-    CHECK(myriad::host::ensemble_access::untouched(bad));
+    CHECK(myriad::host::ensemble_access::data(bad).untouched);
 }
 TEST_CASE("a small ensemble whose memory is pinned gives the same bits") {
     auto ordinary = filled(10), pinned = filled(10);
@@ -162,7 +162,7 @@ TEST_CASE("bad input in the last chunk is refused, and leaves all chunks as they
         CHECK((e.state(drift::x) == before.state(drift::x)).all());
         CHECK(e.phases_done().maxCoeff() == 0);
         CHECK(e.status(0) == status::not_started);
-        CHECK(myriad::host::ensemble_access::untouched(e));
+        CHECK(myriad::host::ensemble_access::data(e).untouched);
         e.parameter(drift::speed)(bad) = 1;
         CHECK(myriad::solve<runge_kutta_4>(test_device(), e, quarter_steps(20'000)).failed() == 0);
     }
@@ -292,7 +292,7 @@ TEST_CASE("rejected steps that an adaptive method counted stay while a fixed-ste
         if (pin) e.pin(test_device());
         o.step = 0.01;
         CHECK(myriad::solve<runge_kutta_4>(test_device(), e, o).rejected_steps == 0);
-        CHECK(myriad::host::ensemble_access::counters(e)[1] == nullptr);
+        CHECK(myriad::host::ensemble_access::data(e).counters()[1] == nullptr);
         o.step = 1;  // too long for the tolerances
         const auto report = myriad::solve<myriad::cash_karp>(test_device(), e, o);
         const Eigen::ArrayX<std::int64_t> rejected = e.rejected_steps(), accepted = e.accepted_steps();

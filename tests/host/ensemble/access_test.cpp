@@ -262,8 +262,8 @@ TEST_CASE("phases that would be more than an instance can count are refused unti
     auto e = good_decays(3);
     constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
     const_cast<std::int32_t*>(e.phases_done().data())[1] = most - 5;  // as after billions of phases
-    myriad::host::ensemble_access::expect_phases(e, most - 5);
-    myriad::host::ensemble_access::touch(e);  // so that a GPU receives it
+    myriad::host::ensemble_access::data(e).expect_phases(most - 5);
+    myriad::host::ensemble_access::data(e).untouched = false;  // so that a GPU receives it
     options o;
     o.phases = 3;
     solve<cash_karp>(one_thread, e, o);
@@ -274,8 +274,8 @@ TEST_CASE("phases that would be more than an instance can count are refused unti
     e.restart();
     CHECK(solve<cash_karp>(one_thread, e, o).count(status::success) == 3);
     for (int turn = 0; turn < 10; ++turn)
-        myriad::host::ensemble_access::expect_phases(e, 1'000'000'000);  // none of which were done by instances that
-                                                                         // have ended
+        myriad::host::ensemble_access::data(e).expect_phases(1'000'000'000);  // none of which were done by instances
+                                                                              // that have ended
 }
 
 TEST_CASE("an ensemble that was moved keeps its memory", "[ensemble]") {

@@ -18,7 +18,7 @@ constexpr std::int64_t places[] = {0, 1, size / 2, size - 2, size - 1};
 /// Result of the quick check of inputs, and of the full check.
 template <class R>
 bool passes(myriad::ensemble<bare, R>& e, const myriad::options& o = {}) {
-    myriad::host::input_check<bare, R> check(e, o, e.size());
+    myriad::host::data_check<R> check(myriad::host::ensemble_access::data(e), o, e.size(), false);
     const bool passed = check.passes(0, e.size());
     bool refused = false;
     try {
@@ -67,7 +67,8 @@ TEST_CASE("infinite ends pass at a glance where an event may end the phase, and 
     o.events.resize(1);
     o.events[0].stop_after = 1;
     e.t_end() = std::numeric_limits<double>::infinity();
-    const myriad::host::input_check<watched, double> check(e, o, e.size());
+    const myriad::host::data_check<double> check(myriad::host::ensemble_access::data(e), o, e.size(),
+                                                 myriad::host::events_may_stop(o));
     CHECK(check.passes(0, e.size()));
     e.t_end()[69'999] = std::numeric_limits<double>::quiet_NaN();
     CHECK_FALSE(check.passes(0, e.size()));
@@ -85,22 +86,27 @@ TEST_CASE("the only bad value of a large ensemble is named", "[large]") {
     }
 }
 
+template <class E>
+void check_times(const E& e, const myriad::options& o) {
+    myriad::host::check_sample_times(myriad::host::ensemble_access::data(e), o, e.size());
+}
+
 TEST_CASE("sample times outside of a single domain of many are refused", "[large]") {
     myriad::options o;
     o.samples = {.states = {bare::x}, .capacity = 2, .times = {0.25, 0.5}};
     auto e = good_decays(100'000);
-    CHECK_NOTHROW(myriad::host::check_sample_times(e, o, e.size()));
+    CHECK_NOTHROW(check_times(e, o));
     for (const std::int64_t i : {std::int64_t{0}, std::int64_t{77'777}, std::int64_t{99'999}}) {
         e.t_end()[i] = 0.375;
-        refused([&] { myriad::host::check_sample_times(e, o, e.size()); },
+        refused([&] { check_times(e, o); },
                 {myriad::message("instance ", i, " is integrated from 0 to 0.375").c_str()});
         e.t_end()[i] = 1;
     }
     e.t_begin() = 1.0;
     e.t_end() = 0.0;
-    refused([&] { myriad::host::check_sample_times(e, o, e.size()); }, {"instance 0 is integrated from 1 to 0"});
+    refused([&] { check_times(e, o); }, {"instance 0 is integrated from 1 to 0"});
     o.samples.times = {0.5, 0.25};
-    CHECK_NOTHROW(myriad::host::check_sample_times(e, o, e.size()));
+    CHECK_NOTHROW(check_times(e, o));
 }
 
 TEST_CASE("statuses of a large ensemble are counted, and its first failure is found", "[large]") {
@@ -122,12 +128,12 @@ TEST_CASE("statuses of a large ensemble are counted, and its first failure is fo
 
 TEST_CASE("restart makes a large ensemble as good as new", "[large]") {
     auto e = good_decays(size);
-    CHECK(myriad::host::ensemble_access::untouched(e));
+    CHECK(myriad::host::ensemble_access::data(e).untouched);
     myriad::solve<myriad::cash_karp>(tests::test_device(2), e);
-    CHECK_FALSE(myriad::host::ensemble_access::untouched(e));
+    CHECK_FALSE(myriad::host::ensemble_access::data(e).untouched);
     const auto steps = e.accepted_steps().sum();
     e.restart();
-    CHECK(myriad::host::ensemble_access::untouched(e));
+    CHECK(myriad::host::ensemble_access::data(e).untouched);
     CHECK(e.accepted_steps().maxCoeff() == 0);
     CHECK(e.phases_done().maxCoeff() == 0);
     CHECK(e.next_step().abs().maxCoeff() == 0);

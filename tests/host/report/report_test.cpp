@@ -183,12 +183,12 @@ TEST_CASE("counters that nothing can add to take no memory until they are asked 
     options o;
     o.step = 0.125;
     solve<runge_kutta_4>(one_thread, e, o);
-    CHECK(myriad::host::ensemble_access::counters(e)[0] != nullptr);
-    CHECK(myriad::host::ensemble_access::counters(e)[1] == nullptr);  // fixed steps
-    CHECK(myriad::host::ensemble_access::counters(e)[2] == nullptr);  // no events
+    CHECK(myriad::host::ensemble_access::data(e).counters()[0] != nullptr);
+    CHECK(myriad::host::ensemble_access::data(e).counters()[1] == nullptr);  // fixed steps
+    CHECK(myriad::host::ensemble_access::data(e).counters()[2] == nullptr);  // no events
     CHECK((e.located_steps() == 0).all());
     solve<cash_karp>(one_thread, e, o);
-    CHECK(myriad::host::ensemble_access::counters(e)[1] != nullptr);
+    CHECK(myriad::host::ensemble_access::data(e).counters()[1] != nullptr);
     const auto rejected = e.rejected_steps().sum();
     const auto accepted = e.accepted_steps().sum();
     const auto report = solve<runge_kutta_4>(one_thread, e, o);
@@ -241,7 +241,7 @@ TEST_CASE("the idle share is the part of the lanes that had nothing to do", "[re
 TEST_CASE("a finished ensemble reports no work and no idle lanes", "[report]") {
     auto e = two_failures();
     solve<cash_karp>(one_thread, e);
-    for (std::int64_t i = 0; i < e.size(); ++i) myriad::host::ensemble_access::mark_invalid(e, i);
+    for (std::int64_t i = 0; i < e.size(); ++i) myriad::host::ensemble_access::data(e).mark_invalid(i);
     const auto report = solve<cash_karp>(one_thread, e);
     CHECK(report.accepted_steps == 0);
     CHECK(report.idle_share() == 0);

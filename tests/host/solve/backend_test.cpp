@@ -9,6 +9,7 @@
 #include "tests/catch.hpp"
 #include "tests/host/ensemble/refusal.hpp"
 #include "tests/host/solve/fill.hpp"
+#include "tests/support/prepared.hpp"
 
 using namespace solving;
 using myriad::cash_karp;
@@ -148,12 +149,12 @@ TEST_CASE("a GPU that lacks memory or room for a block says so, and the next sol
     auto engine = myriad::cuda::make_engine<swing, cash_karp, double>({test_device().number(), 0, {}});
     myriad::ensemble<swing> e(10);
     fill(e);
-    myriad::host::prepared_arguments<swing, double> prepared(e, usual(), myriad::host::traits_of<cash_karp>);
-    refused([&] { engine->reserve(prepared.get(), std::int64_t{1} << 40); },
+    auto prepared = tests::prepare<cash_karp>(e, usual());
+    refused([&] { engine->reserve(prepared.arguments(), std::int64_t{1} << 40); },
             {"out of device memory", "GB are wanted", "are free", "chunk_size"});
-    engine->upload(prepared.get(), 0, 10);
-    engine->integrate(prepared.get());
-    engine->download(prepared.get());
+    engine->upload(prepared.arguments(), 0, 10);
+    engine->integrate(prepared.arguments());
+    engine->download(prepared.arguments());
     engine->wait();
     CHECK(same_results(e, solved(10, usual())));
 }

@@ -57,8 +57,8 @@ private:
 };
 
 template <class Model, class Method, class R>
-class engine final : public myriad::cuda::engine<Model, R> {
-    using arguments = myriad::detail::kernel_arguments<Model, R>;
+class engine final : public myriad::cuda::engine<R> {
+    using arguments = myriad::detail::any_arguments<R>;
     using access = myriad::detail::array_access;
     using kind = myriad::detail::array_kind;
     using clock = std::chrono::steady_clock;
@@ -224,7 +224,7 @@ public:
         const auto [begin, end] = kernel_interval(&begun_);
         return end - begin;
     }
-    typename myriad::cuda::engine<Model, R>::interval kernel_interval(void* since) override {
+    typename myriad::cuda::engine<R>::interval kernel_interval(void* since) override {
         const turn mine(taken_);
         synchronise();
         const auto zero = *static_cast<clock::time_point*>(since);

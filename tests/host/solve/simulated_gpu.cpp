@@ -67,13 +67,13 @@ void unpin_memory(void* memory) {
 }
 
 template <class Model, class Method, class R, class Counts>
-std::unique_ptr<engine<Model, R>> make_engine(const engine_options&) {
+std::unique_ptr<engine<R>> make_engine(const engine_options&) {
     simulated::the_gpu.meet(simulated::call::make_engine);
     return std::make_unique<simulated::engine<Model, Method, R>>();
 }
 
 #define MYRIAD_SIMULATE(Model, Method) \
-    template std::unique_ptr<engine<Model, double>> make_engine<Model, Method, double>(const engine_options&);
+    template std::unique_ptr<engine<double>> make_engine<Model, Method, double>(const engine_options&);
 MYRIAD_SIMULATE(solving::swing, runge_kutta_4)
 MYRIAD_SIMULATE(solving::swing, cash_karp)
 MYRIAD_SIMULATE(solving::swing, dense<tsitouras_5>)

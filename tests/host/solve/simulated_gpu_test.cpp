@@ -20,10 +20,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "myriad/host/chunks/chunk_plan.hpp"
 #include "tests/catch.hpp"
 #include "tests/host/ensemble/refusal.hpp"
 #include "tests/host/solve/fill.hpp"
 #include "tests/host/solve/simulated_engine.hpp"
+#include "tests/support/prepared.hpp"
 
 using namespace solving;
 using myriad::runge_kutta_4, myriad::cash_karp, myriad::status;
@@ -202,7 +204,7 @@ TEST_CASE("too little memory for one of three chunks is an error that leaves the
         auto e = filled<drifts>(size);
         refused([&] { myriad::solve<runge_kutta_4>(gpu, e, o); }, {"out of device memory"});
         CHECK(is_as_filled(e));
-        CHECK(myriad::host::ensemble_access::untouched(e));
+        CHECK(myriad::host::ensemble_access::data(e).untouched);
         CHECK(the_gpu.used == 0);
     }
     the_gpu.memory = unlimited;
@@ -216,9 +218,9 @@ TEST_CASE(
     simulated::engine<drift, runge_kutta_4, double> worker;
     const auto plan_for = [&](std::int64_t size, std::int64_t chosen) {
         const auto o = two_phases(chosen);
-        myriad::host::prepared_arguments<drift, double> prepared(e, o, myriad::host::traits_of<runge_kutta_4>);
-        prepared.get().size = size;
-        return myriad::host::chunk_plan(o, prepared.get(), worker);
+        auto call = tests::prepare<runge_kutta_4>(e, o);
+        call.arguments().size = size;
+        return myriad::host::chunk_plan(o, call.arguments(), worker);
     };
     std::mt19937_64 random(1);
     for (int turn = 0; turn < 2000; ++turn) {
@@ -293,7 +295,8 @@ TEST_CASE(
             CHECK(the_gpu.under_way == 0);
             CHECK((said.find("state 0 (x) is not finite in 1 of 1500003") != std::string::npos) == bad);
             if (bad) e.state(drift::x)(size - 1) = 1;
-            CHECK((bad ? is_as_filled(e) && myriad::host::ensemble_access::untouched(e) : same_results(e, expected)));
+            CHECK((bad ? is_as_filled(e) && myriad::host::ensemble_access::data(e).untouched
+                       : same_results(e, expected)));
         }
         CHECK(begun);
     }

@@ -10,8 +10,8 @@ using ensemble_models::bare;
 TEST_CASE("arithmetic is as written in this program") { CHECK(myriad::detail::computes_as_written()); }
 
 TEST_CASE("a kernel whose file was compiled with a part of -ffast-math is refused at the start") {
-    myriad::host::cpu_kernel<bare, double> kernel;
-    kernel.run = [](const myriad::detail::kernel_arguments<bare, double>&, const myriad::detail::run_options&) {
+    myriad::host::cpu_kernel<double> kernel;
+    kernel.run = [](const myriad::detail::any_arguments<double>&, const myriad::detail::run_options&) {
         return myriad::detail::run_statistics{.computed_as_written = false};
     };
     refused([&] { myriad::host::run_kernel(kernel, {}, {}); },

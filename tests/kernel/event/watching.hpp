@@ -15,6 +15,7 @@
 #include "tests/kernel/event/methods.hpp"
 #include "tests/kernel/event/watch.hpp"
 #include "tests/support/device.hpp"
+#include "tests/support/prepared.hpp"
 
 namespace watching {
 
@@ -131,8 +132,7 @@ auto solve(myriad::ensemble<watch, R>& e, const myriad::options& o) {
 /// Without the checks of options, which refuse cases that fail only by rounding: the kernel itself, on the CPU.
 template <class Method, class R>
 void solve_unchecked(myriad::ensemble<watch, R>& e, const myriad::options& o) {
-    myriad::host::prepared_arguments<watch, R> prepared(e, o, myriad::host::traits_of<Method>);
-    myriad::openmp::run<watch, Method, R>(prepared.get(), {});
+    myriad::openmp::run<watch, Method, R>(tests::prepare<Method>(e, o).arguments(), {});
 }
 
 }  // namespace watching

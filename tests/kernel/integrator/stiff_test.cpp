@@ -19,6 +19,7 @@
 #include "tests/support/compare.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/faulty.hpp"
+#include "tests/support/prepared.hpp"
 #include "tests/support/sparse.hpp"
 
 namespace {
@@ -180,10 +181,7 @@ void check_pack_sizes() {
     const auto run = [&](int batches) {
         auto e = oscillators(all);
         const options o = compare::with_tolerance(1e-4, 1e-3);
-        myriad::detail::kernel_arguments<van_der_pol, double> arguments{};
-        myriad::host::describe_options<van_der_pol, Method, double>(arguments, o);
-        myriad::host::ensemble_access::describe(e, arguments, o.counting);
-        properties::run_with_packs<van_der_pol, Method, double>(batches, arguments, {});
+        properties::run_with_packs<van_der_pol, Method, double>(batches, tests::prepare<Method>(e, o).arguments(), {});
         return e;
     };
     const auto one_lane = run(0);

@@ -9,6 +9,7 @@
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
 #include "tests/host/ensemble/refusal.hpp"
+#include "tests/support/prepared.hpp"
 #include "tests/support/stiff.hpp"
 
 namespace {
@@ -126,14 +127,18 @@ TEST_CASE("a model's own Jacobian takes the place of the one by dual numbers") {
     CHECK(dual[1][0] == 0.04);
 }
 
+template <class Model>
+void check_jacobian_of(myriad::ensemble<Model>& e) {
+    myriad::host::check_jacobian<Model>(tests::prepare<myriad::rosenbrock_23>(e, {}).arguments(), e.size());
+}
+
 TEST_CASE("a wrong Jacobian is refused, with the entry, the instance and both values") {
     auto right = some<stiff::robertson_with_jacobian>();
-    CHECK_NOTHROW(myriad::host::check_jacobian(right, right.size()));
+    CHECK_NOTHROW(check_jacobian_of(right));
     auto wrong = some<transposed>();
-    refused([&] { myriad::host::check_jacobian(wrong, wrong.size()); },
+    refused([&] { check_jacobian_of(wrong); },
             {"jacobian gives 0.04 for the derivative of component 0 by state 1 at the start of instance 0",
              "that of rhs is 1000", "mend the formula"});
     auto bad = some<nan_inside>();
-    refused([&] { myriad::host::check_jacobian(bad, bad.size()); },
-            {"jacobian gives nan for the derivative of component 2 by state 2"});
+    refused([&] { check_jacobian_of(bad); }, {"jacobian gives nan for the derivative of component 2 by state 2"});
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/kernel/output/sampling.hpp"
+#include "tests/support/prepared.hpp"
 
 using namespace output;
 
@@ -132,13 +133,7 @@ TEST_CASE("samples across events do not depend on the pack", "[output]") {
         auto packs = balls(), lane = balls();
         solve<dense<cash_karp>>(device::cpu(1), packs, o);
 
-        myriad::detail::kernel_arguments<bouncing, double> arguments{};
-        myriad::host::describe_options<bouncing, dense<cash_karp>>(arguments, o);
-        myriad::host::ensemble_access::describe(lane, arguments, o.counting);
-        myriad::host::ensemble_access::describe_samples(lane, arguments.sample, o.samples);
-        arguments.sample.count = 101;
-        arguments.sample.every = static_cast<std::int32_t>(every);
-        run_one_lane<bouncing, dense<cash_karp>>(arguments, {});
+        run_one_lane<bouncing, dense<cash_karp>>(tests::prepare<dense<cash_karp>>(lane, o).arguments(), {});
         CHECK((packs.samples().stored() >= (every == 0 ? 101 : 5)).all());
         CHECK(same_samples(packs, lane));
         CHECK(compare::difference(packs, lane) == "");

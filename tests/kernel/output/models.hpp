@@ -46,7 +46,7 @@ struct retargeted {
 
 /// Like the backend, but one instance at a time.
 template <class Model, class Method>
-myriad::detail::run_statistics run_one_lane(const myriad::detail::kernel_arguments<Model, double>& arguments,
+myriad::detail::run_statistics run_one_lane(const myriad::detail::any_arguments<double>& arguments,
                                             const myriad::detail::run_options& options);
 
 }  // namespace output

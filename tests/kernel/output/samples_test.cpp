@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tests/kernel/output/sampling.hpp"
+#include "tests/support/prepared.hpp"
 
 using namespace output;
 
@@ -207,9 +208,8 @@ TEST_CASE("nothing is written beyond the arrays of the samples", "[output]") {
     for (const bool steps : {true, false}) {
         auto e = curves(1, size);
         options o = by_steps(1, capacity);
-        myriad::detail::kernel_arguments<curve, double> arguments{};
-        myriad::host::describe_options<curve, dense<cash_karp>>(arguments, o);
-        myriad::host::ensemble_access::describe(e, arguments, o.counting);
+        auto call = tests::prepare<dense<cash_karp>>(e, o);
+        auto& arguments = call.arguments();
         std::vector<double> time(capacity * size + 2 * guard, pattern),
             values(2 * capacity * size + 2 * guard, pattern);
         std::vector<std::int32_t> stored(size + 2 * guard, -7);
@@ -220,8 +220,8 @@ TEST_CASE("nothing is written beyond the arrays of the samples", "[output]") {
         arguments.sample.capacity = capacity;
         arguments.sample.every = steps ? 1 : 0;
         arguments.sample.count = 100;  // far more than fit
-        arguments.sample.column[0] = 0;
-        arguments.sample.column[1] = 1;
+        call.sample_columns()[0] = 0;
+        call.sample_columns()[1] = 1;
         myriad::openmp::run<curve, dense<cash_karp>, double>(arguments, {});
         const auto untouched = [](const auto& array, auto value) {
             return std::all_of(array.begin(), array.begin() + guard, [&](auto x) { return x == value; }) &&

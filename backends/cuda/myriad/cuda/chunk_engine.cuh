@@ -22,17 +22,15 @@
 
 namespace myriad::cuda {
 
-/// The kernels are those of a class like `compiled_kernel`. `Interface` is what a derived class implements the rest of.
-template <class Kernel, class Interface = engine_for<typename Kernel::arguments>>
-class chunk_engine : public Interface {
+template <class R>
+class chunk_engine : public engine<R> {
 protected:
-    using arguments = typename Kernel::arguments;
-    using R = typename Kernel::real;
+    using arguments = any_arguments<R>;
 
 public:
-    explicit chunk_engine(const engine_options& options, Kernel kernel = {})
+    chunk_engine(const engine_options& options, model_kernels kernels)
         : device_(options.device), now_current_(std::in_place, options.device),
-          launcher_(options.device, options, std::move(kernel)),
+          launcher_(options.device, options, std::move(kernels)),
           scheduler_(options.schedule, launcher_.traits().costs_differ) {
         launcher_.listen_to(stop_line_.word());
         now_current_.reset();
@@ -374,7 +372,7 @@ protected:
     }
 
     void upload_shared(const shared_parameters<R>& shared) {
-        const kernel_traits& of = launcher_.traits();
+        const model_numbers& of = launcher_.traits().model;
         const std::size_t real = static_cast<std::size_t>(of.n_shared) * sizeof(R),
                           integer = static_cast<std::size_t>(of.n_shared_integer) * sizeof(std::int32_t);
         shared_.reserve(padded(real + 256 + integer, 1));
@@ -389,9 +387,9 @@ protected:
 
     int device_;
     std::optional<current_device> now_current_;  // while the members below are created and destroyed
-    kernel_launcher<Kernel> launcher_;
+    kernel_launcher<R> launcher_;
     device_memory memory_, records_, sample_times_, shared_;
-    phase_scheduler<Kernel> scheduler_;
+    phase_scheduler<R> scheduler_;
     stream stream_;
     stop_line stop_line_;
     event begun_{event::kind::timed}, done_{event::kind::timed}, clock_{event::kind::timed}, mark_{event::kind::plain};

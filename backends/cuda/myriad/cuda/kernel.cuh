@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "myriad/cuda/launch_traits.hpp"
 #include "myriad/kernel/core/stop_request.hpp"
 #include "myriad/kernel/integrator/integrate.hpp"
 
@@ -134,6 +135,14 @@ struct launch_arguments<Model, R, shared_placement::constant_bank> {
     std::int32_t shared_integer[at_least_one(n_shared_integer<Model>)];
 };
 
+/// What launches depend on. Launch parameters are put where these have them.
+template <class Model, class Method, class R>
+inline constexpr cuda::kernel_traits traits_of{numbers_of<Model>, shared_parameter_bytes<Model, R>,
+                                               max_block_size<Model>(), costs_differ<Model, Method>};
+template <class Model, class R, shared_placement placement>
+constexpr bool is_laid_out =
+    sizeof(launch_arguments<Model, R, placement>) == cuda::launch_offsets<R>(numbers_of<Model>).bytes(placement);
+
 /// Copies the shared parameters to the block's shared memory, with all its threads.
 template <class Model, class R>
 __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parameters<R>& from) {
@@ -151,6 +160,7 @@ __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parame
 /// The kernel's body: integrates the instances from this thread's source.
 template <class Model, class Method, class R, shared_placement placement>
 __device__ __forceinline__ void integrate_thread(const launch_arguments<Model, R, placement>& arguments) {
+    static_assert(is_laid_out<Model, R, placement>);
     shared_parameters<R> shared = arguments.ensemble.shared;
     if constexpr (placement == shared_placement::constant_bank) shared = {arguments.shared, arguments.shared_integer};
     if constexpr (placement == shared_placement::shared_memory) shared = detail::stage_shared<Model, R>(shared);

@@ -5,36 +5,39 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <functional>
 #include <utility>
+#include <vector>
 
 #include "myriad/cuda/check.cuh"
 #include "myriad/cuda/cost_order.cuh"
 #include "myriad/cuda/launch_traits.hpp"
+#include "myriad/cuda/study_arguments.hpp"
 #include "myriad/host/backend/backend.hpp"
 
 namespace myriad::cuda {
 
-/// The grid of a launch, and where it goes.
-struct launch_shape {
-    unsigned blocks, threads;
-    std::size_t shared_bytes;
-    cudaStream_t stream;
-    const std::uint32_t* stop;  // on the device: what the host asks of the kernel
+/// The kernels of one model, method and real type, compiled into the program or loaded.
+struct model_kernels {
+    kernel_traits traits;
+    const void* integrate;         // with the shared parameters in the constant bank or the cache
+    const void* integrate_staged;  // in shared memory
+    cost_kernels sort;
+    std::function<study_kernels()> study;
 };
 
-/// Launches the kernels of one model, method and real type on the current device. A `Kernel` is `compiled_kernel`, or
-/// another class with the same members.
-template <class Kernel>
+/// Launches them on the current device.
+template <class R>
 class kernel_launcher {
     using place = shared_placement;
-    using R = typename Kernel::real;
 
 public:
-    kernel_launcher(int device, const engine_options& wanted, Kernel kernel = {})
-        : kernel_(std::move(kernel)), traits_(kernel_.traits()) {
+    kernel_launcher(int device, const engine_options& wanted, model_kernels kernels)
+        : kernels_(std::move(kernels)), offsets_(kernels_.traits.model) {
         int limit = 0;
         MYRIAD_CUDA(cudaDeviceGetAttribute(&limit, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
-        const int bytes = traits_.shared_bytes;
+        const int bytes = traits().shared_bytes;
         const bool fits = bytes <= limit;
         facts_.shared_placement = wanted.shared_placement;
         if (wanted.shared_placement == place::automatic)
@@ -48,13 +51,14 @@ public:
                 ", but the model's shared parameters take ", bytes,
                 " bytes: up to 1024 they are kept in the constant bank, more in "
                 "shared memory or the cache; set it to automatic");
+        parameters_.resize(static_cast<std::size_t>(offsets_.bytes(facts_.shared_placement)) / sizeof(double));
         choose_block(device, static_cast<int>(wanted.block_size));
     }
 
     const kernel_facts& facts() const { return facts_; }
-    const kernel_traits& traits() const { return traits_; }
-    cost_kernels sort() const { return kernel_.sort(); }
-    auto study() const { return kernel_.study(); }
+    const kernel_traits& traits() const { return kernels_.traits; }
+    const cost_kernels& sort() const { return kernels_.sort; }
+    study_kernels study() const { return kernels_.study(); }
     /// Number of threads that gives every warp scheduler of the GPU one warp.
     std::int64_t least_threads() const { return std::int64_t{128} * multiprocessors_; }
     void note(schedule how) { facts_.schedule = how; }
@@ -62,37 +66,56 @@ public:
     void listen_to(const std::uint32_t* stop) { stop_ = stop; }
 
     /// Stores the shared parameters for launches from the constant bank; `shared` is on the host.
-    void set_shared(const shared_parameters<R>& shared) { kernel_.set_shared(shared); }
+    void set_shared(const shared_parameters<R>& shared) {
+        if (facts_.shared_placement != place::constant_bank) return;
+        put(offsets_.shared(), shared.real, traits().model.n_shared);
+        put(offsets_.shared_integer, shared.integer, traits().model.n_shared_integer);
+    }
 
     /// Launches the kernel on device pointers. With a queue, which must be zero, launches no more threads than run at
     /// once.
-    void launch(const typename Kernel::arguments& arguments, unsigned long long* queue, cudaStream_t where) {
+    void launch(const any_arguments<R>& arguments, unsigned long long* queue, cudaStream_t where) {
         const int block = facts_.block_size = block_for(arguments.size);
         auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
         if (queue != nullptr) blocks = std::min(blocks, blocks_at_once(block));
-        kernel_.launch(
-            facts_.shared_placement, arguments, queue,
-            {blocks, static_cast<unsigned>(block), static_cast<std::size_t>(facts_.shared_bytes), where, stop_});
+        put(0, static_cast<const argument_head<R>*>(&arguments), 1);
+        put(offsets_.arrays, arguments.arrays, arguments.offsets().end);
+        put(offsets_.queue, &queue, 1);
+        put(offsets_.stop(), &stop_, 1);
+        void* all[] = {parameters_.data()};
+        // Not <<<>>>, which returns the status of the thread's last failure, whatever its cause.
+        check(cudaLaunchKernel(function(), dim3(blocks), dim3(static_cast<unsigned>(block)), all,
+                               static_cast<std::size_t>(facts_.shared_bytes), where),
+              "the launch of the integration kernel");
     }
 
 private:
     static constexpr std::int64_t cache_bytes = 128 * 1024;  // of a V100; later GPUs have more
 
+    const void* function() const {
+        return facts_.shared_placement == place::shared_memory ? kernels_.integrate_staged : kernels_.integrate;
+    }
+    /// Writes values to a place of the launch parameters.
+    template <class T>
+    void put(int offset, const T* values, int count) {
+        auto* const bytes = reinterpret_cast<std::byte*>(parameters_.data());
+        if (count > 0) std::memcpy(bytes + offset, values, static_cast<std::size_t>(count) * sizeof(T));
+    }
+
     void choose_block(int device, int wanted) {
-        const void* const function = kernel_.function(facts_.shared_placement);
         cudaFuncAttributes attributes{};
-        MYRIAD_CUDA(cudaFuncGetAttributes(&attributes, function));
+        MYRIAD_CUDA(cudaFuncGetAttributes(&attributes, function()));
         facts_.registers = attributes.numRegs;
         facts_.local_bytes = static_cast<std::int64_t>(attributes.localSizeBytes);
         if (facts_.shared_placement == place::shared_memory) {
-            const int bytes = traits_.shared_bytes;
-            MYRIAD_CUDA(cudaFuncSetAttribute(function, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes));
+            const int bytes = traits().shared_bytes;
+            MYRIAD_CUDA(cudaFuncSetAttribute(function(), cudaFuncAttributeMaxDynamicSharedMemorySize, bytes));
             facts_.shared_bytes = bytes;
         }
         const int most = attributes.maxThreadsPerBlock;
         require(wanted <= most, "block_size is ", wanted, ", but a block of this kernel has at most ", most,
                 " threads (", attributes.numRegs, " registers each): give a smaller block_size",
-                wanted <= 1024 && traits_.max_block_size < wanted
+                wanted <= 1024 && traits().max_block_size < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");
         // The smallest block size among those that keep most threads resident.
@@ -100,7 +123,7 @@ private:
         for (int block = wanted > 0 ? wanted : std::min(64, most / 32 * 32); block <= (wanted > 0 ? wanted : most);
              block *= 2) {
             int blocks = 0;
-            MYRIAD_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, function, block,
+            MYRIAD_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, function(), block,
                                                                       static_cast<std::size_t>(facts_.shared_bytes)));
             if (blocks * block <= best_threads) continue;
             best_threads = blocks * block;
@@ -125,7 +148,7 @@ private:
         int block = chosen_block_;
         if (chosen_by_user_) return block;
         while (block > 32 && size <= static_cast<std::int64_t>(multiprocessors_) * block / 2) block /= 2;
-        if (traits_.costs_differ) {
+        if (traits().costs_differ) {
             const std::int64_t schedulers = least_threads() / 32;
             while (block > 1 && block <= 32 && size <= schedulers * (block / 2) && fits_the_cache(size, block / 2))
                 block /= 2;
@@ -142,8 +165,9 @@ private:
         return resident * 32 * facts_.local_bytes <= cache_bytes;
     }
 
-    Kernel kernel_;
-    kernel_traits traits_;
+    model_kernels kernels_;
+    launch_offsets<R> offsets_;
+    std::vector<double> parameters_;  // doubles, for their alignment
     kernel_facts facts_;
     const std::uint32_t* stop_ = nullptr;
     int multiprocessors_ = 1, chosen_block_ = 0;

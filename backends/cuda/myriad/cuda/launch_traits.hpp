@@ -2,6 +2,9 @@
 // What the launch of a kernel depends on besides its compiled resources: for host code and for what compiles kernels.
 #pragma once
 
+#include <cstdint>
+
+#include "myriad/kernel/model/model_facts.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::cuda {
@@ -13,10 +16,33 @@ constexpr bool is_compiled(shared_placement placement, int shared_bytes) {
 
 /// What the launch of a kernel depends on besides its compiled resources.
 struct kernel_traits {
-    int n_shared, n_shared_integer;
-    int shared_bytes;    // of both
-    int max_block_size;  // as the model or the library limits it
-    bool costs_differ;   // whether instances may differ in cost
+    detail::model_numbers model;
+    std::int32_t shared_bytes;    // of both kinds of shared parameters
+    std::int32_t max_block_size;  // as the model or the library limits it
+    bool costs_differ;            // whether instances may differ in cost
+};
+
+/// Where a kernel of such a model has its launch parameters, in bytes: the members of `launch_arguments`.
+template <class R>
+struct launch_offsets {
+    explicit constexpr launch_offsets(const detail::model_numbers& m) {
+        const detail::argument_offsets<R> behind(m.n_state, m.n_accessory, m.n_integer_accessory, m.n_event);
+        queue = to_words(arrays + behind.end);
+        shared_integer = shared() + detail::at_least_one(m.n_shared) * static_cast<int>(sizeof(R));
+        end = to_words(shared_integer + detail::at_least_one(m.n_shared_integer) * 4);
+    }
+    constexpr int stop() const { return queue + word; }
+    /// The shared parameters in the constant bank; the end, where they are elsewhere.
+    constexpr int shared() const { return queue + 2 * word; }
+    constexpr int bytes(shared_placement placement) const {
+        return placement == shared_placement::constant_bank ? end : shared();
+    }
+
+    int arrays = sizeof(detail::argument_head<R>), queue = 0, shared_integer = 0, end = 0;
+
+private:
+    static constexpr int word = 8;
+    static constexpr int to_words(int bytes) { return (bytes + word - 1) / word * word; }
 };
 
 }  // namespace myriad::cuda

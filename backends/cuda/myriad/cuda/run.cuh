@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "myriad/cuda/compiled_kernel.cuh"
+#include "myriad/cuda/compiled_kernels.cuh"
 #include "myriad/cuda/devices.cuh"
 #include "myriad/cuda/study_engine.cuh"
 #include "myriad/host/backend/backend.hpp"
@@ -13,9 +13,9 @@
 namespace myriad::cuda {
 
 template <class Model, class Method, class R, class Counts>
-std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options) {
+std::unique_ptr<engine<R>> make_engine(const engine_options& options) {
     require_device(options);
-    return std::make_unique<study_engine<compiled_kernel<Model, Method, R>, engine<Model, R>>>(options);
+    return std::make_unique<study_engine<R>>(options, compiled_kernels<Model, Method, R>());
 }
 
 }  // namespace myriad::cuda
@@ -24,5 +24,5 @@ std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options) {
 #define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                         \
     template <>                                                                                              \
     void myriad::detail::instantiated_in_one_file_alone<myriad::cuda::engine_options, Model, Method, R>() {} \
-    template std::unique_ptr<myriad::cuda::engine<Model, R>> myriad::cuda::make_engine<Model, Method, R>(    \
+    template std::unique_ptr<myriad::cuda::engine<R>> myriad::cuda::make_engine<Model, Method, R>(           \
         const myriad::cuda::engine_options&);

@@ -12,9 +12,9 @@
 
 namespace myriad::cuda {
 
-template <class Kernel>
+template <class R>
 class phase_scheduler {
-    using arguments = typename Kernel::arguments;
+    using arguments = any_arguments<R>;
 
 public:
     phase_scheduler(schedule wanted, bool costs_differ) : wanted_(costs_differ ? wanted : schedule::in_order) {}
@@ -34,7 +34,7 @@ public:
     /// To be called after other instances have been uploaded.
     void forget_costs() { costs_known_ = false; }
 
-    void launch(kernel_launcher<Kernel>& kernel, arguments now, cudaStream_t where) {
+    void launch(kernel_launcher<R>& kernel, arguments now, cudaStream_t where) {
         const schedule how = chosen(now.size, now.phases, kernel.least_threads());
         kernel.note(how);
         if (how == schedule::in_order) return kernel.launch(now, nullptr, where);
@@ -65,7 +65,7 @@ private:
             return sortable && phases >= 4 && count > worthwhile ? schedule::by_cost : schedule::in_order;
         return wanted_ == schedule::by_cost && !sortable ? schedule::dynamic : wanted_;
     }
-    void launch_with_queue(kernel_launcher<Kernel>& kernel, const arguments& now, cudaStream_t where) {
+    void launch_with_queue(kernel_launcher<R>& kernel, const arguments& now, cudaStream_t where) {
         auto* const queue = static_cast<unsigned long long*>(queue_.data());
         MYRIAD_CUDA(cudaMemsetAsync(queue, 0, sizeof *queue, where));
         kernel.launch(now, queue, where);

@@ -41,3 +41,12 @@ struct reduce_arguments {
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
+
+namespace myriad::cuda {
+
+/// The kernels of cuda/study_kernels.cuh; `generate_instances` is null for a model that sets none.
+struct study_kernels {
+    const void *fill_components, *gather_values, *reduce_values, *generate_instances;
+};
+
+}  // namespace myriad::cuda

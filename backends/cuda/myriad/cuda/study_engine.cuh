@@ -13,10 +13,9 @@
 
 namespace myriad::cuda {
 
-/// A `chunk_engine` whose `Kernel` also has a member `study`: the kernels of studies.
-template <class Kernel, class Interface = study_engine_for<typename Kernel::arguments>>
-class study_engine final : public chunk_engine<Kernel, Interface> {
-    using base = chunk_engine<Kernel, Interface>;
+template <class R>
+class study_engine final : public chunk_engine<R> {
+    using base = chunk_engine<R>;
     using base::count_, base::device_, base::first_, base::launcher_, base::stream_, base::walk;
     using typename base::arguments;
 
@@ -44,7 +43,7 @@ public:
         const study_kernels by = launcher_.study();
         study_.fill(by, how, find, range, now.ended, now.status, stream_.get());
         if (how->calls_model)
-            study_.generate(by, static_cast<const instance_arrays<array_pointer, typename Kernel::real>&>(now), range,
+            study_.generate(by, static_cast<const instance_arrays<array_pointer, R>&>(now), range,
                             base::shared_on_device_, how->seed, stream_.get());
     }
     void fetch(const arguments& host, const device_values& what, std::byte* to) override {

@@ -29,11 +29,6 @@ value_type value_type_of(const T*) {
                                              : value_type::u8;
 }
 
-/// The kernels of cuda/study_kernels.cuh; `generate_instances` is null for a model that sets none.
-struct study_kernels {
-    const void *fill_components, *gather_values, *reduce_values, *generate_instances;
-};
-
 class study_work {
 public:
     /// An array of the chunk: its place on the device, and the type of its values.

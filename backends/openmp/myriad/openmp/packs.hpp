@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 
 #include <sched.h>
@@ -136,11 +137,27 @@ struct team_run {
     }
 };
 
+/// The arguments in the form that the model's kernel takes.
+template <class Model, class R>
+kernel_arguments<Model, R> arguments_of(const any_arguments<R>& from) {
+    using arrays = argument_arrays<Model, R>;
+    constexpr argument_offsets<R> at(n_state<Model>, n_accessory<Model>, n_integer_accessory<Model>, n_event<Model>);
+#define MYRIAD_CHECK_PLACE(type, name, count) static_assert(offsetof(arrays, name) == at.name);
+    MYRIAD_ARGUMENT_ARRAYS(MYRIAD_CHECK_PLACE)
+#undef MYRIAD_CHECK_PLACE
+    static_assert(sizeof(arrays) == at.end);
+    kernel_arguments<Model, R> all;
+    static_cast<argument_head<R>&>(all) = from;
+    std::memcpy(static_cast<arrays*>(&all), from.arrays, sizeof(arrays));
+    return all;
+}
+
 /// Integrates the ensemble with packs of the given number of batches, by at most `most_threads` threads, whose team
 /// `in_parts` sets to work.
 template <class Model, class Method, class R, int batches, class InParts>
-run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_options& options,
-                         std::int64_t most_threads, InParts&& in_parts) {
+run_statistics run_packs(const any_arguments<R>& from, const run_options& options, std::int64_t most_threads,
+                         InParts&& in_parts) {
+    const auto arguments = detail::arguments_of<Model>(from);
     using S = typename lane_kind<R, batches>::type;
     constexpr int lanes = lanes_of<S>;
     const std::int64_t count = options.count > 0 ? options.count : arguments.size;

@@ -12,7 +12,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Integrates the ensemble with packs of the given number of batches, by a team of OpenMP.
 template <class Model, class Method, class R, int batches>
-run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_options& options) {
+run_statistics run_packs(const any_arguments<R>& arguments, const run_options& options) {
     return run_packs<Model, Method, R, batches>(
         arguments, options, options.threads > 0 ? options.threads : omp_get_max_threads(), [](openmp::team& all) {
             openmp::in_parts(openmp::for_set<openmp::instruction_set::MYRIAD_INSTRUCTION_SET>{}, all);
@@ -24,7 +24,7 @@ run_statistics run_packs(const kernel_arguments<Model, R>& arguments, const run_
 namespace myriad::openmp {
 
 template <class Model, class Method, class R, class Counts>
-run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const kernel_arguments<Model, R>& arguments,
+run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const any_arguments<R>& arguments,
                       const run_options& options) {
     if (!computes_as_written()) return {.computed_as_written = false};
     return run_packs<Model, Method, R, default_batches<Model, Method>()>(arguments, options);
@@ -36,7 +36,7 @@ run_statistics run_on(for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const ke
 #define MYRIAD_BACKEND_KERNEL(Model, Method, R)                                           \
     template myriad::detail::run_statistics myriad::openmp::run_on<Model, Method, R>(     \
         myriad::openmp::for_set<myriad::openmp::instruction_set::MYRIAD_INSTRUCTION_SET>, \
-        const myriad::detail::kernel_arguments<Model, R>&, const myriad::detail::run_options&);
+        const myriad::detail::any_arguments<R>&, const myriad::detail::run_options&);
 
 /// The same, and makes sure that no other file does so.
 #define MYRIAD_BACKEND_INSTANTIATE(Model, Method, R)                                                             \

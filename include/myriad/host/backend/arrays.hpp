@@ -4,12 +4,10 @@
 // follows from it.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 
-#include "myriad/host/model/model_shape.hpp"
-#include "myriad/kernel/state/kernel_arguments.hpp"
+#include "myriad/host/backend/any_arguments.hpp"
 
 namespace myriad::detail {
 
@@ -43,7 +41,7 @@ struct array_properties {
 /// phase. The order puts arrays that are only read, those that are set and read, and bookkeeping next to each other
 /// where a backend copies them.
 template <class R, class Visit, class... Arrays>
-void for_each_instance_array(const host::model_shape& m, Visit&& visit, Arrays&... a) {
+void for_each_instance_array(const model_numbers& m, Visit&& visit, Arrays&... a) {
     using access = array_access;
     using kind = array_kind;
     using presence = array_presence;
@@ -80,53 +78,34 @@ void for_each_instance_array(const host::model_shape& m, Visit&& visit, Arrays&.
     keep(1, presence::counters, counters, std::int64_t{0}, a.evaluations...);
 }
 
-/// Columns that are taken by n components.
-constexpr int columns_in(const std::int16_t* column, int n) {
-    int count = 0;
-    for (int i = 0; i < n; ++i) count = column[i] >= count ? column[i] + 1 : count;
-    return count;
-}
-template <int n>
-constexpr int columns_in(const std::int16_t (&column)[n]) {
-    return detail::columns_in(column, n);
-}
-
-/// Calls `visit(pointer, components, access, kind)` for every array that the arguments of a kernel of such a model
-/// have, the pointer by reference: component c of instance i is at `pointer[c * size + i]`. `sampled`: columns of
-/// samples.
-template <class R, class Arguments, class Visit>
-void for_each_array_of(const host::model_shape& model, Arguments& a, int sampled, Visit&& visit) {
+/// Calls `visit(pointer, components, access, kind)` for every array that a kernel's arguments have, the pointer by
+/// reference: component c of instance i is at `pointer[c * size + i]`.
+template <class R, class Visit>
+void for_each_array(any_arguments<R>& a, Visit&& visit) {
     const auto visit_array = [&](auto*& array, std::int64_t components, array_access how, array_kind what) {
         if (array != nullptr && components > 0) visit(array, components, how, what);
     };
     visit_array(a.sample.own_times, a.sample.count, array_access::read, array_kind::input);
     for_each_instance_array<R>(
-        model,
+        *a.model,
         [&](const array_properties& of, auto, auto*& array) { visit_array(array, of.components, of.access, of.kind); },
         a);
     const std::int64_t capacity = a.sample.capacity;
     const auto update = array_access::update;
     visit_array(a.sample.stored, 1, update, array_kind::samples);
     visit_array(a.sample.time, capacity, update, array_kind::samples);
-    visit_array(a.sample.values, sampled * capacity, update, array_kind::samples);
-}
-template <class Model, class R, class Visit>
-void for_each_array(kernel_arguments<Model, R>& a, Visit&& visit) {
-    detail::for_each_array_of<R>(host::shape_of<Model>, a, columns_in(a.sample.column), visit);
+    visit_array(a.sample.values, a.sample_columns * capacity, update, array_kind::samples);
 }
 
-/// The same for the records of one call, which kernels only write: so many columns of each type.
-template <class Record, class Visit>
-void for_each_record_of(Record& r, std::int64_t reals, std::int64_t integers, Visit&& visit) {
-    if (r.values != nullptr && reals > 0) visit(r.values, reals * r.phases, array_access::write, array_kind::records);
-    if (r.integers != nullptr && integers > 0)
-        visit(r.integers, integers * r.phases, array_access::write, array_kind::records);
-}
-template <class Model, class R, class Visit>
-void for_each_record(kernel_arguments<Model, R>& a, Visit&& visit) {
-    auto& r = a.record;
-    const int reals = std::max({columns_in(r.state_column), columns_in(r.accessory_column), r.time_column + 1});
-    detail::for_each_record_of(r, reals, columns_in(r.integer_accessory_column), visit);
+/// The same for the records of one call, which kernels only write.
+template <class R, class Visit>
+void for_each_record(any_arguments<R>& a, Visit&& visit) {
+    const auto visit_array = [&](auto*& array, std::int64_t columns) {
+        if (array != nullptr && columns > 0)
+            visit(array, columns * a.record.phases, array_access::write, array_kind::records);
+    };
+    visit_array(a.record.values, a.record_columns);
+    visit_array(a.record.integers, a.integer_record_columns);
 }
 
 }  // namespace myriad::detail

@@ -15,7 +15,6 @@
 #include "myriad/host/core/weak.hpp"
 #include "myriad/host/options/schedule.hpp"
 #include "myriad/kernel/core/stop_request.hpp"
-#include "myriad/kernel/state/kernel_arguments.hpp"
 #include "myriad/kernel/study/axis_rule.hpp"
 #include "myriad/kernel/study/reduced_values.hpp"
 
@@ -125,47 +124,39 @@ struct device_reduction {
 /// another may call `idle`, `stop` and `affordable` meanwhile. Arguments are the host's, for the whole ensemble;
 /// `first` and `count` select the instances. Errors of the device, including those of earlier work, are thrown as
 /// `error`.
-template <class Arguments>
-class engine_for : public any_engine {
+/// It can also set and reduce instances on the device, instead of an upload and a download: the host's arguments then
+/// have arrays of fewer instances, which only say which arrays there are; `first` is the number of the first instance
+/// from that of the arguments on. All but `generate` wait for the work before.
+template <class R>
+class engine : public any_engine {
 public:
     /// Allocates memory for chunks of `count` instances; larger chunks allocate more when they are uploaded.
-    virtual void reserve(const Arguments& host, std::int64_t count) = 0;
+    virtual void reserve(const any_arguments<R>& host, std::int64_t count) = 0;
     /// Copies the chunk to the device.
-    virtual void upload(const Arguments& host, std::int64_t first, std::int64_t count,
+    virtual void upload(const any_arguments<R>& host, std::int64_t first, std::int64_t count,
                         past of_instances = past::kept) = 0;
     /// Integrates the chunk that was uploaded last, with the options of `host`, which must have the same arrays.
-    virtual void integrate(const Arguments& host) = 0;
+    virtual void integrate(const any_arguments<R>& host) = 0;
     /// Copies what kernels write back to where it was uploaded from, and the records of the last call into
     /// `host.record`. Components for which `wanted(kind, component)` is false are left out.
-    virtual void download(const Arguments& host, bool (*wanted)(void*, array_kind, std::int64_t) = nullptr,
+    virtual void download(const any_arguments<R>& host, bool (*wanted)(void*, array_kind, std::int64_t) = nullptr,
                           void* context = nullptr) = 0;
-};
 
-/// An engine that can also set and reduce instances on the device, instead of an upload and a download: the host's
-/// arguments then have arrays of fewer instances, which only say which arrays there are; `first` is the number of the
-/// first instance from that of the arguments on. All but `generate` wait for the work before.
-template <class Arguments>
-class study_engine_for : public engine_for<Arguments> {
-public:
     /// Sets a chunk of instances without a past.
-    virtual void generate(const Arguments& host, std::shared_ptr<const generation> how, std::int64_t first,
+    virtual void generate(const any_arguments<R>& host, std::shared_ptr<const generation> how, std::int64_t first,
                           std::int64_t count) = 0;
     /// Copies values of all instances of the chunk, the instance outermost.
-    virtual void fetch(const Arguments& host, const device_values& what, std::byte* to) = 0;
+    virtual void fetch(const any_arguments<R>& host, const device_values& what, std::byte* to) = 0;
     /// The result of a reduction.
-    virtual std::vector<std::int64_t> reduce(const Arguments& host, const device_values& what,
+    virtual std::vector<std::int64_t> reduce(const any_arguments<R>& host, const device_values& what,
                                              const device_reduction& how) = 0;
     /// Copies all arrays of the first `count` instances of the chunk to those of the host.
-    virtual void fetch_first(const Arguments& host, std::int64_t count) = 0;
+    virtual void fetch_first(const any_arguments<R>& host, std::int64_t count) = 0;
 };
-
-/// The engine for a compiled model.
-template <class Model, class R>
-class engine : public study_engine_for<kernel_arguments<Model, R>> {};
 
 /// The engine for a model, method and real type. Throws `error` if the device does not exist or cannot run the kernel.
 template <class Model, class Method, class R, class Counts = component_counts<Model>>
-__attribute__((weak)) std::unique_ptr<engine<Model, R>> make_engine(const engine_options& options);
+__attribute__((weak)) std::unique_ptr<engine<R>> make_engine(const engine_options& options);
 
 /// A device of this machine.
 struct device_facts {

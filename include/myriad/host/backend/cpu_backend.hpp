@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <utility>
 
+#include "myriad/host/backend/any_arguments.hpp"
 #include "myriad/host/core/instruction_set.hpp"
 #include "myriad/host/options/schedule.hpp"
 #include "myriad/kernel/core/stop_request.hpp"
 #include "myriad/kernel/model/concepts.hpp"
-#include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::detail {
 
@@ -63,9 +63,9 @@ namespace openmp {
 
 /// The kernel for one instruction set. A program may contain several (MYRIAD_ARCH as a list), from which host code
 /// chooses one for the CPU it runs on: cpu_kernel.hpp.
-#define MYRIAD_DECLARE_KERNEL(set)                                                                                \
-    template <class Model, class Method, class R, class Counts = component_counts<Model>>                         \
-    __attribute__((weak)) run_statistics run_on(for_set<instruction_set::set>, const kernel_arguments<Model, R>&, \
+#define MYRIAD_DECLARE_KERNEL(set)                                                                      \
+    template <class Model, class Method, class R, class Counts = component_counts<Model>>               \
+    __attribute__((weak)) run_statistics run_on(for_set<instruction_set::set>, const any_arguments<R>&, \
                                                 const run_options&);
 MYRIAD_DECLARE_KERNEL(avx512)
 MYRIAD_DECLARE_KERNEL(avx2)

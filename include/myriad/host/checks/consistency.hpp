@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "myriad/host/checks/algebraic_part.hpp"
+#include "myriad/host/checks/instance_inputs.hpp"
 #include "myriad/host/core/error.hpp"
-#include "myriad/host/ensemble/inputs_of.hpp"
-#include "myriad/host/options/options.hpp"
+#include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/jacobian.hpp"
 #include "myriad/kernel/model/mass_matrix.hpp"
@@ -30,15 +30,11 @@ std::vector<double> dense_mass_matrix() {
     return mass;
 }
 
-/// The algebraic equations of instance i at its initial state, which is copied to y.
+/// The algebraic equations at time t in a state, which is copied to y.
 template <class Model, class R>
-algebraic_equations equations_at_start(ensemble<Model, R>& e, std::int64_t i, const algebraic_part& part,
-                                       std::vector<double>& y) {
+algebraic_equations equations_at(R t, const vec<R, n_state<Model>>& state, const inputs<Model, R>& p,
+                                 const algebraic_part& part, std::vector<double>& y) {
     constexpr int n = n_state<Model>;
-    const auto p = inputs_of(e, i);
-    vec<R, n> state;
-    for (int c = 0; c < n; ++c) state[c] = e.state(c)[i];
-    const R t = e.t_begin_of(i);
     const auto matrix_of = std::make_unique<matrix<R, n>>();
     detail::dual_jacobian<Model>(t, state, p, *matrix_of);
     const vec<R, n> slopes = Model::template rhs<R>(t, state, p);
@@ -60,22 +56,26 @@ inline constexpr const char* higher_index =
 /// tolerances allow of each state, or if the index is above one. Looks at a thousand or so instances. Not for models
 /// with `initialise`, before which `rhs` cannot be called.
 template <class Model, class R>
-void check_consistency(ensemble<Model, R>& e, const options& o, std::int64_t count) {
+void check_consistency(const argument_head<R>& a, const double* relative_tolerance, const double* absolute_tolerance,
+                       std::int64_t count) {
     if constexpr (has_mass_matrix<Model> && !has_initialise<Model>) {
         constexpr int n = n_state<Model>;
         const algebraic_part part(n, dense_mass_matrix<Model>());
         if (part.count == 0) return;
-        for_sampled_instances(e, count, [&](std::int64_t i) {
+        const std::int64_t stride = std::max<std::int64_t>(count / 1024, 1);
+        for (std::int64_t i = 0; i < count; i += stride) {
+            if (a.ended[i] != 0) continue;
             std::vector<double> y, change;
-            const algebraic_equations equations = equations_at_start(e, i, part, y);
+            const algebraic_equations equations = equations_at<Model>(
+                detail::begin_of(a, i), detail::state_of<Model>(a, i), detail::inputs_of<Model>(a, i), part, y);
             for (int k = 0; k < part.count; ++k) {
                 const double residual = equations.residual[static_cast<std::size_t>(k)];
                 double allowed = 0;
                 for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
-                    const double relative = std::max(o.relative_tolerance[j],
-                                                     16.0 * static_cast<double>(std::numeric_limits<R>::epsilon()));
+                    const double relative =
+                        std::max(relative_tolerance[j], 16.0 * static_cast<double>(std::numeric_limits<R>::epsilon()));
                     allowed += std::abs(equations.slope[static_cast<std::size_t>(k * n) + j]) *
-                               (relative * std::abs(y[j]) + o.absolute_tolerance[j]);
+                               (relative * std::abs(y[j]) + absolute_tolerance[j]);
                 }
                 require(std::abs(residual) <= allowed, "the initial values of instance ", i,
                         " do not satisfy the algebraic equation ", equations.text(k), ", whose right-hand side is ",
@@ -83,7 +83,7 @@ void check_consistency(ensemble<Model, R>& e, const options& o, std::int64_t cou
                         " by the tolerances: set values that do, or call myriad::make_consistent(ensemble)");
             }
             require(equations.solve(change), "at the initial values of instance ", i, ' ', higher_index);
-        });
+        }
     }
 }
 
@@ -103,7 +103,18 @@ void make_consistent(ensemble<Model, R>& e) {
     for (std::int64_t i = 0; i < e.size(); ++i) {
         bool done = part.count == 0;
         for (int iteration = 0; iteration < 50 && !done; ++iteration) {
-            const host::algebraic_equations equations = host::equations_at_start(e, i, part, y);
+            inputs<Model, R> p;
+            for (int c = 0; c < detail::n_parameter<Model>; ++c) p.parameter[c] = e.parameter(c)[i];
+            if constexpr (!detail::accessories_are_outputs<Model>) {
+                for (int c = 0; c < detail::n_accessory<Model>; ++c) p.accessory[c] = e.accessory(c)[i];
+                for (int c = 0; c < detail::n_integer_accessory<Model>; ++c)
+                    p.integer_accessory[c] = e.integer_accessory(c)[i];
+            }
+            if constexpr ((detail::n_shared<Model>) > 0) p.shared = &e.shared(0);
+            if constexpr ((detail::n_shared_integer<Model>) > 0) p.shared_integer = &e.shared_integer(0);
+            vec<R, detail::n_state<Model>> state;
+            for (int c = 0; c < detail::n_state<Model>; ++c) state[c] = e.state(c)[i];
+            const host::algebraic_equations equations = host::equations_at<Model>(e.t_begin_of(i), state, p, part, y);
             require(equations.solve(change), "at the initial values of instance ", i, ' ', host::higher_index);
             done = true;
             for (int c = 0; c < detail::n_state<Model>; ++c) {

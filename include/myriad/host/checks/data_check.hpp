@@ -34,8 +34,6 @@ struct phases_left {
 /// phase before t_end.
 template <class R>
 phases_left find_phases_left(const ensemble_data<R>& e, const options& o, std::int64_t count, bool endless);
-extern template phases_left find_phases_left(const ensemble_data<double>&, const options&, std::int64_t, bool);
-extern template phases_left find_phases_left(const ensemble_data<float>&, const options&, std::int64_t, bool);
 
 /// Checks the first `count` instances: throws `error`, naming the count and the first instance, or marks the instances
 /// concerned, as the options say. `endless`: something can end a phase before t_end.
@@ -69,26 +67,18 @@ extern template class data_check<float>;
 /// samples must be finite. NaN domains, or with `mark` non-finite ones, are left to the check of the inputs.
 template <class R>
 void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_t count);
-extern template void check_sample_times(const ensemble_data<double>&, const options&, std::int64_t);
-extern template void check_sample_times(const ensemble_data<float>&, const options&, std::int64_t);
 
 /// How many of the first `count` instances ended in earlier calls and were given new states or parameters since.
 template <class R>
 std::int64_t count_given_anew(const ensemble_data<R>& e, std::int64_t count);
-extern template std::int64_t count_given_anew(const ensemble_data<double>&, std::int64_t);
-extern template std::int64_t count_given_anew(const ensemble_data<float>&, std::int64_t);
 
 /// New values for an instance that takes no further part would be ignored: throws `error`, unless the options say to
 /// skip such instances.
 template <class R>
 void check_ended(const ensemble_data<R>& e, const options& o, std::int64_t count);
-extern template void check_ended(const ensemble_data<double>&, const options&, std::int64_t);
-extern template void check_ended(const ensemble_data<float>&, const options&, std::int64_t);
 
 /// Whether tolerances per instance are given to a method that has none: throws `error`.
 template <class R>
 void check_scales(const ensemble_data<R>& e, bool method_scales);
-extern template void check_scales(const ensemble_data<double>&, bool);
-extern template void check_scales(const ensemble_data<float>&, bool);
 
 }  // namespace myriad::host::inline MYRIAD_ABI

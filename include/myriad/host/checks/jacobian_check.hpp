@@ -9,8 +9,8 @@
 #include <limits>
 #include <memory>
 
+#include "myriad/host/checks/instance_inputs.hpp"
 #include "myriad/host/core/error.hpp"
-#include "myriad/host/ensemble/inputs_of.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/jacobian.hpp"
 
@@ -20,14 +20,15 @@ namespace myriad::host::inline MYRIAD_ABI {
 /// relative to its row: cancellation may cost the other half, and a wrong formula is wrong by more. Checks the initial
 /// states of a thousand or so instances. Not for models with `initialise`, before which `rhs` cannot be called.
 template <class Model, class R>
-void check_jacobian(ensemble<Model, R>& e, std::int64_t count) {
+void check_jacobian(const argument_head<R>& a, std::int64_t count) {
     if constexpr (gives_jacobian<Model> && !has_initialise<Model>) {
         constexpr int n = n_state<Model>;
-        for_sampled_instances(e, count, [&](std::int64_t i) {
-            const auto p = inputs_of(e, i);
-            vec<R, n> y;
-            for (int c = 0; c < n; ++c) y[c] = e.state(c)[i];
-            const R t = e.t_begin_of(i);
+        const std::int64_t stride = std::max<std::int64_t>(count / 1024, 1);
+        for (std::int64_t i = 0; i < count; i += stride) {
+            if (a.ended[i] != 0) continue;
+            const auto p = detail::inputs_of<Model>(a, i);
+            const auto y = detail::state_of<Model>(a, i);
+            const R t = detail::begin_of(a, i);
             matrix<R, n> own, dual;
             detail::evaluate_jacobian<Model>(t, y, p, own);
             detail::dual_jacobian<Model>(t, y, p, dual);
@@ -43,14 +44,14 @@ void check_jacobian(ensemble<Model, R>& e, std::int64_t count) {
                             ": mend the formula (df_i/dy_j belongs in row i, column j), or leave out jacobian");
                 }
             }
-        });
+        }
     }
 }
 
 /// Throws `error` if a derivative of `rhs` that the model's `jacobian_pattern` leaves out is not zero. Looks at some
 /// initial states and, as derivatives may vanish there, at states beside them. Not for models with `initialise`.
 template <class Model, class R>
-void check_jacobian_pattern(ensemble<Model, R>& e, std::int64_t count) {
+void check_jacobian_pattern(const argument_head<R>& a, std::int64_t count) {
     if constexpr (has_jacobian_pattern<Model> && !has_initialise<Model>) {
         constexpr int n = n_state<Model>;
         const std::int64_t stride = std::max<std::int64_t>(count / 8, 1);
@@ -59,15 +60,13 @@ void check_jacobian_pattern(ensemble<Model, R>& e, std::int64_t count) {
         bool declared[n][n]{};
         for (const jacobian_entry& entry : Model::jacobian_pattern) declared[entry.row][entry.column] = true;
         for (std::int64_t i = 0; i < count; i += stride) {
-            if (e.ended(i)) continue;
-            const auto p = inputs_of(e, i);
+            if (a.ended[i] != 0) continue;
+            const auto p = detail::inputs_of<Model>(a, i);
             for (const bool beside : {false, true}) {
-                vec<R, n> y;
-                for (int c = 0; c < n; ++c) {
-                    y[c] = e.state(c)[i];
+                auto y = detail::state_of<Model>(a, i);
+                for (int c = 0; c < n; ++c)
                     if (beside) y[c] += (std::abs(y[c]) + 1) * static_cast<R>(c + 1) / static_cast<R>(4 * n);
-                }
-                detail::dual_jacobian<Model>(e.t_begin_of(i), y, p, dual);
+                detail::dual_jacobian<Model>(detail::begin_of(a, i), y, p, dual);
                 for (int row = 0; row < n; ++row) {
                     for (int j = 0; j < n; ++j) {
                         require(declared[row][j] || dual[row][j] == 0 || !std::isfinite(dual[row][j]),

@@ -8,7 +8,6 @@
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/kernel/core/abi.hpp"
-#include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 
@@ -25,8 +24,9 @@ public:
     explicit chunk_plan(std::int64_t size) : size_(size), largest_(size), smallest_(size) {}
     /// As the options say, or enough chunks to overlap most of the transfers, each large enough to keep the GPU and the
     /// bus busy.
-    template <class Arguments>
-    chunk_plan(const options& o, Arguments& arguments, const cuda::any_engine& worker) : chunk_plan(arguments.size) {
+    template <class R>
+    chunk_plan(const options& o, any_arguments<R> arguments, const cuda::any_engine& worker)
+        : chunk_plan(arguments.size) {
         std::int64_t copied = 0;
         const auto add = [&](auto* array, std::int64_t components, array_access access, array_kind) {
             const auto all = components * static_cast<std::int64_t>(sizeof(*array));

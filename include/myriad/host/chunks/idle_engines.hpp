@@ -3,9 +3,13 @@
 // code only.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <utility>
 
 #include "myriad/host/backend/backend.hpp"
+#include "myriad/host/backend/device.hpp"
+#include "myriad/host/options/options.hpp"
 #include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
@@ -13,10 +17,8 @@ namespace myriad::host::inline MYRIAD_ABI {
 /// Whether this process is the first to use GPUs, and not a fork of one that has: a fork would wait for driver threads
 /// and engines that it does not have.
 bool may_use_gpus();
-
-/// The function that creates an engine for a model and a real type: one for each method.
-template <class Model, class R>
-using engine_maker = std::unique_ptr<cuda::engine<Model, R>> (*)(const cuda::engine_options&);
+/// Throws `error` unless that is so.
+void check_may_use_gpus();
 
 /// What tells engines for different models, methods and real types apart: the address of their maker.
 using engine_key = const void*;
@@ -25,5 +27,25 @@ using engine_key = const void*;
 std::unique_ptr<cuda::any_engine> take_idle_engine(engine_key kind, const cuda::engine_options& how);
 /// Only for engines that have finished without an error. For each method as many are kept as a call may use.
 void give_idle_engine(engine_key kind, const cuda::engine_options& how, std::unique_ptr<cuda::any_engine> e);
+
+/// How options say that engines are to work.
+inline cuda::engine_options engine_options_for(const device& where, const options& o) {
+    return {where.number(), o.block_size, o.shared_placement, o.schedule};
+}
+
+/// Engines for a model's kernels, idle or new ones.
+template <class R>
+struct engine_source {
+    engine_key kind = nullptr;
+    std::function<std::unique_ptr<cuda::engine<R>>(const cuda::engine_options&)> make = {};
+    cuda::engine_options how = {};
+
+    std::unique_ptr<cuda::engine<R>> take() const {
+        auto idle = take_idle_engine(kind, how);  // all engines of that kind are the maker's
+        return idle != nullptr ? std::unique_ptr<cuda::engine<R>>(static_cast<cuda::engine<R>*>(idle.release()))
+                               : make(how);
+    }
+    void give(std::unique_ptr<cuda::engine<R>> e) const { give_idle_engine(kind, how, std::move(e)); }
+};
 
 }  // namespace myriad::host::inline MYRIAD_ABI

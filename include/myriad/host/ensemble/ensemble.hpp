@@ -35,40 +35,8 @@ struct ensemble_access {
         return e.data_;
     }
     template <class E>
-    static auto counters(const E& e) {
-        return e.data_.counters();
-    }
-    template <class E>
-    static bool untouched(const E& e) {
-        return e.data_.untouched;
-    }
-    template <class E>
-    static void touch(E& e) {
-        e.data_.untouched = false;
-    }
-    template <class E>
-    static void expect_phases(E& e, std::int64_t phases) {
-        e.data_.expect_phases(phases);
-    }
-    template <class E>
-    static void mark_invalid(E& e, std::int64_t i) {
-        e.data_.mark_invalid(i);
-    }
-    template <class E, class... More>
-    static void add_memory_of_call(memory_need& need, const More&... more) {
-        E::add_memory_of_call(need, more...);
-    }
-    template <class E, class Arguments, class... More>
-    static void describe(E& e, Arguments& a, More... more) {
-        e.describe(a, more...);
-    }
-    template <class E, class Arguments>
-    static void describe_domain(E& e, Arguments& a) {
-        e.describe_domain(a);
-    }
-    template <class E, class Arguments>
-    static void describe_samples(E& e, Arguments& a, const sample_options& o) {
-        e.describe_samples(a, o);
+    static auto& samples(E& e) {
+        return e.samples_.data_;
     }
 };
 
@@ -259,44 +227,6 @@ public:
 private:
     // Behind host::ensemble_access.
     friend host::ensemble_access;
-
-    /// Adds the memory that a call allocates for `size` instances, except what `there`, if not null, has already.
-    static void add_memory_of_call(host::memory_need& need, std::int64_t size, const ensemble* there, const options& o,
-                                   host::step_sizes steps, bool scales) {
-        host::ensemble_data<R>::add_memory_of_call(need, host::shape_of<Model>, size, there ? &there->data_ : nullptr,
-                                                   o, steps, scales);
-        if (!o.samples.empty() && (there == nullptr || there->samples_.empty()))
-            need.add("samples", host::sample_data<R>::bytes_for(o.samples, size));
-    }
-
-    /// Fills in the pointers of a kernel's arguments.
-    void describe(detail::kernel_arguments<Model, R>& a, counting count,
-                  host::step_sizes steps = host::step_sizes::kept) {
-        a.size = data_.size;
-        a.first_index = data_.first_index;
-        data_.describe(a, count, steps);
-        a.common_t_begin = data_.common_begin;
-        a.common_t_end = data_.common_end;
-        a.shared = {data_.shared.data(), data_.shared_integer.data()};
-    }
-
-    /// The part of them that may change while the ensemble is in use.
-    void describe_domain(detail::kernel_arguments<Model, R>& a) {
-        data_.describe_domain(a);
-        a.common_t_begin = data_.common_begin;
-        a.common_t_end = data_.common_end;
-    }
-
-    /// Allocates memory for the requested samples, or checks that they can be appended to the existing ones.
-    void describe_samples(detail::sample_arguments<Model, R>& a, const sample_options& o) {
-        if (o.empty()) return;
-        if (samples_.empty()) samples_ = trajectory_samples<Model, R>(o, data_.size);
-        if (pinned()) samples_.pin(data_.pinned_for);
-        require(samples_.fits(o), host::named_option("samples"), " has other states or another capacity (", o.capacity,
-                ") than the existing samples (", samples_.capacity(),
-                "): use the same in all calls, or a new ensemble");
-        samples_.describe(a);
-    }
 
     /// A part of this ensemble. Throws `error` if the ensemble was moved from.
     template <class Part>

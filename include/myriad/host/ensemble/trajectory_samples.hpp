@@ -2,7 +2,6 @@
 // Host storage of dense output: samples of chosen states along every trajectory, with a fixed capacity per instance.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
 #include <Eigen/Core>
@@ -10,10 +9,14 @@
 #include "myriad/host/ensemble/sample_data.hpp"
 #include "myriad/host/model/numbering.hpp"
 #include "myriad/host/options/options.hpp"
+#include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/concepts.hpp"
-#include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad {
+
+namespace host::inline MYRIAD_ABI {
+struct ensemble_access;
+}
 
 /// Samples of all instances, kept over phases and calls until `ensemble::restart`. The accessors return maps with one
 /// row per instance and one column per sample; columns from `stored()(i)` on are NaN in row i. Maps into a temporary
@@ -49,23 +52,13 @@ public:
 
     /// Whether no samples were asked for.
     bool empty() const { return data_.capacity == 0; }
-    /// Whether samples with these options can be appended to the existing ones.
-    bool fits(const sample_options& o) const { return o.capacity == data_.capacity && o.states == data_.chosen; }
     /// Forgets all samples, as `ensemble::restart` does.
     void clear() { data_.clear(); }
     /// Pins their memory, for copies from GPUs; used by the library.
     void pin(int device) { data_.pin(device); }
-    /// Passes their memory to a kernel; used by the library.
-    void describe(detail::sample_arguments<Model, R>& a) {
-        a.time = data_.time.data();
-        a.values = data_.values.data();
-        a.stored = data_.stored.data();
-        a.capacity = static_cast<std::int32_t>(data_.capacity);
-        for (std::size_t c = 0; c < static_cast<std::size_t>(detail::n_state<Model>); ++c)
-            a.column[c] = c < data_.column.size() ? data_.column[c] : std::int16_t{-1};
-    }
 
 private:
+    friend host::ensemble_access;
     host::sample_data<R> data_;
 };
 

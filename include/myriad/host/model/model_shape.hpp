@@ -5,13 +5,12 @@
 #include "myriad/host/model/numbering.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/model/model_facts.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 
 /// How many components of each kind a model has, and how messages name them.
-struct model_shape {
-    int n_state, n_parameter, n_shared, n_shared_integer, n_accessory, n_integer_accessory, n_event;
-    bool writes_parameters, writes_time_domain;
+struct model_shape : model_numbers {
     component_label (*state)(const model_shape&, int);
     component_label (*parameter)(const model_shape&, int);
     component_label (*shared)(const model_shape&, int);
@@ -23,18 +22,10 @@ component_label label_of(const model_shape&, int c) {
 }
 template <class Model>
 inline constexpr model_shape shape_of{
-    .n_state = detail::n_state<Model>,
-    .n_parameter = detail::n_parameter<Model>,
-    .n_shared = detail::n_shared<Model>,
-    .n_shared_integer = detail::n_shared_integer<Model>,
-    .n_accessory = detail::n_accessory<Model>,
-    .n_integer_accessory = detail::n_integer_accessory<Model>,
-    .n_event = detail::n_event<Model>,
-    .writes_parameters = detail::writes_parameters<Model>,
-    .writes_time_domain = detail::writes_time_domain<Model>,
-    .state = &label_of<state_numbering<Model>>,
-    .parameter = &label_of<parameter_numbering<Model>>,
-    .shared = &label_of<shared_numbering<Model>>,
+    numbers_of<Model>,
+    &label_of<state_numbering<Model>>,
+    &label_of<parameter_numbering<Model>>,
+    &label_of<shared_numbering<Model>>,
 };
 
 }  // namespace myriad::host::inline MYRIAD_ABI

@@ -4,14 +4,12 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <string_view>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/model/numbering.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/kernel/core/abi.hpp"
-#include "myriad/kernel/methods/dense.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 
 namespace myriad {
@@ -58,20 +56,6 @@ struct option_limits {
     /// Throws `error`. One function for all models and methods, to save compiling it for each.
     void check(const options& o) const;
 };
-
-/// Checks everything about the options that does not need the ensemble's data; throws `error`.
-template <class Model, class Method, class R>
-void check_options(const options& o) {
-    require(detail::computes_as_written(), "this file of the program ", detail::not_as_written);
-    constexpr option_limits limits{components_of<Model>,
-                                   detail::n_event<Model>,
-                                   detail::writes_time_domain<Model>,
-                                   Method::embedded_order > 0,
-                                   detail::samples_trajectory<Method>,
-                                   std::numeric_limits<R>::digits,
-                                   [](double value) { return static_cast<double>(static_cast<R>(value)); }};
-    limits.check(o);
-}
 
 }  // namespace host::inline MYRIAD_ABI
 }  // namespace myriad

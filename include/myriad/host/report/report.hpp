@@ -11,11 +11,10 @@
 #include <Eigen/Core>
 
 #include "myriad/host/ensemble/component_array.hpp"
-#include "myriad/host/model/model_shape.hpp"
+#include "myriad/host/model/numbering.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report_of.hpp"
 #include "myriad/kernel/model/concepts.hpp"
-#include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad {
 
@@ -29,10 +28,8 @@ public:
     template <class T>
     using map = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic>>;
 
-    /// Made by `solve` and `solver`, for `size` instances and `phases` phases.
+    /// Made by `solve` and `solver`.
     phase_records() = default;
-    phase_records(const record_options& o, std::int64_t phases, std::int64_t size)
-        : data_(host::shape_of<Model>, o, phases, size) {}
 
     /// Number of recorded phases.
     std::int64_t phases() const { return data_.phases; }
@@ -68,21 +65,8 @@ public:
     /// Pins their memory, for copies from GPUs.
     void pin(int device) { data_.pin(device); }
 
-    /// Passes their memory to a kernel; used by the library.
-    void describe(detail::record_arguments<Model, R>& a) {
-        a.values = data_.values.data();
-        a.integers = data_.integers.data();
-        a.from_phase = static_cast<std::int32_t>(data_.from_phase);
-        a.phases = static_cast<std::int32_t>(std::int64_t{data_.phases});
-        a.time_column = data_.time;
-        const auto copy = [](const std::vector<std::int16_t>& columns, std::int16_t* to, int count) {
-            for (int c = 0; c < count; ++c)
-                to[c] = columns.empty() ? std::int16_t{-1} : columns[static_cast<std::size_t>(c)];
-        };
-        copy(data_.state, a.state_column, detail::n_state<Model>);
-        copy(data_.accessory, a.accessory_column, detail::n_accessory<Model>);
-        copy(data_.integer_accessory, a.integer_accessory_column, detail::n_integer_accessory<Model>);
-    }
+    /// Their memory; used by the library.
+    host::record_data<R>& data() { return data_; }
 
 private:
     template <class T>

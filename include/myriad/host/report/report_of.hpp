@@ -145,18 +145,5 @@ void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o,
 template <class R>
 void note_raised_tolerances(report_of<R>& r, const options& o);
 
-extern template work_count counted_work(const ensemble_data<double>&, std::int64_t, std::int64_t);
-extern template void add_summary(const ensemble_data<double>&, report_of<double>&, std::int64_t, std::int64_t);
-extern template void summarise(const ensemble_data<double>&, report_of<double>&, std::int64_t);
-extern template void note_ended(report_of<double>&, const ensemble_data<double>&, std::int64_t);
-extern template void note_failures(report_of<double>&, const ensemble_data<double>&, const options&, std::int64_t);
-extern template void note_raised_tolerances(report_of<double>&, const options&);
-extern template work_count counted_work(const ensemble_data<float>&, std::int64_t, std::int64_t);
-extern template void add_summary(const ensemble_data<float>&, report_of<float>&, std::int64_t, std::int64_t);
-extern template void summarise(const ensemble_data<float>&, report_of<float>&, std::int64_t);
-extern template void note_ended(report_of<float>&, const ensemble_data<float>&, std::int64_t);
-extern template void note_failures(report_of<float>&, const ensemble_data<float>&, const options&, std::int64_t);
-extern template void note_raised_tolerances(report_of<float>&, const options&);
-
 }  // namespace host::inline MYRIAD_ABI
 }  // namespace myriad

@@ -2,60 +2,57 @@
 // The one-shot call: checks everything once, passes the ensemble to the device's backend, and reports.
 #pragma once
 
-#include <utility>
-
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"
-#include "myriad/host/checks/input_check.hpp"
-#include "myriad/host/chunks/chunk_plan.hpp"
-#include "myriad/host/chunks/chunked_solve.hpp"
-#include "myriad/host/chunks/idle_engines.hpp"
+#include "myriad/host/checks/consistency.hpp"
+#include "myriad/host/checks/jacobian_check.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/option_checks.hpp"
 #include "myriad/host/options/options.hpp"
-#include "myriad/host/report/notes.hpp"
+#include "myriad/host/report/functions_of.hpp"
+#include "myriad/host/report/matrix_note.hpp"
 #include "myriad/host/report/report.hpp"
-#include "myriad/host/solve/integrate_all.hpp"
-#include "myriad/host/solve/prepared_arguments.hpp"
+#include "myriad/host/solve/solve_call.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
 #include "myriad/kernel/core/abi.hpp"
-#include "myriad/kernel/model/hooks.hpp"
+#include "myriad/kernel/model/facts_of.hpp"
 
 namespace myriad {
 namespace host::inline MYRIAD_ABI {
 
-/// What integrates a model with one method on one device.
-template <class Model, class R>
-struct device_kernel {
-    cpu_kernel<Model, R> cpu;
-    engine_maker<Model, R> make_engine = nullptr;
-};
-
-/// The kernel of the model and method for that device. Throws `error` if the program has none.
+/// The checks of a model's own Jacobian and of its pattern.
 template <class Model, class Method, class R>
-device_kernel<Model, R> require_kernel(const device& where) {
-    static_assert(detail::check_linkage<Model, Method>());
-    const bool on_cpu = where.which() == device::kind::cpu;
-    device_kernel<Model, R> found;
-    if (on_cpu) {
-        found.cpu = choose_cpu_kernel<Model, Method, R>();
-    } else {
-        found.make_engine = if_defined(&cuda::make_engine<Model, Method, R>);
-    }
-    check_kernel(where, on_cpu ? found.cpu.run != nullptr : found.make_engine != nullptr);
-    return found;
+void check_jacobians(const argument_head<R>& a, std::int64_t count) {
+    // As the concept of Rosenbrock methods, whose header has kernels.
+    if constexpr (requires { Method::tableau().coupling; }) check_jacobian_pattern<Model>(a, count);
+#if !defined(NDEBUG)
+    check_jacobian<Model>(a, count);
+#endif
 }
 
-/// The part of `solve` that does not depend on the method: a program compiles it once for each model.
-template <class Model, class R>
-void integrate_all(const device& where, const options& o, const device_kernel<Model, R>& kernel,
-                   ensemble<Model, R>& instances, detail::kernel_arguments<Model, R>& arguments,
-                   input_check<Model, R>& check, report<Model, R>& result) {
-    const any_run on_cpu = forget_model(kernel.cpu, arguments);
-    const cuda::engine_options how{where.number(), o.block_size, o.shared_placement, o.schedule};
-    chunks_of on_gpu(reinterpret_cast<engine_key>(kernel.make_engine), kernel.make_engine, how, arguments);
-    integrate_all<R>(where, o, &on_cpu, &on_gpu, ensemble_access::data(instances), check, result);
+/// A model and a method as calls see them, without a kernel. Throws `error` if this file was compiled with flags that
+/// change its arithmetic.
+template <class Model, class Method, class R>
+called_model<R> called() {
+    static_assert(detail::check_linkage<Model, Method>());
+    require(detail::computes_as_written(), "this file of the program ", detail::not_as_written);
+    called_model<R> made{&shape_of<Model>, &components_of<Model>, detail::facts_of<Model, Method, R>,
+                         detail::functions_of<Model, Method, R>()};
+    made.functions.check_jacobian = &check_jacobians<Model, Method, R>;
+    if constexpr (detail::has_mass_matrix<Model>) made.functions.check_consistency = &check_consistency<Model, R>;
+    return made;
+}
+/// The same with the kernel for that device.
+template <class Model, class Method, class R>
+called_model<R> called_for(const device& where, const options& o) {
+    called_model<R> made = called<Model, Method, R>();
+    if (where.which() == device::kind::cpu) {
+        made.on_cpu = choose_cpu_kernel<Model, Method, R>();
+    } else if (const auto make = if_defined(&cuda::make_engine<Model, Method, R>)) {
+        made.on_gpu = {reinterpret_cast<engine_key>(make), make, engine_options_for(where, o)};
+    }
+    return made;
 }
 
 }  // namespace host::inline MYRIAD_ABI
@@ -71,27 +68,13 @@ void integrate_all(const device& where, const options& o, const device_kernel<Mo
 template <class Method, class Model, class R>
 report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
     const detail::default_arithmetic here;
-    auto& data = host::ensemble_access::data(instances);
-    const auto claim = data.take();
-    host::check_options<Model, Method, R>(options);
-    const auto kernel = host::require_kernel<Model, Method, R>(where);
-    host::check_uses<Method>(instances, options, instances.size());
-    const host::phases_left left = host::find_phases_left(instances, options, instances.size());
-    left.require_for(0, options.phases);
-    // On a GPU the data of large ensembles are checked chunk by chunk, while the GPU works on others.
-    host::input_check<Model, R> check(instances, options, instances.size());
-    if (where.which() == device::kind::cpu || instances.size() <= host::worth_chunks) check.run();
-    data.expect_phases(options.phases);
-
+    const auto model = host::called_for<Model, Method, R>(where, options);
     report<Model, R> result;
-    host::prepared_arguments<Model, R> prepared(instances, options, host::traits_of<Method>);
-    host::integrate_all(where, options, kernel, instances, prepared.get(), check, result);
-    result.records = std::move(prepared.records());
-    if (!left.note.empty()) result.notes.push_back(left.note);
-    host::note_tolerances<Method>(result, options);
+    host::solve_call<R> call(where, options, model, host::ensemble_access::data(instances),
+                             host::ensemble_access::samples(instances), result.records.data());
+    call.integrate(result);
+    call.add_notes(result);
     host::note_matrix<Method>(result);
-    host::note_stiffness<Method>(result, instances, options);
-    host::note_exponents<Method>(result, instances, options);
     return result;
 }
 

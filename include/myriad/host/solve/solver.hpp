@@ -17,7 +17,7 @@
 #include "myriad/host/options/option_checks.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report.hpp"
-#include "myriad/host/solve/prepared_arguments.hpp"
+#include "myriad/host/solve/prepared_call.hpp"
 #include "myriad/host/solve/solve.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
 
@@ -49,15 +49,15 @@ public:
     /// Allocates all memory, on the host and on the device. Throws `error` if there is too little, if an option is
     /// invalid, or if the device or a kernel for it does not exist.
     solver(const device& where, std::int64_t capacity, options o = {})
-        : where_(where), options_(checked(std::move(o), capacity)), instances_(capacity),
-          prepared_(instances_, options_, host::traits_of<Method>) {
-        host::require_kernel<Model, Method, R>(where);
+        : where_(where), options_(std::move(o)), model_(host::called_for<Model, Method, R>(where, options_)),
+          instances_(checked(capacity)),
+          prepared_(data(), host::ensemble_access::samples(instances_), records_.data(), options_, model_.facts) {
         if (where.which() == device::kind::cpu) return;
-        engine_ = cuda::make_engine<Model, Method, R>(
-            {where.number(), options_.block_size, options_.shared_placement, options_.schedule});
+        engine_ = model_.on_gpu.make(model_.on_gpu.how);
         instances_.pin(where);
         prepared_.pin(where.number());
-        engine_->reserve(prepared_.get(), capacity);
+        records_.pin(where.number());
+        engine_->reserve(prepared_.arguments, capacity);
     }
     solver(const solver&) = delete;
     solver& operator=(const solver&) = delete;
@@ -75,7 +75,7 @@ public:
         finish();
         require_results("instances");
         uploaded_ = false;
-        if (results_ == held::on_host && !remembered_) host::ensemble_access::data(instances_).remember_ended();
+        if (results_ == held::on_host && !remembered_) data().remember_ended();
         remembered_ = remembered_ || results_ == held::on_host;
         return instances_;
     }
@@ -107,22 +107,20 @@ public:
                         "restart() and set the instances again, or download() all of them first");
         }
         uploaded_ = downloadable_ = false;
-        host::check_uses<Method>(instances_, options_, wanted);
-        phases_left_ = host::find_phases_left(instances_, options_, wanted);
+        phases_left_ = model_.check_uses(data(), options_, wanted);
         phases_asked_ = 0;
-        host::input_check<Model, R> data(instances_, options_, wanted);
-        host::ensemble_access::describe_domain(instances_, prepared_.get());
+        host::data_check<R> values = model_.values_of(data(), options_, wanted);
+        prepared_.describe_domain();
         const auto copy = [&] {
             if (engine_)
-                engine_->upload(prepared_.get(), 0, wanted,
-                                host::ensemble_access::untouched(instances_) ? cuda::past::none : cuda::past::kept);
+                engine_->upload(prepared_.arguments, 0, wanted, data().untouched ? cuda::past::none : cuda::past::kept);
         };
         if (options_.invalid_instances == invalid_instances::mark) {  // which changes what is copied
-            data.run();
+            values.run();
             copy();
         } else {
             copy();
-            data.run();  // while it is copied
+            values.run();  // while it is copied
         }
         count_ = wanted;
         uploaded_ = downloadable_ = true;
@@ -130,7 +128,7 @@ public:
         results_ = held::on_host;
         report_ = {};
         has_records_ = false;
-        if (wanted < capacity()) prepared_.records().clear();  // a GPU writes only those of uploaded ones
+        if (wanted < capacity()) records_.clear();  // a GPU writes only those of uploaded ones
         work_before_ = counted_work();
     }
 
@@ -148,27 +146,27 @@ public:
         if (phases == 0) phases = options_.phases;
         phases_left_.require_for(phases_asked_, phases);
         require_memory();
-        auto& arguments = prepared_.get();
+        auto& arguments = prepared_.arguments;
         arguments.phases = static_cast<std::int32_t>(phases);
-        host::ensemble_access::expect_phases(instances_, arguments.phases);
+        data().expect_phases(phases);
         phases_asked_ += phases;
         results_ = held::on_device;
         remembered_ = false;
-        host::ensemble_access::touch(instances_);
+        data().untouched = false;
         has_records_ = true;
         if (engine_) {
             engine_->integrate(arguments);
             integrated_ = true;
             return;
         }
-        prepared_.records().clear();
+        records_.clear();
         detail::run_options how;
         how.threads = where_.threads();
         how.schedule = options_.schedule;
         how.count = count_;
         const auto begin = std::chrono::steady_clock::now();
         uploaded_ = false;  // if a function of the model throws
-        const detail::run_statistics used = openmp::run<Model, Method, R>(arguments, how);
+        const detail::run_statistics used = host::run_kernel(model_.on_cpu, arguments, how);
         uploaded_ = true;
         report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         report_.lane_turns += used.lane_turns;
@@ -182,7 +180,7 @@ public:
         const auto claim = take();
         require_memory();
         require(downloadable_, "download has no instances to copy: call upload first");
-        if (engine_) engine_->download(prepared_.get());
+        if (engine_) engine_->download(prepared_.arguments);
         results_ = held::on_host;
     }
     /// The same, but only the named states and accessories. The values of the others on the host are unspecified: the
@@ -195,7 +193,7 @@ public:
         named.check("components.states", chosen.states, named.state);
         named.check("components.accessories", chosen.accessories, named.accessory);
         named.check("components.integer_accessories", chosen.integer_accessories, named.integer_accessory);
-        if (engine_) engine_->download(prepared_.get(), &is_chosen, const_cast<components*>(&chosen));
+        if (engine_) engine_->download(prepared_.arguments, &is_chosen, const_cast<components*>(&chosen));
         if (results_ == held::on_device) results_ = held::partly_on_host;
     }
 
@@ -229,11 +227,11 @@ public:
         require_results("report");
         require_memory();
         host::set_work(report_, work_before_, counted_work());
-        host::summarise(host::ensemble_access::data(instances_), report_, count_);
+        host::summarise(data(), report_, count_);
         report_.notes.clear();
-        host::note_ended(report_, host::ensemble_access::data(instances_), count_);
-        host::note_failures(report_, host::ensemble_access::data(instances_), options_, count_);
-        host::note_tolerances<Method>(report_, options_);
+        host::note_ended(report_, data(), count_);
+        host::note_failures(report_, data(), options_, count_);
+        if (model_.facts.adaptive()) host::note_raised_tolerances<R>(report_, options_);
         host::note_matrix<Method>(report_);
         report_.device = where_.name();
         if (engine_) {
@@ -249,8 +247,8 @@ public:
         const auto claim = take();
         finish();
         require_results("records");
-        if (!has_records_) prepared_.records().clear();
-        return prepared_.records();
+        if (!has_records_) records_.clear();
+        return records_;
     }
 
 private:
@@ -277,7 +275,11 @@ private:
                 " needs the results of integrate on the host: call download first (download({}) copies no component)");
     }
 
-    static options checked(options o, std::int64_t capacity) {
+    host::ensemble_data<R>& data() { return host::ensemble_access::data(instances_); }
+
+    /// The capacity, if the options fit it.
+    std::int64_t checked(std::int64_t capacity) const {
+        const options& o = options_;
         require(capacity > 0, "the solver's capacity is ", capacity,
                 " (must be positive): give the number of instances it holds");
         require(!o.progress,
@@ -286,16 +288,16 @@ private:
         require(o.time_limit == 0, host::named_option("time_limit"),
                 " is given, but a solver is asynchronous, and nobody would watch the clock: leave it out, and "
                 "bound the steps of an instance by max_steps");
-        host::check_options<Model, Method, R>(o);
-        host::memory_need need = host::ensemble_data<R>::memory_of(host::shape_of<Model>, capacity);
-        host::add_memory_of_call<Model, R>(need, capacity, nullptr, o, host::traits_of<Method>);
+        model_.check_options(o);
+        host::memory_need need = host::ensemble_data<R>::memory_of(*model_.shape, capacity);
+        host::add_memory_of_call<R>(need, *model_.shape, capacity, nullptr, false, o, model_.facts);
         need.check(message("a solver for ", capacity, " instances"),
                    "give it a smaller capacity, and integrate part by part");
-        return o;
+        model_.check_kernel(where_);
+        return capacity;
     }
-    host::work_count counted_work() const {
-        return options_.counting == counting::on ? host::counted_work(host::ensemble_access::data(instances_), count_)
-                                                 : host::work_count{};
+    host::work_count counted_work() {
+        return options_.counting == counting::on ? host::counted_work(data(), count_) : host::work_count{};
     }
     static bool is_chosen(void* context, detail::array_kind kind, std::int64_t component) {
         const auto& chosen = *static_cast<const components*>(context);
@@ -316,8 +318,10 @@ private:
 
     device where_;
     options options_;
+    host::called_model<R> model_;
     ensemble<Model, R> instances_;
-    host::prepared_arguments<Model, R> prepared_;
+    phase_records<Model, R> records_;
+    host::prepared_call<R> prepared_;
     std::uint64_t identity_ = host::ensemble_access::data(instances_).identity;
     host::occupancy occupancy_;
     std::int64_t count_ = 0;
@@ -331,7 +335,7 @@ private:
     bool has_records_ = true;  // they belong to the instances uploaded last
     host::work_count work_before_{};
     myriad::report<Model, R> report_;
-    std::unique_ptr<cuda::engine<Model, R>> engine_;  // destroyed first: it uses the memory above
+    std::unique_ptr<cuda::engine<R>> engine_;  // destroyed first: it uses the memory above
 };
 
 }  // namespace myriad

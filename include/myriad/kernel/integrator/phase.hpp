@@ -266,14 +266,15 @@ private:
         if (r.time_column >= 0) to(r.values, r.time_column) = get_lane(s.data.t, i);
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c)
-            if (r.state_column[c] >= 0) to(r.values, r.state_column[c]) = get_lane(s.data.y[c], i);
+            if (args.state_column[c] >= 0) to(r.values, args.state_column[c]) = get_lane(s.data.y[c], i);
         MYRIAD_UNROLL
         for (int c = 0; c < n_accessory<Model>; ++c)
-            if (r.accessory_column[c] >= 0) to(r.values, r.accessory_column[c]) = get_lane(s.data.accessory[c], i);
+            if (args.accessory_column[c] >= 0)
+                to(r.values, args.accessory_column[c]) = get_lane(s.data.accessory[c], i);
         MYRIAD_UNROLL
         for (int c = 0; c < n_integer_accessory<Model>; ++c)
-            if (r.integer_accessory_column[c] >= 0)
-                to(r.integers, r.integer_accessory_column[c]) =
+            if (args.integer_accessory_column[c] >= 0)
+                to(r.integers, args.integer_accessory_column[c]) =
                     static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
     }
 };

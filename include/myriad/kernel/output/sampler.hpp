@@ -157,8 +157,8 @@ private:
         args.sample.time[cell] = t;
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) {
-            if (args.sample.column[c] >= 0)
-                args.sample.values[args.sample.column[c] * (args.size * args.sample.capacity) + cell] = y[c];
+            if (args.sample_column[c] >= 0)
+                args.sample.values[args.sample_column[c] * (args.size * args.sample.capacity) + cell] = y[c];
         }
         ++stored;
     }

@@ -41,22 +41,20 @@ struct event_arguments {
 };
 
 /// Where the records of the phases go: component c of recorded phase r of instance i is at
-/// `values[(column[c] * phases + r) * size + i]`; a column of -1 is not recorded.
-template <class Model, class R>
+/// `values[(column * phases + r) * size + i]`, where the column is that of the component among `argument_arrays`; a
+/// column of -1 is not recorded.
+template <class R>
 struct record_arguments {
     R* values;
     std::int32_t* integers;
     std::int32_t from_phase;  // of this call
     std::int32_t phases;      // recorded phases
     std::int16_t time_column;
-    std::int16_t state_column[n_state<Model>];
-    std::int16_t accessory_column[at_least_one(n_accessory<Model>)];
-    std::int16_t integer_accessory_column[at_least_one(n_integer_accessory<Model>)];
 };
 
-/// Where samples go: sample k of instance i is at `time[k * size + i]` and, for state c, at
-/// `values[(column[c] * capacity + k) * size + i]`; a column of -1 is not sampled. Sampling is off if `stored` is null.
-template <class Model, class R>
+/// Where samples go: sample k of instance i is at `time[k * size + i]` and, for a state, at
+/// `values[(column * capacity + k) * size + i]`; a column of -1 is not sampled. Sampling is off if `stored` is null.
+template <class R>
 struct sample_arguments {
     R* time;
     R* values;
@@ -68,7 +66,6 @@ struct sample_arguments {
     std::int32_t capacity;
     std::int32_t from_phase;  // of this call
     R minimum_spacing;        // of samples by steps
-    std::int16_t column[n_state<Model>];
 };
 
 /// The parameters shared by all instances, wherever a backend keeps them.
@@ -84,9 +81,10 @@ struct instance_range {
     std::int64_t first_index;  // number of the first instance, for hooks that read it
 };
 
-/// The arguments of a kernel.
-template <class Model, class R>
-struct kernel_arguments : instance_range, instance_arrays<array_pointer, R> {
+/// The part of a kernel's arguments that is the same for all models. Its last member is aligned like itself, so that
+/// nothing is put into padding at its end.
+template <class R>
+struct argument_head : instance_range, instance_arrays<array_pointer, R> {
     shared_parameters<R> shared;
 
     // data of a schedule by cost, or null
@@ -105,15 +103,61 @@ struct kernel_arguments : instance_range, instance_arrays<array_pointer, R> {
     R first_change;  // if positive, the first step is chosen by the change of the state in it: initial_step.hpp
     R minimum_step, maximum_step;
     float growth_limit, shrink_limit;  // in the precision of step-size control in CUDA threads
-    R relative_tolerance[n_state<Model>];
-    R absolute_tolerance[n_state<Model>];
-    event_arguments<R> event[at_least_one(n_event<Model>)];
-    // The crossings that fire: bit j % 32 of word j / 32 for event j.
-    std::uint32_t rising[n_event<Model> / 32 + 1], falling[n_event<Model> / 32 + 1];
-    std::int32_t sub_samples;         // points of the interpolant looked at per step
-    std::int32_t accumulation_limit;  // actions of one event without its function leaving the tolerance
-    record_arguments<Model, R> record;
-    sample_arguments<Model, R> sample;
+    std::int32_t sub_samples;          // points of the interpolant looked at per step
+    std::int32_t accumulation_limit;   // actions of one event without its function leaving the tolerance
+    record_arguments<R> record;
+    sample_arguments<R> sample;
 };
+
+// The arrays behind the head, whose lengths depend on the model: type, name, and what they have one of. Wider types
+// come first, so that there is no padding between them. All that is known of them follows from this list. Bit j % 32 of
+// word j / 32 of `rising` and `falling` says whether crossings of event j fire.
+// clang-format off
+#define MYRIAD_ARGUMENT_ARRAYS(array)                                  \
+    array(R, relative_tolerance, n_state)                              \
+    array(R, absolute_tolerance, n_state)                              \
+    array(event_arguments<R>, event, n_event)                          \
+    array(std::uint32_t, rising, n_event / 32 + 1)                     \
+    array(std::uint32_t, falling, n_event / 32 + 1)                    \
+    array(std::int16_t, state_column, n_state)                         \
+    array(std::int16_t, accessory_column, n_accessory)                 \
+    array(std::int16_t, integer_accessory_column, n_integer_accessory) \
+    array(std::int16_t, sample_column, n_state)
+// clang-format on
+
+/// Where the arrays of a model with so many components are, in bytes from the first.
+template <class R>
+struct argument_offsets {
+    constexpr argument_offsets(int n_state, int n_accessory, int n_integer_accessory, int n_event) {
+#define MYRIAD_PLACE_ARRAY(type, name, count) \
+    name = end;                               \
+    end += static_cast<int>(sizeof(type)) * at_least_one(count);
+        MYRIAD_ARGUMENT_ARRAYS(MYRIAD_PLACE_ARRAY)
+#undef MYRIAD_PLACE_ARRAY
+        constexpr int unit = static_cast<int>(sizeof(R));
+        end = (end + unit - 1) / unit * unit;
+    }
+#define MYRIAD_DECLARE_OFFSET(type, name, count) int name = 0;
+    MYRIAD_ARGUMENT_ARRAYS(MYRIAD_DECLARE_OFFSET)
+#undef MYRIAD_DECLARE_OFFSET
+    int end = 0;
+};
+
+/// The arrays of a model's kernel.
+template <class Model, class R>
+struct argument_arrays {
+private:
+    static constexpr int n_state = detail::n_state<Model>, n_accessory = detail::n_accessory<Model>,
+                         n_integer_accessory = detail::n_integer_accessory<Model>, n_event = detail::n_event<Model>;
+
+public:
+#define MYRIAD_DECLARE_ARRAY(type, name, count) type name[at_least_one(count)];
+    MYRIAD_ARGUMENT_ARRAYS(MYRIAD_DECLARE_ARRAY)
+#undef MYRIAD_DECLARE_ARRAY
+};
+
+/// The arguments of a kernel.
+template <class Model, class R>
+struct kernel_arguments : argument_head<R>, argument_arrays<Model, R> {};
 
 }  // namespace myriad::detail

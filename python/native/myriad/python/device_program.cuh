@@ -5,67 +5,18 @@
 
 #include "myriad/cuda/cost_order_kernels.cuh"
 #include "myriad/cuda/kernel.cuh"
-#include "myriad/cuda/launch_traits.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/methods.hpp"
 #include "myriad/model.hpp"
-#include "myriad/python/device_layout.hpp"
-#include "myriad/python/facts_of.hpp"
+#include "myriad/python/device_facts.hpp"
 #include "myriad/random.hpp"
 #include "myriad/tangent.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Where the launch parameters are, by way of addresses in a memory that need not hold them: not every NVRTC has
-/// offsetof.
-template <class Model, class R, shared_placement placement>
-__device__ __forceinline__ python::argument_layout layout_of(const void* memory) {
-    using arguments = launch_arguments<Model, R, placement>;
-    const auto& all = *static_cast<const arguments*>(memory);
-    const auto& one = all.ensemble;
-    const auto at = [memory](const auto& member) {
-        return static_cast<std::uint32_t>(reinterpret_cast<const char*>(&member) - static_cast<const char*>(memory));
-    };
-    python::argument_layout l{};
-    l.head = at(one.shrink_limit) + sizeof one.shrink_limit;
-    l.relative_tolerance = at(one.relative_tolerance);
-    l.absolute_tolerance = at(one.absolute_tolerance);
-    l.event = at(one.event);
-    l.rising = at(one.rising);
-    l.falling = at(one.falling);
-    l.sub_samples = at(one.sub_samples);
-    l.accumulation_limit = at(one.accumulation_limit);
-    l.record = at(one.record);
-    l.record_head = at(one.record.time_column) + sizeof one.record.time_column - l.record;
-    l.record_columns[0] = at(one.record.state_column);
-    l.record_columns[1] = at(one.record.accessory_column);
-    l.record_columns[2] = at(one.record.integer_accessory_column);
-    l.sample = at(one.sample);
-    l.sample_head = at(one.sample.minimum_spacing) + sizeof one.sample.minimum_spacing - l.sample;
-    l.sample_columns = at(one.sample.column);
-    l.queue = at(all.queue);
-    l.stop = at(all.stop);
-    if constexpr (placement == shared_placement::constant_bank) {
-        l.shared = at(all.shared);
-        l.shared_integer = at(all.shared_integer);
-    }
-    l.size = sizeof all;
-    return l;
-}
-
-template <class Model>
-inline constexpr int most_threads = max_block_size<Model>();
-
 template <class Model, class Method, class R, shared_placement placement>
 __device__ __forceinline__ void tell_facts(python::device_facts* to) {
-    *to = {
-        .model = facts_of<Model, Method, R>,
-        .layout = layout_of<Model, R, placement>(to),
-        .shared_placement = placement,
-        .shared_bytes = shared_parameter_bytes<Model, R>,
-        .max_block_size = most_threads<Model>,
-        .costs_differ = costs_differ<Model, Method>,
-    };
+    *to = {compiled_facts_of<Model, Method, R>, traits_of<Model, Method, R>, placement};
 }
 
 /// Adds up the values of a warp's threads; its first thread has the sum.

@@ -6,8 +6,9 @@
 #include <cstdint>
 
 #include "myriad/host/backend/cpu_backend.hpp"
+#include "myriad/host/checks/instance_functions.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/python/any_arguments.hpp"
+#include "myriad/python/compiled_facts.hpp"
 
 namespace myriad::python {
 
@@ -16,20 +17,12 @@ using team_starter = void (*)(openmp::team*);
 
 /// What a compiled model tells of itself, and its kernel.
 struct kernel_library {
-    model_facts model;
+    compiled_facts facts;
     std::int32_t instruction_set;  ///< as in openmp::instruction_set
     /// Integrates; `arguments` are `any_arguments` of the real type. At most `most_threads` threads.
     void (*run)(const void* arguments, const detail::run_options* options, int most_threads, team_starter start,
                 detail::run_statistics* result);
-    /// Calls the model's `generate` for instances [begin, end) of a study; null for a model that has none. Of the
-    /// `any_arguments` it takes the range, the arrays and the shared parameters.
-    void (*generate)(const void* arguments, std::uint64_t seed, std::int64_t begin, std::int64_t end);
-    /// The right-hand side of instance i at time t in state y, and the longest stable step for y' = -y, for a note
-    /// about stiffness; both null where no stiff method can be advised. `t`, `y` and `slopes` are of the real type.
-    void (*rhs)(const void* arguments, std::int64_t i, const void* t, const void* y, void* slopes);
-    double (*stability_limit)();
-    /// What rounding leaves of the event functions of instance i; null where that is not known.
-    void (*event_resolution)(const void* arguments, std::int64_t i, void* finest);
+    const void* functions;               ///< `instance_functions` of the real type
     const char* compiler = __VERSION__;  ///< of the file that makes this
 };
 

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// What is known of a model and a method without their types: plain data, the same for kernels of CPUs and GPUs, whether
+// the model is known when a program is compiled or only when it runs.
+#pragma once
+
+#include <cstdint>
+
+#include "myriad/kernel/model/concepts.hpp"
+
+namespace myriad::detail {
+
+/// How many components of each kind a model has, and what its hooks write.
+struct model_numbers {
+    std::int32_t n_state, n_parameter, n_shared, n_shared_integer, n_accessory, n_integer_accessory, n_event;
+    bool writes_parameters, writes_time_domain;
+
+    constexpr bool operator==(const model_numbers&) const = default;
+};
+
+/// Where a model `with_tangents` has what notes about its exponents look at; zeros for other models.
+struct tangent_places {
+    std::int32_t n_original;        ///< states of the model without tangents, which are the first
+    std::int32_t n_vectors;         ///< tangent vectors
+    std::int32_t first_growth;      ///< the accessory with the growth of the first; the others follow
+    std::int32_t transient_phases;  ///< the shared integer with the number of phases that do not count
+};
+
+/// The properties of a model and a method that checks and notes of a call depend on.
+struct call_facts {
+    std::int32_t embedded_order;  ///< of the method, 0 for fixed steps
+    bool scales_tolerances;       ///< in each instance
+    bool samples_trajectory;
+    bool hooks_may_stop;  ///< they can end a phase before t_end
+    tangent_places tangents;
+
+    constexpr bool adaptive() const { return embedded_order > 0; }
+};
+
+template <class Model>
+inline constexpr model_numbers numbers_of{
+    .n_state = n_state<Model>,
+    .n_parameter = n_parameter<Model>,
+    .n_shared = n_shared<Model>,
+    .n_shared_integer = n_shared_integer<Model>,
+    .n_accessory = n_accessory<Model>,
+    .n_integer_accessory = n_integer_accessory<Model>,
+    .n_event = n_event<Model>,
+    .writes_parameters = writes_parameters<Model>,
+    .writes_time_domain = writes_time_domain<Model>,
+};
+
+}  // namespace myriad::detail
