@@ -32,7 +32,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGES = {
     "ensemble": ("Ensembles", "`<myriad/myriad.hpp>`. The data of all instances: set before a call, read after it.",
                  ["host/ensemble/ensemble.hpp", "host/ensemble/component_map.hpp",
-                  "host/ensemble/trajectory_samples.hpp"]),
+                  "host/ensemble/trajectory_samples.hpp", "host/checks/consistency.hpp"]),
     "solve": ("Devices, solve and solver", "`<myriad/myriad.hpp>`, or `<myriad/device.hpp>` and `<myriad/solve.hpp>`.",
               ["host/backend/device.hpp", "host/solve/", "host/core/error.hpp", "version.hpp"]),
     "options": ("Options",
@@ -42,7 +42,7 @@ PAGES = {
                ["host/report/", "kernel/core/status.hpp", "host/backend/facts.hpp"]),
     "model": ("In a model", "`<myriad/model.hpp>`: what the functions of a model are called with, and what they use.",
               ["host/model/", "kernel/core/", "kernel/model/lane.hpp", "kernel/model/jacobian_pattern.hpp",
-               "kernel/model/summaries.hpp",
+               "kernel/model/mass_matrix.hpp", "kernel/model/summaries.hpp",
                "kernel/model/tables.hpp", "kernel/scalar/"]),
     "random": ("Random numbers", "`<myriad/random.hpp>`.", ["kernel/model/random.hpp"]),
     "tangent": ("Tangents and Lyapunov exponents", "`<myriad/tangent.hpp>`.",
@@ -58,7 +58,8 @@ PAGES = {
 }
 
 # Classes whose objects a model handles as R, masks or expressions, without naming their members.
-OPAQUE = ("pack", "pack_mask", "dual", "vec_values", "shared_values", "component_map::list")
+OPAQUE = ("pack", "pack_mask", "dual", "dependence", "unknown_truth", "vec_values", "shared_values",
+          "component_map::list")
 # What public functions take and return of other namespaces. Objects of OPAQUE_STUDIES are passed on, or made by the
 # library alone.
 PUBLIC_STUDIES = ("along", "arithmetic", "attribute", "component", "component_kind", "component_names", "coordinate",

@@ -29,6 +29,8 @@ benchmark_case duffing_events_case();
 /// Both by methods of higher order.
 std::vector<benchmark_case> method_cases();
 benchmark_case schedule_case();
+/// Networks of 3 to 64 states by stiff methods.
+std::vector<benchmark_case> stiff_cases();
 
 /// A value published with the paper's package, for the same work.
 struct check_value {

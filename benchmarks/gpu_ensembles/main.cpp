@@ -123,6 +123,7 @@ std::vector<benchmark_case> all_cases() {
     all.push_back(duffing_events_case());
     for (benchmark_case& what : method_cases()) all.push_back(std::move(what));
     all.push_back(schedule_case());
+    for (benchmark_case& what : stiff_cases()) all.push_back(std::move(what));
     return all;
 }
 

@@ -38,16 +38,16 @@ inline double median(std::vector<double> values) {
 }
 
 /// A problem: `fill` sets the values that kernels do not write, `start` those that they do.
-template <class Model>
+template <class Model, class R = double>
 struct problem {
     myriad::options options;
-    void (*fill)(myriad::ensemble<Model>&);
-    void (*start)(myriad::ensemble<Model>&);
+    void (*fill)(myriad::ensemble<Model, R>&);
+    void (*start)(myriad::ensemble<Model, R>&);
 };
 
 /// Milliseconds of the kernel alone, and of upload, kernel and download together, for one run from the start.
-template <class Model, class Method>
-std::pair<double, double> run_once(myriad::solver<Model, Method>& solver, const problem<Model>& what) {
+template <class Model, class Method, class R>
+std::pair<double, double> run_once(myriad::solver<Model, Method, R>& solver, const problem<Model, R>& what) {
     auto& instances = solver.instances();
     what.start(instances);
     instances.restart();
@@ -69,14 +69,14 @@ void warm_up(Once&& once) {
 }
 
 /// Times the problem, then counts its work in a separate run. `inspect(instances)` sees the results of the timed runs.
-template <class Method, class Model, class Inspect>
-measurement measure_myriad(const problem<Model>& what, std::int64_t size, const measure_options& how,
+template <class Method, class Model, class R, class Inspect>
+measurement measure_myriad(const problem<Model, R>& what, std::int64_t size, const measure_options& how,
                            Inspect&& inspect) {
     measurement m{.implementation = "myriad", .instances = size};
     myriad::options options = what.options;
     {
         options.counting = myriad::counting::off;
-        myriad::solver<Model, Method> solver(how.device, size, options);
+        myriad::solver<Model, Method, R> solver(how.device, size, options);
         what.fill(solver.instances());
         warm_up([&] { run_once(solver, what); });
         std::vector<double> kernel, end_to_end;
@@ -95,7 +95,7 @@ measurement measure_myriad(const problem<Model>& what, std::int64_t size, const 
         inspect(std::as_const(solver.instances()), m);
     }
     options.counting = myriad::counting::on;
-    myriad::solver<Model, Method> solver(how.device, size, options);
+    myriad::solver<Model, Method, R> solver(how.device, size, options);
     what.fill(solver.instances());
     m.counting_kernel_ms = run_once(solver, what).first;
     m.accepted_steps = solver.report().accepted_steps;

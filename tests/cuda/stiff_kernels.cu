@@ -16,6 +16,7 @@
 // limit: integrate_ensemble<sparse_chain<8>, rodas_5p> stack 0 spill 0
 // limit: integrate_ensemble<sparse_chain<32>, rosenbrock_23> stack 3000
 // limit: integrate_ensemble<sparse_chain<32>, rodas_5p> stack 4000
+// limit: integrate_ensemble<van_der_pol_ring<32>, rodas_5p> stack 4000
 // forbid: f64 in integrate_ensemble<chain<3>, rosenbrock_23>
 // forbid: f64 in integrate_ensemble<chain<3>, rodas_5p>
 
@@ -26,15 +27,21 @@
 #include <myriad/methods.hpp>
 #include <myriad/model.hpp>
 
-/// n populations, each of which feeds on the next one: the Jacobian has two entries in each row.
+#include "problems/van_der_pol_ring.hpp"
+
+/// n populations, each of which feeds on the next one: the Jacobian has two entries in each row. From seven on it looks
+/// at a value, so that the compiler does not find that, and the matrix stays dense.
 template <int n>
 struct chain {
     enum state { first, n_state = n };
     enum parameter { rate, n_parameter };
+    enum shared_integer { at_rest, n_shared_integer };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n> rhs(auto, const myriad::vec<R, n>& y, const auto& p) {
-        myriad::vec<R, n> f;
+        myriad::vec<R, n> f{};
+        if constexpr (n > 6)
+            if (p.shared_integer[at_rest] != 0) return f;
         MYRIAD_UNROLL
         for (int i = 0; i < n; ++i) f[i] = p[rate] * (y[(i + 1) % n] * y[i] - y[i]);
         return f;
@@ -70,3 +77,5 @@ INSTANTIATE(chain<16>, double)
 INSTANTIATE(chain<32>, double)
 INSTANTIATE(sparse_chain<8>, double)
 INSTANTIATE(sparse_chain<32>, double)
+using problems::van_der_pol_ring;  // whose pattern is found
+INSTANTIATE(van_der_pol_ring<32>, double)

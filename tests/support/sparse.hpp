@@ -6,19 +6,24 @@
 
 #include <myriad/model.hpp>
 
+#include "problems/van_der_pol_ring.hpp"
+
 namespace sparse {
 
-/// n / 2 van der Pol oscillators in a ring, each pulled by its neighbours; + - * / only.
+/// n / 2 van der Pol oscillators in a ring, each pulled by its neighbours; + - * / only. It looks at a value, zero, so
+/// that the compiler does not find the pattern of its Jacobian.
 template <int n>
 struct dense_ring {
     enum state { first, n_state = n };
     enum parameter { mu, n_parameter };
+    enum shared_integer { at_rest, n_shared_integer };
     static constexpr int left(int x) { return (x + n - 2) % n; }
     static constexpr int right(int x) { return (x + 2) % n; }
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n> rhs(auto, const myriad::vec<R, n>& y, const auto& p) {
-        myriad::vec<R, n> f;
+        myriad::vec<R, n> f{};
+        if (p.shared_integer[at_rest] != 0) return f;
         MYRIAD_UNROLL
         for (int x = 0; x < n; x += 2) {
             f[x] = y[x + 1];
@@ -42,7 +47,11 @@ inline constexpr auto ring_pattern = [] {
     return entries;
 }();
 
-/// The same with its pattern.
+/// The same without a value that decides, so that the pattern is found.
+template <int n>
+using plain_ring = problems::van_der_pol_ring<n>;
+
+/// And with its pattern declared.
 template <int n>
 struct ring : dense_ring<n> {
     static constexpr auto jacobian_pattern = ring_pattern<n>;

@@ -48,6 +48,10 @@ std::ostream& print(std::ostream& stream, const report_of<R>& r) {
         out << r.accepted_steps << " steps accepted, " << r.rejected_steps << " rejected, " << r.located_steps
             << " redone to locate events; " << r.rhs_evaluations << " evaluations of the right-hand side\n";
     }
+    if (r.matrix.states > 0) {
+        out << "of " << r.matrix.states * r.matrix.states << " entries of the Jacobian " << r.matrix.jacobian_entries
+            << " may differ from zero, and its factors have " << r.matrix.factor_entries << '\n';
+    }
     if (r.first_failed >= 0) {
         out << "first failure: instance " << r.first_failed << " ended as " << name_of(r.first_status)
             << " at t = " << r.first_t << " of [" << r.first_t_begin << ", " << r.first_t_end << ']'

@@ -82,6 +82,14 @@ phases_left called_model<R>::check_uses(ensemble_data<R>& data, const options& o
     if (enter_thread) enter_thread();
     check_event_tolerances<R>(data, o, count, {functions, inputs});
     if (functions.check_jacobian != nullptr) functions.check_jacobian(inputs, count);
+    if (functions.check_consistency != nullptr) {
+        std::vector<double> relative, absolute;
+        for (std::size_t c = 0; c < static_cast<std::size_t>(shape->n_state); ++c) {
+            relative.push_back(o.relative_tolerance[c]);
+            absolute.push_back(o.absolute_tolerance[c]);
+        }
+        functions.check_consistency(inputs, relative.data(), absolute.data(), count);
+    }
     return find_phases_left(data, o, count, may_end_early(o));
 }
 

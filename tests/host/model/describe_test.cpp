@@ -82,6 +82,14 @@ struct large {
         return y;
     }
 };
+/// The same, with a branch.
+struct large_with_branch : large {
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 7> rhs(auto t, const myriad::vec<R, 7>& y, const auto&) {
+        if (t > 1.0) return {};
+        return y;
+    }
+};
 /// Counts without names are counts as well.
 struct unnamed {
     enum { n_state = 3, n_parameter = 2 };
@@ -111,9 +119,14 @@ TEST_CASE("a bare model is described with its right-hand side alone", "[describe
 TEST_CASE("what stiff methods make of a model is described", "[describe]") {
     CHECK(has(describe<with_jacobian>(), "hooks: rhs, jacobian\n"));
     CHECK(has(describe<with_jacobian>(), "stiff methods: the model's Jacobian, LU factors on GPUs in registers\n"));
-    CHECK(has(describe<large>(), "stiff methods: Jacobian by dual numbers, LU factors on GPUs in local memory\n"));
+    CHECK(has(describe<large>(),
+              "stiff methods: Jacobian by dual numbers, LU factors of 7 entries instead of 49, for 7 of the Jacobian, "
+              "found when the model was compiled\n"));
+    CHECK(has(describe<large_with_branch>(),
+              "stiff methods: Jacobian by dual numbers, LU factors on GPUs in local memory\n"));
     CHECK(has(describe<sparse::ring<8>>(), "declares: autonomous, jacobian_pattern\n"));
-    CHECK(has(describe<sparse::arrow<9>>(), "LU factors of 25 entries instead of 81, for 25 of the Jacobian\n"));
+    CHECK(has(describe<sparse::arrow<9>>(),
+              "LU factors of 25 entries instead of 81, for 25 of the Jacobian, as declared\n"));
 }
 
 TEST_CASE("a model with events alone is described with them", "[describe]") {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "myriad/myriad.hpp"
@@ -218,15 +219,23 @@ ensemble<Model, R> rings(std::int64_t size) {
     return e;
 }
 
-/// The two Jacobians differ by rounding, which a tenth of the tolerance bounds with room to spare; nothing in these
-/// rings amplifies it.
-template <int n, int size>
+/// A ring with the pattern, declared or found, and without. The two Jacobians differ by rounding, which a tenth of the
+/// tolerance bounds with room to spare; nothing in these rings amplifies it.
+template <class Model, int size>
 void check_pattern() {
-    auto with = rings<sparse::ring<n>>(size);
+    constexpr int n = Model::n_state;
+    auto with = rings<Model>(size);
     auto without = rings<sparse::dense_ring<n>>(size);
     const auto o = compare::with_tolerance(1e-6, 1e-4);
-    solve<rodas_5p>(tests::test_device(1), with, o);
-    solve<rodas_5p>(tests::test_device(1), without, o);
+    const auto sparse_report = solve<rodas_5p>(tests::test_device(1), with, o);
+    const auto dense_report = solve<rodas_5p>(tests::test_device(1), without, o);
+    CHECK(sparse_report.notes.empty());
+    CHECK(sparse_report.matrix.states == n);
+    CHECK(sparse_report.matrix.jacobian_entries == 5 * n / 2);
+    CHECK(sparse_report.matrix.factor_entries < n * n);
+    REQUIRE(dense_report.notes.size() == 1);
+    CHECK(dense_report.notes[0].find("rhs looks at values") != std::string::npos);
+    CHECK(dense_report.matrix.factor_entries == n * n);
     for (std::int64_t i = 0; i < size; ++i) {
         CAPTURE(i);
         CHECK(with.status(i) == status::success);
@@ -247,8 +256,9 @@ TEST_CASE("a step with a singular matrix is shortened, and ends as singular_jaco
 }
 
 TEST_CASE("a network with its Jacobian's pattern takes the steps of the dense one, to the same states") {
-    check_pattern<8, 40>();
-    check_pattern<32, 5>();
+    check_pattern<sparse::ring<8>, 40>();
+    check_pattern<sparse::plain_ring<8>, 40>();
+    check_pattern<sparse::ring<32>, 5>();
 }
 
 TEST_CASE("a pattern without an entry is refused, with the entry") {

@@ -10,6 +10,7 @@
 
 #include "myriad/kernel/model/jacobian.hpp"
 #include "myriad/kernel/scalar/pack.hpp"
+#include "problems/pollution.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/sparse.hpp"
 
@@ -44,7 +45,7 @@ void check_solutions(unsigned seed) {
         }
     };
     for (int e = 0; e < n_jacobian_entry<Model>; ++e) {
-        const auto entry = Model::jacobian_pattern[e];
+        const auto entry = jacobian_entries_of<Model>[e];
         if (entry.row != entry.column) put(entry.row, entry.column, plan.position[e], off);
     }
     for (int i = 0; i < n; ++i) {
@@ -74,6 +75,8 @@ template <class Model>
 void check_derivatives(double tolerance) {
     constexpr int n = n_state<Model>;
     inputs<Model, double> p{};
+    const std::int32_t zero = 0;
+    p.shared_integer = &zero;
     if constexpr (n_parameter < Model >> 0) p.parameter[0] = 1.7;
     vec<double, n> y;
     for (int c = 0; c < n; ++c) y[c] = std::sin(1.0 + c);
@@ -81,7 +84,7 @@ void check_derivatives(double tolerance) {
     dual_jacobian<Model>(0.3, y, p, dense);
     int found = 0;
     for_each_jacobian_entry<Model, table_loop<false>>(0.3, y, p, [&](int e, double derivative) {
-        const auto entry = Model::jacobian_pattern[e];
+        const auto entry = jacobian_entries_of<Model>[e];
         CHECK(std::abs(derivative - dense[entry.row][entry.column]) <=
               tolerance * std::abs(dense[entry.row][entry.column]));
         dense[entry.row][entry.column] = 0;
@@ -140,5 +143,8 @@ TEST_CASE("derivatives by groups of columns, and those written out, are those of
     check_derivatives<sparse::ring<8>>(0);
     check_derivatives<sparse::ring<32>>(0);
     check_derivatives<sparse::arrow<9>>(0);
+    check_derivatives<sparse::plain_ring<8>>(0);
+    check_derivatives<sparse::plain_ring<64>>(0);
+    check_derivatives<problems::pollution>(0);
     check_derivatives<sparse::ring_with_jacobian<8>>(1e-14);
 }

@@ -20,9 +20,9 @@ template <class Model>
 std::string lu_factors_of() {
     if constexpr (factorises_sparsely<Model>) {
         constexpr int n = n_state<Model>;
-        const auto& symbolic = symbolic_lu_of<Model>;
-        return message("of ", n + symbolic.lower + symbolic.upper, " entries instead of ", n * n, ", for ",
-                       n_jacobian_entry<Model>, " of the Jacobian");
+        return message("of ", n_factor_entry<Model>, " entries instead of ", n * n, ", for ", n_jacobian_entry<Model>,
+                       " of the Jacobian, ",
+                       has_jacobian_pattern<Model> ? "as declared" : "found when the model was compiled");
     } else {
         return matrix_loop<double, n_state<Model>>::unrolled ? "on GPUs in registers" : "on GPUs in local memory";
     }

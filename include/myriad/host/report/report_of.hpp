@@ -20,6 +20,13 @@
 
 namespace myriad {
 
+/// The matrix that a stiff method factorises in every step; zeros for other methods.
+struct matrix_facts {
+    int states = 0;            ///< its rows and columns
+    int jacobian_entries = 0;  ///< derivatives that may differ from zero, as far as the compiler could find
+    int factor_entries = 0;    ///< numbers in its factors
+};
+
 /// How the instances ended, the first failure with its inputs, the work.
 template <class R>
 struct report_of {
@@ -46,6 +53,7 @@ struct report_of {
     std::string instruction_set;       ///< on the CPU, of the kernel that ran: avx512, avx2, sse2 or generic
     cuda::kernel_facts kernel;         ///< on a GPU: the kernel's registers, block size and shared parameters
     double kernel_seconds = 0;         ///< on a GPU: time of the kernels alone
+    matrix_facts matrix;               ///< of a stiff method: entries of the Jacobian and of its factors
     std::vector<std::string> notes;    ///< tolerances raised; from `solve` also that the equations are stiff, or
                                        ///< phases too long for the smallest Lyapunov exponent
 

@@ -5,11 +5,13 @@
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"
+#include "myriad/host/checks/consistency.hpp"
 #include "myriad/host/checks/jacobian_check.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/option_checks.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/functions_of.hpp"
+#include "myriad/host/report/matrix_note.hpp"
 #include "myriad/host/report/report.hpp"
 #include "myriad/host/solve/solve_call.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
@@ -38,6 +40,7 @@ called_model<R> called() {
     called_model<R> made{&shape_of<Model>, &components_of<Model>, detail::facts_of<Model, Method, R>,
                          detail::functions_of<Model, Method, R>()};
     made.functions.check_jacobian = &check_jacobians<Model, Method, R>;
+    if constexpr (detail::has_mass_matrix<Model>) made.functions.check_consistency = &check_consistency<Model, R>;
     return made;
 }
 /// The same with the kernel for that device.
@@ -71,6 +74,7 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
                              host::ensemble_access::samples(instances), result.records.data());
     call.integrate(result);
     call.add_notes(result);
+    host::note_matrix<Method>(result);
     return result;
 }
 

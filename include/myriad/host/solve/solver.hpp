@@ -232,6 +232,7 @@ public:
         host::note_ended(report_, data(), count_);
         host::note_failures(report_, data(), options_, count_);
         if (model_.facts.adaptive()) host::note_raised_tolerances<R>(report_, options_);
+        host::note_matrix<Method>(report_);
         report_.device = where_.name();
         if (engine_) {
             report_.kernel = engine_->facts();

@@ -12,7 +12,7 @@
 #pragma nv_diag_error 20011, 20013, 20014, 20015
 /// A function of the kernel body: device code under nvcc, inlined host code elsewhere. Required for a model's functions
 /// and the helpers they call, so that files compiled for different instruction sets share no copy of them.
-#define MYRIAD_FUNCTION __host__ __device__ __forceinline__
+#define MYRIAD_FUNCTION __host__ __device__ __forceinline__ constexpr
 /// `MYRIAD_FUNCTION` for a lambda, placed between its parameters and its body.
 #define MYRIAD_LAMBDA
 /// In the place of MYRIAD_FUNCTION, for a template that is called at several places and so large that copies would cost
@@ -48,7 +48,7 @@
 #define MYRIAD_TARGET cuda_lane
 #define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
 #else
-#define MYRIAD_FUNCTION inline __attribute__((always_inline))
+#define MYRIAD_FUNCTION inline __attribute__((always_inline)) constexpr
 #define MYRIAD_LAMBDA __attribute__((always_inline))
 #if defined(__clang__)
 #define MYRIAD_FLATTEN

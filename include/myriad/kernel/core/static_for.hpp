@@ -12,12 +12,12 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <int i>
 struct constant_index {
     static constexpr int value = i;
-    MYRIAD_FUNCTION constexpr operator int() const { return i; }
+    MYRIAD_FUNCTION operator int() const { return i; }
 };
 
 /// Calls `f(constant_index<i>{})` for i = begin, ..., end - 1.
 template <int begin, int end, class F>
-MYRIAD_FUNCTION constexpr void static_for(F&& f) {
+MYRIAD_FUNCTION void static_for(F&& f) {
     if constexpr (begin < end) {
         [&]<int... i>(std::integer_sequence<int, i...>) MYRIAD_LAMBDA { (f(constant_index<begin + i>{}), ...); }
         (std::make_integer_sequence<int, end - begin>{});

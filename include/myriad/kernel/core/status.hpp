@@ -28,7 +28,7 @@ enum class status : std::uint8_t {
 inline constexpr int status_count = 11;
 
 /// True for the statuses that end an instance for good.
-MYRIAD_FUNCTION constexpr bool is_failure(status s) { return s >= status::max_steps; }
+MYRIAD_FUNCTION bool is_failure(status s) { return s >= status::max_steps; }
 
 /// The request made by a scalar hook's return value; a hook that returns nothing requests to proceed.
 enum class action : std::uint8_t {

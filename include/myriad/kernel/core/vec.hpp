@@ -20,7 +20,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Returns the index. The compiler refuses an index that optimisation shows to be out of range; others are not checked.
 template <int size>
-MYRIAD_FUNCTION constexpr int checked_index(int i) {
+MYRIAD_FUNCTION int checked_index(int i) {
 #if !defined(__CUDACC__)
     if (__builtin_constant_p(i) && (i < 0 || i >= size)) no_such_component();
 #endif
@@ -52,10 +52,10 @@ struct vec_values<S, std::integer_sequence<int, c...>> {
     S values[sizeof...(c)];
 
     vec_values() = default;
-    MYRIAD_FUNCTION constexpr vec_values(value<c>... v) : values{v...} {}
+    MYRIAD_FUNCTION vec_values(value<c>... v) : values{v...} {}
     // From an array, in a second pair of braces.
     template <int length>
-    MYRIAD_FUNCTION constexpr vec_values(const S (&v)[length]) : values{v[c]...} {
+    MYRIAD_FUNCTION vec_values(const S (&v)[length]) : values{v[c]...} {
         static_assert(
             length == sizeof...(c),
             "a vec is given as many values as it has components, a matrix as many rows: here are fewer, or more");
@@ -76,7 +76,7 @@ struct vec : vec_values<S, std::make_integer_sequence<int, size>> {
     // Selected for any other number of values, to give a readable error.
     template <class First, class... More>
     requires(1 + sizeof...(More) != size && std::is_convertible_v<First, S>)
-        MYRIAD_FUNCTION constexpr vec(const First&, const More&...) {
+        MYRIAD_FUNCTION vec(const First&, const More&...) {
         static_assert(
             1 + sizeof...(More) == size,
             "a vec is given as many values as it has components: rhs returns a slope for each state, events a "
@@ -85,10 +85,10 @@ struct vec : vec_values<S, std::make_integer_sequence<int, size>> {
 
     /// Component i, counted from 0. An index that is known to be out of range when the model is compiled is an error;
     /// others are not checked.
-    MYRIAD_FUNCTION constexpr S& operator[](int i) MYRIAD_WARN_OF_INDEX(i, size) {
+    MYRIAD_FUNCTION S& operator[](int i) MYRIAD_WARN_OF_INDEX(i, size) {
         return this->values[detail::checked_index<size>(i)];
     }
-    MYRIAD_FUNCTION constexpr const S& operator[](int i) const MYRIAD_WARN_OF_INDEX(i, size) {
+    MYRIAD_FUNCTION const S& operator[](int i) const MYRIAD_WARN_OF_INDEX(i, size) {
         return this->values[detail::checked_index<size>(i)];
     }
 };

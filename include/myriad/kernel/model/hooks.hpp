@@ -57,7 +57,7 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
             "rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
     }
     if constexpr (gives_jacobian<Model> && has_jacobian_pattern<Model>) {
-        using derivatives = vec<R, n_jacobian_entry<Model>>;
+        using derivatives = vec<R, n_declared_entry<Model>>;
         MYRIAD_CHECK_CALL(
             (Model::template jacobian<R>(R{}, *y, *p)), std::same_as<derivatives>,
             "jacobian has a wrong signature: in a model with a jacobian_pattern it must be `template <class R> "

@@ -51,17 +51,23 @@ MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, 
     });
 }
 
-/// Calls `put(e, derivative)` for the entries e of the declared pattern: the model's own derivatives if it has them,
-/// else those by dual numbers, by one evaluation of rhs for each group of columns. `Loop` is a table_loop.
+/// Calls `put(e, derivative)` for the entries e of the pattern, declared or found: the model's own derivatives if it
+/// has them, else those by dual numbers, by one evaluation of rhs for each group of columns. `Loop` is a table_loop.
 template <class Model, class Loop, class S, class Put>
 MYRIAD_FUNCTION void for_each_jacobian_entry(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                              Put&& put) {
     using R = real_of<S>;
     using groups = std::remove_cv_t<decltype(jacobian_groups_of<Model>)>;
     constexpr int entries = n_jacobian_entry<Model>;
-    if constexpr (gives_jacobian<Model>) {
+    if constexpr (gives_jacobian<Model> && has_jacobian_pattern<Model>) {
         const vec<S, entries> own = Model::template jacobian<S>(t, y, p);
         Loop::template range<0, entries>([&](auto e) MYRIAD_LAMBDA { put(e, own[e]); });
+    } else if constexpr (gives_jacobian<Model>) {
+        const matrix<S, n_state<Model>> own = Model::template jacobian<S>(t, y, p);
+        Loop::template range<0, entries>([&](auto e) MYRIAD_LAMBDA {
+            put(e, own[Loop::template at<jacobian_groups_of<Model>, &groups::row>(e)]
+                      [Loop::template at<jacobian_groups_of<Model>, &groups::column>(e)]);
+        });
     } else {
         Loop::template range<0, jacobian_groups_of<Model>.count>([&](auto group) MYRIAD_LAMBDA {
             auto seeded = constants(y);
@@ -85,7 +91,7 @@ MYRIAD_FUNCTION void evaluate_jacobian(const S& t, const vec<S, n_state<Model>>&
     if constexpr (gives_jacobian<Model> && has_jacobian_pattern<Model>) {
         const auto own = Model::template jacobian<S>(t, y, p);
         jacobian = {};
-        for (int e = 0; e < n_jacobian_entry<Model>; ++e)
+        for (int e = 0; e < n_declared_entry<Model>; ++e)
             jacobian[Model::jacobian_pattern[e].row][Model::jacobian_pattern[e].column] = own[e];
     } else if constexpr (gives_jacobian<Model>) {
         jacobian = Model::template jacobian<S>(t, y, p);

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The entries of a model's Jacobian that may differ from zero: declared in the model, read at compile time.
+// The entries of a model's Jacobian that may differ from zero: declared in the model, or found when it is compiled by
+// calling its right-hand side with numbers that record what they depend on.
 #pragma once
 
 #include <cstdint>
 #include <iterator>
 #include <type_traits>
 
+#include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/model/lane.hpp"
+#include "myriad/kernel/scalar/dependence.hpp"
 
 namespace myriad {
 
@@ -29,7 +33,7 @@ constexpr bool declares_jacobian_pattern() {
     &&n_tangent<Model> == 0;
 }
 template <class Model>
-constexpr int n_jacobian_entry_of() {
+constexpr int n_declared_entry_of() {
     if constexpr (declares_jacobian_pattern<Model>()) {
         return static_cast<int>(std::size(Model::jacobian_pattern));
     } else {
@@ -38,9 +42,9 @@ constexpr int n_jacobian_entry_of() {
 }
 /// Number of entries that a model declares.
 template <class Model>
-inline constexpr int n_jacobian_entry = n_jacobian_entry_of<Model>();
+inline constexpr int n_declared_entry = n_declared_entry_of<Model>();
 template <class Model>
-inline constexpr bool has_jacobian_pattern = n_jacobian_entry<Model> > 0;
+inline constexpr bool has_jacobian_pattern = n_declared_entry<Model> > 0;
 
 /// A set of numbers below n, as bits.
 template <int n>
@@ -76,19 +80,135 @@ struct number_set {
     }
 };
 
-/// The declared entries, and the columns in groups without a common row, so that one evaluation of rhs with dual
+}  // namespace myriad::detail
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Largest system whose right-hand side is evaluated when it is compiled.
+inline constexpr int largest_traced_system = 256;
+
+/// What each slope depends on: the states, and as number n the time.
+template <class Model>
+struct slope_dependences {
+    using number = dependence<n_state<Model> + 1>;
+    number of_slope[n_state<Model>];
+};
+
+template <class Model>
+constexpr slope_dependences<Model> trace_slopes() {
+    constexpr int n = n_state<Model>;
+    using S = typename slope_dependences<Model>::number;
+    // Integers have no value, so that a right-hand side that reads one is no constant expression.
+    inputs<Model, S> p;
+    for (int i = 0; i < n_parameter<Model>; ++i) p.parameter[i] = S();
+    const S shared[n_shared<Model> > 0 ? n_shared<Model> : 1]{};
+    p.shared = shared;
+    p.shared_integer = nullptr;
+    if constexpr (n_accessory < Model >> 0 && !accessories_are_outputs<Model>)
+        for (int i = 0; i < n_accessory<Model>; ++i) p.accessory[i] = S();
+    vec<S, n> y;
+    for (int i = 0; i < n; ++i) y[i] = S::of(i);
+    const vec<S, n> slopes = Model::template rhs<S>(S::of(n), y, p);
+    slope_dependences<Model> found;
+    for (int i = 0; i < n; ++i) found.of_slope[i] = slopes[i];
+    return found;
+}
+
+/// Whether a right-hand side can be evaluated without any values. One that branches on its state, as a model that is
+/// declared `scalar_only` does, might not even compile with dependences; tangents would need those of derivatives.
+template <class Model>
+constexpr bool is_traceable() {
+    if constexpr (scalar_only<Model> || n_tangent<Model> != 0 || n_state < Model >> largest_traced_system) {
+        return false;
+    } else {
+        return requires { typename std::bool_constant<(trace_slopes<Model>(), true)>; };
+    }
+}
+template <class Model>
+inline constexpr bool traceable = is_traceable<Model>();
+template <class Model>
+requires traceable<Model>
+inline constexpr slope_dependences<Model> slope_dependences_of = trace_slopes<Model>();
+
+template <class Model>
+constexpr bool may_depend_on_time() {
+    if constexpr (autonomous<Model>) {
+        return false;
+    } else if constexpr (traceable<Model>) {
+        for (const auto& slope : slope_dependences_of<Model>.of_slope)
+            if (slope.contains(n_state<Model>)) return true;
+        return false;
+    } else {
+        return true;
+    }
+}
+/// Whether the right-hand side may depend on t: it does not if the model is declared, or found, autonomous.
+template <class Model>
+inline constexpr bool depends_on_time = may_depend_on_time<Model>();
+
+/// Where a Jacobian's pattern is from.
+enum class pattern_origin { none, declared, found };
+template <class Model>
+constexpr pattern_origin origin_of_pattern() {
+    if constexpr (has_jacobian_pattern<Model>) {
+        return pattern_origin::declared;
+    } else {
+        return traceable<Model> ? pattern_origin::found : pattern_origin::none;
+    }
+}
+
+template <class Model>
+constexpr int n_jacobian_entry_of() {
+    if constexpr (origin_of_pattern<Model>() == pattern_origin::found) {
+        int count = 0;
+        for (const auto& slope : slope_dependences_of<Model>.of_slope)
+            for (int j = 0; j < n_state<Model>; ++j) count += slope.contains(j) ? 1 : 0;
+        return count;
+    } else {
+        return n_declared_entry<Model>;
+    }
+}
+/// Number of entries of the Jacobian that may differ from zero; zero if it is not known.
+template <class Model>
+inline constexpr int n_jacobian_entry = n_jacobian_entry_of<Model>();
+
+/// These entries: as declared, or row by row.
+template <class Model>
+struct jacobian_entries {
+    jacobian_entry entry[n_jacobian_entry<Model>]{};
+
+    constexpr jacobian_entries() {
+        int e = 0;
+        if constexpr (has_jacobian_pattern<Model>) {
+            for (const jacobian_entry& declared : Model::jacobian_pattern) entry[e++] = declared;
+        } else {
+            for (int i = 0; i < n_state<Model>; ++i)
+                for (int j = 0; j < n_state<Model>; ++j)
+                    if (slope_dependences_of<Model>.of_slope[i].contains(j)) entry[e++] = {i, j};
+        }
+    }
+    constexpr const jacobian_entry& operator[](int e) const { return entry[e]; }
+};
+template <class Model>
+inline constexpr jacobian_entries<Model> jacobian_entries_of{};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+
+namespace myriad::detail {
+
+/// The entries of a pattern, and the columns in groups without a common row, so that one evaluation of rhs with dual
 /// numbers gives all columns of a group (Curtis, Powell and Reid, IMA J. Appl. Math. 13, 1974, 117): each column joins
 /// the first group that it fits.
 template <int n, int entries>
 struct jacobian_groups {
     int count = 0;
     int group_of_column[n]{};
-    int row[entries]{}, group[entries]{};  // of each entry
+    int row[entries]{}, column[entries]{}, group[entries]{};  // of each entry
 
     template <class Entries>
-    constexpr explicit jacobian_groups(const Entries& declared) {
+    constexpr explicit jacobian_groups(const Entries& given) {
         number_set<n> rows[n]{}, taken[n]{};
-        for (int e = 0; e < entries; ++e) rows[declared[e].column].insert(declared[e].row);
+        for (int e = 0; e < entries; ++e) rows[given[e].column].insert(given[e].row);
         for (int j = 0; j < n; ++j) {
             int g = 0;
             while (rows[j].meets(taken[g])) ++g;
@@ -97,13 +217,15 @@ struct jacobian_groups {
             if (g >= count) count = g + 1;
         }
         for (int e = 0; e < entries; ++e) {
-            row[e] = declared[e].row;
-            group[e] = group_of_column[declared[e].column];
+            row[e] = given[e].row;
+            column[e] = given[e].column;
+            group[e] = group_of_column[given[e].column];
         }
     }
 };
 
 template <class Model>
-inline constexpr jacobian_groups<n_state<Model>, n_jacobian_entry<Model>> jacobian_groups_of{Model::jacobian_pattern};
+inline constexpr jacobian_groups<n_state<Model>, n_jacobian_entry<Model>> jacobian_groups_of{
+    jacobian_entries_of<Model>};
 
 }  // namespace myriad::detail

@@ -24,7 +24,7 @@ concept random_real = std::same_as<R, float> || std::same_as<R, double>;
 /// Philox4x32-10, a bijection of the counters for every key: Salmon, Moraes, Dror and Shaw, "Parallel random numbers:
 /// as easy as 1, 2, 3", SC11 (2011), section 3.3. Different counters, or keys, give independent bits. The low word of
 /// `key` is key[0].
-MYRIAD_FUNCTION constexpr random_block philox_4x32_10(random_block counter, std::uint64_t key) {
+MYRIAD_FUNCTION random_block philox_4x32_10(random_block counter, std::uint64_t key) {
     std::uint32_t key_0 = static_cast<std::uint32_t>(key), key_1 = static_cast<std::uint32_t>(key >> 32);
     for (int round = 0; round < 10; ++round) {
         const std::uint64_t a = std::uint64_t{0xd2511f53} * counter[0], b = std::uint64_t{0xcd9e8d57} * counter[2];
@@ -40,7 +40,7 @@ MYRIAD_FUNCTION constexpr random_block philox_4x32_10(random_block counter, std:
 /// before word 0. For float one of 2^23 parts: (2 k + 1) / 2^24. All are exact, none is 0 or 1, and u and 1 - u are
 /// equally likely.
 template <random_real R>
-MYRIAD_FUNCTION constexpr R uniform_of(const random_block& bits) {
+MYRIAD_FUNCTION R uniform_of(const random_block& bits) {
     constexpr int digits = std::numeric_limits<R>::digits;
     const std::uint64_t all = std::uint64_t{bits[1]} << 32 | bits[0];
     const std::uint64_t odd = all >> (64 - digits) | 1;
@@ -128,13 +128,12 @@ template <random_real R>
 class random_numbers {
 public:
     /// Draws of instance `index` in phase `phase`, from number `first` on.
-    MYRIAD_FUNCTION constexpr random_numbers(std::uint64_t seed, std::int64_t index, std::int32_t phase,
-                                             std::uint32_t first = 0)
+    MYRIAD_FUNCTION random_numbers(std::uint64_t seed, std::int64_t index, std::int32_t phase, std::uint32_t first = 0)
         : seed_(seed), index_(static_cast<std::uint64_t>(index)), phase_(static_cast<std::uint32_t>(phase)),
           draw_(first) {}
 
     /// Uniform in (0, 1): see uniform_of.
-    MYRIAD_FUNCTION constexpr R uniform() { return uniform_of<R>(next()); }
+    MYRIAD_FUNCTION R uniform() { return uniform_of<R>(next()); }
     /// Uniform between two numbers; because of rounding, either may be returned.
     MYRIAD_FUNCTION R uniform(R from, R to) { return std::fma(to - from, uniform(), from); }
     /// Normal with mean zero and variance one: normal_quantile of a uniform number, within +-8.3 (float 5.3).
@@ -142,7 +141,7 @@ public:
     MYRIAD_FUNCTION R normal(R mean, R standard_deviation) { return std::fma(standard_deviation, normal(), mean); }
 
     /// The bits of the next draw.
-    MYRIAD_FUNCTION constexpr random_block next() {
+    MYRIAD_FUNCTION random_block next() {
         return philox_4x32_10(
             random_block{static_cast<std::uint32_t>(index_), static_cast<std::uint32_t>(index_ >> 32), phase_, draw_++},
             seed_);

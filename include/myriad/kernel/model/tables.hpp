@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "myriad/kernel/core/macros.hpp"
+#include "myriad/kernel/scalar/dependence.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
@@ -17,6 +18,8 @@ template <class T, class R>
 MYRIAD_FUNCTION R lookup(const T* table, int stride, int rows, const R& row) {
     if constexpr (detail::is_dual<R>) {
         return R(myriad::lookup(table, stride, rows, row.value));
+    } else if constexpr (detail::is_dependence<R>) {
+        return R();
     } else {
         R found(T(0));
         for (int i = 0; i < lanes_of<R>; ++i) {
@@ -34,6 +37,8 @@ template <class T, class R>
 MYRIAD_FUNCTION R find_interval(const T* table, int knots, const R& x) {
     if constexpr (detail::is_dual<R>) {
         return R(myriad::find_interval(table, knots, x.value));
+    } else if constexpr (detail::is_dependence<R>) {
+        return R();
     } else {
         R found(T(0));
         for (int i = 0; i < lanes_of<R>; ++i) {

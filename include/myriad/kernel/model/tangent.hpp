@@ -146,10 +146,10 @@ struct with_tangents : detail::tangent_layers::after_event_layer<Model, vectors>
     static constexpr int n_tangent = vectors * n_original;
     static constexpr int n_state = n_original + n_tangent;  ///< number of all states
     /// Component c of tangent vector i, among the states.
-    MYRIAD_FUNCTION static constexpr int tangent(int c, int i = 0) { return n_original + i * n_original + c; }
+    MYRIAD_FUNCTION static int tangent(int c, int i = 0) { return n_original + i * n_original + c; }
 
     /// The sum of ln |r_ii| over the phases, among the accessories.
-    MYRIAD_FUNCTION static constexpr int growth(int i = 0) { return detail::n_accessory<Model> + i; }
+    MYRIAD_FUNCTION static int growth(int i = 0) { return detail::n_accessory<Model> + i; }
     /// The time summed, among the accessories.
     static constexpr int time_summed = detail::n_accessory<Model> + vectors;
     static constexpr int phase_began = time_summed + 1;  ///< the time at which the current phase began

@@ -21,9 +21,9 @@ struct dual {
     S derivative;
 
     dual() = default;
-    MYRIAD_FUNCTION constexpr dual(const S& value_, const S& derivative_) : value(value_), derivative(derivative_) {}
-    MYRIAD_FUNCTION constexpr dual(const S& constant) : value(constant), derivative(S(value_type(0))) {}
-    MYRIAD_FUNCTION constexpr dual(value_type constant) requires(!std::is_same_v<S, value_type>)
+    MYRIAD_FUNCTION dual(const S& value_, const S& derivative_) : value(value_), derivative(derivative_) {}
+    MYRIAD_FUNCTION dual(const S& constant) : value(constant), derivative(S(value_type(0))) {}
+    MYRIAD_FUNCTION dual(value_type constant) requires(!std::is_same_v<S, value_type>)
         : value(S(constant)), derivative(S(value_type(0))) {}
 
     friend MYRIAD_FUNCTION dual operator-(const dual& a) { return dual(-a.value, -a.derivative); }

@@ -27,7 +27,7 @@ requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION auto floor
 }
 /// Of whole numbers; zero for a zero divisor.
 template <std::signed_integral A, std::signed_integral B>
-MYRIAD_FUNCTION constexpr auto floor_mod(A a, B b) {
+MYRIAD_FUNCTION auto floor_mod(A a, B b) {
     using T = std::common_type_t<A, B>;
     if (b == 0 || b == -1) return T(0);  // the latter as the quotient of the least number has no place
     const T rest = static_cast<T>(a % b);
@@ -52,7 +52,7 @@ requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION auto floor
 }
 /// Of whole numbers; zero for a zero divisor.
 template <std::signed_integral A, std::signed_integral B>
-MYRIAD_FUNCTION constexpr auto floor_divide(A a, B b) {
+MYRIAD_FUNCTION auto floor_divide(A a, B b) {
     using T = std::common_type_t<A, B>;
     if (b == 0) return T(0);
     if (b == -1) return static_cast<T>(wrapping_subtract(T(0), a));

@@ -176,7 +176,7 @@ public:
 private:
     static constexpr int count = words_for(size);
     /// The bits of word k that stand for masks.
-    static MYRIAD_FUNCTION constexpr std::uint32_t used(int k) {
+    static MYRIAD_FUNCTION std::uint32_t used(int k) {
         const int bits = size - 32 * k;
         return bits >= 32 ? ~std::uint32_t(0) : (std::uint32_t(1) << bits) - 1;
     }

@@ -280,15 +280,15 @@ MYRIAD_BINARY(fmod)
 
 /// For integers, such as integer accessories.
 template <std::integral T>
-MYRIAD_FUNCTION constexpr T min(T a, T b) {
+MYRIAD_FUNCTION T min(T a, T b) {
     return b < a ? b : a;
 }
 template <std::integral T>
-MYRIAD_FUNCTION constexpr T max(T a, T b) {
+MYRIAD_FUNCTION T max(T a, T b) {
     return a < b ? b : a;
 }
 template <std::signed_integral T>
-MYRIAD_FUNCTION constexpr T abs(T a) {
+MYRIAD_FUNCTION T abs(T a) {
     return a < 0 ? wrapping_subtract(T(0), a) : a;
 }
 

@@ -63,7 +63,7 @@ requires(!plain_number<Mask>)  // `a & b` of two bools is an int
 
 /// x as an S, narrowed deliberately if a double literal meets a float kind.
 template <class S, class A>
-MYRIAD_FUNCTION constexpr S to_kind(const A& x) {
+MYRIAD_FUNCTION S to_kind(const A& x) {
     if constexpr (plain_number<A> && !plain_number<S>) {
         return S(static_cast<typename S::value_type>(x));
     } else {
@@ -112,7 +112,7 @@ inline constexpr R nan_of = std::numeric_limits<R>::quiet_NaN();
 /// a where the mask holds, otherwise b. Both are evaluated. Kinds may be mixed: `select(x > 0.0, x, 0.0)`; with packs
 /// the mask may be a plain bool.
 template <class Mask, class A, class B>
-MYRIAD_FUNCTION constexpr auto select(const Mask& mask, const A& a, const B& b) {
+MYRIAD_FUNCTION auto select(const Mask& mask, const A& a, const B& b) {
     using S = typename detail::selected<Mask, A, B>::type;
     if constexpr (detail::plain_number<S>) {
         return mask ? static_cast<S>(a) : static_cast<S>(b);
@@ -125,18 +125,18 @@ MYRIAD_FUNCTION constexpr auto select(const Mask& mask, const A& a, const B& b) 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Whether a mask holds in some lane, and in all.
-MYRIAD_FUNCTION constexpr bool any(bool mask) { return mask; }
-MYRIAD_FUNCTION constexpr bool all(bool mask) { return mask; }
+MYRIAD_FUNCTION bool any(bool mask) { return mask; }
+MYRIAD_FUNCTION bool all(bool mask) { return mask; }
 /// The lanes of a mask as bits, lane i as bit i.
-MYRIAD_FUNCTION constexpr std::uint64_t bits(bool mask) { return mask ? 1u : 0u; }
+MYRIAD_FUNCTION std::uint64_t bits(bool mask) { return mask ? 1u : 0u; }
 
 /// Lane i of a scalar, a pack or a mask; `set_lane` writes it.
 template <plain_number T>
-MYRIAD_FUNCTION constexpr T get_lane(T value, int) {
+MYRIAD_FUNCTION T get_lane(T value, int) {
     return value;
 }
 template <plain_number T>
-MYRIAD_FUNCTION constexpr void set_lane(T& value, int, std::type_identity_t<T> lane) {
+MYRIAD_FUNCTION void set_lane(T& value, int, std::type_identity_t<T> lane) {
     value = lane;
 }
 

@@ -27,7 +27,7 @@ struct wrapping_bits {
 template <std::signed_integral S>
 struct wrapping_bits<S> {
     using type = std::make_unsigned_t<S>;
-    static MYRIAD_FUNCTION constexpr S result(type x) { return static_cast<S>(x); }
+    static MYRIAD_FUNCTION S result(type x) { return static_cast<S>(x); }
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
@@ -36,7 +36,7 @@ namespace myriad::inline MYRIAD_TARGET {
 
 #define MYRIAD_WRAPPING(name, symbol)                                                                                  \
     template <class A, class B>                                                                                        \
-    requires(detail::is_whole<A> && detail::is_whole<B>) MYRIAD_FUNCTION constexpr auto name(const A& a, const B& b) { \
+    requires(detail::is_whole<A> && detail::is_whole<B>) MYRIAD_FUNCTION auto name(const A& a, const B& b) {           \
         using S = detail::common_kind<A, B>;                                                                           \
         using bits = detail::wrapping_bits<S>;                                                                         \
         using type = typename bits::type;                                                                              \

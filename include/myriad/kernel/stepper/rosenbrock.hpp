@@ -79,6 +79,12 @@ inline constexpr int first_new_stage = [] {
     return j == row - 1 ? j : 0;
 }();
 
+/// Whether the solution is the argument of the last stage plus that stage, so that algebraic equations hold at the end
+/// of a step as they do in its last stage.
+template <class Method>
+inline constexpr bool is_stiffly_accurate = first_new_stage<Method, Method::stages> == Method::stages - 1 &&
+                                            Method::tableau().weight(Method::stages, Method::stages - 1) == 1;
+
 /// One row of weights of the given kind.
 template <class Method>
 constexpr auto rosenbrock_weights(rosenbrock_row kind, std::size_t row) {
@@ -181,12 +187,16 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
     const S shift = per_h * S(reciprocal_gamma<Method, real_of<S>>);
     loop::all([&](auto i) MYRIAD_LAMBDA {
         loop::all([&](auto j) MYRIAD_LAMBDA { lu.a[i][j] = -lu.a[i][j]; });
-        lu.a[i][i] = shift + lu.a[i][i];
+        if constexpr (!has_mass_matrix<Model>) lu.a[i][i] = shift + lu.a[i][i];
+    });
+    static_for<0, n_mass_entry<Model>>([&](auto m) MYRIAD_LAMBDA {
+        constexpr int entry = decltype(m)::value, i = mass_row<Model, entry>, j = mass_column<Model, entry>;
+        lu.a[i][j] = fma(S(mass_value<Model, entry, real_of<S>>), shift, lu.a[i][j]);
     });
     return factorise(lu);
 }
 
-/// The same for a matrix of the model's declared pattern.
+/// The same for a matrix whose pattern is known.
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
                                                   const inputs<Model, S>& p, sparse_lu_factors<Model, S>& lu) {
@@ -196,8 +206,19 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
     const S shift = per_h * S(reciprocal_gamma<Method, real_of<S>>);
     loop::template range<0, tables::n_entry>([&](auto e) MYRIAD_LAMBDA { lu.a[e] = S(real_of<S>(0)); });
     loop::template range<0, n_state<Model>>([&](auto i) MYRIAD_LAMBDA {
-        lu.a[lu_type::template at<&tables::diagonal>(i)] = shift;
-        lu.size[i] = abs(shift);
+        if constexpr (has_mass_matrix<Model>) {
+            lu.size[i] = S(real_of<S>(0));
+        } else {
+            lu.a[lu_type::template at<&tables::diagonal>(i)] = shift;
+            lu.size[i] = abs(shift);
+        }
+    });
+    static_for<0, n_mass_entry<Model>>([&](auto m) MYRIAD_LAMBDA {
+        constexpr int entry = decltype(m)::value, i = mass_row<Model, entry>;
+        constexpr int place = lu_tables_of<Model>.position[n_jacobian_entry<Model> + entry];
+        const S term = S(mass_value<Model, entry, real_of<S>>) * shift;
+        lu.a[place] = lu.a[place] + term;
+        if constexpr (i == mass_column<Model, entry>) lu.size[i] = lu.size[i] + abs(term);
     });
     detail::for_each_jacobian_entry<Model, loop>(t, y, p, [&](auto e, const S& derivative) MYRIAD_LAMBDA {
         const auto place = lu_type::template at<&tables::position>(e);
@@ -231,7 +252,7 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
     stage_factors<Model, S> lu;
     trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
     vec<S, n> slope_t;
-    if constexpr (!autonomous<Model>) slope_t = detail::time_derivative<Model>(t, y, p);
+    if constexpr (depends_on_time<Model>) slope_t = detail::time_derivative<Model>(t, y, p);
 
     vec<S, n> increment, slope = trial.k[0];
     // Writes the argument of stage `row`, or the new state, to trial.y.
@@ -258,11 +279,20 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
         }
         loop::all([&](auto c) MYRIAD_LAMBDA {
             S right = slope[c];
-            if constexpr (i > 0)
+            if constexpr (i > 0 && !has_mass_matrix<Model>)
                 right = fma(per_h, detail::sum_stages<Method, rosenbrock_row::coupling, i, i>(trial.u, c), right);
-            if constexpr (!autonomous<Model> && time_weight != R(0)) right = fma(h * S(time_weight), slope_t[c], right);
+            if constexpr (depends_on_time<Model> && time_weight != R(0))
+                right = fma(h * S(time_weight), slope_t[c], right);
             trial.u[stage][c] = right;
         });
+        if constexpr (i > 0) {
+            static_for<0, n_mass_entry<Model>>([&](auto m) MYRIAD_LAMBDA {
+                constexpr int entry = decltype(m)::value, row = mass_row<Model, entry>;
+                const S moved =
+                    detail::sum_stages<Method, rosenbrock_row::coupling, i, i>(trial.u, mass_column<Model, entry>);
+                trial.u[stage][row] = fma(per_h * S(mass_value<Model, entry, R>), moved, trial.u[stage][row]);
+            });
+        }
         solve_factorised(lu, trial.u[stage]);
     });
     advance(constant_index<Method::stages>{});

@@ -72,7 +72,7 @@ MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& 
     stage_factors<Model, R> lu;
     trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
     vec<R, n> slope_t;
-    if constexpr (!autonomous<Model>) slope_t = detail::time_derivative<Model>(t, y, p);
+    if constexpr (depends_on_time<Model>) slope_t = detail::time_derivative<Model>(t, y, p);
 
     vec<R, n> slope = trial.k[0];
     MYRIAD_ROLLED
@@ -97,9 +97,17 @@ MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& 
             if constexpr (Method::first_same_as_last)
                 if (at_end) trial.k[1] = slope;
         }
+        if constexpr (has_mass_matrix<Model>) {
+            vec<R, n> moved{};
+            static_for<0, n_mass_entry<Model>>([&](auto m) MYRIAD_LAMBDA {
+                constexpr int entry = decltype(m)::value, row = mass_row<Model, entry>;
+                moved[row] = fma(mass_value<Model, entry, R>, right[mass_column<Model, entry>], moved[row]);
+            });
+            right = moved;
+        }
         loop::all([&](auto c) MYRIAD_LAMBDA {
             right[c] = right[c] + slope[c];
-            if constexpr (!autonomous<Model>)
+            if constexpr (depends_on_time<Model>)
                 right[c] = fma(h * rosenbrock_table_of<Method, R>.time_weight[i], slope_t[c], right[c]);
         });
         solve_factorised(lu, right);

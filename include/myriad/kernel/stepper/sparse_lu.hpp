@@ -6,6 +6,7 @@
 #include "myriad/kernel/core/table_loop.hpp"
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/model/jacobian_pattern.hpp"
+#include "myriad/kernel/model/mass_matrix.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
@@ -115,27 +116,54 @@ struct lu_tables {
 };
 
 template <class Model>
-inline constexpr symbolic_lu<n_state<Model>> symbolic_lu_of{Model::jacobian_pattern, n_jacobian_entry<Model>};
+inline constexpr symbolic_lu<n_state<Model>> symbolic_lu_of{matrix_entries_of<Model>, n_matrix_entry<Model>};
 template <class Model>
 inline constexpr lu_tables<n_state<Model>, symbolic_lu_of<Model>.lower, symbolic_lu_of<Model>.upper,
-                           symbolic_lu_of<Model>.updates, n_jacobian_entry<Model>>
-    lu_tables_of{symbolic_lu_of<Model>, Model::jacobian_pattern};
+                           symbolic_lu_of<Model>.updates, n_matrix_entry<Model>>
+    lu_tables_of{symbolic_lu_of<Model>, matrix_entries_of<Model>};
 
 /// Most updates for which a GPU's code is written out.
 inline constexpr int most_updates = 4096;
 
-/// Whether stiff methods use the declared pattern: beyond the sizes whose dense, pivoted factors stay in registers, and
-/// as long as the code that is written out does not become too long.
+/// Whether no entry on the diagonal of a stiff method's matrix is always zero. With a mass matrix there may be one, if
+/// an algebraic equation does not contain the state of its own number.
+template <class Model>
+constexpr bool has_full_diagonal() {
+    if constexpr (has_mass_matrix<Model>) {
+        number_set<n_state<Model>> diagonal;
+        for (const jacobian_entry& e : matrix_entries_of<Model>.entry)
+            if (e.row == e.column) diagonal.insert(e.row);
+        return diagonal.size() == n_state<Model>;
+    } else {
+        return true;
+    }
+}
+
+/// Whether stiff methods use the pattern of the Jacobian: beyond the sizes whose dense, pivoted factors stay in
+/// registers, and as long as the code that is written out does not become too long.
 template <class Model>
 constexpr bool factorises_sparsely_of() {
-    if constexpr (has_jacobian_pattern<Model> && n_state < Model >> 6) {
-        return symbolic_lu_of<Model>.updates <= most_updates;
-    } else {
-        return false;
+    if constexpr (n_state < Model >> 6) {
+        if constexpr (n_jacobian_entry < Model >> 0)
+            return has_full_diagonal<Model>() && symbolic_lu_of<Model>.updates <= most_updates;
     }
+    return false;
 }
 template <class Model>
 inline constexpr bool factorises_sparsely = factorises_sparsely_of<Model>();
+
+template <class Model>
+constexpr int n_factor_entry_of() {
+    constexpr int n = n_state<Model>;
+    if constexpr (factorises_sparsely<Model>) {
+        return n + symbolic_lu_of<Model>.lower + symbolic_lu_of<Model>.upper;
+    } else {
+        return n * n;
+    }
+}
+/// Number of entries of a stiff method's factors.
+template <class Model>
+inline constexpr int n_factor_entry = n_factor_entry_of<Model>();
 
 }  // namespace myriad::detail
 

@@ -16,12 +16,19 @@ MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const 
         static_assert(n_tangent<Model> == 0,
                       "stiff methods do not take with_tangents: their Jacobian would need second "
                       "derivatives of rhs; use an explicit method");
+        static_assert(!has_mass_matrix<Model> || is_stiffly_accurate<Method>,
+                      "the model has a mass_matrix, which this method does not take, as its last stage is not the "
+                      "solution: use rodas_5p");
+        static_assert(mass_entries_fit<Model>,
+                      "an entry of the model's mass_matrix has a row or a column that is no state");
         if constexpr (loops_over_stages<Method, Model, S>) {
             detail::rosenbrock_step_in_a_loop<Method, Model>(t, h, t1, y, p, trial);
         } else {
             detail::rosenbrock_step<Method, Model>(t, h, t1, y, p, trial);
         }
     } else {
+        static_assert(!has_mass_matrix<Model>,
+                      "the model has a mass_matrix, which explicit methods do not take: use rodas_5p");
         detail::explicit_rk_step<Method, Model>(t, h, t1, y, p, trial);
     }
 }
