@@ -156,9 +156,7 @@ private:
         return block;
     }
     /// Whether the local memory of blocks of at most one warp stays in the cache of a multiprocessor. A warp has that
-    /// of 32 threads, word by word side by side, however many of them run. 1000 instances of stiff networks (rodas_5p,
-    /// NVIDIA H200), ms by blocks of 2 and of 32: 32 states, 3.7 KB per thread, 47.8 and 18.6; 64 states, 12 KB, 531
-    /// and 166.
+    /// of 32 threads, word by word side by side, however many of them run: docs/numerics.md has what that cost.
     bool fits_the_cache(std::int64_t size, std::int64_t block) const {
         const std::int64_t blocks = (size + block - 1) / block;
         const std::int64_t resident = (blocks + multiprocessors_ - 1) / multiprocessors_;
