@@ -20,7 +20,8 @@ MYRIAD_TEST_KERNEL_VARIABLE(kernel_count, in_kernels)
 
 /// One more evaluation on the CPU; in a file of its own, compiled without the instruction-set flags.
 void add();
-/// One more evaluation.
+/// One more evaluation. A template, as it calls what is not constexpr.
+template <int = 0>
 MYRIAD_FUNCTION void count() {
 #if defined(__CUDA_ARCH__)
     atomicAdd(&in_kernels.evaluations, 1ull);
