@@ -5,6 +5,7 @@
 // is what happens nearly always, and for the rest, where rounding decides.
 #pragma once
 
+#include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
