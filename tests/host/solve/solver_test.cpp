@@ -261,6 +261,7 @@ TEST_CASE("a solver whose ensemble was replaced after the upload does not read m
     auto& kept = s.instances();
     fill(kept);
     s.upload();
+    s.wait();
     kept = myriad::ensemble<swing>(5);
     const char* const said = "was replaced by another";
     refused([&] { s.integrate(); }, {said});

@@ -54,6 +54,7 @@ public:
     std::int64_t next() {
         // A lane that asks again has finished its last instance; at first it had none.
         if (++done_ >= tell_at_) tell();
+        ask_after_many();
         if (next_ == end_) {
             next_ = std::min(all_.begun.fetch_add(chunk_, std::memory_order_relaxed), size_);
             end_ = std::min(next_ + chunk_, size_);
@@ -67,10 +68,7 @@ public:
     bool gives_up(std::int64_t iterations) { return iterations >= ask_at_ && ask(iterations); }
     /// The same between two phases of an instance, of which many may be too short for `gives_up` to be asked.
     bool gives_up_before(std::int32_t) {
-        if (options_.stop != nullptr && --phases_before_asking_ == 0) {
-            phases_before_asking_ = ask_every;
-            return ask(ask_at_ - ask_every);  // when `gives_up` asks next stays as it is
-        }
+        ask_after_many();
         return all_.given_up.load(std::memory_order_relaxed);
     }
     /// Whether the instance given last is to be left as it is.
@@ -79,6 +77,12 @@ public:
 private:
     static constexpr std::int64_t ask_every = 1024;
 
+    /// Asks after many instances or phases, which may all be too short for `gives_up` to be asked in them.
+    void ask_after_many() {
+        if (options_.stop == nullptr || --phases_before_asking_ > 0) return;
+        phases_before_asking_ = ask_every;
+        ask(ask_at_ - ask_every);  // when `gives_up` asks next stays as it is
+    }
     __attribute__((noinline)) bool ask(std::int64_t iterations) {
         if (reports_) all_.follow(options_, size_);
         if (all_.stopped) next_ = end_;
