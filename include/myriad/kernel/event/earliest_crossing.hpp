@@ -32,11 +32,12 @@ MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, F
     return first;
 }
 
-/// Element j, without an address, so that a GPU thread's stay in registers.
+/// Element j by comparisons, so that a GPU thread's vector stays in registers: nvcc would put it into memory for an
+/// index that varies, and for a loop here, too.
 template <class R, int m>
 MYRIAD_FUNCTION R element(const vec<R, m>& values, int j) {
     R value = values[0];
-    static_for<1, m>([&](auto k) MYRIAD_LAMBDA {  // nvcc gives values that a loop reads so an address
+    static_for<1, m>([&](auto k) MYRIAD_LAMBDA {
         const R other = values[k];
         if (j == k) value = other;
     });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // How near to zero event functions count as on their surface, at their event, or past it.
 //
-// Event location is compiled for both kinds: for tolerances that were given and functions farther away than they, which
-// is what happens nearly always, and for the rest, where rounding decides.
+// Event location is compiled twice. Nearly always, tolerances were given, and functions are farther from zero than
+// these: that is the plain kind. In the rest, rounding decides.
 #pragma once
 
 #include "myriad/kernel/core/vec.hpp"
@@ -17,10 +17,8 @@ struct plain_nearness {
 
     const kernel_arguments<Model, R>& args;
 
-    MYRIAD_FUNCTION R rounding(int) const { return R(0); }
     MYRIAD_FUNCTION R floor(int) const { return R(0); }
     MYRIAD_FUNCTION R band(int j) const { return args.event[j].tolerance; }
-    MYRIAD_FUNCTION R past(int j) const { return band(j); }
 };
 
 /// For any functions. It lies in memory, as few steps need it.
