@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Checks that the layers of the library only point down: folders of headers include each other without a cycle, and
 the kernel body, which both compilers see, includes nothing of the host side, no Eigen and no library that only a host
-has."""
+has. Of the kernel body, the headers in CUDA_CODE alone ask whether nvcc compiles them."""
 import argparse
 import re
 import sys
@@ -17,15 +17,25 @@ KERNEL_LIBRARY = {
     "type_traits", "utility", "xsimd/xsimd.hpp",
 }
 
+# The headers with code of their own for nvcc. All others are the same for both compilers.
+CUDA_CODE = {
+    "myriad/kernel/core/macros.hpp",            # execution spaces, unrolling, barriers
+    "myriad/kernel/core/vec.hpp",               # indices out of range, which nvcc's host compiler refuses
+    "myriad/kernel/scalar/math.hpp",            # functions of one number
+    "myriad/kernel/scalar/trigonometry.hpp",
+    "myriad/kernel/scalar/control_number.hpp",  # the step-size control's kind of number
+    "myriad/kernel/controller/norm.hpp",
+    "myriad/kernel/controller/fast_power.hpp",
+    "myriad/kernel/integrator/company.hpp",     # the threads of a warp
+}
 
-def read_headers(roots):
-    """The headers of all include roots, by the path used in includes, each with its own includes."""
-    headers = {}
-    for root in roots:
-        for path in sorted(root.rglob("*")):
-            if path.suffix in (".hpp", ".cuh"):
-                headers[path.relative_to(root).as_posix()] = INCLUDE.findall(path.read_text(encoding="utf-8"))
-    return headers
+ASKS_FOR_CUDA = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*\b__(?:CUDA\w*|NVCC)__", re.MULTILINE)
+
+
+def read_texts(roots):
+    """The headers of all include roots, by the path used in includes."""
+    return {path.relative_to(root).as_posix(): path.read_text(encoding="utf-8")
+            for root in roots for path in sorted(root.rglob("*")) if path.suffix in (".hpp", ".cuh")}
 
 
 def layer(header):
@@ -61,6 +71,17 @@ def misplaced_includes(headers):
             elif own == "kernel" and name not in KERNEL_LIBRARY:
                 yield (f"{header} includes <{name}>, which the kernel body, seen by both compilers, does without: "
                        "move the code that needs it to the host side")
+
+
+def misplaced_cuda_code(texts, cuda_code):
+    """The headers outside the backends that ask for nvcc and may not, or are said to and do not."""
+    asking = {header for header, text in texts.items()
+              if layer(header) not in ("cuda", "python") and ASKS_FOR_CUDA.search(text)}
+    for header in sorted(asking - cuda_code):
+        yield (f"{header} asks whether nvcc compiles it: the kernel body is one source for both compilers; use a macro "
+               "of myriad/kernel/core/macros.hpp, or name the header in CUDA_CODE")
+    for header in sorted(cuda_code - asking):
+        yield f"CUDA_CODE names {header}, which does not ask whether nvcc compiles it: remove it there"
 
 
 def folder_graph(headers):
@@ -100,11 +121,12 @@ def find_cycle(graph):
     return None
 
 
-def complaints(roots):
-    headers = read_headers(roots)
-    if not headers:
+def complaints(roots, cuda_code=frozenset(CUDA_CODE)):
+    texts = read_texts(roots)
+    if not texts:
         return [f"no headers in {', '.join(map(str, roots))}"]
-    found = list(misplaced_includes(headers))
+    headers = {header: INCLUDE.findall(text) for header, text in texts.items()}
+    found = [*misplaced_includes(headers), *misplaced_cuda_code(texts, cuda_code)]
     graph = folder_graph(headers)
     cycle = find_cycle(graph)
     if cycle:

@@ -16,21 +16,27 @@ SOUND = {
     "myriad/kernel/core/macros.hpp": [],
     "myriad/kernel/model/lane.hpp": ["myriad/kernel/core/vec.hpp"],
     "myriad/openmp/run.hpp": ["omp.h", "myriad/host/core/error.hpp", "myriad/kernel/model/lane.hpp"],
+    "myriad/cuda/run.cuh": ["myriad/kernel/model/lane.hpp"],
 }
+CUDA_CODE = {"myriad/kernel/core/macros.hpp"}
+MACROS = "#if defined(__CUDACC__)\n#define MYRIAD_FUNCTION __device__\n#endif\n"
 
 
 class CheckIncludeGraph(unittest.TestCase):
-    def complaints_of(self, changed):
+    def complaints_of(self, changed, code=None):
+        """The complaints about SOUND with other includes in some headers, and further lines of code in some."""
+        code = {"myriad/kernel/core/macros.hpp": MACROS, **(code or {})}
         with tempfile.TemporaryDirectory() as folder:
             for name, includes in {**SOUND, **changed}.items():
                 path = Path(folder, name)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 form = '#include "{}"\n' if "/" in name else "#include <{}>\n"
-                path.write_text("#pragma once\n" + "".join(form.format(i) for i in includes), encoding="utf-8")
-            return complaints([Path(folder)])
+                path.write_text("#pragma once\n" + "".join(form.format(i) for i in includes) + code.get(name, ""),
+                                encoding="utf-8")
+            return complaints([Path(folder)], CUDA_CODE)
 
-    def assert_found(self, changed, *words):
-        found = "\n".join(self.complaints_of(changed))
+    def assert_found(self, changed, *words, code=None):
+        found = "\n".join(self.complaints_of(changed, code))
         for word in words:
             self.assertIn(word, found)
 
@@ -76,6 +82,26 @@ class CheckIncludeGraph(unittest.TestCase):
 
     def test_an_include_of_nothing(self):
         self.assert_found({"myriad/model.hpp": ["myriad/kernel/core/gone.hpp"]}, "does not exist")
+
+    def test_kernel_code_that_asks_for_nvcc(self):
+        for asks in ("#if defined(__CUDA_ARCH__)", "#ifdef __CUDACC__", "#  if !defined(__NVCC__)",
+                     "#if defined(__FMA__) || \\\n    defined(__CUDA_ARCH__)"):
+            self.assert_found({}, "lane.hpp asks whether nvcc",
+                              code={"myriad/kernel/model/lane.hpp": asks + "\n#endif\n"})
+
+    def test_host_code_that_asks_for_nvcc(self):
+        self.assert_found({}, "error.hpp asks whether nvcc",
+                          code={"myriad/host/core/error.hpp": "#ifdef __CUDACC__\n#endif\n"})
+
+    def test_a_backend_may_ask_for_nvcc_and_a_comment_may_name_it(self):
+        self.assertEqual(self.complaints_of({}, {
+            "myriad/cuda/run.cuh": "#if defined(__CUDA_ARCH__)\n#endif\n",
+            "myriad/kernel/model/lane.hpp": "// __CUDA_ARCH__ is not asked for here\n",
+        }), [])
+
+    def test_a_header_that_may_ask_for_nvcc_and_does_not(self):
+        self.assert_found({}, "CUDA_CODE names myriad/kernel/core/macros.hpp",
+                          code={"myriad/kernel/core/macros.hpp": ""})
 
 
 if __name__ == "__main__":

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The execution-space macros: the only place that depends on the compiler, besides backends/cuda,
-// kernel/scalar/control_number.hpp, and a few functions with different code for CUDA devices (in math.hpp,
-// fast_power.hpp and norm.hpp).
+// The execution-space macros: all that depends on the compiler, but for backends/cuda and a few functions with
+// different code for CUDA devices. tests/scripts/check_include_graph.py lists the headers that have such.
 #pragma once
 
 #include "myriad/kernel/core/abi.hpp"
