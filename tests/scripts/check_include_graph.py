@@ -26,7 +26,7 @@ CUDA_CODE = {
     "myriad/kernel/scalar/control_number.hpp",  # the step-size control's kind of number
     "myriad/kernel/controller/norm.hpp",
     "myriad/kernel/controller/fast_power.hpp",
-    "myriad/kernel/integrator/company.hpp",     # the threads of a warp
+    "myriad/kernel/integrator/warp_aggregation.hpp",
 }
 
 ASKS_FOR_CUDA = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*\b__(?:CUDA\w*|NVCC)__", re.MULTILINE)

@@ -33,5 +33,5 @@ MYRIAD_INSTANTIATE(hooked::ramp, myriad::cash_karp)
 MYRIAD_INSTANTIATE(hooked::renormalised, myriad::cash_karp)
 
 MYRIAD_INSTANTIATE(hooked::phased_by_events, myriad::cash_karp)
-MYRIAD_INSTANTIATE(hooked::watched, myriad::cash_karp)
+MYRIAD_INSTANTIATE(hooked::hooks_logged, myriad::cash_karp)
 MYRIAD_INSTANTIATE(hooked::early_reader, myriad::cash_karp)

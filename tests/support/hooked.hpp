@@ -10,7 +10,7 @@
 namespace hooked {
 
 /// The oscillator with every hook logged. Its last two events are the same function: both fire at once.
-struct watched : problems::oscillator {
+struct hooks_logged : problems::oscillator {
     enum event { turning_point, zero, zero_too, n_event };
 
     template <class R>

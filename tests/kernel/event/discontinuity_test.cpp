@@ -4,11 +4,11 @@
 
 #include "tests/catch.hpp"
 #include "tests/kernel/event/levels.hpp"
+#include "tests/kernel/event/logged_motions.hpp"
 #include "tests/kernel/event/time_models.hpp"
-#include "tests/kernel/event/watching.hpp"
 #include "tests/support/device.hpp"
 
-using namespace watching;
+using namespace logged_motions;
 
 namespace {
 

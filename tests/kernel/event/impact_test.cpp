@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Impacts with a law of restitution: times against the closed form, accumulation, and that no ball passes the floor.
 #include "tests/catch.hpp"
+#include "tests/kernel/event/logged_motions.hpp"
 #include "tests/kernel/event/time_models.hpp"
-#include "tests/kernel/event/watching.hpp"
 #include "tests/support/device.hpp"
 
-using namespace watching;
+using namespace logged_motions;
 
 namespace {
 
@@ -20,8 +20,8 @@ double impact_time(int n) {
 }
 
 auto ball(double t_end) {
-    return ensemble_of(motion{.x = height, .a = -gravity}, {position(0, watch::bounce), never(), never()}, 0, t_end,
-                       restitution);
+    return ensemble_of(motion{.x = height, .a = -gravity}, {position(0, logged_motion::bounce), never(), never()}, 0,
+                       t_end, restitution);
 }
 
 myriad::options ball_options(double step) {
@@ -57,10 +57,10 @@ TEMPLATE_TEST_CASE("impacts that accumulate end the instance as event_accumulati
         CHECK(report.count(myriad::status::event_accumulation) == 1);
         // flights below the event tolerance last less than 1e-5; most of the 50 that follow are counted
         CHECK(std::abs(e.t()[0] - accumulation) <= 1e-6);
-        CHECK(e.accessory(watch::smallest_x)[0] >= -impact_tolerance);
-        CHECK(e.state(watch::x)[0] >= -impact_tolerance);
-        CHECK(std::abs(e.state(watch::x)[0]) <= impact_tolerance);
-        CHECK(std::isfinite(e.state(watch::v)[0]));
+        CHECK(e.accessory(logged_motion::smallest_x)[0] >= -impact_tolerance);
+        CHECK(e.state(logged_motion::x)[0] >= -impact_tolerance);
+        CHECK(std::abs(e.state(logged_motion::x)[0]) <= impact_tolerance);
+        CHECK(std::isfinite(e.state(logged_motion::v)[0]));
     }
 }
 
@@ -69,14 +69,14 @@ TEMPLATE_TEST_CASE("the limit of impacts is announced early by the flights that 
         for (const double tolerance : {1e-6, 1e-12}) {
             for (const std::int64_t limit : {10, 50, 200}) {
                 CAPTURE(kept, tolerance, limit);
-                auto e = ensemble_of(motion{.x = height, .a = -gravity}, {position(0, watch::bounce), never(), never()},
-                                     0, 200, kept);
+                auto e = ensemble_of(motion{.x = height, .a = -gravity},
+                                     {position(0, logged_motion::bounce), never(), never()}, 0, 200, kept);
                 auto o = options_for(tolerance, 0.01, myriad::direction::falling);
                 o.accumulation_limit = limit;
                 solve<TestType>(e, o);
                 CHECK(e.status(0) == myriad::status::event_accumulation);
                 const double rest = std::sqrt(2 * height / gravity) * (1 + kept) / (1 - kept);
-                const double left = 2 * e.state(watch::v)[0] / (gravity * (1 - kept));
+                const double left = 2 * e.state(logged_motion::v)[0] / (gravity * (1 - kept));
                 if (tolerance < 1e-9) CHECK(std::abs(e.t()[0] + left - rest) <= 1e-9);
                 // An impact is found within the tolerance of zero, so that a flight within the tolerance may rise by
                 // twice as much.
@@ -92,15 +92,15 @@ TEMPLATE_TEST_CASE("impacts that accumulate over phases that end at maxima do no
     for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
         for (const bool one_call : {true, false}) {
             CAPTURE(tolerance, one_call);
-            auto e = ensemble_of(motion{.x = height, .a = -gravity}, {position(0, watch::bounce), velocity(), never()},
-                                 0, 20, 0.8);
+            auto e = ensemble_of(motion{.x = height, .a = -gravity},
+                                 {position(0, logged_motion::bounce), velocity(), never()}, 0, 20, 0.8);
             auto o = options_for(tolerance, 0.01, myriad::direction::falling);
             o.events[1].stop_after = 1;
             o.phase_time = myriad::phase_time::carry_on;
             o.phases = one_call ? 300 : 1;
             for (int call = 0; call < (one_call ? 1 : 300); ++call) solve<TestType>(e, o);
             CHECK(e.status(0) == myriad::status::event_accumulation);
-            CHECK(e.accessory(watch::smallest_x)[0] >= -tolerance);
+            CHECK(e.accessory(logged_motion::smallest_x)[0] >= -tolerance);
             CHECK(std::abs(e.t()[0] - std::sqrt(2 * height / gravity) * 1.8 / 0.2) <= 10 * std::sqrt(tolerance));
         }
     }
@@ -131,12 +131,13 @@ TEMPLATE_TEST_CASE("flights shorter than the resolution of time do not let the b
                 for (const std::int64_t limit : {50, 1000}) {
                     CAPTURE(t_begin, kept, tolerance, limit);
                     auto e = ensemble_of(motion{.x = height, .a = -gravity},
-                                         {position(0, watch::bounce), never(), never()}, t_begin, t_begin + 20, kept);
+                                         {position(0, logged_motion::bounce), never(), never()}, t_begin, t_begin + 20,
+                                         kept);
                     auto o = options_for(tolerance, 0.01, myriad::direction::falling);
                     o.accumulation_limit = limit;
                     solve<TestType>(e, o);
                     CHECK(e.status(0) == myriad::status::event_accumulation);
-                    CHECK(e.accessory(watch::smallest_x)[0] >= -tolerance);
+                    CHECK(e.accessory(logged_motion::smallest_x)[0] >= -tolerance);
                     CHECK(e.t()[0] < t_begin + 10);
                 }
             }
@@ -146,32 +147,32 @@ TEMPLATE_TEST_CASE("flights shorter than the resolution of time do not let the b
 
 TEMPLATE_TEST_CASE("a ball without restitution comes to rest on the floor and does not fall through it", "",
                    ALL_METHODS) {
-    auto e =
-        ensemble_of(motion{.x = height, .a = -gravity}, {position(0, watch::bounce), never(), never()}, 0, 20, 0.0);
+    auto e = ensemble_of(motion{.x = height, .a = -gravity}, {position(0, logged_motion::bounce), never(), never()}, 0,
+                         20, 0.0);
     const auto report = solve<TestType>(e, ball_options(0.01));
     CHECK(report.count(myriad::status::event_accumulation) == 1);
     // it may sink from a tolerance above the floor to a tolerance below it, for 2 sqrt(tol / g), before each impact
     CHECK(std::abs(e.t()[0] - impact_time(1)) <= 50 * 2 * std::sqrt(impact_tolerance / gravity));
-    CHECK(e.accessory(watch::smallest_x)[0] >= -impact_tolerance);
+    CHECK(e.accessory(logged_motion::smallest_x)[0] >= -impact_tolerance);
 }
 
 TEMPLATE_TEST_CASE("balls that bounce for a long time never pass the floor by more than the tolerance", "",
                    ALL_METHODS) {
     std::vector<motion> starts;
     for (int i = 0; i < 100; ++i) starts.push_back({.x = 0.01 * (i + 1), .v = 0.1 * (i % 7 - 3), .a = -1 - 0.2 * i});
-    auto e = ensemble_of(starts, {position(0, watch::bounce), never(), never()}, 0, 3, 0.8);
+    auto e = ensemble_of(starts, {position(0, logged_motion::bounce), never(), never()}, 0, 3, 0.8);
     solve<TestType>(e, options_for(1e-9, 0.05));
     for (Eigen::Index i = 0; i < e.size(); ++i) {
         CAPTURE(i);
-        CHECK(e.accessory(watch::smallest_x)[i] >= -1e-9);
+        CHECK(e.accessory(logged_motion::smallest_x)[i] >= -1e-9);
         CHECK((e.status(i) == myriad::status::success || e.status(i) == myriad::status::event_accumulation));
         CHECK(count_of(e, i) > 0);
     }
 }
 
 TEMPLATE_TEST_CASE("a ball between two walls hits them in turn", "", ALL_METHODS) {
-    auto e =
-        ensemble_of(motion{.x = 0.25, .v = 1}, {position(0, watch::bounce), position(1, watch::bounce), never()}, 0, 5);
+    auto e = ensemble_of(motion{.x = 0.25, .v = 1},
+                         {position(0, logged_motion::bounce), position(1, logged_motion::bounce), never()}, 0, 5);
     const auto report = solve<TestType>(e, options_for(1e-10, 0.1));
     CHECK(report.count(myriad::status::success) == 1);
     // straight flights: each impact's error is at most the tolerance over the speed, 1
@@ -183,8 +184,8 @@ TEMPLATE_TEST_CASE("impacts that a step happens to end on are not taken for accu
     // 200 impacts two units of time apart; every step of 0.25 that ends on a wall is exact
     for (const double step : {0.25, 0.07}) {
         CAPTURE(step);
-        auto e =
-            ensemble_of(motion{.v = 1}, {position(1, watch::bounce), position(-1, watch::bounce), never()}, 0, 400);
+        auto e = ensemble_of(
+            motion{.v = 1}, {position(1, logged_motion::bounce), position(-1, logged_motion::bounce), never()}, 0, 400);
         auto o = options_for(1e-6, step);
         o.maximum_step = step;
         solve<TestType>(e, o);
@@ -199,13 +200,14 @@ TEMPLATE_TEST_CASE("impacts far from t = 0 take no time from the flights between
     constexpr double speed = 1.1, flight = 249;
     for (const double t_begin : {0.0, 1e6, 1e9}) {
         CAPTURE(t_begin);
-        auto e = ensemble_of(motion{.v = speed}, {position(1, watch::bounce), position(-1, watch::bounce), never()},
+        auto e = ensemble_of(motion{.v = speed},
+                             {position(1, logged_motion::bounce), position(-1, logged_motion::bounce), never()},
                              t_begin, t_begin + flight);
         solve<TestType>(e, options_for(1e-12, 0.1));
         CHECK(e.status(0) == myriad::status::success);
         REQUIRE(count_of(e) == 137);
         // the 137th was on the upper wall; the error of an impact within its tolerance doubles for all that follow
-        CHECK(std::abs(e.state(watch::x)[0] - (2 * 137 - speed * flight)) <= 2 * 137 * 2e-12);
+        CHECK(std::abs(e.state(logged_motion::x)[0] - (2 * 137 - speed * flight)) <= 2 * 137 * 2e-12);
     }
 }
 

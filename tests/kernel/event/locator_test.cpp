@@ -4,11 +4,11 @@
 #include <random>
 
 #include "tests/catch.hpp"
+#include "tests/kernel/event/logged_motions.hpp"
 #include "tests/kernel/event/time_models.hpp"
-#include "tests/kernel/event/watching.hpp"
 #include "tests/support/device.hpp"
 
-using namespace watching;
+using namespace logged_motions;
 using myriad::direction;
 
 namespace {
@@ -318,7 +318,7 @@ TEMPLATE_TEST_CASE("an event within the rounding of t_end does not fail the inst
         } else {  // the steps' lengths, differences of rounded times, may leave x short of the surface
             const double rounding =
                 1000.5 * std::numeric_limits<double>::epsilon() * static_cast<double>(e.accepted_steps()[0]);
-            CHECK(std::abs(e.state(watch::x)[0] - 0.5e6) <= 1e6 * rounding);
+            CHECK(std::abs(e.state(logged_motion::x)[0] - 0.5e6) <= 1e6 * rounding);
         }
     }
 }
@@ -445,14 +445,15 @@ TEMPLATE_TEST_CASE("a crossing that redone steps overshoot is not put at the sta
 
 TEMPLATE_TEST_CASE("a wall steeper than its tolerance still throws the ball back every time", "", ALL_METHODS) {
     // positions of 1e6 have a resolution of 1e-10, a hundred times the tolerance
-    auto e = ensemble_of(motion{.x = 1e6 + 1.7, .v = -1.3},
-                         {position(1e6, watch::bounce), position(1e6 + 2, watch::bounce), never()}, 0, 10);
+    auto e =
+        ensemble_of(motion{.x = 1e6 + 1.7, .v = -1.3},
+                    {position(1e6, logged_motion::bounce), position(1e6 + 2, logged_motion::bounce), never()}, 0, 10);
     CHECK_THROWS_AS(solve<TestType>(e, options_for(1e-12, 0.07)), myriad::error);
     solve_unchecked<TestType>(e, options_for(1e-12, 0.07));
     CHECK(e.status(0) == myriad::status::success);
     CHECK(agree(times_of(e, 0), {1.7 / 1.3, 5.7 / 1.3, 9.7 / 1.3}, 1e-8));
     CHECK(agree(times_of(e, 1), {3.7 / 1.3, 7.7 / 1.3, 11.7 / 1.3}, 1e-8));
-    CHECK(e.accessory(watch::smallest_x)[0] >= 1e6 - 1e-9);
+    CHECK(e.accessory(logged_motion::smallest_x)[0] >= 1e6 - 1e-9);
 }
 
 TEMPLATE_TEST_CASE("no located state lies beyond its event, for a thousand random springs", "", ALL_METHODS) {
@@ -486,8 +487,8 @@ TEMPLATE_TEST_CASE("no located state lies beyond its event, for a thousand rando
                 if (std::min(slack, other) < 0.05) continue;
                 wrong_number += count_of(e, i) != expected;
                 if (expected == 0) continue;
-                beyond += !(e.accessory(watch::beyond)[i] <= tolerance);
-                short_of += !(e.accessory(watch::gap)[i] <= tolerance);
+                beyond += !(e.accessory(logged_motion::beyond)[i] <= tolerance);
+                short_of += !(e.accessory(logged_motion::gap)[i] <= tolerance);
             }
             CHECK(wrong_number == 0);
             CHECK(beyond == 0);
@@ -510,13 +511,14 @@ TEST_CASE("a float ball that accumulates never passes the floor") {
     for (const double kept : {0.9, 0.5, 0.1}) {
         for (const double t_begin : {0.0, 1000.0}) {
             CAPTURE(kept, t_begin);
-            auto e = ensemble_of<float>(motion{.x = 1, .a = -9.81}, {position(0, watch::bounce), never(), never()},
-                                        t_begin, t_begin + 20, kept);
+            auto e =
+                ensemble_of<float>(motion{.x = 1, .a = -9.81}, {position(0, logged_motion::bounce), never(), never()},
+                                   t_begin, t_begin + 20, kept);
             auto o = options_for(1e-5, 0.01, direction::falling);
             o.relative_tolerance = o.absolute_tolerance = 1e-5;
             solve<myriad::cash_karp>(e, o);
             CHECK(e.status(0) == myriad::status::event_accumulation);
-            CHECK(e.accessory(watch::smallest_x)[0] >= -1e-5f);
+            CHECK(e.accessory(logged_motion::smallest_x)[0] >= -1e-5f);
         }
     }
 }

@@ -2,9 +2,9 @@
 // Several events in one step, and their actions: order in time, simultaneous events, stopping, which action runs, jumps
 // and resets by an action, and the steps that follow.
 #include "tests/catch.hpp"
-#include "tests/kernel/event/watching.hpp"
+#include "tests/kernel/event/logged_motions.hpp"
 
-using namespace watching;
+using namespace logged_motions;
 
 namespace {
 
@@ -87,7 +87,7 @@ TEMPLATE_TEST_CASE("a phase stops after the chosen number of detections of an ev
         CHECK(times_of(e, 0).size() == static_cast<std::size_t>(n));
         CHECK(times_of(e, 1).size() == static_cast<std::size_t>(n));  // the other events are counted up to there
         CHECK(std::abs(e.t()[0] - pi * static_cast<double>(n)) <= 1e-9);
-        CHECK(std::abs(e.state(watch::x)[0]) <= 1e-10);  // the tolerance of the event
+        CHECK(std::abs(e.state(logged_motion::x)[0]) <= 1e-10);  // the tolerance of the event
     }
 }
 
@@ -102,21 +102,22 @@ TEMPLATE_TEST_CASE("the earlier of two stopping events in one step ends the phas
         solve<TestType>(e, o);
         CHECK(order_of(log_of(e)) == std::vector<int>{early});
         CHECK(std::abs(e.t()[0] - 0.3) <= 1e-12);
-        CHECK(std::abs(e.state(watch::x)[0] - 0.3) <= 1e-12);
+        CHECK(std::abs(e.state(logged_motion::x)[0] - 0.3) <= 1e-12);
     }
 }
 
 TEMPLATE_TEST_CASE("an action may end the phase or the instance", "", ALL_METHODS) {
-    for (const int what : {watch::end_phase, watch::end_instance}) {
+    for (const int what : {logged_motion::end_phase, logged_motion::end_instance}) {
         auto e = ensemble_of(drift, {position(0.5, what), never(), never()}, 0, 1);
         auto o = options_for(1e-12, 0.1);
         o.phases = 3;
         o.phase_time = myriad::phase_time::carry_on;
         solve<TestType>(e, o);
         CHECK(count_of(e) == 1);
-        CHECK(e.phases_done()[0] == (what == watch::end_phase ? 3 : 1));
-        CHECK(e.t()[0] == (what == watch::end_phase ? 1 : times_of(e)[0]));
-        CHECK(e.status(0) == (what == watch::end_phase ? myriad::status::success : myriad::status::stopped_by_user));
+        CHECK(e.phases_done()[0] == (what == logged_motion::end_phase ? 3 : 1));
+        CHECK(e.t()[0] == (what == logged_motion::end_phase ? 1 : times_of(e)[0]));
+        CHECK(e.status(0) ==
+              (what == logged_motion::end_phase ? myriad::status::success : myriad::status::stopped_by_user));
     }
 }
 
@@ -126,10 +127,10 @@ TEMPLATE_TEST_CASE("only the action of the event that fired runs", "", ALL_METHO
             CAPTURE(firing_event, acting);
             std::array<function, 3> f{never(), never(), never()};
             f[static_cast<std::size_t>(firing_event)] = time(0.5);
-            f[static_cast<std::size_t>(acting)].action = watch::jump_v;
+            f[static_cast<std::size_t>(acting)].action = logged_motion::jump_v;
             auto e = ensemble_of(drift, f, 0, 1);
             solve<TestType>(e, options_for(1e-12, 0.1));
-            CHECK(e.state(watch::v)[0] == (firing_event == acting ? 2.0 : 1.0));
+            CHECK(e.state(logged_motion::v)[0] == (firing_event == acting ? 2.0 : 1.0));
             CHECK(count_of(e) == 1);
         }
     }
@@ -137,25 +138,25 @@ TEMPLATE_TEST_CASE("only the action of the event that fired runs", "", ALL_METHO
 
 TEMPLATE_TEST_CASE("an impact reverses the velocity by the law of restitution and leaves the position", "",
                    ALL_METHODS) {
-    auto e = ensemble_of(motion{.x = 1, .v = -2}, {position(0, watch::bounce), never(), never()}, 0, 1, 0.7);
+    auto e = ensemble_of(motion{.x = 1, .v = -2}, {position(0, logged_motion::bounce), never(), never()}, 0, 1, 0.7);
     solve<TestType>(e, options_for(1e-12, 0.1));
-    CHECK(std::abs(e.state(watch::v)[0] - 1.4) <= 1e-15);
-    CHECK(std::abs(e.state(watch::x)[0] - 0.5 * 1.4) <= 3e-12);  // 1e-12 in x at the impact, twice
+    CHECK(std::abs(e.state(logged_motion::v)[0] - 1.4) <= 1e-15);
+    CHECK(std::abs(e.state(logged_motion::x)[0] - 0.5 * 1.4) <= 3e-12);  // 1e-12 in x at the impact, twice
 }
 
 TEMPLATE_TEST_CASE("a quantity reset to zero by its own action fires again at the next true crossing only", "",
                    ALL_METHODS) {
-    auto e = ensemble_of(sine, {position(0, watch::zero_x), never(), never()}, 0, 13);
+    auto e = ensemble_of(sine, {position(0, logged_motion::zero_x), never(), never()}, 0, 13);
     solve<TestType>(e, options_for(1e-10, 1e-3));
     CHECK(agree(times_of(e), {pi, 2 * pi, 3 * pi, 4 * pi}, 1e-9));
 
-    auto once = ensemble_of(motion{.x = -0.5, .v = 1}, {position(0, watch::zero_x), never(), never()}, 0, 10);
+    auto once = ensemble_of(motion{.x = -0.5, .v = 1}, {position(0, logged_motion::zero_x), never(), never()}, 0, 10);
     solve<TestType>(once, options_for(1e-10, 0.1));
     CHECK(agree(times_of(once), {0.5}, 1e-9));
 }
 
 TEMPLATE_TEST_CASE("a quantity moved back by its own action fires every time it comes by", "", ALL_METHODS) {
-    auto e = ensemble_of(motion{.x = 0.5, .v = 1}, {position(1, watch::lower_x), never(), never()}, 0, 5);
+    auto e = ensemble_of(motion{.x = 0.5, .v = 1}, {position(1, logged_motion::lower_x), never(), never()}, 0, 5);
     solve<TestType>(e, options_for(1e-10, 0.1));
     CHECK(agree(times_of(e), {0.5, 1.5, 2.5, 3.5, 4.5}, 1e-9));
     CHECK(e.status(0) == myriad::status::success);
@@ -164,7 +165,8 @@ TEMPLATE_TEST_CASE("a quantity moved back by its own action fires every time it 
 TEMPLATE_TEST_CASE("a quantity that jumps across zero by an action does not fire, but its next true crossing does", "",
                    ALL_METHODS) {
     // x goes from 0.5 to 1, falls back to 0 and passes 0.25 upwards each time, never downwards but by the jump
-    auto e = ensemble_of(motion{.x = 0.5, .v = 1}, {position(1, watch::lower_x), position(0.25), never()}, 0, 3.4);
+    auto e =
+        ensemble_of(motion{.x = 0.5, .v = 1}, {position(1, logged_motion::lower_x), position(0.25), never()}, 0, 3.4);
     solve<TestType>(e, options_for(1e-10, 0.1));
     CHECK(agree(times_of(e, 0), {0.5, 1.5, 2.5}, 1e-9));
     CHECK(agree(times_of(e, 1), {0.75, 1.75, 2.75}, 1e-9));
@@ -173,7 +175,8 @@ TEMPLATE_TEST_CASE("a quantity that jumps across zero by an action does not fire
 TEMPLATE_TEST_CASE("a quantity that another event's action puts on the surface fires at its next true crossing", "",
                    ALL_METHODS) {
     // at t = 0.2 x is set to 0 from -0.8, and rises from there; it falls through 0 again at 0.2 + 2 v / |a|
-    auto e = ensemble_of(motion{.x = -1, .v = 1, .a = -0.5}, {position(), time(0.2, watch::zero_x), never()}, 0, 6);
+    auto e =
+        ensemble_of(motion{.x = -1, .v = 1, .a = -0.5}, {position(), time(0.2, logged_motion::zero_x), never()}, 0, 6);
     solve<TestType>(e, options_for(1e-10, 0.1));
     CHECK(times_of(e, 1).size() == 1);
     CHECK(agree(times_of(e, 0), {0.2 + 2 * 0.9 / 0.5}, 1e-9));

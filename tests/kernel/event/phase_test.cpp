@@ -2,20 +2,21 @@
 // Events where phases and calls end: each crossing fires exactly once, and a loop on the host gives the same bits as
 // phases in one call.
 #include "tests/catch.hpp"
+#include "tests/kernel/event/logged_motions.hpp"
 #include "tests/kernel/event/time_models.hpp"
-#include "tests/kernel/event/watching.hpp"
 #include "tests/support/device.hpp"
 
-using namespace watching;
+using namespace logged_motions;
 
 namespace {
 
-bool same_results(const myriad::ensemble<watch>& a, const myriad::ensemble<watch>& b) {
+bool same_results(const myriad::ensemble<logged_motion>& a, const myriad::ensemble<logged_motion>& b) {
     bool same = true;
     const auto compare = [&](const auto& x, const auto& y) { same = same && (x == y).all(); };
-    for (int c = 0; c < watch::n_state; ++c) compare(a.state(c), b.state(c));
-    for (int c = 0; c < watch::at; ++c) compare(a.accessory(c), b.accessory(c));
-    for (int c = 0; c < watch::n_integer_accessory; ++c) compare(a.integer_accessory(c), b.integer_accessory(c));
+    for (int c = 0; c < logged_motion::n_state; ++c) compare(a.state(c), b.state(c));
+    for (int c = 0; c < logged_motion::at; ++c) compare(a.accessory(c), b.accessory(c));
+    for (int c = 0; c < logged_motion::n_integer_accessory; ++c)
+        compare(a.integer_accessory(c), b.integer_accessory(c));
     compare(a.t(), b.t());
     compare(a.phases_done(), b.phases_done());
     compare(a.accepted_steps(), b.accepted_steps());
@@ -84,8 +85,8 @@ TEMPLATE_TEST_CASE("the host may turn the flow round between phases that stop on
                 solve<TestType>(e, o);
                 CHECK(e.status(0) == myriad::status::stopped_by_event);
                 CHECK(std::abs(e.t()[0] - std::sqrt(2.0) * (2 * impact + 1)) < 1e-7);
-                e.state(watch::x) = 0.0;
-                e.state(watch::v) = -e.state(watch::v)[0];
+                e.state(logged_motion::x) = 0.0;
+                e.state(logged_motion::v) = -e.state(logged_motion::v)[0];
             }
             CHECK(count_of(e) == 4);
         }
@@ -146,7 +147,7 @@ TEMPLATE_TEST_CASE("a loop of calls gives the same bits as phases in one call", 
     std::vector<motion> starts;
     for (int i = 0; i < 23; ++i) starts.push_back({.x = 0.1 * i, .v = 1 - 0.05 * i, .a = -1, .k = 0.2 * i});
     const auto fresh = [&] {
-        return ensemble_of(starts, {position(0, watch::bounce), velocity(), position(1)}, 0, 2.5, 0.8);
+        return ensemble_of(starts, {position(0, logged_motion::bounce), velocity(), position(1)}, 0, 2.5, 0.8);
     };
     for (const double length : {0.0, 0.4}) {
         for (const auto step : {myriad::phase_step::restart, myriad::phase_step::carry_on}) {
@@ -186,9 +187,9 @@ TEMPLATE_TEST_CASE("after restart an ensemble finds its events as at first", "",
     solve<TestType>(e, options_for(1e-10, 1e-3));
     const auto first = times_of(e);
     e.restart();
-    e.state(watch::x) = 0;
-    e.state(watch::v) = 1;
-    e.integer_accessory(watch::fired) = 0;
+    e.state(logged_motion::x) = 0;
+    e.state(logged_motion::v) = 1;
+    e.integer_accessory(logged_motion::fired) = 0;
     solve<TestType>(e, options_for(1e-10, 1e-3));
     REQUIRE(times_of(e).size() == first.size());
     CHECK(agree(times_of(e), first, 0));
@@ -198,7 +199,7 @@ TEMPLATE_TEST_CASE("a state that the host puts on the surface between two calls 
     auto e = ensemble_of(motion{.x = -1, .v = 1}, {position(), never(), never()}, 0, 0.5);
     solve<TestType>(e, options_for(1e-9, 0.1));
     CHECK(count_of(e) == 0);
-    e.state(watch::x) = 0;
+    e.state(logged_motion::x) = 0;
     solve<TestType>(e, options_for(1e-9, 0.1));
     CHECK(count_of(e) == 0);
 }

@@ -3,11 +3,11 @@
 // long the steps; a tolerance says only how closely it is located. A function that touches zero has no event.
 #include "tests/catch.hpp"
 #include "tests/kernel/event/levels.hpp"
+#include "tests/kernel/event/logged_motions.hpp"
 #include "tests/kernel/event/time_models.hpp"
-#include "tests/kernel/event/watching.hpp"
 #include "tests/support/device.hpp"
 
-using namespace watching;
+using namespace logged_motions;
 using myriad::direction;
 
 namespace {
@@ -16,7 +16,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// x' = 1, and x falls back by one where it reaches one.
 template <class Method, class R = double>
-myriad::ensemble<watch, R> counter(double x, double t_end, int action, myriad::options o) {
+myriad::ensemble<logged_motion, R> counter(double x, double t_end, int action, myriad::options o) {
     auto e = ensemble_of<R>(motion{.x = x, .v = 1}, {position(t_end < 0 ? -1 : 1, action), never(), never()}, 0, t_end);
     o.events.resize(3);
     if (std::is_same_v<Method, myriad::runge_kutta_4>) o.step = 0.7;  // else of any length
@@ -85,22 +85,22 @@ TEMPLATE_TEST_CASE("without a tolerance an event is located to rounding", "", AL
     auto e = ensemble_of(sine, {position(), velocity(), never()}, 0, 100);
     const auto report = solve<TestType>(e, options_for(0, 0.01));
     CHECK(count_of(e) == 63);
-    CHECK(e.accessory(watch::gap)[0] <= 1e-16);
-    CHECK(e.accessory(watch::beyond)[0] <= 1e-16);
+    CHECK(e.accessory(logged_motion::gap)[0] <= 1e-16);
+    CHECK(e.accessory(logged_motion::beyond)[0] <= 1e-16);
     CHECK(report.located_steps <= 4 * 63);
 }
 
 TEMPLATE_TEST_CASE("a state that is set back at its event fires every time, however long the next step is", "",
                    ALL_METHODS, myriad::dormand_prince_8) {
     for (const double t_end : {1000.5, 10000.5, -1000.5}) {
-        for (const int action : {watch::zero_x, watch::lower_x}) {
-            if (t_end < 0 && action == watch::lower_x) continue;
+        for (const int action : {logged_motion::zero_x, logged_motion::lower_x}) {
+            if (t_end < 0 && action == logged_motion::lower_x) continue;
             CAPTURE(t_end, action);
             auto o = myriad::options{};
             const auto e = counter<TestType>(0, t_end, action, o);
             CHECK(e.status(0) == myriad::status::success);
             CHECK(count_of(e) == static_cast<int>(std::abs(t_end)));
-            CHECK(std::abs(std::abs(e.state(watch::x)[0]) - 0.5) <= 1e-9);
+            CHECK(std::abs(std::abs(e.state(logged_motion::x)[0]) - 0.5) <= 1e-9);
         }
     }
 }
@@ -108,13 +108,13 @@ TEMPLATE_TEST_CASE("a state that is set back at its event fires every time, howe
 TEMPLATE_TEST_CASE("no state passes its event when the steps could be as long as the domain", "", ALL_METHODS) {
     myriad::options o;
     o.max_steps = 30000;
-    const auto e = counter<TestType>(0, 1e8, watch::zero_x, o);
+    const auto e = counter<TestType>(0, 1e8, logged_motion::zero_x, o);
     CHECK(e.status(0) == myriad::status::max_steps);
     CHECK(std::abs(e.t()[0] - count_of(e)) <= 1 + 1e-9);
-    CHECK(std::abs(e.state(watch::x)[0]) <= 1 + 1e-9);
+    CHECK(std::abs(e.state(logged_motion::x)[0]) <= 1 + 1e-9);
     // from far away: the first step is 1e8 times longer than all that follow
     o.max_steps = 10'000'000;
-    const auto far = counter<TestType>(-1e4, 1e4 + 100.5, watch::lower_x, o);
+    const auto far = counter<TestType>(-1e4, 1e4 + 100.5, logged_motion::lower_x, o);
     CHECK(far.status(0) == myriad::status::success);
     CHECK(count_of(far) == 100);
 }
@@ -122,10 +122,10 @@ TEMPLATE_TEST_CASE("no state passes its event when the steps could be as long as
 TEST_CASE("a float state that is set back at its event fires every time, however long the next step is") {
     for (const double t_end : {1000.5, 5000.5}) {
         CAPTURE(t_end);
-        const auto a = counter<myriad::dormand_prince_8, float>(0, t_end, watch::zero_x, {});
+        const auto a = counter<myriad::dormand_prince_8, float>(0, t_end, logged_motion::zero_x, {});
         CHECK(a.status(0) == myriad::status::success);
         CHECK(count_of(a) == static_cast<int>(t_end));
-        const auto b = counter<myriad::tsitouras_5, float>(0, t_end, watch::zero_x, {});
+        const auto b = counter<myriad::tsitouras_5, float>(0, t_end, logged_motion::zero_x, {});
         CHECK(b.status(0) == myriad::status::success);
         CHECK(count_of(b) == static_cast<int>(t_end));
     }

@@ -18,9 +18,9 @@ using compare::each_method;
 using compare::fixed_step;
 using compare::with_tolerance;
 using hooked::domain_writer;
+using hooked::hooks_logged;
 using hooked::kicked_base;
 using hooked::parameter_writer;
-using hooked::watched;
 using myriad::cash_karp;
 using myriad::device;
 using myriad::ensemble;
@@ -35,10 +35,10 @@ constexpr double pi = 3.14159265358979323846;
 
 /// Every hook call of the oscillator from (1, 0) over [0, 5] in two phases, instance by instance.
 template <class Method>
-std::vector<std::vector<call>> watch(std::int64_t size) {
-    ensemble<watched> e(size);
-    for (std::int64_t i = 0; i < size; ++i) e.state(watched::x)[i] = 1 + 0.125 * static_cast<double>(i);
-    e.state(watched::v) = 0.0;
+std::vector<std::vector<call>> calls_of(std::int64_t size) {
+    ensemble<hooks_logged> e(size);
+    for (std::int64_t i = 0; i < size; ++i) e.state(hooks_logged::x)[i] = 1 + 0.125 * static_cast<double>(i);
+    e.state(hooks_logged::v) = 0.0;
     e.time_domain(0, 5);
     options o = with_tolerance(1e-9, 1.0 / 32);
     o.phases = 2;
@@ -73,7 +73,7 @@ ensemble<Model> one(double state, double t_end, int mode) {
 
 TEST_CASE("a phase is initialise, steps each followed by the events located at its end, and finalise") {
     each_method([]<class Method> {
-        for (const auto& calls : watch<Method>(5)) {
+        for (const auto& calls : calls_of<Method>(5)) {
             int phase = 0, events = 0;
             REQUIRE(calls.size() > 4);
             CHECK(calls.front().which == hook::initialise);
@@ -113,7 +113,7 @@ TEST_CASE("a phase is initialise, steps each followed by the events located at i
 }
 TEST_CASE("initialise sees the start of its phase") {
     each_method([]<class Method> {
-        const auto calls = watch<Method>(3);
+        const auto calls = calls_of<Method>(3);
         for (std::size_t i = 0; i < calls.size(); ++i) {
             const call& first = calls[i].front();
             CHECK(first.t == 0.0);
@@ -133,7 +133,7 @@ TEST_CASE("initialise sees the start of its phase") {
 }
 TEST_CASE("after_step sees the end of its step, its length and the state there") {
     each_method([]<class Method> {
-        const auto calls = watch<Method>(3);
+        const auto calls = calls_of<Method>(3);
         for (std::size_t i = 0; i < calls.size(); ++i) {
             const double amplitude = 1 + 0.125 * static_cast<double>(i);
             double t = 0;
@@ -155,32 +155,33 @@ TEST_CASE("after_step sees the end of its step, its length and the state there")
 }
 TEST_CASE("after_event sees the state at the event and how often it has happened in this phase") {
     each_method([]<class Method> {
-        for (const auto& calls : watch<Method>(3)) {
+        for (const auto& calls : calls_of<Method>(3)) {
             int count[3] = {0, 0, 0};
             for (const call& c : calls) {
                 if (c.which == hook::initialise) count[0] = count[1] = count[2] = 0;
                 if (c.which != hook::after_event) continue;
                 CAPTURE(c.t, c.event);
-                CHECK(std::abs(c.event == watched::turning_point ? c.last : c.first) <= 1e-9);  // the event's tolerance
+                CHECK(std::abs(c.event == hooks_logged::turning_point ? c.last : c.first) <=
+                      1e-9);  // the event's tolerance
                 CHECK(c.event_count == ++count[c.event]);
                 if (c.phase == 0) {
                     const double sixth = c.t / (pi / 2);
                     CHECK(std::abs(sixth - std::round(sixth)) < 1e-7);
                 }
             }
-            CHECK(count[watched::zero] == count[watched::zero_too]);
+            CHECK(count[hooks_logged::zero] == count[hooks_logged::zero_too]);
         }
     });
 }
 TEST_CASE("events at the same time are handled in the order of their index") {
     each_method([]<class Method> {
         int pairs = 0;
-        for (const auto& calls : watch<Method>(2)) {
+        for (const auto& calls : calls_of<Method>(2)) {
             for (std::size_t i = 0; i < calls.size(); ++i) {
-                if (calls[i].which != hook::after_event || calls[i].event != watched::zero) continue;
+                if (calls[i].which != hook::after_event || calls[i].event != hooks_logged::zero) continue;
                 REQUIRE(i + 1 < calls.size());
                 CHECK(calls[i + 1].which == hook::after_event);
-                CHECK(calls[i + 1].event == watched::zero_too);
+                CHECK(calls[i + 1].event == hooks_logged::zero_too);
                 CHECK(calls[i + 1].t == calls[i].t);
                 ++pairs;
             }
@@ -190,7 +191,7 @@ TEST_CASE("events at the same time are handled in the order of their index") {
 }
 TEST_CASE("finalise sees the end of its phase") {
     each_method([]<class Method> {
-        for (const auto& calls : watch<Method>(3)) {
+        for (const auto& calls : calls_of<Method>(3)) {
             for (std::size_t k = 1; k < calls.size(); ++k) {
                 if (calls[k].which != hook::finalise) continue;
                 CHECK(calls[k].t == 5.0);

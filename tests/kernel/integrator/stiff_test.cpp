@@ -277,7 +277,7 @@ TEST_CASE(
     check_accumulation<rodas_5p, float>(1e-5f, 0.1);
 }
 
-TEST_CASE("a stiff method does not creep up to where rhs has no value beyond the state") {
+TEST_CASE("a stiff method does not stagnate before where rhs has no value beyond the state") {
     const auto check = []<class Method>(Method) {
         for (const double t_begin : {0.0, -1.0, 10.0}) {
             for (const double start : {0.0, 0.999}) {

@@ -12,7 +12,7 @@
     each(first_event) each(pick) each(factorise) each(solve_factorised) each(evaluate_rhs) each(evaluate_events) \
     each(event_slopes) each(get_lane) each(set_lane) each(get_lanes) each(same_values) each(any) each(all) \
     each(bits) each(larger) each(smaller) each(limited) each(quotient) each(commit) each(take_trial_step) \
-    each(explicit_rk_step) each(interpolate) each(complete_interpolant) each(know_slope_end) each(find_root) \
+    each(explicit_rk_step) each(interpolate) each(complete_interpolant) each(ensure_slope_end) each(find_root) \
     each(interval_from) each(choose_first_step) each(scaled_error) each(error_sum) each(fast_power) \
     each(run_on_lane) each(extract_lane) each(insert_lane) each(action_of) each(combine) each(part) each(along) \
     each(derivatives) each(polynomial) each(see_stage_before) each(time_derivative) each(dual_jacobian) \

@@ -42,7 +42,7 @@ protected:
 private:
     __device__ __forceinline__ stop_request read() const {
         const std::uint32_t* stop = stop_;
-        MYRIAD_FORGET(stop);  // else the address stays in registers through the loop
+        MYRIAD_OPTIMISATION_BARRIER(stop);  // else the address stays in registers through the loop
         return stop != nullptr ? static_cast<stop_request>(*static_cast<const volatile std::uint32_t*>(stop))
                                : stop_request::none;
     }
@@ -83,7 +83,7 @@ public:
     __device__ __forceinline__ std::int64_t next() {
         if (!gives_more()) return -1;
         std::int64_t block = blockIdx.x;
-        MYRIAD_FORGET(block);  // else the address stays in registers through the loop
+        MYRIAD_OPTIMISATION_BARRIER(block);  // else the address stays in registers through the loop
         std::int64_t place = block * blockDim.x + threadIdx.x;
         if (has_begun_) {
             if (queue_ == nullptr) return -1;

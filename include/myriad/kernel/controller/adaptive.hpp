@@ -20,7 +20,7 @@ struct adaptive_stepping {
     using mask = mask_of<S>;
     static constexpr int n = n_state<Model>;
     static constexpr bool keeps_low = keeps_time_low<Model, Method, R>;
-    static constexpr std::int32_t look_interval = 1024;
+    static constexpr std::int32_t stagnation_interval = 1024;
     using C = control_of<S>;  // less precise in CUDA threads
     using L = real_of<C>;
 
@@ -134,19 +134,19 @@ struct adaptive_stepping {
         s.ended = s.ended | (accepted & (t1 == s.data.t_end));
     }
 
-    /// Whether lane i creeps towards a point where its right-hand side has no value: at the pace of its last
-    /// `look_interval` iterations, `max_steps` of them would take t neither to t_end, nor on by the time since t_begin
-    /// or by the first step. Where t is finer than the state, a step too short to change the state succeeds and the
-    /// next, longer one fails, for ever. To be called after that many iterations each time, or fewer before the first:
-    /// the ensemble's array of times, unused within a phase, holds t at the last check.
-    MYRIAD_FUNCTION bool creeps(int i) {
+    /// Whether lane i stagnates before a point where its right-hand side has no value: at the pace of its last
+    /// `stagnation_interval` iterations, `max_steps` of them would take t neither to t_end, nor on by the time since
+    /// t_begin or by the first step. Where t is finer than the state, a step too short to change the state succeeds and
+    /// the next, longer one fails, for ever. To be called after that many iterations each time, or fewer before the
+    /// first: the ensemble's array of times, unused within a phase, holds t at the last check.
+    MYRIAD_FUNCTION bool stagnates(int i) {
         const std::int64_t index = s.instance[i];
         const R t = get_lane(s.data.t, i), gained = abs(t - args.t[index]);
         args.t[index] = t;
         if (!get_lane(s.control.last_not_finite, i)) return false;
         const R t_begin = args.t_begin != nullptr ? args.t_begin[index] : args.common_t_begin;
         const R goal = min(abs(get_lane(s.data.t_end, i) - t), max(abs(t - t_begin), args.step));
-        return gained * (static_cast<R>(args.max_steps) / R(look_interval)) < goal;
+        return gained * (static_cast<R>(args.max_steps) / R(stagnation_interval)) < goal;
     }
 
 private:

@@ -27,7 +27,7 @@ struct fixed_stepping {
     using count = count_of<S>;
     static constexpr int n = n_state<Model>;
     static constexpr bool keeps_low = keeps_time_low<Model, Method, R>;
-    static constexpr std::int32_t look_interval = 0;
+    static constexpr std::int32_t stagnation_interval = 0;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
@@ -110,7 +110,7 @@ struct fixed_stepping {
         if constexpr (has_events<Model>) s.ended = s.ended | (accepted & at_event & (s.data.t == s.data.t_end));
     }
 
-    MYRIAD_FUNCTION bool creeps(int) { return false; }
+    MYRIAD_FUNCTION bool stagnates(int) { return false; }
 
 private:
     /// The number of steps gives the time; it is only stored if something reads it.

@@ -23,7 +23,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 ///     move(i, t)                     a hook has moved the end of the phase of lane i, which is at t
 ///     resume(i, h)                   continues with step h after event location
 ///     time(i)                        time of the committed state
-///     look_interval, creeps(i)       every so many iterations: will the phase never end? 0: no check
+///     stagnation_interval, stagnates(i)
+///                                    every so many iterations: will the phase never end? 0: no check
 template <class Model, class Method, class S>
 using stepping =
     std::conditional_t<is_adaptive<Method>, adaptive_stepping<Model, Method, S>, fixed_stepping<Model, Method, S>>;

@@ -12,7 +12,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 inline constexpr int cost_buckets = 1024;
 /// Most instances that can be sorted: their indices have 32 bits. Larger ensembles are scheduled dynamically.
 inline constexpr std::int64_t most_sorted = 2'000'000'000;
-/// Threads of a CUDA block that sorts, one per bucket, and the costs that it looks at.
+/// Threads of a CUDA block that sorts, one per bucket, and the costs that it reads.
 inline constexpr int cost_block = cost_buckets, costs_per_block = 8 * cost_block;
 
 /// The bucket for a number of steps, the most expensive first: 32 per octave; zero steps go into the last one.

@@ -22,13 +22,13 @@
 #define MYRIAD_RARE_FUNCTION __host__ __device__ __noinline__
 /// A constant at namespace scope that device code reads from constant memory as an operand of its instructions.
 #define MYRIAD_CONSTANT_MEMORY __constant__
-/// Hides from the compiler that a pointer or index has not changed, so that addresses are recomputed instead of kept in
-/// registers through the loop.
-#define MYRIAD_FORGET(value) asm volatile("" : "+l"(value))
+/// An optimisation barrier: hides from the compiler that a pointer or index has not changed, so that addresses are
+/// recomputed instead of kept in registers through the loop.
+#define MYRIAD_OPTIMISATION_BARRIER(value) asm volatile("" : "+l"(value))
 #if defined(__CUDA_ARCH__)
 /// A point where diverged threads of a warp reconverge; all threads that have not exited reach it. The compiler's own
 /// reconvergence points are not enough: threads that took instances one by one were seen never to reconverge.
-#define MYRIAD_REJOIN __syncwarp()
+#define MYRIAD_RECONVERGE __syncwarp()
 /// Unrolls the following loop; in device code only up to 32 iterations, so that large states stay loops.
 #define MYRIAD_UNROLL _Pragma("unroll 32")
 /// In device code, unrolls the following loop over steps, in which constants are reloaded in every iteration.
@@ -38,7 +38,7 @@
 /// a * b rounded, where nvcc would fuse it with an addition: for results that are to be the host's.
 #define MYRIAD_ROUNDED_PRODUCT(a, b) __dmul_rn(a, b)
 #else
-#define MYRIAD_REJOIN static_cast<void>(0)
+#define MYRIAD_RECONVERGE static_cast<void>(0)
 #define MYRIAD_UNROLL
 #define MYRIAD_UNROLL_BY_FOUR
 #define MYRIAD_ROLLED
@@ -53,15 +53,15 @@
 #define MYRIAD_FLATTEN
 #else
 /// Inlines all calls within a function that contains much of the kernel body. Functions that are not always inlined, as
-/// xsimd's, g++ inlines one by one, and looks through the whole function after each, which took 32 of 52 s for four
-/// coupled oscillators. With this attribute it inlines them all before it looks.
+/// xsimd's, g++ inlines one by one, and reads the whole function after each, which took 32 of 52 s for four
+/// coupled oscillators. With this attribute it inlines them all before it reads.
 #define MYRIAD_FLATTEN __attribute__((flatten))
 #endif
 #define MYRIAD_LARGE_FUNCTION MYRIAD_FLATTEN __attribute__((noinline))
 #define MYRIAD_RARE_FUNCTION __attribute__((noinline))
 #define MYRIAD_CONSTANT_MEMORY inline constexpr
-#define MYRIAD_FORGET(value) static_cast<void>(value)
-#define MYRIAD_REJOIN static_cast<void>(0)
+#define MYRIAD_OPTIMISATION_BARRIER(value) static_cast<void>(value)
+#define MYRIAD_RECONVERGE static_cast<void>(0)
 #define MYRIAD_UNROLL_BY_FOUR
 #define MYRIAD_ROLLED
 #define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))

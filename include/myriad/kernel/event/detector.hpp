@@ -18,37 +18,38 @@ struct event_detector {
     using masks = mask_set<mask, m>;
     using trial_type = trial_step<Method, S, n>;
     using fired = fired_events<Model, S>;
-    using sight = event_sight<S, m>;
+    using detection = event_detection<S, m>;
     using ends_type = trial_ends<Model, S>;
 
     event_locator<Model, Method, S>& locator;
 
-    /// What the event functions g1 at the end of a trial show of it, whether it will be accepted or not.
-    MYRIAD_FUNCTION sight watch(const values& g1) const {
+    /// What the event functions g1 at the end of a trial show, whether it will be accepted or not.
+    MYRIAD_FUNCTION detection detect(const values& g1) const {
         const auto& sides = locator.sides;
         const auto& e = sides.e;
-        sight seen{g1, {}, mask(false)};
+        detection detected{g1, {}, mask(false)};
         masks below;
         below.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) below.set_negative(j, g1[j]);
         // A function has crossed if it was above zero and is below, or was below and is above.
-        seen.crossed = ~(e.above ^ below);
-        seen.busy = e.flags[e.in_question] | (seen.crossed & (sides.asked() | ~e.left)).any_of();
+        detected.crossed = ~(e.above ^ below);
+        detected.to_locate = e.flags[e.in_question] | (detected.crossed & (sides.asked() | ~e.left)).any_of();
         if (any(sides.s.final_step)) {
             masks far;
             far.clear();
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) far.set(j, abs(g1[j]) > S(sides.end_tolerance(j)));
-            seen.busy = seen.busy | (sides.s.final_step & !far.all_of());
+            detected.to_locate = detected.to_locate | (sides.s.final_step & !far.all_of());
         }
-        return seen;
+        return detected;
     }
 
     /// Checks an accepted trial that ends at t1. Lanes that crossed, or stopped short of their target, are set up for a
     /// redone step and removed from `accepted`. `events` then holds those that fired: at the end of the trial or, in
     /// lanes removed from `accepted`, at its start.
-    MYRIAD_FUNCTION void look(const trial_type& trial, const S& t1, const sight& seen, mask& accepted, fired& events) {
+    MYRIAD_FUNCTION void locate(const trial_type& trial, const S& t1, const detection& detected, mask& accepted,
+                                fired& events) {
         auto& sides = locator.sides;
         if constexpr (is_pack<S>) {
             events.which.clear();  // a pack's values lie in memory
@@ -56,18 +57,18 @@ struct event_detector {
         } else {
             events.clear();
         }
-        const mask busy = sides.s.running() & seen.busy;
-        mask follow = accepted & !busy;
-        if (MYRIAD_UNLIKELY(any(busy))) {
-            const ends_type ends = ends_of(trial, t1, seen.g1);
+        const mask candidates = sides.s.running() & detected.to_locate;
+        mask follow = accepted & !candidates;
+        if (MYRIAD_UNLIKELY(any(candidates))) {
+            const ends_type ends = ends_of(trial, t1, detected.g1);
             if constexpr (is_pack<S>) {
                 // Copies, so that only these need an address and the caller's variables stay in registers.
                 mask still_accepted = accepted;
-                locator.look_out_of_line(busy, ends, seen, still_accepted, events);
+                locator.locate_lanes(candidates, ends, detected, still_accepted, events);
                 accepted = still_accepted;
             } else {
                 if (accepted) {
-                    const trial_outcome outcome = locator.look_closer(0, ends, seen, events);
+                    const trial_outcome outcome = locator.locate(0, ends, detected, events);
                     accepted = outcome != trial_outcome::is_redone;
                     follow = outcome == trial_outcome::stands_before_sides;
                 } else {
@@ -76,12 +77,13 @@ struct event_detector {
             }
         }
         auto& e = sides.e;
-        masks crossed = seen.crossed.in(follow);
+        masks crossed = detected.crossed.in(follow);
         // A function whose event was just located, maybe past zero, changes its side after the event's action.
         if constexpr (!is_pack<S>) crossed = crossed & ~events.which;
         if (is_pack<S> || MYRIAD_UNLIKELY(any(crossed.any_of()))) {
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) crossed.set(j, crossed[j] & (seen.g1[j] != S(R(0))));  // zero is on either side
+            for (int j = 0; j < m; ++j)
+                crossed.set(j, crossed[j] & (detected.g1[j] != S(R(0))));  // zero is on either side
         }
         e.above = e.above ^ crossed;
         e.left = e.left | masks::all_in(follow);

@@ -70,7 +70,7 @@ MYRIAD_FUNCTION located_crossing<R> earliest_crossing(const step_ends<Model, R>&
     });
 }
 
-/// The same if just one function has crossed. Threads of a warp that look at different ones stay together.
+/// The same if just one function has crossed. Threads of a warp with different ones stay together.
 template <class Model, class R, class Nearness>
 MYRIAD_FUNCTION located_crossing<R> only_crossing(const step_ends<Model, R>& step, const vec<R, n_event<Model>>& side,
                                                   const mask_set<bool, n_event<Model>>& crossed, const Nearness& near,

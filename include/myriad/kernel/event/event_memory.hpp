@@ -14,7 +14,7 @@ template <class Model, class R>
 struct event_memory {
     using flags = mask_set<bool, n_event<Model>>;
     redone_step<R, n_event<Model>> redo;
-    event_nearness<R, n_event<Model>> near;  // of the trial that is looked at closely
+    event_nearness<R, n_event<Model>> near;  // of the trial in which events are located
     bool locating;                           // the next trial is redone, to end at an event
     flags open;                              // on the surface, side not yet known
     flags held;                              // so, unless the state was moved: then it is the side noted

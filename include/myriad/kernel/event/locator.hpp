@@ -8,9 +8,9 @@
 
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/earliest_crossing.hpp"
+#include "myriad/kernel/event/event_detection.hpp"
 #include "myriad/kernel/event/event_nearness.hpp"
-#include "myriad/kernel/event/event_sight.hpp"
-#include "myriad/kernel/event/side_follower.hpp"
+#include "myriad/kernel/event/side_tracker.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -36,7 +36,7 @@ struct event_locator {
     using ends_of_step = step_ends<Model, R>;
     using fired = fired_events<Model, S>;
 
-    side_follower<Model, Method, S> sides;
+    side_tracker<Model, Method, S> sides;
 
     /// Sets the length of the next trial in lanes that redo their step.
     MYRIAD_FUNCTION void propose_step() {
@@ -60,8 +60,8 @@ struct event_locator {
     }
 
     /// Checks the trial of one lane in which an event may have fired.
-    MYRIAD_FUNCTION trial_outcome look_closer(int i, const trial_ends<Model, S>& ends, const event_sight<S, m>& seen,
-                                              fired& events) {
+    MYRIAD_FUNCTION trial_outcome locate(int i, const trial_ends<Model, S>& ends, const event_detection<S, m>& detected,
+                                         fired& events) {
         const auto& p = sides.inputs_of(i);
         ends_of_step step(p);
         step.t = get_lane(sides.s.now(), i);
@@ -72,28 +72,28 @@ struct event_locator {
         step.slope = get_lanes<R>(ends.slope_start, i);
         if constexpr (!is_pack<S>) {
             step.g1 = ends.g;
-            flags crossed = seen.crossed & sides.asked();
-            if (is_plain(i, step, crossed)) return look_plainly(i, step, ends, crossed, events);
+            flags crossed = detected.crossed & sides.asked();
+            if (is_plain(i, step, crossed)) return locate_plain(i, step, ends, crossed, events);
         } else {
             // Not the pack's values, which may round differently from those they are compared with.
             step.g1 = detail::evaluate_events<Model>(step.t1, step.y1, p);
         }
-        return look_carefully(i, step, ends, events);
+        return locate_general(i, step, ends, events);
     }
 
     /// A redone step that failed its error test is not redone: the controller sets the length of the next.
     MYRIAD_FUNCTION void give_up(int i) {
         sides.memory_of(i).locating = false;
-        sides.note(i);
+        sides.update_in_question(i);
     }
 
-    /// Looks closer at all of these lanes whose trial is accepted, and gives up in the others. Lanes whose step is
+    /// Locates events in all of these lanes whose trial is accepted, and gives up in the others. Lanes whose step is
     /// redone are removed from `accepted`.
-    __attribute__((noinline)) void look_out_of_line(const mask& busy, const trial_ends<Model, S>& ends,
-                                                    const event_sight<S, m>& seen, mask& accepted, fired& events) {
-        for_each_lane(busy, [&](int i) MYRIAD_LAMBDA {
+    __attribute__((noinline)) void locate_lanes(const mask& candidates, const trial_ends<Model, S>& ends,
+                                                const event_detection<S, m>& detected, mask& accepted, fired& events) {
+        for_each_lane(candidates, [&](int i) MYRIAD_LAMBDA {
             if (!get_lane(accepted, i)) return give_up(i);
-            if (look_closer(i, ends, seen, events) == trial_outcome::is_redone) set_lane(accepted, i, false);
+            if (locate(i, ends, detected, events) == trial_outcome::is_redone) set_lane(accepted, i, false);
         });
     }
 
@@ -101,10 +101,10 @@ private:
     /// The part of a step, in fractions of it, that contains the crossings.
     struct step_part {
         R low = R(0), high = R(1);
-        bool scanned = false;  // found by a look at points inside the step, and the slope at its end is known
+        bool scanned = false;  // found at points inside the step, and the slope at its end is known
     };
 
-    /// Whether a trial does what nearly all do that are looked at: one function, of those in `crossed`, has crossed, or
+    /// Whether a trial does what nearly all do that come here: one function, of those in `crossed`, has crossed, or
     /// the step ends close to its event. That can be told without the rounding errors of the event functions if these
     /// are smaller than tolerances that were given: every function has a side and is beyond its tolerance, or at the
     /// event. One that has not left its surface since its event must be on the side that it was heading for.
@@ -125,8 +125,8 @@ private:
         }
         return plain && (crossed.any_of() ? !crossed.several() : arrives && !others);
     }
-    /// Looks at a trial for which `is_plain` holds.
-    MYRIAD_FUNCTION trial_outcome look_plainly(int i, ends_of_step& step, const trial_ends<Model, S>& ends,
+    /// Locates the event of a trial for which `is_plain` holds.
+    MYRIAD_FUNCTION trial_outcome locate_plain(int i, ends_of_step& step, const trial_ends<Model, S>& ends,
                                                const flags& crossed, fired& events) {
         auto& own = sides.memory_of(i);
         if (crossed.any_of()) {
@@ -134,7 +134,7 @@ private:
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) side[j] = sides.e.above.get(j, i) ? R(1) : R(-1);
             step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
-            know_end_slope(i, step, ends);
+            evaluate_end_slope(i, step, ends);
             begin_or_shorten(i, step, side, crossed, step_part{}, plain_nearness<Model, R>{sides.args}, events);
             return trial_outcome::is_redone;
         }
@@ -144,14 +144,14 @@ private:
         end_location(i);
         return trial_outcome::stands_before_sides;
     }
-    /// Looks at any trial, with the rounding errors of the event functions.
-    MYRIAD_FUNCTION trial_outcome look_carefully(int i, ends_of_step& step, const trial_ends<Model, S>& ends,
+    /// Locates the events of any trial, with the rounding errors of the event functions.
+    MYRIAD_FUNCTION trial_outcome locate_general(int i, ends_of_step& step, const trial_ends<Model, S>& ends,
                                                  fired& events) {
         auto& own = sides.memory_of(i);
         auto& near = own.near;
         step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
         near.roundings = step.roundings();
-        sides.settle_open_sides(i, step, near.roundings);
+        sides.resolve_open_sides(i, step, near.roundings);
         reals side;
         flags crossed;
         crossed.clear();
@@ -169,7 +169,7 @@ private:
         }
         step_part part;
         if (MYRIAD_UNLIKELY(sides.args.sub_samples > 1)) {
-            know_end_slope(i, step, ends);
+            evaluate_end_slope(i, step, ends);
             part.scanned = true;
             crossed = scan(i, step, side, part);
         }
@@ -184,20 +184,20 @@ private:
                 if (part.scanned && own.redo.target == j && !sides.is_asked(j, side[j])) reached.gap = infinity_of<R>;
         }
         if (!part.scanned && (crossed.any_of() || (locating ? !reached.is_plain() : is_last)))
-            know_end_slope(i, step, ends);
+            evaluate_end_slope(i, step, ends);
         if (crossed.any_of()) {
-            know_start(i, step, side);
+            evaluate_start(i, step, side);
             begin_or_shorten(i, step, side, crossed, part, near, events);
             return trial_outcome::is_redone;
         }
         if (locating) {
             if (arrive(i, step, side, reached, events) == trial_outcome::is_redone) return trial_outcome::is_redone;
         } else if (is_last) {
-            know_start(i, step, side);
+            evaluate_start(i, step, side);
             end_on_root(i, step, side, events);
         }
-        sides.follow(i, step, side);
-        sides.note(i);
+        sides.update(i, step, side);
+        sides.update_in_question(i);
         return trial_outcome::stands;
     }
 
@@ -219,11 +219,11 @@ private:
     /// The event to which the step was redone is reached.
     MYRIAD_FUNCTION void end_location(int i) {
         sides.memory_of(i).locating = false;
-        sides.note(i);
+        sides.update_in_question(i);
         stepping<Model, Method, S>{sides.args, sides.s}.resume(i, sides.memory_of(i).redo.resume);
     }
 
-    MYRIAD_FUNCTION void know_end_slope(int i, ends_of_step& step, const trial_ends<Model, S>& ends) {
+    MYRIAD_FUNCTION void evaluate_end_slope(int i, ends_of_step& step, const trial_ends<Model, S>& ends) {
         if constexpr (Method::first_same_as_last) {
             step.slope1 = get_lanes<R>(ends.slope_end, i);
         } else {
@@ -233,7 +233,7 @@ private:
     }
     /// Evaluates the event functions at the start of the step. A function at a jump that no step has passed yet counts
     /// as infinite.
-    MYRIAD_FUNCTION void know_start(int i, ends_of_step& step, const reals& side) const {
+    MYRIAD_FUNCTION void evaluate_start(int i, ends_of_step& step, const reals& side) const {
         step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j)
@@ -305,7 +305,7 @@ private:
         add_to_count(s.located, i);
         const bool here = redo.length == R(0);
         own.locating = !here;
-        sides.note(i);
+        sides.update_in_question(i);
         if (!here) return;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
@@ -393,9 +393,9 @@ private:
     }
 
     /// Events at the end of the domain: a function moving towards zero fires if it is at or past zero, or short of it
-    /// by rounding alone, judged by both its slope and the last step. A function that settles at zero, or is still
-    /// falling towards it, gets there later or never; one that is about to turn back, as at a double root, does not
-    /// cross it.
+    /// by rounding alone, judged by both its slope and the last step. A function that comes to rest at zero, or is
+    /// still falling towards it, gets there later or never; one that is about to turn back, as at a double root, does
+    /// not cross it.
     MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const reals& side, fired& events) {
         auto& own = sides.memory_of(i);
         const reals slope = step.slopes1();

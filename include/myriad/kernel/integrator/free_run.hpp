@@ -2,7 +2,7 @@
 // Runs of fixed steps without events, hooks, samples or error estimates.
 #pragma once
 
-#include "myriad/kernel/integrator/phase_watch.hpp"
+#include "myriad/kernel/integrator/phase_watchdog.hpp"
 #include "myriad/kernel/stepper/step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -27,8 +27,8 @@ struct free_run {
     template <class Source>
     MYRIAD_FUNCTION void take_steps(Source& source) {
         constexpr iteration_number worthwhile = 4, longest_block = 128, asks_every = 1 << 14;
-        // Not the last one, after which the watch is due.
-        iteration_number run = phase_watch<Model, Method, S>{args, s}.iterations_left() - 1;
+        // Not the last one, after which the check is due.
+        iteration_number run = phase_watchdog<Model, Method, S>{args, s}.iterations_left() - 1;
         R lane_step = R(0);
         for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA {
             const auto left = static_cast<iteration_number>(get_lane(s.steps.left, i)) - 1;

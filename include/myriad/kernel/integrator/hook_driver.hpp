@@ -4,7 +4,7 @@
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
-#include "myriad/kernel/event/side_follower.hpp"
+#include "myriad/kernel/event/side_tracker.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -18,7 +18,7 @@ struct hook_driver {
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
-    side_follower<Model, Method, S>& sides;
+    side_tracker<Model, Method, S>& sides;
     fired_events<Model, S>& events;  // that fired in this iteration
 
     /// Calls after_step on the lanes whose step was accepted.
@@ -75,13 +75,13 @@ struct hook_driver {
                 events.changed = events.changed | changed;
                 s.slopes.invalidate(changed);
                 check_finite(changed, before.y);
-                sides.restart(changed, events.value, events);
+                sides.update_after_hook(changed, events.value, events);
             }
-            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { sides.settle(i, events, before); });
+            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { sides.update_after_events(i, events, before); });
         } else {
             for_each_lane(acting, [&](int i) MYRIAD_LAMBDA {
                 act_on_lane(i);
-                sides.settle(i, events, s.data);
+                sides.update_after_events(i, events, s.data);
             });
         }
     }
@@ -178,7 +178,7 @@ private:
         if constexpr (has_events<Model>) {
             events.changed = events.changed | changed;
             const inputs<Model, S>& p = before;
-            sides.restart(changed, detail::evaluate_events<Model>(s.now(), before.y, p), events);
+            sides.update_after_hook(changed, detail::evaluate_events<Model>(s.now(), before.y, p), events);
         }
     }
 

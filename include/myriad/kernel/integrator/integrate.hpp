@@ -9,11 +9,11 @@
 #include "myriad/kernel/controller/initial_step.hpp"
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/detector.hpp"
-#include "myriad/kernel/integrator/company.hpp"
 #include "myriad/kernel/integrator/free_run.hpp"
 #include "myriad/kernel/integrator/hook_driver.hpp"
 #include "myriad/kernel/integrator/phase.hpp"
-#include "myriad/kernel/integrator/phase_watch.hpp"
+#include "myriad/kernel/integrator/phase_watchdog.hpp"
+#include "myriad/kernel/integrator/warp_aggregation.hpp"
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
@@ -28,12 +28,12 @@ struct integrator {
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
     static constexpr bool samples = samples_trajectory<Method>;
-    using watch_type = phase_watch<Model, Method, S>;
+    using watchdog_type = phase_watchdog<Model, Method, S>;
     using trial_type = trial_step<Method, S, n>;
     using stepping_type = stepping<Model, Method, S>;
     using event_detector_type = event_detector<Model, Method, S>;
     using event_locator_type = event_locator<Model, Method, S>;
-    using sight_type = event_sight<S, m>;
+    using detection_type = event_detection<S, m>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S> s;
@@ -50,19 +50,20 @@ struct integrator {
             events.clear();
             e.clear();
         }
-        while (!(any(s.ended) || watch_type{args, s}.is_due()) || fill_lanes(source, locator)) {
-            MYRIAD_REJOIN;
+        while (!(any(s.ended) || watchdog_type{args, s}.is_due()) || fill_lanes(source, locator)) {
+            MYRIAD_RECONVERGE;
             if constexpr (runs_freely<Model, Method>) free_run<Model, Method, S>{args, s}.take_steps(source);
             trial_type trial;
             propose_step(locator);
             take_step(trial);
-            sight_type seen;
+            detection_type detected;
             if constexpr (has_events<Model>) {
-                seen = event_detector_type{locator}.watch(detail::evaluate_events<Model>(end_time(), trial.y, s.data));
-                if (waits(seen)) continue;
+                detected =
+                    event_detector_type{locator}.detect(detail::evaluate_events<Model>(end_time(), trial.y, s.data));
+                if (waits(detected)) continue;
             }
             ++s.iteration;
-            mask accepted = judge(trial, seen, locator, events);
+            mask accepted = judge(trial, detected, locator, events);
             if constexpr (samples)
                 sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted, any_event(events));
             mask summarised;
@@ -95,13 +96,13 @@ struct integrator {
     /// Moves lanes whose phase has ended to their next phase or instance. Returns false when no lane is running.
     template <class Source>
     MYRIAD_FUNCTION bool fill_lanes(Source& source, event_locator_type& locator) {
-        watch_type watch{args, s};
+        watchdog_type watchdog{args, s};
         if (is_pack<S> || !any(s.ended)) {
-            watch.look();
-            if (gives_up(source)) watch.interrupt();
+            watchdog.check();
+            if (gives_up(source)) watchdog.interrupt();
         }
         if (!any(s.ended)) {
-            watch.plan();
+            watchdog.schedule();
             return true;
         }
         mask begun = mask(false);
@@ -109,7 +110,7 @@ struct integrator {
             set_lane(begun, i, phase_driver<Model, Method, S>{args, s, locator.sides, o}.advance(i, source));
         });
         s.ended = mask(false);
-        watch.plan();
+        watchdog.schedule();
         if constexpr (is_adaptive<Method>) {
             const mask open = begun & (s.data.h_next == S(R(0)));
             if (any(open)) detail::choose_first_step(args, s, open);
@@ -132,33 +133,33 @@ struct integrator {
     }
 
     /// Whether the trial, in which an event may begin, is to be taken again when more threads of the warp have one.
-    MYRIAD_FUNCTION bool waits(const sight_type& seen) {
+    MYRIAD_FUNCTION bool waits(const detection_type& detected) {
         if constexpr (is_pack<S>) {
             return false;
         } else {
-            constexpr auto interval = stepping_type::look_interval;
-            // The watch over long phases must not see an iteration twice.
-            const bool watched = interval > 0 && s.iteration % (interval > 0 ? interval : 1) == 0;
-            const bool begins = seen.busy && !e.flags[e.in_question];
-            return detail::waits_for_company(begins, watched, memory->waited);
+            constexpr auto interval = stepping_type::stagnation_interval;
+            // The watchdog must not see an iteration twice.
+            const bool checked = interval > 0 && s.iteration % (interval > 0 ? interval : 1) == 0;
+            const bool begins = detected.to_locate && !e.flags[e.in_question];
+            return detail::waits_for_warp(begins, checked, memory->waited);
         }
     }
 
     /// Accepts or rejects the trial by its error, its finiteness, and its not crossing an event.
-    MYRIAD_FUNCTION mask judge(const trial_type& trial, const sight_type& seen, event_locator_type& locator,
+    MYRIAD_FUNCTION mask judge(const trial_type& trial, const detection_type& detected, event_locator_type& locator,
                                fired_events<Model, S>& events) {
         const S t1 = end_time();
-        s.slopes.forget_end();
+        s.slopes.invalidate_end();
         stepping_type steps{args, s};
         if constexpr (!has_events<Model>) {
             return steps.judge(trial, t1, mask(true), [](const mask& lanes) MYRIAD_LAMBDA { return lanes; });
         } else {
             mask defined = !e.flags[e.undefined];
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) defined = defined & (seen.g1[j] == seen.g1[j]);
+            for (int j = 0; j < m; ++j) defined = defined & (detected.g1[j] == detected.g1[j]);
             mask accepted = steps.judge(trial, t1, defined,
                                         [&](const mask& lanes) MYRIAD_LAMBDA { return locator.may_stick(lanes); });
-            event_detector_type{locator}.look(trial, t1, seen, accepted, events);
+            event_detector_type{locator}.locate(trial, t1, detected, accepted, events);
             return accepted;
         }
     }

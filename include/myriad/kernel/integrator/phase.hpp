@@ -5,7 +5,7 @@
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
-#include "myriad/kernel/event/side_follower.hpp"
+#include "myriad/kernel/event/side_tracker.hpp"
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
@@ -22,14 +22,14 @@ struct phase_driver {
 
     const arguments& args;
     integration_state<Model, Method, S>& s;
-    side_follower<Model, Method, S>& sides;
+    side_tracker<Model, Method, S>& sides;
     sample_state<Method, S>& o;
 
     /// Ends the phase of lane i, if it holds an instance, and starts its next phase or the next instance that needs
     /// work. Returns false if there is none: the lane stays empty.
     template <class Source>
     MYRIAD_FUNCTION bool advance(int i, Source& source) {
-        MYRIAD_FORGET(s.instance[i]);
+        MYRIAD_OPTIMISATION_BARRIER(s.instance[i]);
         bool in_phase = s.instance[i] >= 0;
         if (in_phase && is_last(i, source)) {
             set_lane(s.active, i, false);
@@ -197,12 +197,12 @@ private:
         if constexpr (has_summaries<Model>) summariser<Model, Method, S>{s}.begin(i);
         steps.begin(i, t);
         if constexpr (m > 0) {
-            if (phase == 0) sides.forget(i);
+            if (phase == 0) sides.reset(i);
         }
         if constexpr (samples_trajectory<Method>)
             sampler<Model, Method, S>{args, s, o}.begin(i, args.phases - s.phases_left[i]);
         set_lane(s.active, i, true);
-        s.slopes.forget(i);
+        s.slopes.reset(i);
         s.instance_over[i] = false;
         set_count(s.rejected, i, 0);
         set_count(s.located, i, 0);
@@ -228,7 +228,7 @@ private:
             set_lane(s.data.h_next, i, h_next);
             s.ending[i] = status::not_finite;
         } else if (!same_values(before, after, n - n_tangent<Model>)) {
-            if constexpr (m > 0) sides.forget(i);
+            if constexpr (m > 0) sides.reset(i);
         }
     }
 
@@ -237,7 +237,7 @@ private:
         const std::int64_t index = s.instance[i];
         if (args.accepted != nullptr) count_work(i);
         set_lane(s.data.t, i, stepping_type{args, s}.time(i));
-        if constexpr (m > 0) sides.keep(i);
+        if constexpr (m > 0) sides.store(i);
         args.t[index] = get_lane(s.data.t, i);
         if constexpr (has_finalise<Model>) {
             if (!is_failure(s.ending[i])) place(i, [](auto& lane) MYRIAD_LAMBDA { Model::finalise(lane); });

@@ -17,7 +17,7 @@ struct model_numbers {
     constexpr bool operator==(const model_numbers&) const = default;
 };
 
-/// Where a model `with_tangents` has what notes about its exponents look at; zeros for other models.
+/// Where a model `with_tangents` has what notes about its exponents read; zeros for other models.
 struct tangent_places {
     std::int32_t n_original;        ///< states of the model without tangents, which are the first
     std::int32_t n_vectors;         ///< tangent vectors

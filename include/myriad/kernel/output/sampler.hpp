@@ -96,8 +96,8 @@ private:
         if (!any(due)) return;
         step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slopes.end(), {}};
         if constexpr (Method::first_same_as_last || interpolates_with_slope_end<Method>)
-            detail::know_slope_end<Model>(s, step, t1, due);
-        detail::know_inside<Model>(s, step, due);
+            detail::ensure_slope_end<Model>(s, step, t1, due);
+        detail::ensure_interpolant<Model>(s, step, due);
         while (any(due)) {
             const S theta = (o.next - step.t) / step.h;
             const auto inside = detail::interpolate(step, theta);

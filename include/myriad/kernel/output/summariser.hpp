@@ -66,7 +66,7 @@ struct summariser {
         step_type step{{s.now(), s.h, s.data.y, trial, s.slopes.end(), {}}, {}};
         if constexpr (interpolates_with_slope_end<Method> ||
                       (seeks_extrema<Model> && interpolates_between_slopes<Method>))
-            detail::know_slope_end<Model>(s, step.data, t1, accepted);
+            detail::ensure_slope_end<Model>(s, step.data, t1, accepted);
         const slopes first = at_end<0>(step, step.data.t, step.data.y), last = at_end<1>(step, t1, trial.y);
         if constexpr (integrates) know_interpolant(step, accepted);
 
@@ -136,7 +136,7 @@ private:
 
     /// Computes the stages that the interpolant needs; the slope at the end must be set.
     MYRIAD_FUNCTION void know_interpolant(step_type& step, const mask& lanes) {
-        detail::know_inside<Model>(s, step.data, lanes);
+        detail::ensure_interpolant<Model>(s, step.data, lanes);
         if constexpr (step_type::bends) {
             // The bump theta^2 (1 - theta)^2 is steepest here and, by symmetry, at 1 - c.
             constexpr R c = static_cast<R>(0.21132486540518711775L);  // (1 - 1 / sqrt(3)) / 2

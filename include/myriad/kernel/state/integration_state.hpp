@@ -80,8 +80,8 @@ struct integration_state {
     bool instance_over[lanes];
 
     // work, per instance
-    iteration_number iteration;           // iterations of the loop; every active lane takes a trial step in each
-    iteration_number next_look;           // iteration at which a phase of a pack must be checked: too long, or creeping
+    iteration_number iteration;   // iterations of the loop; every active lane takes a trial step in each
+    iteration_number next_check;  // iteration at which a phase of a pack must be checked: too long, or stagnating
     iteration_number phase_start[lanes];  // iteration at which the lane's phase began
     std::int64_t all_iterations;          // iterations before `iteration` was last reset
     count rejected, located, extra_evaluations;
@@ -107,7 +107,7 @@ struct integration_state {
 
     MYRIAD_FUNCTION void clear_iterations(const kernel_arguments<Model, R>& args) {
         iteration = lanes == 1 ? -args.max_steps : 0;
-        next_look = 0;
+        next_check = 0;
         all_iterations = 0;
     }
     /// The phase of lane i begins.

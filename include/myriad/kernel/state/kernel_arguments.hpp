@@ -103,7 +103,7 @@ struct argument_head : instance_range, instance_arrays<array_pointer, R> {
     R first_change;  // if positive, the first step is chosen by the change of the state in it: initial_step.hpp
     R minimum_step, maximum_step;
     float growth_limit, shrink_limit;  // in the precision of step-size control in CUDA threads
-    std::int32_t sub_samples;          // points of the interpolant looked at per step
+    std::int32_t sub_samples;          // points of the interpolant that are checked per step
     std::int32_t accumulation_limit;   // actions of one event without its function leaving the tolerance
     record_arguments<R> record;
     sample_arguments<R> sample;

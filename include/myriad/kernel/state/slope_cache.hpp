@@ -36,7 +36,7 @@ public:
     static constexpr int evaluations_per_trial = keeps_start ? Method::stages - 1 : Method::stages;
 
     /// Discards the slope of lane i: its phase begins.
-    MYRIAD_FUNCTION void forget(int i) { set_lane(start_known_, i, false); }
+    MYRIAD_FUNCTION void reset(int i) { set_lane(start_known_, i, false); }
     /// Discards slopes after hooks changed inputs of the right-hand side.
     MYRIAD_FUNCTION void invalidate(const mask& lanes) { start_known_ = start_known_ & !lanes; }
 
@@ -92,7 +92,7 @@ public:
     }
 
     /// A new trial: the slope at its end is unknown.
-    MYRIAD_FUNCTION void forget_end() {
+    MYRIAD_FUNCTION void invalidate_end() {
         if constexpr (knows_end) end_known_ = mask(false);
     }
     /// The slope at the end of the trial: as far as it is known; or after evaluating it in the lanes that need it.

@@ -7,7 +7,7 @@
 
 /// x' = v, v' = acceleration - stiffness x. Three event functions g_j = X x + V v + T t + Q (t - 1)^2 - c_j, with the
 /// coefficients X, V, T, Q shared and the constant c_j of each instance.
-struct watch {
+struct logged_motion {
     enum state { x, v, n_state };
     enum parameter { acceleration, stiffness, c0, c1, c2, n_parameter };
     static constexpr int n_event_shared = 4;

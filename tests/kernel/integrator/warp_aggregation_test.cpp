@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A thread that waits for company repeats a trial step: neither results nor counts may show it.
-#include "tests/kernel/integrator/company.hpp"
+// A thread that waits for its warp repeats a trial step: neither results nor counts may show it.
+#include "tests/kernel/integrator/warp_aggregation.hpp"
 
 #include <numbers>
 
@@ -28,8 +28,8 @@ myriad::ensemble<Model> integrate(myriad::options options) {
 
 template <class Method>
 void compare(const myriad::options& options) {
-    const auto now = integrate<company::at_once, Method>(options);
-    const auto later = integrate<company::waiting, Method>(options);
+    const auto now = integrate<warp_aggregation::at_once, Method>(options);
+    const auto later = integrate<warp_aggregation::waiting, Method>(options);
     CHECK(now.located_steps().sum() > 50);
     for (const auto c : {duffing::x, duffing::v}) CHECK((now.state(c) == later.state(c)).all());
     for (std::int64_t i = 0; i < now.size(); ++i) CHECK(now.status(i) == later.status(i));
@@ -42,14 +42,14 @@ void compare(const myriad::options& options) {
 
 }  // namespace
 
-TEST_CASE("a thread that waits for company before its events changes no bit and no count, with adaptive steps") {
+TEST_CASE("a thread that waits for its warp before its events changes no bit and no count, with adaptive steps") {
     compare<myriad::cash_karp>({.relative_tolerance = 1e-9, .absolute_tolerance = 1e-9});
 }
 
-TEST_CASE("a thread that waits for company before its events changes no bit and no count, with fixed steps") {
+TEST_CASE("a thread that waits for its warp before its events changes no bit and no count, with fixed steps") {
     compare<myriad::runge_kutta_4>({.step = 0.05});
 }
 
-TEST_CASE("a thread that waits for company reaches the limit of steps where one that does not wait reaches it") {
+TEST_CASE("a thread that waits for its warp reaches the limit of steps where one that does not wait reaches it") {
     compare<myriad::cash_karp>({.relative_tolerance = 1e-9, .absolute_tolerance = 1e-9, .max_steps = 95});
 }

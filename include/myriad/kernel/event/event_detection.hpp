@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the detector saw of the event functions at the end of a trial step.
+// What the detector found of the event functions at the end of a trial step.
 #pragma once
 
 #include "myriad/kernel/core/vec.hpp"
@@ -9,12 +9,12 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// The event functions at the end of a trial, compared with the sides they were on.
 template <class S, int events>
-struct event_sight {
+struct event_detection {
     vec<S, events> g1;
     mask_set<mask_of<S>, events> crossed;  // on the other side than it was, by the sign of its value
-    mask_of<S> busy;                       // an accepted trial has to be looked at more closely
+    mask_of<S> to_locate;                  // an accepted trial goes to the locator
 };
 template <class S>
-struct event_sight<S, 0> {};
+struct event_detection<S, 0> {};
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -8,5 +8,5 @@
 #define MOST_METHODS myriad::runge_kutta_4, myriad::tsitouras_5
 
 MYRIAD_INSTANTIATE(hooked::phased_by_events, MOST_METHODS)
-MYRIAD_INSTANTIATE(hooked::watched, MOST_METHODS)
+MYRIAD_INSTANTIATE(hooked::hooks_logged, MOST_METHODS)
 MYRIAD_INSTANTIATE(hooked::early_reader, MOST_METHODS)

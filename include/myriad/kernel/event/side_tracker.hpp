@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tracks the side of zero that each event function is on through steps, hooks and phases. It works on one lane, or is
-// rarely called; the check in every step is `event_detector::watch`.
+// rarely called; the check in every step is `event_detector::detect`.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ MYRIAD_FUNCTION R sign_of(R x) {
 /// rounding of zero count as zero. Right after its event a function may still be short of the surface, as closely as
 /// the event was located, but counts as on the side that its slope along the solution is heading for.
 template <class Model, class Method, class S>
-struct side_follower {
+struct side_tracker {
     using R = real_of<S>;
     using mask = mask_of<S>;
     static constexpr int n = n_state<Model>;
@@ -43,7 +43,7 @@ struct side_follower {
 
     MYRIAD_FUNCTION event_memory<Model, R>& memory_of(int i) const {
         auto* own = memory + i;
-        MYRIAD_FORGET(own);  // else nvcc keeps the values it points to in registers
+        MYRIAD_OPTIMISATION_BARRIER(own);  // else nvcc keeps the values it points to in registers
         return *own;
     }
 
@@ -59,7 +59,7 @@ struct side_follower {
     }
 
     /// Stores the sides of lane i for its next phase. A phase without a step has not evaluated its event functions.
-    MYRIAD_FUNCTION void keep(int i) const {
+    MYRIAD_FUNCTION void store(int i) const {
         if (s.iterations_of(args, i) == 0) return;
         const auto& own = memory_of(i);
         const reals g = detail::evaluate_events<Model>(get_lane(s.data.t, i), get_lanes<R>(s.data.y, i), inputs_of(i));
@@ -67,22 +67,22 @@ struct side_follower {
         const bool clear = (above ^ negative(g)).all_of() && e.left.of_lane(i).all_of() && are_beyond_tolerances(g) &&
                            !(own.open | own.on_jump).any_of();
         e.flags.set(e.kept_plain, i, clear);
-        if (MYRIAD_UNLIKELY(!clear)) return keep_carefully(i, g);
+        if (MYRIAD_UNLIKELY(!clear)) return store_general(i, g);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) kept_at(j, i) = kept_event(above[j], kept_side::beyond, 0).code();
     }
     /// Takes the sides of an instance that is new in lane i from where an earlier call has kept them.
     MYRIAD_FUNCTION void load(int i) const { e.flags.set(e.kept_plain, i, false); }
     /// Makes the next phase of lane i begin with all sides unknown.
-    MYRIAD_FUNCTION void forget(int i) const {
+    MYRIAD_FUNCTION void reset(int i) const {
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) kept_at(j, i) = 0;
     }
 
     /// Updates the sides after a hook changed inputs of event functions, whose values were `before`. A function that
     /// the hook moved has the side on which it is now or, on the surface, that which the slope at the next step shows.
-    /// One at a jump keeps the side beyond it, which its value here does not show, until `settle` looks again.
-    MYRIAD_FUNCTION void restart(const mask& lanes, const values& before, const fired& events) {
+    /// One at a jump keeps the side beyond it, which its value here does not show, until `update_after_events`.
+    MYRIAD_FUNCTION void update_after_hook(const mask& lanes, const values& before, const fired& events) {
         const values g = detail::evaluate_events<Model>(s.now(), s.data.y, s.data);
         for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA {
             auto& own = memory_of(i);
@@ -104,7 +104,7 @@ struct side_follower {
                 if (!keeps) put_side(j, i, is_there ? R(0) : sign_of(now));
             }
             e.flags.set(e.undefined, i, undefined);
-            note(i);
+            update_in_question(i);
         });
     }
 
@@ -112,15 +112,15 @@ struct side_follower {
     /// the side it is heading for. If its slope is zero, it stays on the side it came from if an action changed it, and
     /// has crossed if none did. If it was still moving away when it fired, as in a flight too short for the resolution
     /// of the state, an action that reversed it must not send it through the surface. A function with a jump fired
-    /// right before the jump: a look ahead tells whether it is about to pass it. The same holds for one that fired at a
-    /// jump earlier, as this action may have moved the state.
-    MYRIAD_FUNCTION void settle(int i, const fired& events, const lane_data<Model, S>& before) {
+    /// right before the jump: its value a little ahead tells whether it is about to pass it. The same holds for one
+    /// that fired at a jump earlier, as this action may have moved the state.
+    MYRIAD_FUNCTION void update_after_events(int i, const fired& events, const lane_data<Model, S>& before) {
         auto& own = memory_of(i);
         const flags which = events.which.of_lane(i), left = e.left.of_lane(i);
         own.fresh = own.fresh | which;
         const bool passes =
             !get_lane(events.changed, i) && !e.flags.get(e.in_question, i) && !(which & (~left | own.at_jump)).any_of();
-        if (!passes) return settle_with_care(i, events, before);
+        if (!passes) return resolve_after_events(i, events, before);
         e.above.set_of_lane(i, e.above.of_lane(i) ^ which);
         e.left.set_of_lane(i, left & ~which);
     }
@@ -143,8 +143,8 @@ struct side_follower {
         memory_of(i).held.set(j, false);
         e.above.set(j, i, side > R(0));
     }
-    /// Notes whether the next trial of lane i has to be looked at closely. To be called after what decides it changed.
-    MYRIAD_FUNCTION void note(int i) {
+    /// Notes whether the next trial of lane i has to go to the locator. To be called after what decides it changed.
+    MYRIAD_FUNCTION void update_in_question(int i) {
         const auto& own = memory_of(i);
         e.flags.set(e.in_question, i, own.locating || (own.open | own.on_jump).any_of() || args.sub_samples > 1);
     }
@@ -164,7 +164,7 @@ struct side_follower {
     /// Sets open sides to where the functions are heading, or to where they are if they are not on the surface, as
     /// after the host moved the state. The side that a phase has kept for one on the surface stands, unless its event
     /// fired there: then the host may have turned the flow round, which shows in a slope that is not rounding itself.
-    MYRIAD_FUNCTION void settle_open_sides(int i, const step_ends<Model, R>& step, const reals& rounding) {
+    MYRIAD_FUNCTION void resolve_open_sides(int i, const step_ends<Model, R>& step, const reals& rounding) {
         const auto& own = memory_of(i);
         const flags open = own.open, held = own.held, fired_last = own.fired_last;
         if (!open.any_of()) return;
@@ -192,9 +192,9 @@ struct side_follower {
         return abs(length) <= R(4) * epsilon_of<R> * abs(get_lane(s.now(), i));
     }
 
-    /// Updates the sides at the end of an accepted trial that was looked at closely; `side` holds those before it. A
+    /// Updates the sides at the end of an accepted trial that went to the locator; `side` holds those before it. A
     /// function within its `band` has not left the surface.
-    MYRIAD_FUNCTION void follow(int i, const step_ends<Model, R>& step, const reals& side) {
+    MYRIAD_FUNCTION void update(int i, const step_ends<Model, R>& step, const reals& side) {
         const bool timeless = is_timeless(i, step.h);
         auto& own = memory_of(i);
         MYRIAD_UNROLL
@@ -209,7 +209,7 @@ struct side_follower {
 
 private:
     /// The same if a function may be on its surface or at a jump.
-    MYRIAD_FUNCTION void keep_carefully(int i, const reals& g) const {
+    MYRIAD_FUNCTION void store_general(int i, const reals& g) const {
         const auto& own = memory_of(i);
         flags in_question;
         in_question.clear();
@@ -271,7 +271,7 @@ private:
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) jumps = jumps || fires_at_jump(j, i, events);
         if (!jumps) return slope;
-        const reals g = look_ahead(i, at, along);
+        const reals g = values_ahead(i, at, along);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             if (!fires_at_jump(j, i, events)) continue;
@@ -280,9 +280,9 @@ private:
         }
         return slope;
     }
-    /// `settle` for a lane in which a hook has changed inputs of the event functions, or a function that fired has a
-    /// jump or had not left its surface before.
-    MYRIAD_FUNCTION void settle_with_care(int i, const fired& events, const lane_data<Model, S>& found) {
+    /// `update_after_events` for a lane in which a hook has changed inputs of the event functions, or a function that
+    /// fired has a jump or had not left its surface before.
+    MYRIAD_FUNCTION void resolve_after_events(int i, const fired& events, const lane_data<Model, S>& found) {
         const R sense = sign_of(get_lane(s.h, i));
         auto& on_jump = memory_of(i).on_jump;
         const reals before = headings(i, found, events);
@@ -337,8 +337,8 @@ private:
                 e.left.set(j, i, e.left.get(j, i) || g[j] != get_lane(events.value[j], i));
             }
         }
-        if (MYRIAD_UNLIKELY(!known && at_jump.any_of())) look_beyond(i, at_jump, g, along);
-        note(i);
+        if (MYRIAD_UNLIKELY(!known && at_jump.any_of())) take_sides_ahead(i, at_jump, g, along);
+        update_in_question(i);
     }
 
     MYRIAD_FUNCTION void begin_lane(int i) {
@@ -353,10 +353,10 @@ private:
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) clear = clear && kept_event(kept_at(j, i)).is_plain();
         }
-        if (MYRIAD_UNLIKELY(!clear)) begin_carefully(i, g);
+        if (MYRIAD_UNLIKELY(!clear)) begin_general(i, g);
     }
     /// The same if a function may be on its surface, at a jump, or undefined.
-    MYRIAD_FUNCTION void begin_carefully(int i, const reals& g) {
+    MYRIAD_FUNCTION void begin_general(int i, const reals& g) {
         auto& own = memory_of(i);
         bool undefined = false;
         flags at_jump, in_question;
@@ -388,11 +388,11 @@ private:
             }
         }
         e.flags.set(e.undefined, i, undefined);
-        if (at_jump.any_of()) look_beyond(i, at_jump, g, s.slope_of(i));
-        note(i);
+        if (at_jump.any_of()) take_sides_ahead(i, at_jump, g, s.slope_of(i));
+        update_in_question(i);
     }
 
-    /// The roundings that a look ahead of a jump is long.
+    /// The number of roundings of t to the point ahead of a jump.
     static constexpr double roundings_ahead = 64;
     /// Of a time of so many roundings, until a state has moved by its own rounding.
     static constexpr int most_doublings = 64;
@@ -402,8 +402,8 @@ private:
         return R(roundings_ahead) * error;
     }
     /// The event functions a little ahead, by the rounding of t and of the state: beyond a jump to which a step was
-    /// located, if the state is heading for it. A longer look would pass the next event, too, of a state close to it.
-    MYRIAD_FUNCTION reals look_ahead(int i, const lane_data<Model, S>& at, const state& slope) const {
+    /// located, if the state is heading for it. A longer time would pass the next event, too, of a state close to it.
+    MYRIAD_FUNCTION reals values_ahead(int i, const lane_data<Model, S>& at, const state& slope) const {
         const R t = get_lane(s.now(), i), ahead = copysign(past_jump(i), get_lane(at.t_end, i) - t);
         state y = get_lanes<R>(at.y, i);
         MYRIAD_UNROLL
@@ -433,8 +433,8 @@ private:
         return abs(ahead);
     }
     /// Sets the sides of functions at a jump, with values g here, to those a little ahead.
-    MYRIAD_FUNCTION void look_beyond(int i, const flags& at_jump, const reals& g, const state& slope) {
-        const reals there = look_ahead(i, s.data, slope);
+    MYRIAD_FUNCTION void take_sides_ahead(int i, const flags& at_jump, const reals& g, const state& slope) {
+        const reals there = values_ahead(i, s.data, slope);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             if (!at_jump[j] || !(there[j] > R(0) || there[j] < R(0))) continue;

@@ -1,7 +1,0 @@
-// SPDX-License-Identifier: MIT
-// Compiles the kernels whose threads go on at once.
-#include <myriad/instantiate.hpp>
-
-#include "tests/kernel/integrator/company.hpp"
-
-MYRIAD_INSTANTIATE(company::at_once, myriad::cash_karp, myriad::runge_kutta_4)
