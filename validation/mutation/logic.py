@@ -20,11 +20,11 @@ import time
 
 # name: (header, text, replacement, the problem that shows it). The text must occur exactly once.
 MUTATIONS = {
-    "swapped_direction": ("kernel/event/side_tracker.hpp",
+    "swapped_direction": ("kernel/event/lane_sides.hpp",
                           "args.falling)) | (~above & masks::from_bits(args.rising))",
                           "args.rising)) | (~above & masks::from_bits(args.falling))",
                           "bouncing_ball"),
-    "unseen_direction": ("kernel/event/side_tracker.hpp", "(above & masks::from_bits(args.falling))",
+    "unseen_direction": ("kernel/event/lane_sides.hpp", "(above & masks::from_bits(args.falling))",
                          "(above & masks::from_bits(args.rising))", "bouncing_ball"),
     "lost_action": ("kernel/integrator/hook_driver.hpp",
                     "run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_event(j, lane); });",

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Detects events: every step checks the signs of the event functions, in all lanes at once. A lane in which one has
-// changed goes to the locator.
+// Detects events: every step checks the signs of the event functions, in all lanes at once.
 #pragma once
 
-#include "myriad/kernel/event/locator.hpp"
-#include "myriad/kernel/stepper/step.hpp"
+#include "myriad/kernel/event/event_detection.hpp"
+#include "myriad/kernel/event/lane_sides.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -12,20 +11,15 @@ template <class Model, class Method, class S>
 struct event_detector {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
     using values = vec<S, m>;  // of the event functions in all lanes
     using masks = mask_set<mask, m>;
-    using trial_type = trial_step<Method, S, n>;
-    using fired = fired_events<Model, S>;
     using detection = event_detection<S, m>;
-    using ends_type = trial_ends<Model, S>;
 
-    event_locator<Model, Method, S>& locator;
+    lane_sides<Model, Method, S> sides;
 
     /// What the event functions g1 at the end of a trial show, whether it will be accepted or not.
     MYRIAD_FUNCTION detection detect(const values& g1) const {
-        const auto& sides = locator.sides;
         const auto& e = sides.e;
         detection detected{g1, {}, mask(false)};
         masks below;
@@ -44,56 +38,19 @@ struct event_detector {
         }
         return detected;
     }
-
-    /// Checks an accepted trial that ends at t1. Lanes that crossed, or stopped short of their target, are set up for a
-    /// redone step and removed from `accepted`. `events` then holds those that fired: at the end of the trial or, in
-    /// lanes removed from `accepted`, at its start.
-    MYRIAD_FUNCTION void locate(const trial_type& trial, const S& t1, const detection& detected, mask& accepted,
-                                fired& events) {
-        auto& sides = locator.sides;
-        if constexpr (is_pack<S>) {
-            events.which.clear();  // a pack's values lie in memory
-            events.changed = mask(false);
-        } else {
-            events.clear();
-        }
-        const mask candidates = sides.s.running() & detected.to_locate;
-        mask follow = accepted & !candidates;
-        if (MYRIAD_UNLIKELY(any(candidates))) {
-            const ends_type ends = ends_of(trial, t1, detected.g1);
-            if constexpr (is_pack<S>) {
-                // Copies, so that only these need an address and the caller's variables stay in registers.
-                mask still_accepted = accepted;
-                locator.locate_lanes(candidates, ends, detected, still_accepted, events);
-                accepted = still_accepted;
-            } else {
-                if (accepted) {
-                    const trial_outcome outcome = locator.locate(0, ends, detected, events);
-                    accepted = outcome != trial_outcome::is_redone;
-                    follow = outcome == trial_outcome::stands_before_sides;
-                } else {
-                    locator.give_up(0);
-                }
-            }
-        }
+    /// Updates the sides at the end of accepted trials of these lanes, whose events, if any, are those in `located`.
+    MYRIAD_FUNCTION void update(const mask& lanes, const detection& detected, const masks& located) const {
         auto& e = sides.e;
-        masks crossed = detected.crossed.in(follow);
+        masks crossed = detected.crossed.in(lanes);
         // A function whose event was just located, maybe past zero, changes its side after the event's action.
-        if constexpr (!is_pack<S>) crossed = crossed & ~events.which;
+        if constexpr (!is_pack<S>) crossed = crossed & ~located;
         if (is_pack<S> || MYRIAD_UNLIKELY(any(crossed.any_of()))) {
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j)
                 crossed.set(j, crossed[j] & (detected.g1[j] != S(R(0))));  // zero is on either side
         }
         e.above = e.above ^ crossed;
-        e.left = e.left | masks::all_in(follow);
-    }
-
-private:
-    MYRIAD_FUNCTION ends_type ends_of(const trial_type& trial, const S& t1, const values& g1) const {
-        ends_type ends{t1, trial.y, trial.k[0], {}, g1};
-        if constexpr (Method::first_same_as_last) ends.slope_end = trial.slope_end();
-        return ends;
+        e.left = e.left | masks::all_in(lanes);
     }
 };
 

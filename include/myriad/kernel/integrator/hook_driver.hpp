@@ -4,7 +4,7 @@
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
-#include "myriad/kernel/event/side_tracker.hpp"
+#include "myriad/kernel/event/event_driver.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -18,8 +18,7 @@ struct hook_driver {
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
-    side_tracker<Model, Method, S>& sides;
-    fired_events<Model, S>& events;  // that fired in this iteration
+    event_driver<Model, Method, S>& events;
 
     /// Calls after_step on the lanes whose step was accepted.
     MYRIAD_FUNCTION void after_step(const mask& accepted) {
@@ -65,23 +64,23 @@ struct hook_driver {
 
     /// Counts the events that fired and calls after_event for them, in order of their index.
     MYRIAD_FUNCTION void act_on_events() {
-        const mask acting = events.which.any_of();
+        const mask acting = events.fired_lanes();
         if (!MYRIAD_UNLIKELY(any(acting))) return;
         if constexpr (has_after_event<Model>) {
             const lane_data<Model, S> before = s.data;
             for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
             const mask changed = acting & differs(before, s.data);
             if (any(changed)) {
-                events.changed = events.changed | changed;
+                events.fired.changed = events.fired.changed | changed;
                 s.slopes.invalidate(changed);
                 check_finite(changed, before.y);
-                sides.update_after_hook(changed, events.value, events);
+                events.update_after_hook(changed, events.fired.value);
             }
-            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { sides.update_after_events(i, events, before); });
+            for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { events.update_after_events(i, before); });
         } else {
             for_each_lane(acting, [&](int i) MYRIAD_LAMBDA {
                 act_on_lane(i);
-                sides.update_after_events(i, events, s.data);
+                events.update_after_events(i, s.data);
             });
         }
     }
@@ -109,9 +108,8 @@ private:
     }
 
     MYRIAD_FUNCTION void act_on_lane(int i) {
-        auto& lingered = sides.memory_of(i).lingered;
         static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
-            if (!events.which.get(j, i)) return;
+            if (!events.fired.which.get(j, i)) return;
             const auto detections = static_cast<std::int32_t>(get_lane(s.data.event_count[j], i)) + 1;
             set_lane(s.data.event_count[j], i, detections);
             if constexpr (has_after_event<Model>) {
@@ -119,8 +117,7 @@ private:
             }
             if (args.event[j].stop_after > 0 && detections >= args.event[j].stop_after)
                 s.end_lane(i, status::stopped_by_event);
-            lingered[j] = sides.e.left.get(j, i) ? 1 : lingered[j] + 1;
-            if (lingered[j] >= args.accumulation_limit) s.end_lane(i, status::event_accumulation);
+            if (events.count_action(j, i) >= args.accumulation_limit) s.end_lane(i, status::event_accumulation);
         });
     }
 
@@ -176,9 +173,9 @@ private:
     MYRIAD_FUNCTION void follow_up(const mask& changed, const lane_data<Model, S>& before) {
         s.slopes.invalidate(changed);
         if constexpr (has_events<Model>) {
-            events.changed = events.changed | changed;
+            events.fired.changed = events.fired.changed | changed;
             const inputs<Model, S>& p = before;
-            sides.update_after_hook(changed, detail::evaluate_events<Model>(s.now(), before.y, p), events);
+            events.update_after_hook(changed, detail::evaluate_events<Model>(s.now(), before.y, p));
         }
     }
 

@@ -8,7 +8,7 @@
 
 #include "myriad/kernel/controller/initial_step.hpp"
 #include "myriad/kernel/controller/stepping.hpp"
-#include "myriad/kernel/event/detector.hpp"
+#include "myriad/kernel/event/event_driver.hpp"
 #include "myriad/kernel/integrator/free_run.hpp"
 #include "myriad/kernel/integrator/hook_driver.hpp"
 #include "myriad/kernel/integrator/phase.hpp"
@@ -31,55 +31,48 @@ struct integrator {
     using watchdog_type = phase_watchdog<Model, Method, S>;
     using trial_type = trial_step<Method, S, n>;
     using stepping_type = stepping<Model, Method, S>;
-    using event_detector_type = event_detector<Model, Method, S>;
-    using event_locator_type = event_locator<Model, Method, S>;
+    using event_driver_type = event_driver<Model, Method, S>;
     using detection_type = event_detection<S, m>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S> s;
-    event_sides<Model, S> e;
     sample_state<Method, S> o;
     event_memory<Model, R>* memory;  // of the lanes
 
     template <class Source>
     MYRIAD_FUNCTION void run(Source& source, const shared_parameters<R>& shared) {
         clear(shared);
-        event_locator_type locator{{args, s, e, memory}};
-        fired_events<Model, S> events;
-        if constexpr (has_events<Model>) {
-            events.clear();
-            e.clear();
-        }
-        while (!(any(s.ended) || watchdog_type{args, s}.is_due()) || fill_lanes(source, locator)) {
+        event_driver_type events{args, s, memory, {}, {}};
+        events.clear();
+        while (!(any(s.ended) || watchdog_type{args, s}.is_due()) || fill_lanes(source, events)) {
             MYRIAD_RECONVERGE;
             if constexpr (runs_freely<Model, Method>) free_run<Model, Method, S>{args, s}.take_steps(source);
             trial_type trial;
-            propose_step(locator);
+            propose_step(events);
             take_step(trial);
             detection_type detected;
             if constexpr (has_events<Model>) {
-                detected =
-                    event_detector_type{locator}.detect(detail::evaluate_events<Model>(end_time(), trial.y, s.data));
-                if (waits(detected)) continue;
+                detected = events.detect(detail::evaluate_events<Model>(end_time(), trial.y, s.data));
+                if (waits(detected, events)) continue;
             }
             ++s.iteration;
-            mask accepted = judge(trial, detected, locator, events);
+            mask accepted = judge(trial, detected, events);
             if constexpr (samples)
-                sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted, any_event(events));
+                sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted, events.fired_lanes());
             mask summarised;
             if constexpr (has_summaries<Model>)
                 summarised = summariser<Model, Method, S>{s}.summarise(trial, end_time(), accepted);
             if constexpr (!is_pack<S>) {
-                if (!accepted && !any_event(events)) continue;
+                if (!accepted && !events.fired_lanes()) continue;
             }
             commit(trial, accepted, events);
-            hook_driver<Model, Method, S> hooks{args, s, locator.sides, events};
+            hook_driver<Model, Method, S> hooks{args, s, events};
             if constexpr (sees_summaries<Model>) hooks.follow_summaries(summarised);
             if constexpr (has_after_step<Model>) hooks.after_step(accepted);
             if constexpr (has_events<Model>) hooks.act_on_events();
         }
         if constexpr (requires { source.gives_only_one(); })
-            phase_driver<Model, Method, S>{args, s, locator.sides, o}.finish(0);
+            phase_driver<Model, Method, S>{args, s, events, o}.finish(0);
     }
 
     /// An empty pack: every lane needs an instance.
@@ -95,7 +88,7 @@ struct integrator {
 
     /// Moves lanes whose phase has ended to their next phase or instance. Returns false when no lane is running.
     template <class Source>
-    MYRIAD_FUNCTION bool fill_lanes(Source& source, event_locator_type& locator) {
+    MYRIAD_FUNCTION bool fill_lanes(Source& source, event_driver_type& events) {
         watchdog_type watchdog{args, s};
         if (is_pack<S> || !any(s.ended)) {
             watchdog.check();
@@ -107,7 +100,7 @@ struct integrator {
         }
         mask begun = mask(false);
         for_each_lane(s.ended, [&](int i) MYRIAD_LAMBDA {
-            set_lane(begun, i, phase_driver<Model, Method, S>{args, s, locator.sides, o}.advance(i, source));
+            set_lane(begun, i, phase_driver<Model, Method, S>{args, s, events, o}.advance(i, source));
         });
         s.ended = mask(false);
         watchdog.schedule();
@@ -116,14 +109,14 @@ struct integrator {
             if (any(open)) detail::choose_first_step(args, s, open);
         }
         s.slopes.begin(begun, s.now(), s.data, s.extra_evaluations);
-        if constexpr (has_events<Model>) locator.sides.begin(begun);
+        if constexpr (has_events<Model>) events.begin(begun);
         return any(s.active);
     }
 
     /// The length of the next trial and the slope at its start.
-    MYRIAD_FUNCTION void propose_step(event_locator_type& locator) {
+    MYRIAD_FUNCTION void propose_step(event_driver_type& events) {
         stepping_type{args, s}.propose();
-        if constexpr (has_events<Model>) locator.propose_step();
+        if constexpr (has_events<Model>) events.propose_step();
         s.slopes.prepare(s.now(), s.data, s.extra_evaluations);
     }
 
@@ -133,55 +126,41 @@ struct integrator {
     }
 
     /// Whether the trial, in which an event may begin, is to be taken again when more threads of the warp have one.
-    MYRIAD_FUNCTION bool waits(const detection_type& detected) {
+    MYRIAD_FUNCTION bool waits(const detection_type& detected, event_driver_type& events) {
         if constexpr (is_pack<S>) {
             return false;
         } else {
             constexpr auto interval = stepping_type::stagnation_interval;
             // The watchdog must not see an iteration twice.
             const bool checked = interval > 0 && s.iteration % (interval > 0 ? interval : 1) == 0;
-            const bool begins = detected.to_locate && !e.flags[e.in_question];
-            return detail::waits_for_warp(begins, checked, memory->waited);
+            return detail::waits_for_warp(events.begins(detected), checked, events.memory->waited);
         }
     }
 
     /// Accepts or rejects the trial by its error, its finiteness, and its not crossing an event.
-    MYRIAD_FUNCTION mask judge(const trial_type& trial, const detection_type& detected, event_locator_type& locator,
-                               fired_events<Model, S>& events) {
+    MYRIAD_FUNCTION mask judge(const trial_type& trial, const detection_type& detected, event_driver_type& events) {
         const S t1 = end_time();
         s.slopes.invalidate_end();
         stepping_type steps{args, s};
         if constexpr (!has_events<Model>) {
             return steps.judge(trial, t1, mask(true), [](const mask& lanes) MYRIAD_LAMBDA { return lanes; });
         } else {
-            mask defined = !e.flags[e.undefined];
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) defined = defined & (detected.g1[j] == detected.g1[j]);
-            mask accepted = steps.judge(trial, t1, defined,
-                                        [&](const mask& lanes) MYRIAD_LAMBDA { return locator.may_stick(lanes); });
-            event_detector_type{locator}.locate(trial, t1, detected, accepted, events);
+            mask accepted = steps.judge(trial, t1, events.defined(detected),
+                                        [&](const mask& lanes) MYRIAD_LAMBDA { return events.may_stick(lanes); });
+            events.locate(trial, t1, detected, accepted);
             return accepted;
         }
     }
 
-    /// The lanes in which an event fired.
-    static MYRIAD_FUNCTION mask any_event(const fired_events<Model, S>& events) {
-        if constexpr (has_events<Model>) {
-            return events.which.any_of();
-        } else {
-            return mask(false);
-        }
-    }
-
     /// Commits the new state of the accepted lanes.
-    MYRIAD_FUNCTION void commit(const trial_type& trial, const mask& accepted, const fired_events<Model, S>& events) {
+    MYRIAD_FUNCTION void commit(const trial_type& trial, const mask& accepted, const event_driver_type& events) {
         if constexpr (!is_pack<S>) {
             if (!accepted) return;
         }
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]);
         if constexpr (shows_step) s.data.h = select(accepted, s.h, s.data.h);
-        stepping_type{args, s}.advance(accepted, end_time(), any_event(events));
+        stepping_type{args, s}.advance(accepted, end_time(), events.fired_lanes());
         s.slopes.accept(accepted, trial);
     }
 
@@ -215,7 +194,7 @@ MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>
                                        const shared_parameters<real_of<S>>& shared, Source& source) {
     static_assert(hooks_fit<Model, real_of<S>>);
     event_memory<Model, real_of<S>> memory[lanes_of<S>] = {};  // outside the loop's own state, which is in registers
-    integrator<Model, Method, S> loop{args, {}, {}, {}, memory};
+    integrator<Model, Method, S> loop{args, {}, {}, memory};
     loop.run(source, shared);
     return loop.s.all_iterations_of(args);
 }

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
-#include "myriad/kernel/event/side_tracker.hpp"
+#include "myriad/kernel/event/event_driver.hpp"
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
@@ -22,7 +22,7 @@ struct phase_driver {
 
     const arguments& args;
     integration_state<Model, Method, S>& s;
-    side_tracker<Model, Method, S>& sides;
+    event_driver<Model, Method, S>& events;
     sample_state<Method, S>& o;
 
     /// Ends the phase of lane i, if it holds an instance, and starts its next phase or the next instance that needs
@@ -117,7 +117,7 @@ private:
             set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
         stepping_type{args, s}.load(i);
-        if constexpr (m > 0) sides.load(i);
+        if constexpr (m > 0) events.load(i);
         set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(args.first_index + index));
         s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases - args.first_phase;
     }
@@ -197,7 +197,7 @@ private:
         if constexpr (has_summaries<Model>) summariser<Model, Method, S>{s}.begin(i);
         steps.begin(i, t);
         if constexpr (m > 0) {
-            if (phase == 0) sides.reset(i);
+            if (phase == 0) events.reset(i);
         }
         if constexpr (samples_trajectory<Method>)
             sampler<Model, Method, S>{args, s, o}.begin(i, args.phases - s.phases_left[i]);
@@ -228,7 +228,7 @@ private:
             set_lane(s.data.h_next, i, h_next);
             s.ending[i] = status::not_finite;
         } else if (!same_values(before, after, n - n_tangent<Model>)) {
-            if constexpr (m > 0) sides.reset(i);
+            if constexpr (m > 0) events.reset(i);
         }
     }
 
@@ -237,7 +237,7 @@ private:
         const std::int64_t index = s.instance[i];
         if (args.accepted != nullptr) count_work(i);
         set_lane(s.data.t, i, stepping_type{args, s}.time(i));
-        if constexpr (m > 0) sides.store(i);
+        if constexpr (m > 0) events.store(i);
         args.t[index] = get_lane(s.data.t, i);
         if constexpr (has_finalise<Model>) {
             if (!is_failure(s.ending[i])) place(i, [](auto& lane) MYRIAD_LAMBDA { Model::finalise(lane); });

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// The events of a pack: owns the sides of the event functions and the events that fired, and offers the loop, the hooks
+// and the phases all that they need of events.
+#pragma once
+
+#include "myriad/kernel/event/detector.hpp"
+#include "myriad/kernel/event/event_detection.hpp"
+#include "myriad/kernel/event/fired_events.hpp"
+#include "myriad/kernel/event/locator.hpp"
+#include "myriad/kernel/event/side_tracker.hpp"
+#include "myriad/kernel/stepper/step.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+template <class Model, class Method, class S>
+struct event_driver {
+    using R = real_of<S>;
+    using mask = mask_of<S>;
+    static constexpr int m = n_event<Model>;
+    using values = vec<S, m>;  // of the event functions in all lanes
+    using trial_type = trial_step<Method, S, n_state<Model>>;
+    using detection = event_detection<S, m>;
+    using locator = event_locator<Model, Method, S>;
+    using detector = event_detector<Model, Method, S>;
+    using tracker = side_tracker<Model, Method, S>;
+
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
+    event_memory<Model, R>* memory;  // of the lanes, outside the loop's own state, which is in registers
+    event_sides<Model, S> e;
+    fired_events<Model, S> fired;  // in this iteration of the loop
+
+    /// For lanes that are still empty.
+    MYRIAD_FUNCTION void clear() {
+        if constexpr (m > 0) {
+            fired.clear();
+            e.clear();
+        }
+    }
+
+    // Phases
+    /// Takes the sides of an instance that is new in lane i from where an earlier call has kept them.
+    MYRIAD_FUNCTION void load(int i) { tracker{sides()}.load(i); }
+    /// Starts phases with the sides that the previous ones left.
+    MYRIAD_FUNCTION void begin(const mask& lanes) {
+        for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA { tracker{sides()}.begin(i); });
+    }
+    /// Stores the sides of lane i for its next phase.
+    MYRIAD_FUNCTION void store(int i) { tracker{sides()}.store(i); }
+    /// Makes the next phase of lane i begin with all sides unknown.
+    MYRIAD_FUNCTION void reset(int i) { tracker{sides()}.reset(i); }
+
+    // Trial steps
+    /// Sets the length of the next trial in lanes that redo their step.
+    MYRIAD_FUNCTION void propose_step() { locator{sides()}.propose_step(); }
+    /// What the event functions g1 at the end of a trial show, whether it will be accepted or not.
+    MYRIAD_FUNCTION detection detect(const values& g1) { return detector{sides()}.detect(g1); }
+    /// Whether the location of an event begins with this trial, rather than goes on.
+    MYRIAD_FUNCTION mask begins(const detection& detected) const {
+        return detected.to_locate & !e.flags[e.in_question];
+    }
+    /// The lanes in which all event functions are defined at both ends of the trial.
+    MYRIAD_FUNCTION mask defined(const detection& detected) const {
+        mask lanes = !e.flags[e.undefined];
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) lanes = lanes & (detected.g1[j] == detected.g1[j]);
+        return lanes;
+    }
+    /// Those of the lanes that may be ended if their step does not advance t.
+    MYRIAD_FUNCTION mask may_stick(const mask& lanes) { return locator{sides()}.may_stick(lanes); }
+
+    /// Locates events in accepted trials that end at t1. Lanes that crossed, or stopped short of their target, are set
+    /// up for a redone step and removed from `accepted`. `fired` then holds the events that fired: at the end of the
+    /// trial or, in lanes removed from `accepted`, at its start.
+    MYRIAD_FUNCTION void locate(const trial_type& trial, const S& t1, const detection& detected, mask& accepted) {
+        if constexpr (is_pack<S>) {
+            fired.which.clear();  // a pack's values lie in memory
+            fired.changed = mask(false);
+        } else {
+            fired.clear();
+        }
+        const mask candidates = s.running() & detected.to_locate;
+        mask follow = accepted & !candidates;
+        if (MYRIAD_UNLIKELY(any(candidates))) {
+            const trial_ends<Model, S> ends = ends_of(trial, t1, detected.g1);
+            if constexpr (is_pack<S>) {
+                // Copies, so that only these need an address and the caller's variables stay in registers.
+                mask still_accepted = accepted;
+                locator{sides()}.locate_lanes(candidates, ends, detected, still_accepted, fired);
+                accepted = still_accepted;
+            } else {
+                if (accepted) {
+                    const trial_outcome outcome = locator{sides()}.locate(0, ends, detected, fired);
+                    accepted = outcome != trial_outcome::is_redone;
+                    follow = outcome == trial_outcome::stands_before_sides;
+                } else {
+                    locator{sides()}.give_up(0);
+                }
+            }
+        }
+        detector{sides()}.update(follow, detected, fired.which);
+    }
+    /// The lanes in which an event fired.
+    MYRIAD_FUNCTION mask fired_lanes() const {
+        if constexpr (m > 0) {
+            return fired.which.any_of();
+        } else {
+            return mask(false);
+        }
+    }
+
+    // Hooks
+    /// Counts an action of event j in lane i; returns how many in a row have not moved its function off its surface.
+    MYRIAD_FUNCTION std::int32_t count_action(int j, int i) {
+        auto& lingered = sides().memory_of(i).lingered[j];
+        lingered = e.left.get(j, i) ? 1 : lingered + 1;
+        return lingered;
+    }
+    /// A hook has changed inputs of event functions, whose values were `before`.
+    MYRIAD_FUNCTION void update_after_hook(const mask& lanes, const values& before) {
+        tracker{sides()}.update_after_hook(lanes, before, fired);
+    }
+    /// The actions of the events of lane i are done; `before` is the data before them.
+    MYRIAD_FUNCTION void update_after_events(int i, const lane_data<Model, S>& before) {
+        tracker{sides()}.update_after_events(i, fired, before);
+    }
+
+private:
+    MYRIAD_FUNCTION lane_sides<Model, Method, S> sides() { return {args, s, e, memory}; }
+
+    MYRIAD_FUNCTION trial_ends<Model, S> ends_of(const trial_type& trial, const S& t1, const values& g1) const {
+        trial_ends<Model, S> ends{t1, trial.y, trial.k[0], {}, g1};
+        if constexpr (Method::first_same_as_last) ends.slope_end = trial.slope_end();
+        return ends;
+    }
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// The location of an event in one lane: its trial step as location sees it, the set-up of a redone step, and its end.
+#pragma once
+
+#include "myriad/kernel/controller/stepping.hpp"
+#include "myriad/kernel/event/earliest_crossing.hpp"
+#include "myriad/kernel/event/event_nearness.hpp"
+#include "myriad/kernel/event/lane_sides.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// What happens to an accepted trial: it is redone; or it stands, and the sides of the event functions are up to date,
+/// or still those at its start.
+enum class trial_outcome { is_redone, stands, stands_before_sides };
+
+/// The ends of a trial, in all lanes.
+template <class Model, class S>
+struct trial_ends {
+    S t1;
+    vec<S, n_state<Model>> y, slope_start, slope_end;  // slope_end only for methods that compute it
+    vec<S, n_event<Model>> g;
+};
+
+/// The part of a step, in fractions of it, that contains the crossings.
+template <class R>
+struct step_part {
+    R low = R(0), high = R(1);
+    bool scanned = false;  // found at points inside the step, and the slope at its end is known
+};
+
+/// What both ways to locate events share.
+template <class Model, class Method, class S>
+struct event_location {
+    using R = real_of<S>;
+    static constexpr int m = n_event<Model>;
+    using reals = vec<R, m>;  // of the event functions in one lane
+    using flags = mask_set<bool, m>;
+    using fired = fired_events<Model, S>;
+
+    lane_sides<Model, Method, S> sides;
+
+    MYRIAD_FUNCTION void evaluate_end_slope(int i, step_ends<Model, R>& step, const trial_ends<Model, S>& ends) const {
+        if constexpr (Method::first_same_as_last) {
+            step.slope1 = get_lanes<R>(ends.slope_end, i);
+        } else {
+            step.slope1 = detail::evaluate_rhs<Model>(step.t1, step.y1, step.p);
+            add_to_count(sides.s.extra_evaluations, i);
+        }
+    }
+
+    /// Sets up a lane whose trial crossed: either a redone step, or an event at the start of the step.
+    template <class Nearness>
+    MYRIAD_FUNCTION void begin_or_shorten(int i, const step_ends<Model, R>& step, const reals& side,
+                                          const flags& crossed, const step_part<R>& part, const Nearness& near,
+                                          fired& events) const {
+        const auto& args = sides.args;
+        auto& s = sides.s;
+        auto& own = sides.memory_of(i);
+        auto& redo = own.redo;
+        const bool again = own.locating;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= near.band(j);
+            redo.crossed.set(j, crossed[j] || undecided);
+            if (again) continue;
+            const R change = abs(step.g1[j] - step.g[j]);
+            redo.tolerance[j] = min(args.event[j].tolerance, R(largest_part) * change);
+        }
+        located_crossing<R> first;
+        if (MYRIAD_UNLIKELY(part.scanned && !again)) {
+            first = detail::earliest_crossing_between(part.low, part.high, step, crossed);
+        } else if constexpr (Nearness::is_plain) {
+            first = detail::only_crossing(step, side, crossed, near, redo.tolerance);
+        } else {
+            first = detail::earliest_crossing(step, side, crossed, near, redo.tolerance);
+        }
+        redo.target = first.event;
+        const R guess = step.h * first.fraction;
+        if (again) {
+            redo.shorten(step.h, guess);
+        } else {
+            redo.begin(step.h, guess, get_lane(s.data.h_next, i));
+        }
+        add_to_count(s.located, i);
+        const bool here = redo.length == R(0);
+        own.locating = !here;
+        sides.update_in_question(i);
+        if (!here) return;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool close = abs(step.g[j]) <= max(redo.tolerance[j], near.floor(j));
+            const bool happens = redo.target == j || (redo.crossed[j] && (close || redo.narrow));
+            events.put(j, i, happens, step.g[j]);
+            own.at_jump.set(j, happens && !close);
+        }
+        stepping<Model, Method, S>{args, s}.resume(i, redo.resume);
+    }
+
+    /// The event to which the step was redone is reached.
+    MYRIAD_FUNCTION void end(int i) const {
+        sides.memory_of(i).locating = false;
+        sides.update_in_question(i);
+        stepping<Model, Method, S>{sides.args, sides.s}.resume(i, sides.memory_of(i).redo.resume);
+    }
+    /// A redone step that failed its error test is not redone: the controller sets the length of the next.
+    MYRIAD_FUNCTION void give_up(int i) const {
+        sides.memory_of(i).locating = false;
+        sides.update_in_question(i);
+    }
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
