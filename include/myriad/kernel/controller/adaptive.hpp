@@ -4,6 +4,7 @@
 
 #include "myriad/kernel/controller/fast_power.hpp"
 #include "myriad/kernel/controller/norm.hpp"
+#include "myriad/kernel/controller/step_decision.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -72,15 +73,16 @@ struct adaptive_stepping {
         return select(s.final_step, s.data.t_end, t1);
     }
 
-    /// Accepts or rejects the trial of every lane and sets `data.h_next`, by the elementary (I) controller of the MPGOS
-    /// package: factor 0.9 q^(-1/(p+1)) after an accepted and 0.9 q^(-1/p) after a rejected step, with q the largest
-    /// ratio of error to tolerance and p the order of the error estimate, within the options' limits (Hairer, Norsett,
-    /// Wanner, Solving ODE I, II.4, eq. (4.13)); or by the controller chosen with `controlled`. Lanes whose trial is
-    /// not finite (or not `valid`, or singular) are rejected with the smallest factor. Lanes rejected at the minimum
-    /// step end; so do those whose step does not advance t (it ends, at `t1`, where it began), as far as `may_stick`
-    /// lets them. Returns the accepted lanes.
+    /// Accepts or rejects the trial of every lane and chooses the next step, by the elementary (I) controller of the
+    /// MPGOS package: factor 0.9 q^(-1/(p+1)) after an accepted and 0.9 q^(-1/p) after a rejected step, with q the
+    /// largest ratio of error to tolerance and p the order of the error estimate, within the options' limits (Hairer,
+    /// Norsett, Wanner, Solving ODE I, II.4, eq. (4.13)); or by the controller chosen with `controlled`. Lanes whose
+    /// trial is not finite (or not `valid`, or singular) are rejected with the smallest factor. Lanes rejected at the
+    /// minimum step are stuck; so are those whose step does not advance t (it ends, at `t1`, where it began), as far as
+    /// `may_stick` lets them.
     template <class MayStick>
-    MYRIAD_FUNCTION mask judge(const trial_step<Method, S, n>& trial, const S& t1, mask valid, MayStick&& may_stick) {
+    MYRIAD_FUNCTION step_decision<S> judge(const trial_step<Method, S, n>& trial, const S& t1, mask valid,
+                                           MayStick&& may_stick) {
         if constexpr (solves_linear_systems<Method>) valid = valid & !trial.singular;
         error_norm<S> error = detail::scaled_error<Model, Method>(args, s.data.y, s.h, trial);
         if constexpr (scales_tolerances<Method>)
@@ -88,6 +90,7 @@ struct adaptive_stepping {
         valid = valid & error.finite;
         const mask within = valid & (error.worst <= C(L(1)));
         mask accepted = s.running() & within;
+        mask stuck = mask(false);
         C factor = factor_of_step(error.worst, within, accepted);
         const mask rejected = s.running() & !within;
         if (any(rejected)) {
@@ -98,7 +101,6 @@ struct adaptive_stepping {
             if constexpr (!keeps_low)
                 factor = select(rejected & (abs(s.h) <= S(R(16)) * rounding), smaller(factor, C(L(safety_factor / 2))),
                                 factor);
-            s.rejected = count_where(rejected, s.rejected);
             // A step of length zero does not show why the previous one failed.
             const mask moved = rejected & (s.h != S(R(0)));
             s.control.last_not_finite = select(moved, !finite, s.control.last_not_finite);
@@ -106,25 +108,29 @@ struct adaptive_stepping {
             if constexpr (solves_linear_systems<Method>)
                 s.control.last_singular =
                     select(moved & !finite, trial.singular & all_finite(trial.k[0]), s.control.last_singular);
-            const mask smallest = rejected & (abs(s.h) <= S(args.minimum_step) + rounding);
-            if (MYRIAD_UNLIKELY(any(smallest))) end_stuck_lanes(smallest);
+            stuck = rejected & (abs(s.h) <= S(args.minimum_step) + rounding);
         }
         S next = s.h * S(factor);
         const S minimum = S(args.minimum_step), maximum = S(args.maximum_step);
         const mask ends = accepted & (t1 == s.data.t_end);
-        mask stuck = s.running() & (t1 == s.data.t);
-        if (MYRIAD_UNLIKELY(any(ends | stuck | (s.running() & !clearly_between(minimum, next, maximum))))) {
+        mask still = s.running() & (t1 == s.data.t);
+        if (MYRIAD_UNLIKELY(any(ends | still | (s.running() & !clearly_between(minimum, next, maximum))))) {
             S size = limited(abs(next), minimum, maximum);
             // A step cut short by the end of the domain says little about the step size to continue with.
             size = select(ends, larger(size, abs(s.data.h_next)), size);
             next = copysign(size, s.h);
-            stuck = may_stick(stuck);
-            s.rejected = count_where(stuck & accepted, s.rejected);
-            accepted = accepted & !stuck;
-            end_stuck_lanes(stuck);
+            still = may_stick(still);
+            accepted = accepted & !still;
+            stuck = stuck | still;
         }
-        s.data.h_next = select(s.running(), next, s.data.h_next);
-        return accepted;
+        return {accepted, next, stuck};
+    }
+    /// Why the trial of lane i, which is stuck, failed.
+    MYRIAD_FUNCTION status failure_of(int i) const {
+        if (!get_lane(s.control.last_not_finite, i)) return status::step_underflow;
+        if constexpr (solves_linear_systems<Method>)
+            if (get_lane(s.control.last_singular, i)) return status::singular_jacobian;
+        return status::not_finite;
     }
 
     MYRIAD_FUNCTION void advance(const mask& accepted, const S& t1, const mask&) {
@@ -168,15 +174,6 @@ private:
             factor = C(L(safety_factor)) * fast_power(worst, select(within, C(after_accepted), C(after_rejected)));
         }
         return limited(factor, C(static_cast<L>(args.shrink_limit)), C(static_cast<L>(args.growth_limit)));
-    }
-
-    /// Ends lanes that cannot step, as not_finite or singular_jacobian if that is why their last trial failed.
-    MYRIAD_FUNCTION void end_stuck_lanes(const mask& stuck) {
-        if constexpr (solves_linear_systems<Method>)
-            s.end_lanes(stuck & s.control.last_not_finite & s.control.last_singular,
-                        status::singular_jacobian);  // the first status stands
-        s.end_lanes(stuck & s.control.last_not_finite, status::not_finite);
-        s.end_lanes(stuck & !s.control.last_not_finite, status::step_underflow);
     }
 };
 

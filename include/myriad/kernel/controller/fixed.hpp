@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "myriad/kernel/controller/step_decision.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 #include "myriad/kernel/state/phase_interval.hpp"
 
@@ -82,15 +83,13 @@ struct fixed_stepping {
     }
 
     template <class MayStick>
-    MYRIAD_FUNCTION mask judge(const trial_step<Method, S, n>& trial, const S&, const mask& valid, MayStick&&) {
+    MYRIAD_FUNCTION step_decision<S> judge(const trial_step<Method, S, n>& trial, const S&, const mask& valid,
+                                           MayStick&&) const {
         const mask finite = valid & all_finite(trial.y);
-        const mask failed = s.running() & !finite;
-        if (MYRIAD_UNLIKELY(any(failed))) {
-            s.rejected = count_where(failed, s.rejected);
-            s.end_lanes(failed, status::not_finite);
-        }
-        return s.running() & finite;
+        const mask accepted = s.running() & finite, failed = s.running() & !finite;
+        return {accepted, s.data.h_next, failed};
     }
+    MYRIAD_FUNCTION status failure_of(int) const { return status::not_finite; }
 
     MYRIAD_FUNCTION void advance(const mask& accepted, const S& t1, const mask& at_event) {
         s.steps.done = count_where(accepted, s.steps.done);

@@ -17,7 +17,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 ///     propose()                      the next trial: s.h, s.final_step
 ///     end_time()                     the time at which it ends
 ///     judge(trial, t1, valid, may_stick)
-///                                    accepted lanes; lanes whose step cannot get shorter are ended
+///                                    accepts or rejects the trial: a `step_decision`, which the loop carries out
+///     failure_of(i)                  the status of lane i, if it is stuck
 ///     advance(accepted, t1, at_event)
 ///                                    advances time in accepted lanes; sets s.ended at the phase's end
 ///     move(i, t)                     a hook has moved the end of the phase of lane i, which is at t

@@ -56,14 +56,19 @@ struct integrator {
                 if (waits(detected, events)) continue;
             }
             ++s.iteration;
-            mask accepted = judge(trial, detected, events);
+            const step_decision<S> decided = judge(trial, detected, events);
+            mask accepted = decided.accepted;
+            if constexpr (has_events<Model>) events.locate(trial, end_time(), detected, accepted);
             if constexpr (samples)
                 sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted, events.fired_lanes());
             mask summarised;
             if constexpr (has_summaries<Model>)
                 summarised = summariser<Model, Method, S>{s}.summarise(trial, end_time(), accepted);
-            if constexpr (!is_pack<S>) {
-                if (!accepted && !events.fired_lanes()) continue;
+            if constexpr (is_pack<S>) {
+                reject(decided);
+            } else if (!accepted) {
+                reject(decided);
+                if (!events.fired_lanes()) continue;
             }
             commit(trial, accepted, events);
             hook_driver<Model, Method, S> hooks{args, s, events};
@@ -137,19 +142,29 @@ struct integrator {
         }
     }
 
-    /// Accepts or rejects the trial by its error, its finiteness, and its not crossing an event.
-    MYRIAD_FUNCTION mask judge(const trial_type& trial, const detection_type& detected, event_driver_type& events) {
-        const S t1 = end_time();
+    /// Accepts or rejects the trial by its error and its finiteness, and sets the next step.
+    MYRIAD_FUNCTION step_decision<S> judge(const trial_type& trial, const detection_type& detected,
+                                           event_driver_type& events) {
         s.slopes.invalidate_end();
         stepping_type steps{args, s};
-        if constexpr (!has_events<Model>) {
-            return steps.judge(trial, t1, mask(true), [](const mask& lanes) MYRIAD_LAMBDA { return lanes; });
-        } else {
-            mask accepted = steps.judge(trial, t1, events.defined(detected),
-                                        [&](const mask& lanes) MYRIAD_LAMBDA { return events.may_stick(lanes); });
-            events.locate(trial, t1, detected, accepted);
-            return accepted;
-        }
+        mask defined = mask(true);
+        if constexpr (has_events<Model>) defined = events.defined(detected);
+        const step_decision<S> decided = steps.judge(trial, end_time(), defined, [&](const mask& lanes) MYRIAD_LAMBDA {
+            if constexpr (has_events<Model>) {
+                return events.may_stick(lanes);
+            } else {
+                return lanes;
+            }
+        });
+        if constexpr (is_adaptive<Method>) s.data.h_next = select(s.running(), decided.next, s.data.h_next);
+        return decided;
+    }
+    /// Counts the lanes that step-size control has rejected, and ends those that are stuck.
+    MYRIAD_FUNCTION void reject(const step_decision<S>& decided) {
+        const mask rejected = s.running() & !decided.accepted;
+        if (!any(rejected)) return;
+        s.rejected = count_where(rejected, s.rejected);
+        for_each_lane(decided.stuck, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, stepping_type{args, s}.failure_of(i)); });
     }
 
     /// Commits the new state of the accepted lanes.
