@@ -31,7 +31,7 @@ struct adaptive_stepping {
     MYRIAD_FUNCTION void load(int i) {
         const std::int64_t index = s.instance[i];
         set_lane(s.data.h_next, i, args.h_next[index]);
-        if constexpr (scales_tolerances<Method>) set_lane(s.control.tolerance_scale, i, args.tolerance_scale[index]);
+        if constexpr (scales_tolerances<Method>) set_lane(s.steps.tolerance_scale, i, args.tolerance_scale[index]);
     }
     MYRIAD_FUNCTION void store(int i) const { args.h_next[s.instance[i]] = get_lane(s.data.h_next, i); }
 
@@ -42,10 +42,11 @@ struct adaptive_stepping {
     }
     MYRIAD_FUNCTION void begin(int i, R t) {
         if constexpr (remembers_errors<Method>) {
-            set_lane(s.control.errors.last, i, 0);
-            set_lane(s.control.errors.before, i, 0);
+            set_lane(s.steps.errors.last, i, 0);
+            set_lane(s.steps.errors.before, i, 0);
         }
-        set_lane(s.control.last_not_finite, i, false);
+        set_lane(s.steps.time_low, i, R(0));
+        set_lane(s.steps.last_not_finite, i, false);
         // Zero: to be chosen when the slope is known. A step that t does not resolve would be none.
         const R h = abs(get_lane(s.data.h_next, i));
         if (h == R(0)) return;
@@ -61,7 +62,7 @@ struct adaptive_stepping {
     /// advances by exactly the same step as t; otherwise the difference would accumulate.
     MYRIAD_FUNCTION void propose() {
         S remaining = s.data.t_end - s.data.t;
-        if constexpr (keeps_low) remaining = remaining - s.time_low;
+        if constexpr (keeps_low) remaining = remaining - s.steps.time_low;
         s.final_step = abs(remaining) <= abs(s.data.h_next) * S(R(1 + 1.0 / 1024));
         S h = copysign(s.data.h_next, remaining);
         if constexpr (!keeps_low) h = (s.data.t + h) - s.data.t;
@@ -69,7 +70,7 @@ struct adaptive_stepping {
     }
 
     MYRIAD_FUNCTION S end_time() const {
-        const S t1 = keeps_low ? s.data.t + (s.h + s.time_low) : s.data.t + s.h;
+        const S t1 = keeps_low ? s.data.t + (s.h + s.steps.time_low) : s.data.t + s.h;
         return select(s.final_step, s.data.t_end, t1);
     }
 
@@ -86,7 +87,7 @@ struct adaptive_stepping {
         if constexpr (solves_linear_systems<Method>) valid = valid & !trial.singular;
         error_norm<S> error = detail::scaled_error<Model, Method>(args, s.data.y, s.h, trial);
         if constexpr (scales_tolerances<Method>)
-            error.worst = static_cast<C>(error_ratio(S(error.worst), s.control.tolerance_scale));
+            error.worst = static_cast<C>(error_ratio(S(error.worst), s.steps.tolerance_scale));
         valid = valid & error.finite;
         const mask within = valid & (error.worst <= C(L(1)));
         mask accepted = s.running() & within;
@@ -103,11 +104,11 @@ struct adaptive_stepping {
                                 factor);
             // A step of length zero does not show why the previous one failed.
             const mask moved = rejected & (s.h != S(R(0)));
-            s.control.last_not_finite = select(moved, !finite, s.control.last_not_finite);
+            s.steps.last_not_finite = select(moved, !finite, s.steps.last_not_finite);
             // Where the right-hand side itself is not finite, there is no Jacobian.
             if constexpr (solves_linear_systems<Method>)
-                s.control.last_singular =
-                    select(moved & !finite, trial.singular & all_finite(trial.k[0]), s.control.last_singular);
+                s.steps.last_singular =
+                    select(moved & !finite, trial.singular & all_finite(trial.k[0]), s.steps.last_singular);
             stuck = rejected & (abs(s.h) <= S(args.minimum_step) + rounding);
         }
         S next = s.h * S(factor);
@@ -127,14 +128,15 @@ struct adaptive_stepping {
     }
     /// Why the trial of lane i, which is stuck, failed.
     MYRIAD_FUNCTION status failure_of(int i) const {
-        if (!get_lane(s.control.last_not_finite, i)) return status::step_underflow;
+        if (!get_lane(s.steps.last_not_finite, i)) return status::step_underflow;
         if constexpr (solves_linear_systems<Method>)
-            if (get_lane(s.control.last_singular, i)) return status::singular_jacobian;
+            if (get_lane(s.steps.last_singular, i)) return status::singular_jacobian;
         return status::not_finite;
     }
 
     MYRIAD_FUNCTION void advance(const mask& accepted, const S& t1, const mask&) {
-        if constexpr (keeps_low) s.time_low = select(accepted, (s.h + s.time_low) - (t1 - s.data.t), s.time_low);
+        if constexpr (keeps_low)
+            s.steps.time_low = select(accepted, (s.h + s.steps.time_low) - (t1 - s.data.t), s.steps.time_low);
         s.data.t = select(accepted, t1, s.data.t);
         // The last step ends there; an earlier one may, by rounding or at an event.
         s.ended = s.ended | (accepted & (t1 == s.data.t_end));
@@ -149,7 +151,7 @@ struct adaptive_stepping {
         const std::int64_t index = s.instance[i];
         const R t = get_lane(s.data.t, i), gained = abs(t - args.t[index]);
         args.t[index] = t;
-        if (!get_lane(s.control.last_not_finite, i)) return false;
+        if (!get_lane(s.steps.last_not_finite, i)) return false;
         const R t_begin = args.t_begin != nullptr ? args.t_begin[index] : args.common_t_begin;
         const R goal = min(abs(get_lane(s.data.t_end, i) - t), max(abs(t - t_begin), args.step));
         return gained * (static_cast<R>(args.max_steps) / R(stagnation_interval)) < goal;
@@ -162,7 +164,7 @@ private:
         const L after_accepted = L(-1.0 / (order + 1)), after_rejected = L(-1.0 / order);
         C factor;
         if constexpr (remembers_errors<Method>) {
-            auto& errors = s.control.errors;
+            auto& errors = s.steps.errors;
             const C now = fast_log2(worst);
             C sum = fma(C(L(Method::exponent_last)), errors.last, C(L(Method::exponent_now)) * now);
             if constexpr (Method::exponent_before != 0) sum = fma(C(L(Method::exponent_before)), errors.before, sum);

@@ -38,6 +38,7 @@ struct fixed_stepping {
 
     MYRIAD_FUNCTION void choose_step(int i, std::int32_t) { set_lane(s.data.h_next, i, args.step); }
     MYRIAD_FUNCTION void begin(int i, R t) {
+        set_lane(s.steps.time_low, i, R(0));
         lay(i, t);
         set_lane(s.data.h_next, i, get_lane(s.steps.step, i));
     }
@@ -46,7 +47,7 @@ struct fixed_stepping {
     MYRIAD_FUNCTION void move(int i, R t) {
         const R taken = detail::elapsed_beyond(get_lane(s.steps.base, i), t, static_cast<R>(get_lane(s.steps.done, i)),
                                                get_lane(s.steps.step, i));
-        set_lane(s.time_low, i, get_lane(s.steps.left, i) == 0 ? R(0) : get_lane(s.time_low, i) + taken);
+        set_lane(s.steps.time_low, i, get_lane(s.steps.left, i) == 0 ? R(0) : get_lane(s.steps.time_low, i) + taken);
         lay(i, t);
     }
 
@@ -66,7 +67,7 @@ struct fixed_stepping {
             for_each_lane(s.running() & s.final_step, [&](int i) MYRIAD_LAMBDA {
                 R beyond = detail::elapsed_beyond(args.t[s.instance[i]], domain_end(i),
                                                   static_cast<R>(get_lane(s.steps.done, i)), get_lane(s.steps.step, i));
-                if constexpr (keeps_low) beyond += get_lane(s.time_low, i);
+                if constexpr (keeps_low) beyond += get_lane(s.steps.time_low, i);
                 set_lane(s.h, i, -beyond);
             });
         }
@@ -76,7 +77,7 @@ struct fixed_stepping {
         // bit for bit the time at which the next step begins, so that it can reuse the slope
         S t1 = fma(S(s.steps.done + count(1)), s.steps.step, s.steps.base);
         if constexpr (has_events<Model>) {
-            const S redone = s.now() + (s.h + s.time_low);  // a step redone to an event
+            const S redone = s.now() + (s.h + s.steps.time_low);  // a step redone to an event
             t1 = select(s.h == s.steps.step, t1, redone);
         }
         return select(s.final_step, s.data.t_end, t1);
@@ -97,7 +98,8 @@ struct fixed_stepping {
         if constexpr (has_events<Model>) {
             for_each_lane(accepted & at_event & !s.final_step, [&](int i) MYRIAD_LAMBDA {
                 // the last step taken was shorter than the others
-                set_lane(s.time_low, i, get_lane(s.time_low, i) + (get_lane(s.h, i) - get_lane(s.steps.step, i)));
+                set_lane(s.steps.time_low, i,
+                         get_lane(s.steps.time_low, i) + (get_lane(s.h, i) - get_lane(s.steps.step, i)));
                 move(i, get_lane(t1, i));
             });
         }
@@ -110,6 +112,12 @@ struct fixed_stepping {
     }
 
     MYRIAD_FUNCTION bool stagnates(int) { return false; }
+
+    /// All lanes have taken so many steps more.
+    MYRIAD_FUNCTION void count_steps(const count& taken) {
+        s.steps.left = s.steps.left - taken;
+        s.steps.done = s.steps.done + taken;
+    }
 
 private:
     /// The number of steps gives the time; it is only stored if something reads it.

@@ -45,7 +45,7 @@ MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& a
     MYRIAD_UNROLL
     for (int c = 0; c < n; ++c) {
         scale[c] = fma(S(args.relative_tolerance[c]), abs(s.data.y[c]), S(args.absolute_tolerance[c]));
-        if constexpr (scales_tolerances<Method>) scale[c] = scale[c] * s.control.tolerance_scale;
+        if constexpr (scales_tolerances<Method>) scale[c] = scale[c] * s.steps.tolerance_scale;
         d0 = larger(abs(s.data.y[c]) / scale[c], d0);
         d1 = larger(abs(slope0[c]) / scale[c], d1);
     }

@@ -70,8 +70,7 @@ struct free_run {
             taken += block;
         }
         s.data.y = y;
-        s.steps.left = s.steps.left - (done - s.steps.done);
-        s.steps.done = done;
+        fixed_stepping<Model, Method, S>{args, s}.count_steps(done - s.steps.done);
         s.iteration += taken;
     }
 

@@ -180,7 +180,6 @@ private:
             }
         }
         set_lane(s.data.phase, i, phase);
-        set_lane(s.time_low, i, R(0));
         set_lane(s.data.h, i, R(0));
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) set_lane(s.data.event_count[j], i, 0);

@@ -7,12 +7,11 @@
 #include <type_traits>
 #include <utility>
 
-#include "myriad/kernel/methods/controller_policies.hpp"
-#include "myriad/kernel/scalar/control_number.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 #include "myriad/kernel/state/slope_cache.hpp"
+#include "myriad/kernel/state/stepping_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -25,30 +24,6 @@ inline constexpr bool keeps_time_low = has_events<Model> ||
 /// A step of so many times |t| at least is one that t resolves, however it is rounded and shortened a little.
 template <class R>
 inline constexpr R resolved_roundings = R(16) * epsilon_of<R>;
-
-/// Binary logarithms of error / tolerance of the last accepted step and of the one before, for controllers with memory.
-template <class Method, class S, bool remembers = remembers_errors<Method>>
-struct control_memory {};
-template <class Method, class S>
-struct control_memory<Method, S, true> {
-    control_of<S> last, before;
-};
-
-/// What step-size control remembers of earlier trials, and of the instance.
-template <class Method, class S>
-struct control_state {
-    mask_of<S> last_not_finite;        // the lane's last rejection was due to a value that is not finite
-    mask_of<S> last_singular;          // and that value to a singular matrix, if the method solves linear systems
-    control_memory<Method, S> errors;  // of earlier steps
-    S tolerance_scale;                 // of the instance, if the method has one
-};
-
-/// The position of fixed steps: t = base + done * step, so that rounding neither accumulates nor adds a step.
-template <class S>
-struct fixed_steps {
-    S base, step;
-    count_of<S> done, left;
-};
 
 template <class Model, class Method, class S>
 struct integration_state {
@@ -64,15 +39,12 @@ struct integration_state {
     lane_data<Model, S> data;
     mask active;  // lanes that hold an instance
     slope_cache<Model, Method, S> slopes;
-    S time_low;  // the rounding error of t, or of the fixed steps' base, where keeps_time_low
 
     // the trial step
     S h;              // its length, signed
     mask final_step;  // it ends at t_end
 
-    // one of these, depending on the method
-    control_state<Method, S> control;
-    fixed_steps<S> steps;
+    stepping_state<Method, S> steps;  // of the method's `stepping`, which owns it
 
     // lanes whose phase ends in this iteration of the loop, and how
     mask ended;
@@ -101,7 +73,7 @@ struct integration_state {
         if constexpr (is_adaptive<Method>) {
             return data.t;
         } else {
-            return fma(S(steps.done), steps.step, steps.base);
+            return steps.time();
         }
     }
 

@@ -11,10 +11,6 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// True for methods with an error estimate, which control the step size.
-template <class Method>
-inline constexpr bool is_adaptive = Method::embedded_order > 0;
-
 /// The slopes of a pack. Functions that may evaluate the right-hand side take the time and data of the committed state,
 /// and count evaluations beyond the stages of the trial steps.
 template <class Model, class Method, class S>

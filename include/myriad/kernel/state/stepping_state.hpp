@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// What adaptive and fixed steps keep between trials. The stepping of a method (controller/stepping.hpp) owns it:
+// nothing else writes it.
+#pragma once
+
+#include <type_traits>
+
+#include "myriad/kernel/methods/controller_policies.hpp"
+#include "myriad/kernel/scalar/control_number.hpp"
+#include "myriad/kernel/scalar/lanes.hpp"
+#include "myriad/kernel/scalar/math.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// True for methods with an error estimate, which control the step size.
+template <class Method>
+inline constexpr bool is_adaptive = Method::embedded_order > 0;
+
+/// Binary logarithms of error / tolerance of the last accepted step and of the one before, for controllers with memory.
+template <class Method, class S, bool remembers = remembers_errors<Method>>
+struct control_memory {};
+template <class Method, class S>
+struct control_memory<Method, S, true> {
+    control_of<S> last, before;
+};
+
+/// What step-size control remembers of earlier trials, and of the instance.
+template <class Method, class S>
+struct adaptive_state {
+    S time_low;                        // the rounding error of t, where keeps_time_low
+    mask_of<S> last_not_finite;        // the lane's last rejection was due to a value that is not finite
+    mask_of<S> last_singular;          // and that value to a singular matrix, if the method solves linear systems
+    control_memory<Method, S> errors;  // of earlier steps
+    S tolerance_scale;                 // of the instance, if the method has one
+};
+
+/// The position of fixed steps: t = base + done * step, so that rounding neither accumulates nor adds a step.
+template <class S>
+struct fixed_state {
+    S time_low;  // the rounding error of `base`, where keeps_time_low
+    S base, step;
+    count_of<S> done, left;
+
+    MYRIAD_FUNCTION S time() const { return fma(S(done), step, base); }
+};
+
+template <class Method, class S>
+using stepping_state = std::conditional_t<is_adaptive<Method>, adaptive_state<Method, S>, fixed_state<S>>;
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
