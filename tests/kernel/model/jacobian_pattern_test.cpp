@@ -175,3 +175,25 @@ TEST_CASE("a right-hand side that looks at values has no pattern", "[jacobian_pa
     CHECK(depends_on_time<of_kind<kind::branch>>);
     CHECK_FALSE(factorises_sparsely_of<of_kind<kind::branch>>());
 }
+
+TEST_CASE("functions depend on their arguments as the derivatives by dual numbers do", "[jacobian_pattern]") {
+    using pattern = functions<myriad::dependence<2>>;
+    using derivative = functions<myriad::dual<double>>;
+    const auto first = myriad::dependence<2>::of(0), second = myriad::dependence<2>::of(1);
+    const myriad::dual<double> x(0.3, 1);
+    const auto check = [&](const char* name, const auto& y, const auto& depends, bool smooth) {
+        CAPTURE(name);
+        CHECK((y.derivative != 0) == smooth);
+        CHECK(depends.contains(1) == smooth);
+        CHECK_FALSE(depends.contains(0));
+    };
+#define CHECK_SMOOTH(name) check(#name, derivative::name(x), pattern::name(second), true);
+#define CHECK_STEP(name) check(#name, derivative::name(x), pattern::name(second), false);
+#define CHECK_BOTH(name) CHECK((pattern::name(first, second).contains(0) && pattern::name(first, second).contains(1)));
+    MYRIAD_SMOOTH_FUNCTIONS(CHECK_SMOOTH)
+    MYRIAD_STEP_FUNCTIONS(CHECK_STEP)
+    MYRIAD_FUNCTIONS_OF_TWO(CHECK_BOTH)
+#undef CHECK_SMOOTH
+#undef CHECK_STEP
+#undef CHECK_BOTH
+}

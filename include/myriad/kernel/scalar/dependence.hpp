@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "myriad/kernel/core/macros.hpp"
+#include "myriad/kernel/scalar/function_list.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
@@ -99,12 +100,7 @@ struct dependence {
 #undef MYRIAD_DEPENDENCE_OPERATOR
 #define MYRIAD_DEPENDENCE_COMPARISON(symbol) \
     friend MYRIAD_FUNCTION unknown_truth<size> operator symbol(const dependence&, const dependence&) { return {}; }
-    MYRIAD_DEPENDENCE_COMPARISON(<)
-    MYRIAD_DEPENDENCE_COMPARISON(<=)
-    MYRIAD_DEPENDENCE_COMPARISON(>)
-    MYRIAD_DEPENDENCE_COMPARISON(>=)
-    MYRIAD_DEPENDENCE_COMPARISON(==)
-    MYRIAD_DEPENDENCE_COMPARISON(!=)
+    MYRIAD_COMPARISONS(MYRIAD_DEPENDENCE_COMPARISON)
 #undef MYRIAD_DEPENDENCE_COMPARISON
 
     static MYRIAD_FUNCTION dependence blend(const unknown_truth<size>&, const dependence& a, const dependence& b) {
@@ -142,49 +138,21 @@ template <int size>
 struct functions<dependence<size>> {
     using D = dependence<size>;
 
-#define MYRIAD_DEPENDENCE_FUNCTION(name) \
+#define MYRIAD_SAME(name) \
     static MYRIAD_FUNCTION D name(const D& x) { return x; }
-    MYRIAD_DEPENDENCE_FUNCTION(sqrt)
-    MYRIAD_DEPENDENCE_FUNCTION(cbrt)
-    MYRIAD_DEPENDENCE_FUNCTION(abs)
-    MYRIAD_DEPENDENCE_FUNCTION(sin)
-    MYRIAD_DEPENDENCE_FUNCTION(cos)
-    MYRIAD_DEPENDENCE_FUNCTION(tan)
-    MYRIAD_DEPENDENCE_FUNCTION(asin)
-    MYRIAD_DEPENDENCE_FUNCTION(acos)
-    MYRIAD_DEPENDENCE_FUNCTION(atan)
-    MYRIAD_DEPENDENCE_FUNCTION(sinpi)
-    MYRIAD_DEPENDENCE_FUNCTION(cospi)
-    MYRIAD_DEPENDENCE_FUNCTION(sinh)
-    MYRIAD_DEPENDENCE_FUNCTION(cosh)
-    MYRIAD_DEPENDENCE_FUNCTION(tanh)
-    MYRIAD_DEPENDENCE_FUNCTION(exp)
-    MYRIAD_DEPENDENCE_FUNCTION(exp2)
-    MYRIAD_DEPENDENCE_FUNCTION(log)
-    MYRIAD_DEPENDENCE_FUNCTION(log2)
-    MYRIAD_DEPENDENCE_FUNCTION(log10)
-    MYRIAD_DEPENDENCE_FUNCTION(expm1)
-    MYRIAD_DEPENDENCE_FUNCTION(log1p)
-    MYRIAD_DEPENDENCE_FUNCTION(reciprocal)
-#undef MYRIAD_DEPENDENCE_FUNCTION
-    // constant wherever they have a derivative
-    static MYRIAD_FUNCTION D floor(const D&) { return {}; }
-    static MYRIAD_FUNCTION D round(const D&) { return {}; }
-    static MYRIAD_FUNCTION D rint(const D&) { return {}; }
+#define MYRIAD_CONSTANT(name) \
+    static MYRIAD_FUNCTION D name(const D&) { return {}; }
+#define MYRIAD_JOINED(name) \
+    static MYRIAD_FUNCTION D name(const D& x, const D& y) { return D::join(x, y); }
+    MYRIAD_SMOOTH_FUNCTIONS(MYRIAD_SAME)
+    MYRIAD_STEP_FUNCTIONS(MYRIAD_CONSTANT)
+    MYRIAD_FUNCTIONS_OF_TWO(MYRIAD_JOINED)
+#undef MYRIAD_SAME
+#undef MYRIAD_CONSTANT
+#undef MYRIAD_JOINED
 
     static MYRIAD_FUNCTION void sincos(const D& x, D& sine, D& cosine) { sine = cosine = x; }
     static MYRIAD_FUNCTION void sincospi(const D& x, D& sine, D& cosine) { sine = cosine = x; }
-
-#define MYRIAD_DEPENDENCE_FUNCTION(name) \
-    static MYRIAD_FUNCTION D name(const D& x, const D& y) { return D::join(x, y); }
-    MYRIAD_DEPENDENCE_FUNCTION(pow)
-    MYRIAD_DEPENDENCE_FUNCTION(powr)
-    MYRIAD_DEPENDENCE_FUNCTION(atan2)
-    MYRIAD_DEPENDENCE_FUNCTION(hypot)
-    MYRIAD_DEPENDENCE_FUNCTION(fmod)
-    MYRIAD_DEPENDENCE_FUNCTION(min)
-    MYRIAD_DEPENDENCE_FUNCTION(max)
-#undef MYRIAD_DEPENDENCE_FUNCTION
     static MYRIAD_FUNCTION D copysign(const D& x, const D&) { return x; }
     static MYRIAD_FUNCTION D fma(const D& a, const D& b, const D& c) { return D::join(D::join(a, b), c); }
     static MYRIAD_FUNCTION unknown_truth<size> is_finite(const D&) { return {}; }

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "myriad/kernel/core/macros.hpp"
+#include "myriad/kernel/scalar/function_list.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
@@ -168,12 +169,7 @@ requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator/(const A& a, cons
         using S = detail::part_of<A, B>;                                                            \
         return detail::value_of<S>(a) symbol detail::value_of<S>(b);                                \
     }
-MYRIAD_DUAL_COMPARISON(<)
-MYRIAD_DUAL_COMPARISON(<=)
-MYRIAD_DUAL_COMPARISON(>)
-MYRIAD_DUAL_COMPARISON(>=)
-MYRIAD_DUAL_COMPARISON(==)
-MYRIAD_DUAL_COMPARISON(!=)
+MYRIAD_COMPARISONS(MYRIAD_DUAL_COMPARISON)
 #undef MYRIAD_DUAL_COMPARISON
 
 }  // namespace myriad::inline MYRIAD_TARGET
@@ -199,9 +195,10 @@ struct functions<dual<S>> {
     static MYRIAD_FUNCTION D abs(const D& x) {
         return D(f::abs(x.value), select(x.value < real(0), -x.derivative, x.derivative));
     }
-    static MYRIAD_FUNCTION D floor(const D& x) { return D(f::floor(x.value)); }
-    static MYRIAD_FUNCTION D round(const D& x) { return D(f::round(x.value)); }
-    static MYRIAD_FUNCTION D rint(const D& x) { return D(f::rint(x.value)); }
+#define MYRIAD_DUAL_FUNCTION(name) \
+    static MYRIAD_FUNCTION D name(const D& x) { return D(f::name(x.value)); }
+    MYRIAD_STEP_FUNCTIONS(MYRIAD_DUAL_FUNCTION)
+#undef MYRIAD_DUAL_FUNCTION
 
     static MYRIAD_FUNCTION D sin(const D& x) { return D(f::sin(x.value), x.derivative * f::cos(x.value)); }
     static MYRIAD_FUNCTION D cos(const D& x) { return D(f::cos(x.value), -x.derivative * f::sin(x.value)); }
