@@ -3,6 +3,8 @@
 // and the phases all that they need of events.
 #pragma once
 
+#include <cstdint>
+
 #include "myriad/kernel/event/detector.hpp"
 #include "myriad/kernel/event/event_detection.hpp"
 #include "myriad/kernel/event/fired_events.hpp"

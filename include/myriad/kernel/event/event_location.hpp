@@ -5,6 +5,7 @@
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/earliest_crossing.hpp"
 #include "myriad/kernel/event/event_nearness.hpp"
+#include "myriad/kernel/event/fired_events.hpp"
 #include "myriad/kernel/event/lane_sides.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {

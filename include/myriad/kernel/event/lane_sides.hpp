@@ -4,12 +4,10 @@
 #pragma once
 
 #include <cstdint>
-#include <type_traits>
 
 #include "myriad/kernel/event/event_functions.hpp"
 #include "myriad/kernel/event/event_memory.hpp"
 #include "myriad/kernel/event/event_sides.hpp"
-#include "myriad/kernel/event/fired_events.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -30,7 +28,6 @@ struct lane_sides {
     using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using masks = mask_set<mask_of<S>, m>;
-    using fired = fired_events<Model, S>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;

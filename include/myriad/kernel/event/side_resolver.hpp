@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "myriad/kernel/event/fired_events.hpp"
 #include "myriad/kernel/event/lane_sides.hpp"
 #include "myriad/kernel/event/step_ends.hpp"
 

@@ -3,6 +3,7 @@
 // lane, or is rarely called; the check in every step is `event_detector::detect`.
 #pragma once
 
+#include "myriad/kernel/event/fired_events.hpp"
 #include "myriad/kernel/event/lane_sides.hpp"
 #include "myriad/kernel/event/side_resolver.hpp"
 
