@@ -52,12 +52,6 @@ struct side_follower {
         for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA { begin_lane(i); });
     }
 
-    /// The value of event function j beyond which nothing can happen at the end of the domain.
-    MYRIAD_FUNCTION R end_tolerance(int j) const {
-        const R tolerance = args.event[j].tolerance;
-        return tolerance > R(0) ? tolerance : infinity_of<R>;
-    }
-
     /// Stores the sides of lane i for its next phase. A phase without a step has not evaluated its event functions.
     MYRIAD_FUNCTION void keep(int i) const {
         if (s.iterations_of(args, i) == 0) return;
