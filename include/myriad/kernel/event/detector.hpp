@@ -29,28 +29,25 @@ struct event_detector {
         // A function has crossed if it was above zero and is below, or was below and is above.
         detected.crossed = ~(e.above ^ below);
         detected.to_locate = e.flags[e.in_question] | (detected.crossed & (sides.asked() | ~e.left)).any_of();
-        if (any(sides.s.final_step)) {
+        // Without a branch in one lane, for which nearly every step would pay more than these comparisons.
+        if (!is_pack<S> || any(sides.s.final_step)) {
             masks far;
             far.clear();
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) far.set(j, abs(g1[j]) > S(sides.end_tolerance(j)));
+            for (int j = 0; j < m; ++j) far.set(j, abs(g1[j]) > S(sides.args.event[j].end_tolerance));
             detected.to_locate = detected.to_locate | (sides.s.final_step & !far.all_of());
         }
         return detected;
     }
-    /// Updates the sides at the end of accepted trials of these lanes, whose events, if any, are those in `located`.
-    MYRIAD_FUNCTION void update(const mask& lanes, const detection& detected, const masks& located) const {
-        auto& e = sides.e;
+    /// Functions that have crossed in accepted trials of these lanes, in which only those events fired that are in
+    /// `located`, are on their other side.
+    MYRIAD_FUNCTION void change_sides(const mask& lanes, const detection& detected, const masks& located) const {
         masks crossed = detected.crossed.in(lanes);
         // A function whose event was just located, maybe past zero, changes its side after the event's action.
         if constexpr (!is_pack<S>) crossed = crossed & ~located;
-        if (is_pack<S> || MYRIAD_UNLIKELY(any(crossed.any_of()))) {
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j)
-                crossed.set(j, crossed[j] & (detected.g1[j] != S(R(0))));  // zero is on either side
-        }
-        e.above = e.above ^ crossed;
-        e.left = e.left | masks::all_in(lanes);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) crossed.set(j, crossed[j] & (detected.g1[j] != S(R(0))));  // zero is on either side
+        sides.e.above = sides.e.above ^ crossed;
     }
 };
 

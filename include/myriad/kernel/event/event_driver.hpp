@@ -20,6 +20,7 @@ struct event_driver {
     using mask = mask_of<S>;
     static constexpr int m = n_event<Model>;
     using values = vec<S, m>;  // of the event functions in all lanes
+    using masks = mask_set<mask, m>;
     using trial_type = trial_step<Method, S, n_state<Model>>;
     using detection = event_detection<S, m>;
     using locator = event_locator<Model, Method, S>;
@@ -83,24 +84,27 @@ struct event_driver {
         }
         const mask candidates = s.running() & detected.to_locate;
         mask follow = accepted & !candidates;
-        if (MYRIAD_UNLIKELY(any(candidates))) {
-            const trial_ends<Model, S> ends = ends_of(trial, t1, detected.g1);
-            if constexpr (is_pack<S>) {
-                // Copies, so that only these need an address and the caller's variables stay in registers.
-                mask still_accepted = accepted;
-                locator{sides()}.locate_lanes(candidates, ends, detected, still_accepted, fired);
-                accepted = still_accepted;
-            } else {
-                if (accepted) {
-                    const trial_outcome outcome = locator{sides()}.locate(0, ends, detected, fired);
-                    accepted = outcome != trial_outcome::is_redone;
-                    follow = outcome == trial_outcome::stands_before_sides;
+        if (is_pack<S> || MYRIAD_UNLIKELY(any(candidates | detected.crossed.any_of()))) {
+            if (MYRIAD_UNLIKELY(any(candidates))) {
+                const trial_ends<Model, S> ends = ends_of(trial, t1, detected.g1);
+                if constexpr (is_pack<S>) {
+                    // Copies, so that only these need an address and the caller's variables stay in registers.
+                    mask still_accepted = accepted;
+                    locator{sides()}.locate_lanes(candidates, ends, detected, still_accepted, fired);
+                    accepted = still_accepted;
                 } else {
-                    locator{sides()}.give_up(0);
+                    if (accepted) {
+                        const trial_outcome outcome = locator{sides()}.locate(0, ends, detected, fired);
+                        accepted = outcome != trial_outcome::is_redone;
+                        follow = outcome == trial_outcome::stands_before_sides;
+                    } else {
+                        locator{sides()}.give_up(0);
+                    }
                 }
             }
+            detector{sides()}.change_sides(follow, detected, fired.which);
         }
-        detector{sides()}.update(follow, detected, fired.which);
+        e.left = e.left | masks::all_in(follow);
     }
     /// The lanes in which an event fired.
     MYRIAD_FUNCTION mask fired_lanes() const {

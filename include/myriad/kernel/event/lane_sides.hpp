@@ -40,7 +40,7 @@ struct lane_sides {
         return *own;
     }
     /// What the last phase has kept of event j for the next.
-    MYRIAD_FUNCTION std::int16_t& kept_at(int j, int i) const {
+    MYRIAD_FUNCTION std::int32_t& kept_at(int j, int i) const {
         return args.side[static_cast<std::int64_t>(j) * args.size + s.instance[i]];
     }
     /// The inputs of lane i's event functions beside t and y.
@@ -81,11 +81,6 @@ struct lane_sides {
     /// Whether a function with value g has crossed from the given side, by more than `past`.
     MYRIAD_FUNCTION bool crosses(int j, R side, R g, R past) const { return is_asked(j, side) && side * g < -past; }
 
-    /// The value of event function j beyond which nothing can happen at the end of the domain.
-    MYRIAD_FUNCTION R end_tolerance(int j) const {
-        const R tolerance = args.event[j].tolerance;
-        return tolerance > R(0) ? tolerance : infinity_of<R>;
-    }
     /// Whether a value is farther from the surface than the tolerance that was given.
     MYRIAD_FUNCTION bool is_beyond_tolerance(int j, R g) const {
         return abs(g) > args.event[j].tolerance && args.event[j].tolerance > R(0);

@@ -42,16 +42,19 @@ struct side_resolver {
         for (int j = 0; j < m; ++j) {
             const kept_event kept(sides.kept_at(j, i));
             const kept_side kind = kept.kind();
-            const bool beyond = abs(g[j]) > rounding[j] && kind != kept_side::fired;
+            const bool fired = kind == kept_side::fired, keeps = fired || kind == kept_side::within;
+            const R tolerance = max(args.event[j].tolerance, rounding[j]);
+            // An event is located only as closely as the time resolves, and that may have started anew.
+            const R band = fired ? max(tolerance, kept.template value_bound<R>()) : keeps ? tolerance : rounding[j];
+            const bool beyond = abs(g[j]) > band;
             undefined = undefined || g[j] != g[j];
             at_jump.set(j, beyond && kind == kept_side::on_jump);
             // Flights that accumulate may do so over many phases that another event ends.
-            const bool away = abs(g[j]) > max(args.event[j].tolerance, rounding[j]);
-            own.lingered[j] = away ? 0 : kept.lingered();
+            own.lingered[j] = abs(g[j]) > tolerance ? 0 : kept.lingered();
             e.left.set(j, i, own.lingered[j] == 0);
             sides.put_side(j, i, beyond ? sign_of(g[j]) : R(0));
-            own.fired_last.set(j, kind == kept_side::fired);
-            if (kind == kept_side::within || kind == kept_side::fired) {
+            own.fired_last.set(j, fired);
+            if (keeps && !beyond) {
                 e.above.set(j, i, kept.above());
                 own.open.set(j, true);
                 own.held.set(j, true);
@@ -78,13 +81,14 @@ struct side_resolver {
             if (sides.is_fresh(j, i)) kept = kept_side::fired;
             if (!e.left.get(j, i) && own.on_jump[j]) kept = kept_side::on_jump;
             if (side == R(0)) kept = kept_side::unknown;
-            sides.kept_at(j, i) = kept_event(side > R(0), kept, e.left.get(j, i) ? 0 : own.lingered[j]).code();
+            const kept_event all(side > R(0), kept, e.left.get(j, i) ? 0 : own.lingered[j]);
+            sides.kept_at(j, i) = (kept == kept_side::fired ? all.at_value(g[j]) : all).code();
         }
     }
 
-    /// Sets open sides to where the functions are heading, or to where they are if they are not on the surface, as
-    /// after the host moved the state. The side that a phase has kept for one on the surface stands, unless its event
-    /// fired there: then the host may have turned the flow round, which shows in a slope that is not rounding itself.
+    /// Sets open sides to where the functions, on the surface at the start of the step, are heading. The side that a
+    /// phase has kept for one there stands, unless its event fired there: then the host may have turned the flow round,
+    /// which shows in a slope that is not rounding itself.
     MYRIAD_FUNCTION void resolve_open_sides(int i, const step_ends<Model, R>& step, const reals& rounding) const {
         const auto& own = sides.memory_of(i);
         const flags open = own.open, held = own.held, fired_last = own.fired_last;
@@ -93,11 +97,10 @@ struct side_resolver {
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             if (!open[j]) continue;
-            const bool on_surface = abs(step.g[j]) <= max(sides.args.event[j].tolerance, rounding[j]);
             const bool turns = fired_last[j] && abs(slope[j] * step.h) > rounding[j];
             const R heading =
                 held[j] && !turns ? (sides.e.above.get(j, i) ? R(1) : R(-1)) : sign_of(slope[j]) * sign_of(step.h);
-            sides.put_side(j, i, on_surface ? heading : sign_of(step.g[j]));
+            sides.put_side(j, i, heading);
         }
     }
 
