@@ -12,6 +12,7 @@ from . import _core
 from .components import name_of
 from .device import DeviceInput, DeviceResults
 from .errors import Error, note_in_python
+from .expression import evaluate, symbols_of
 from .grid import Sweep
 from .run_plots import Plots, html
 from .statuses import first_failure, status_names
@@ -212,6 +213,10 @@ class Run(Mapping):
             return self._ensemble.array(*place)
         if name in self.shared:
             return self.shared[name]
+        if name in self._components.aliases:
+            return self[self._components.aliases[name]]
+        if name in self._components.outputs:
+            return self._output(self._components.outputs[name])
         raise KeyError(f"there is no {name!r}: the model has {', '.join(self._components.place)}")
 
     def _times(self):
@@ -223,10 +228,40 @@ class Run(Mapping):
             return self.sample_times
         raise KeyError("the times were not recorded: give record=dict(..., time=True) or samples= to solve")
 
+    def _output(self, expression):
+        """The values of an expression: at the samples, or where records are, or at the end."""
+        symbols = symbols_of([expression])
+        states = [s.value[1] for s in symbols if s.value[0] == "state"]
+        sampled, recorded = (all(n in found for n in states) for found in (self._sampled, self._recorded))
+        of_time = any(s is time for s in symbols)
+        changes = bool(states) or of_time
+        at_samples = changes and bool(self._sampled) and sampled
+        at_records = changes and not at_samples and bool(self._recorded) and recorded and (
+            not of_time or any(kind == "time" for kind, _ in self._recorded.values()))
+        known: dict[Any, Any] = {}
+        for symbol in symbols:
+            kind, name = symbol.value
+            if symbol in self._components.constants:
+                known[symbol] = self._components.constants[symbol]
+            elif symbol is time:
+                known[symbol] = self._times() if at_samples or at_records else self.t
+            elif kind == "state":
+                known[symbol] = self[name] if at_samples or at_records else self.states[name]
+            elif kind == "parameter":
+                values = self.parameters[name]
+                known[symbol] = values[:, None] if at_samples or at_records else values
+            else:
+                known[symbol] = self.shared[name]
+        result, = evaluate([expression], known)
+        columns = (self._sampled if at_samples else self._recorded) if at_samples or at_records else None
+        shape = (self.size,) if columns is None else self[next(iter(columns))].shape
+        return np.array(np.broadcast_to(result, shape))
+
     def _names(self):
         """The names of all components that have results, and of recorded times."""
         tables = self._components.tables
-        return list(dict.fromkeys([*(n for n in self._components.place if n not in tables), *self._recorded]))
+        return list(dict.fromkeys([*(n for n in self._components.place if n not in tables), *self._recorded,
+                                   *self._components.outputs]))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names())
