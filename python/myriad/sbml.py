@@ -10,8 +10,9 @@ from . import symbols as sym
 from .errors import Error, users_line
 from .expression import symbols_of
 from .model import Model
-from .sbml_document import library, named, read
-from .sbml_math import Refused, constant, is_constant, value_of
+from .sbml_document import library, read
+from .sbml_events import Events
+from .sbml_math import constant, is_constant, value_of
 from .sbml_semantics import Semantics
 
 if TYPE_CHECKING:
@@ -55,18 +56,15 @@ class SbmlModel(Model):
     have as its name."""
 
     def __init__(self, semantics: Semantics, name: str) -> None:
-        model = semantics.model
-        for i in range(model.getNumEvents()):
-            event = model.getEvent(i)
-            if event.isSetTrigger() and event.getTrigger().isSetMath():
-                raise Refused(f"{named(event)}: events are not supported")
         states = semantics.states()
         equations: dict[Any, Any] = {q.symbol: semantics.slope(q) for q in states}
         if not equations:
             equations = {sym.symbol("state", semantics.component_name("nothing")): constant(0.0)}
         outputs = _outputs(semantics)
+        happening = Events(semantics, next(iter(equations)))
         defaults = semantics.defaults
-        needed = {s for s in symbols_of([*equations.values(), *defaults.values()])}
+        actions = [e for one in happening.events for e in (one.function, *one.do.values())]
+        needed = set(symbols_of([*equations.values(), *defaults.values(), *actions, *happening.initialise.values()]))
         constants: dict[Any, float] = {}
         declared = []
         for quantity in semantics.quantities.values():
@@ -80,7 +78,8 @@ class SbmlModel(Model):
             else:
                 declared.append(symbol)
         name = _suffixed(semantics.names.values(), semantics.component_name(name))
-        super().__init__(equations, (), None, None, None, None, None, None, declared, (), name)
+        super().__init__(equations, happening.events, None, happening.initialise, None, None, None, None, declared, (),
+                         name)
         self.line = users_line()
         self.constants = constants
         self.defaults: dict[str, Any] = {**self.shared_values}
