@@ -228,32 +228,38 @@ class Run(Mapping):
             return self.sample_times
         raise KeyError("the times were not recorded: give record=dict(..., time=True) or samples= to solve")
 
-    def _output(self, expression):
-        """The values of an expression: at the samples, or where records are, or at the end."""
+    def _place_of(self, expression):
+        """Where the values of an expression are known: along "sample" or "phase", or None for the end alone."""
         symbols = symbols_of([expression])
         states = [s.value[1] for s in symbols if s.value[0] == "state"]
-        sampled, recorded = (all(n in found for n in states) for found in (self._sampled, self._recorded))
         of_time = any(s is time for s in symbols)
-        changes = bool(states) or of_time
-        at_samples = changes and bool(self._sampled) and sampled
-        at_records = changes and not at_samples and bool(self._recorded) and recorded and (
-            not of_time or any(kind == "time" for kind, _ in self._recorded.values()))
+        if not states and not of_time:
+            return None
+        if self._sampled and all(n in self._sampled for n in states):
+            return "sample"
+        has_times = any(kind == "time" for kind, _ in self._recorded.values())
+        if self._recorded and all(n in self._recorded for n in states) and (has_times or not of_time):
+            return "phase"
+        return None
+
+    def _output(self, expression):
+        """The values of an expression: at the samples, or where records are, or at the end."""
+        place = self._place_of(expression)
         known: dict[Any, Any] = {}
-        for symbol in symbols:
+        for symbol in symbols_of([expression]):
             kind, name = symbol.value
             if symbol in self._components.constants:
                 known[symbol] = self._components.constants[symbol]
             elif symbol is time:
-                known[symbol] = self._times() if at_samples or at_records else self.t
+                known[symbol] = self._times() if place else self.t
             elif kind == "state":
-                known[symbol] = self[name] if at_samples or at_records else self.states[name]
+                known[symbol] = self[name] if place else self.states[name]
             elif kind == "parameter":
-                values = self.parameters[name]
-                known[symbol] = values[:, None] if at_samples or at_records else values
+                known[symbol] = self.parameters[name][:, None] if place else self.parameters[name]
             else:
                 known[symbol] = self.shared[name]
         result, = evaluate([expression], known)
-        columns = (self._sampled if at_samples else self._recorded) if at_samples or at_records else None
+        columns = {"sample": self._sampled, "phase": self._recorded, None: None}[place]
         shape = (self.size,) if columns is None else self[next(iter(columns))].shape
         return np.array(np.broadcast_to(result, shape))
 
@@ -331,6 +337,9 @@ class Run(Mapping):
             coordinates["time"] = unstacked(self.sample_times, "sample")
         for name, array in {**self.states, **self.accessories}.items():
             variables.setdefault(self._column(name), unstacked(array))
+        for name, expression in self._components.outputs.items():
+            place = self._place_of(expression)
+            variables.setdefault(self._column(name), unstacked(self[name], *([place] if place else [])))
         variables["t_last"] = (*unstacked(self.t), {"long_name": "time at which the last phase ended"})
         variables["status"] = (*unstacked(self.status), {
             "flag_values": np.arange(len(status_names), dtype=np.uint8), "flag_meanings": " ".join(status_names)})

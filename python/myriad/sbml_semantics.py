@@ -182,28 +182,40 @@ class Semantics:
 
     def _represent(self) -> None:
         """Decides how each quantity is stored, and with which name."""
-        for quantity in sorted(self.quantities.values(), key=lambda q: q.kind == "species"):
+        for quantity in self.quantities.values():
             if quantity.compartment and quantity.changes not in ("rate", "assignment"):
                 volume = self.quantities[quantity.compartment]
                 known = volume.value is not None or volume.initial is not None
                 quantity.in_amount = volume.changes != "" or not known
-            if quantity.changes == "assignment":
-                continue
-            wanted = f"{quantity.id}_amount" if quantity.in_amount else quantity.id
-            name = self.names[quantity.id] = self.component_name(wanted)
-            is_state = quantity.changes != ""
-            start = self._start(quantity)
-            if not is_state and (quantity.kind == "stoichiometry" and quantity.initial is None or
-                                 self.swept is not None and quantity.id not in self.swept):
-                if start is not None and not callable(start):
-                    quantity.symbol = start
-                    continue
-            quantity.symbol = sym.symbol("state" if is_state else "parameter", name)
+        for quantity in sorted(self.quantities.values(), key=lambda q: q.kind == "species"):
+            if quantity.changes != "assignment":
+                self.names[quantity.id] = self.component_name(
+                    f"{quantity.id}_amount" if quantity.in_amount else quantity.id)
+        for quantity in self.quantities.values():
+            self.stored(quantity)
         for quantity in self.quantities.values():
             name = self.names.get(quantity.id)
             start = self._start(quantity)
-            if name is not None and start is not None and quantity.symbol is not start:
+            if name is not None and start is not None and quantity.symbol.op == "symbol":
                 self.defaults[name] = start() if callable(start) else start
+
+    def stored(self, quantity: Quantity) -> Any:
+        """The symbol of what is stored of a quantity, or the constant that it is."""
+        if quantity.symbol is None and quantity.changes != "assignment":
+            quantity.symbol = self._once(("stored", quantity.id), lambda: self._stored(quantity), quantity.where)
+        return quantity.symbol
+
+    def _stored(self, quantity: Quantity) -> Any:
+        name = self.names[quantity.id]
+        if quantity.changes:
+            return sym.symbol("state", name)
+        if quantity.kind == "stoichiometry" and quantity.initial is None or (
+                self.swept is not None and quantity.id not in self.swept):
+            start = self._start(quantity)
+            start = start() if callable(start) else start
+            if start is not None and is_constant(start):
+                return start
+        return sym.symbol("parameter", name)
 
     def _start(self, quantity: Quantity) -> Any:
         """The value at the start, as it is stored: a constant, a function that gives an expression, or None."""
@@ -248,15 +260,14 @@ class Semantics:
             rule = quantity.formula
             return self._once(("meaning", name), lambda: number(self.translate(rule.getMath(), named(rule))),
                               named(rule))
-        if quantity.in_amount:
-            return divide(quantity.symbol, self.meaning(quantity.compartment, where))
-        return quantity.symbol
+        symbol = self.stored(quantity)
+        return divide(symbol, self.meaning(quantity.compartment, where)) if quantity.in_amount else symbol
 
     def amount(self, name: str) -> Any:
         """The amount of a species."""
         quantity = self.quantities[name]
         if quantity.in_amount:
-            return quantity.symbol
+            return self.stored(quantity)
         meaning = self.meaning(name, quantity.where)
         return multiply(meaning, self.meaning(quantity.compartment, quantity.where)) if quantity.compartment else (
             meaning)
