@@ -7,8 +7,9 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from . import symbols as sym
+from .components import Components, name_of, unknown
 from .errors import Error, users_line
-from .expression import symbols_of
+from .expression import Node, symbols_of
 from .model import Model
 from .sbml_document import library, read
 from .sbml_events import Events
@@ -37,9 +38,9 @@ def read_sbml(source: Path | str, *, parameters: Names | None = None, name: str 
     events other than those of docs/sbml.md, packages that change a model's meaning, and for what is not valid.
     """
     document, model = read(source)
-    swept = None if parameters is None else [str(n) if isinstance(n, str) else n.value[1] for n in
-                                             ([parameters] if not isinstance(parameters, str) and hasattr(
-                                                 parameters, "op") else sym.names(parameters))]
+    swept = None
+    if parameters is not None:
+        swept = [name_of(n) for n in ([parameters] if isinstance(parameters, Node) else sym.names(parameters))]
     return SbmlModel(Semantics(library(), document, model, swept), name or model.getId() or "model")
 
 
@@ -61,6 +62,10 @@ class SbmlModel(Model):
         if not equations:
             equations = {sym.symbol("state", semantics.component_name("nothing")): constant(0.0)}
         outputs = _outputs(semantics)
+        for given in semantics.swept or ():
+            known = [*semantics.quantities, *semantics.local_names]
+            if given not in known:
+                raise unknown(given, known, "constant of the file that parameters= can name")
         happening = Events(semantics, next(iter(equations)))
         defaults = semantics.defaults
         actions = [e for one in happening.events for e in (one.function, *one.do.values())]
@@ -95,7 +100,6 @@ class SbmlModel(Model):
 
     def start(self, given: dict[str, Any] | None = None) -> dict[str, float]:
         """The values of states and parameters at the start, for some that are given."""
-        from .components import Components
         values = Components(self).completed(dict(given or {}), 0.0)
         missing = [n for n in [*self.states, *self.parameters] if n not in values]
         if missing:

@@ -55,6 +55,7 @@ class Semantics:
         self.translate.rate_of_expression = self.total_derivative
         self.quantities: dict[str, Quantity] = {}
         self.reactions: dict[str, Any] = {}
+        self.local_names: list[str] = []  # of parameters of kinetic laws
         self._known: dict[Any, Any] = {}
         self._under_way: list[Any] = []
         self.defaults: dict[str, Any] = {}  # values of components at the start, as expressions
@@ -117,7 +118,7 @@ class Semantics:
             return reference.getStoichiometry() / (reference.getDenominator() or 1)
         return reference.getStoichiometry() if reference.isSetStoichiometry() else None
 
-    def _changed(self, name: str, how: str, element: Any) -> Quantity | None:
+    def _changed(self, name: str, how: str, element: Any) -> Quantity:
         quantity = self.quantities.get(name)
         if quantity is None:
             if name in self.reactions:
@@ -143,27 +144,27 @@ class Semantics:
             initial = self.model.getInitialAssignment(i)
             if not initial.isSetMath():
                 continue
-            quantity = self.quantities.get(initial.getSymbol())
-            if quantity is None:
+            symbol = initial.getSymbol()
+            if symbol not in self.quantities:
                 raise Refused(f"the {named(initial)} sets what is not there")
-            quantity.initial = initial
+            self.quantities[symbol].initial = initial
         for reaction in self.reactions.values():
             for reference in self._references(reaction):
-                quantity = self.quantities.get(reference.getSpecies())
-                if quantity is None:
+                name = reference.getSpecies()
+                if name not in self.quantities:
                     raise Refused(f"{named(reference)} of {named(reaction)} names no species")
+                quantity = self.quantities[name]
                 element = quantity.element
                 if not (element.getBoundaryCondition() or element.getConstant() or quantity.changes):
                     quantity.changes = "reactions"
         for event in self._all("Event"):
             for i in range(event.getNumEventAssignments()):
                 assignment = event.getEventAssignment(i)
-                quantity = self.quantities.get(assignment.getVariable())
-                if quantity is None:
-                    raise Refused(f"{named(assignment)} of {named(event)} sets '{assignment.getVariable()}', which is "
-                                  "not there")
-                if assignment.isSetMath() and not quantity.changes:
-                    quantity.changes = "events"
+                name = assignment.getVariable()
+                if name not in self.quantities:
+                    raise Refused(f"{named(assignment)} of {named(event)} sets '{name}', which is not there")
+                if assignment.isSetMath() and not self.quantities[name].changes:
+                    self.quantities[name].changes = "events"
 
     # -- What is stored ------------------------------------------------------------------------------------------------
 
@@ -295,6 +296,7 @@ class Semantics:
         for i in range(getters[0]()):
             parameter = getters[1](i)
             full = f"{reaction.getId()}_{parameter.getId()}"
+            self.local_names.append(full)
             given = constant(parameter.getValue()) if parameter.isSetValue() else None
             if self.swept is not None and full not in self.swept and given is not None:
                 local[parameter.getId()] = given
