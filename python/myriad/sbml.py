@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 from typing import TYPE_CHECKING, Any
 
 from . import symbols as sym
@@ -13,13 +14,13 @@ from .expression import Node, symbols_of
 from .model import Model
 from .sbml_document import library, read
 from .sbml_events import Events
-from .sbml_math import constant, is_constant, value_of
+from .sbml_math import Refused, constant, is_constant, value_of
 from .sbml_semantics import Semantics
 
 if TYPE_CHECKING:
     from .hints import Names, Path
 
-__all__ = ["read_sbml", "SbmlModel"]
+__all__ = ["read_sbml", "read_antimony", "SbmlModel"]
 
 
 def read_sbml(source: Path | str, *, parameters: Names | None = None, name: str | None = None) -> SbmlModel:
@@ -42,6 +43,21 @@ def read_sbml(source: Path | str, *, parameters: Names | None = None, name: str 
     if parameters is not None:
         swept = [name_of(n) for n in ([parameters] if isinstance(parameters, Node) else sym.names(parameters))]
     return SbmlModel(Semantics(library(), document, model, swept), name or model.getId() or "model")
+
+
+def read_antimony(source: Path | str, *, parameters: Names | None = None, name: str | None = None) -> SbmlModel:
+    """The model of a text in Antimony, as `"S1 -> S2; k*S1; k = 0.1; S1 = 10"`, or of the file with such a text. Its last
+    model is taken. All else is as in `read_sbml`. It needs the packages antimony and python-libsbml."""
+    try:
+        import antimony
+    except ImportError:
+        raise Error("read_antimony needs the package antimony: `pip install antimony python-libsbml`") from None
+    is_path = not isinstance(source, str) or os.path.isfile(source)
+    antimony.clearPreviousLoads()
+    loaded = antimony.loadAntimonyFile(os.fspath(source)) if is_path else antimony.loadAntimonyString(source)
+    if loaded < 0:
+        raise Refused(f"the text is no Antimony: {' '.join(antimony.getLastError().split())}")
+    return read_sbml(antimony.getSBMLString(antimony.getMainModuleName()), parameters=parameters, name=name)
 
 
 def _suffixed(taken: Any, name: str) -> str:

@@ -159,3 +159,13 @@ def test_without_libsbml_the_message_says_what_to_install(monkeypatch):
 def test_all_cases_have_names_of_their_own():
     names = [case.name for case in sbml_models.cases]
     assert len(names) == len(set(names)) >= 60
+
+
+def test_a_text_in_antimony_is_a_model():
+    pytest.importorskip("antimony", reason="the notation is read by the package antimony")
+    model = my.read_antimony("R: S1 -> S2; k*S1; k = 0.5; S1 = 10; S2 = 0; total := S1 + S2")
+    run = my.solve(model, {"k": [0.5, 1.0]}, time=(0, 1), interpreted=True, rtol=1e-10)
+    np.testing.assert_allclose(run["S1"], 10 * np.exp([-0.5, -1.0]), rtol=1e-8)
+    np.testing.assert_allclose(run["total"], 10, rtol=1e-8)
+    with pytest.raises(my.Error, match="no Antimony"):
+        my.read_antimony("S1 -> -> S2")
