@@ -46,7 +46,7 @@ def read_sbml(source: Path | str, *, parameters: Names | None = None, name: str 
 
 
 def read_antimony(source: Path | str, *, parameters: Names | None = None, name: str | None = None) -> SbmlModel:
-    """The model of a text in Antimony, as `"S1 -> S2; k*S1; k = 0.1; S1 = 10"`, or of the file with such a text; its last
+    """The model of a text in Antimony, as `"S1 -> S2; k*S1; k = 1; S1 = 10"`, or of the file with such a text; its last
     model if there are several. All else is as in `read_sbml`. It needs the packages antimony and python-libsbml."""
     try:
         import antimony

@@ -32,8 +32,9 @@ def constant(value: Any) -> Expression:
     if isinstance(value, (bool, np.bool_)):
         return ex.constant(bool(value))
     value = float(value)
-    # as a quotient, since a constant of a model is never NaN
-    return ex.make("divide", (ex.constant(0.0), ex.constant(0.0))) if math.isnan(value) else ex.constant(value)
+    if math.isnan(value):  # as a difference, since a constant of a model is never NaN, and 0 / 0 is whole in C++
+        return ex.make("subtract", (ex.constant(math.inf), ex.constant(math.inf)))
+    return ex.constant(value)
 
 
 _nan = constant(math.nan)

@@ -354,7 +354,7 @@ cases = [
 refused = [
     ([variable("x", 1), Part("Rules", element("algebraicRule", math("x - time")))], "algebraicRule"),
     ([variable("x", 1), variable("y"), always("y", "delay(x, 1)")], "a delay, in assignmentRule 'y' (line "),
-    ([variable("x", 1), event("time > 1", {"x": "2"}, delay="0.5", id="later")], "event 'later' (line "),
+    ([variable("x", 1), event("time > 1", {"x": "2"}, delay="-0.5", id="earlier")], "event 'earlier' (line "),
     ([variable("x", 1), event("time == 1", {"x": "2"}, id="once")], "event 'once' (line "),
     ([variable("x", 1), event("time > 1", {"x": "2"}, id="one"), event("time > 1", {"x": "3"}, id="two")],
      "their order matters"),
