@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Events of SBML as events of a model.
 
-A trigger is a condition, and an event of a model a real function that rises through zero: it is positive where the
-condition holds, the least of two functions for `and`, the largest for `or`. What is delayed waits in slots, accessories
-with the time when it is due, and one event finds the next of these times. What happens at one instant, in which order,
-and what that makes happen at once, is worked out in the action, in rounds. SBML leaves open in which order events of
-equal priority, or without one, are executed: where the order matters, the instance ends.
+A trigger is a condition, and an event of a model a real function that rises through zero: the difference of the two
+sides of a comparison. A trigger becomes true where one of its comparisons does; each is found by itself, so that none is
+missed because another ceases to hold in the same step. What is delayed waits in slots, accessories with the time when it
+is due, and one event finds the next of these times. What happens at one instant, in which order, and what that makes
+happen at once, is worked out in the action, in rounds. SBML leaves open in which order events of equal priority, or
+without one, are executed: where the order matters, the instance ends.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from .expression import symbols_of, walk
 from .model import Event, event
 from .sbml_document import named
 from .sbml_math import (Refused, add, both, choose, compare, constant, divide, either, folded, is_constant, multiply,
-                        number, opposite, truth, value_of)
+                        number, opposite, subtract, truth, value_of)
 from .sbml_semantics import Quantity, Semantics
 
 _slots = 2  #: of each delayed event
@@ -47,7 +48,6 @@ class Occurrence:
     id: str
     where: str
     trigger: Any  #: a condition
-    function: Any  #: positive where the trigger holds; None if it never changes
     starts: bool  #: whether the trigger counts as true before the start
     persistent: bool
     given: dict[str, Any]  #: what its assignments give, by id
@@ -93,31 +93,39 @@ def substituted(roots: Iterable[Any], values: dict[Any, Any]) -> list[Any]:
     return [made[id(root)] for root in roots]
 
 
-def trigger_function(condition: Any, where: str) -> Any:
-    """A function that is positive where a condition holds and negative where it does not."""
-    if condition.op in ("less", "less_equal"):
-        return number(ex.make("subtract", condition.args[::-1]))
-    if condition.op in ("greater", "greater_equal"):
-        return number(ex.make("subtract", condition.args))
+_reverse = {"less": "greater_equal", "less_equal": "greater", "greater": "less_equal", "greater_equal": "less"}
+
+
+def comparisons_alone(condition: Any, where: str, as_it_is: bool = True) -> Any:
+    """A condition of comparisons, `and` and `or`, without `not`."""
     if condition.op == "not":
-        return ex.make("negate", (trigger_function(condition.args[0], where),))
+        return comparisons_alone(condition.args[0], where, not as_it_is)
     if condition.op in ("and", "or"):
-        parts = tuple(trigger_function(a, where) for a in condition.args)
-        return ex.make("min" if condition.op == "and" else "max", parts)
-    if condition.op == "truth":
-        return constant(math.inf if condition.value else -math.inf)
+        parts = [comparisons_alone(a, where, as_it_is) for a in condition.args]
+        return both(*parts) if (condition.op == "and") is as_it_is else either(*parts)
+    if condition.op in _reverse:
+        return condition if as_it_is else compare(_reverse[condition.op], *condition.args)
     raise Refused(f"{where}: its trigger is no combination of <, <=, > and >=")
 
 
-def _is_strict(condition: Any, as_it_is: bool) -> bool:
-    """Whether a condition may not hold where its trigger function is zero."""
-    if condition.op in ("less", "greater"):
-        return as_it_is
-    if condition.op in ("less_equal", "greater_equal"):
-        return not as_it_is
-    if condition.op == "not":
-        return _is_strict(condition.args[0], not as_it_is)
-    return any(_is_strict(a, as_it_is) for a in condition.args)
+def comparisons_of(condition: Any) -> list[Any]:
+    """The comparisons in a condition, each once."""
+    return [n for n in walk([condition]) if n.op in _reverse] if condition.op != "truth" else []
+
+
+def with_values(condition: Any, values: dict[Any, Any]) -> Any:
+    """A condition with others in the place of some of its comparisons."""
+    if condition.op in ("and", "or"):
+        return (both if condition.op == "and" else either)(*(with_values(a, values) for a in condition.args))
+    return values.get(condition, condition)
+
+
+def function_of(condition: Any) -> Any:
+    """A function that is positive where a condition holds and negative where it does not."""
+    if condition.op in ("and", "or"):
+        return ex.make("min" if condition.op == "and" else "max", tuple(function_of(a) for a in condition.args))
+    a, b = condition.args if condition.op.startswith("greater") else condition.args[::-1]
+    return subtract(a, b)
 
 
 def _never(condition: Any) -> bool:
@@ -174,17 +182,20 @@ class Events:
             if one.delay is not None:
                 one.slots = [self._slot(one, i, written) for i in range(_slots)]
         self._now = {s: s for s in written} | {a: a for one in self.all for a in self._accessories_of(one)}
-        groups: dict[Any, list[Occurrence]] = {}
+        groups: dict[Any, list[tuple[Occurrence, Any]]] = {}
         for one in self.all:
-            if one.function is not None:
-                groups.setdefault((id(one.function), id(one.trigger)), []).append(one)
-        for group in groups.values():
-            self._trigger(group)
+            for comparison in comparisons_of(one.trigger):
+                function = function_of(comparison)
+                if not is_constant(function):
+                    groups.setdefault(function, []).append((one, comparison))
+        for function, group in groups.items():
+            self._trigger(function, group)
         if any(one.slots for one in self.all):
             self._due()
         for one in self.all:
-            if one.slots and not one.persistent and one.function is not None:
-                self._cancel(one)
+            if one.slots and not one.persistent:
+                for comparison in comparisons_of(one.trigger):
+                    self._cancel(one, comparison)
         self._start()
 
     def _accessory(self, wanted: str) -> Any:
@@ -234,8 +245,9 @@ class Events:
             given[name] = number(translate(assignment.getMath(), f"{named(assignment)} of {where}"))
         name = self.semantics.component_name(element.getIdAttribute() or f"event_{index + 1}")
         self.semantics.names[f"event {index}"] = name
-        made = Occurrence(name, where, condition, None if condition.op == "truth" else trigger_function(
-            condition, where), starts, persistent, given, from_trigger, delay, priority)
+        if condition.op != "truth":
+            condition = comparisons_alone(condition, where)
+        made = Occurrence(name, where, condition, starts, persistent, given, from_trigger, delay, priority)
         stored = self._stores(made, given)
         made.inputs = set(symbols_of([condition]))
         made.reads = set(symbols_of([*given.values(), *stored.values(), *(e for e in (delay, priority) if e is not None)
@@ -272,14 +284,31 @@ class Events:
 
     # -- Events of the model -------------------------------------------------------------------------------------------
 
-    def _trigger(self, group: list[Occurrence]) -> None:
-        """The event that finds a trigger which some events share."""
+    def _trigger(self, function: Any, group: list[tuple[Occurrence, Any]]) -> None:
+        """The event that finds where comparisons with that difference begin to hold."""
         instant = _Instant(self, self._now)
-        for one in self.all:
-            instant.truth[one] = _true if one in group else one.trigger
-        instant.happen([(one, _true) for one in group])
-        do = instant.assignments(group)
-        self.events.append(event(group[0].function, name=group[0].id, direction="rising", do=do))
+        instant.located = [comparison for _, comparison in group]
+        after, before = ({c: value for c in instant.located} for value in (_true, _false))
+        happening = []
+        for one in dict.fromkeys(o for o, _ in group):
+            holds = with_values(one.trigger, after)
+            happening.append((one, both(holds, opposite(with_values(one.trigger, before)))))
+            for other in comparisons_of(one.trigger):
+                if other not in after:  # which may begin or cease to hold at the same instant
+                    a, b = other.args
+                    is_near = compare("less_equal", ex.abs(subtract(a, b)), _near * add(ex.abs(a), ex.abs(b)))
+                    matters = both(with_values(one.trigger, {**after, other: _true}),
+                                   opposite(with_values(one.trigger, {**after, other: _false})))
+                    instant.is_open = either(instant.is_open, both(is_near, matters))
+        instant.truth = {one: with_values(one.trigger, after) for one in self.all}
+        instant.happen([(one, condition) for one, condition in happening if not _never(condition)])
+        names = [e.name for e in self.events]
+        name = group[0][0].id
+        if name in names:
+            name = self.semantics.component_name(f"{name}_{len(names) + 1}")
+            self.semantics.names[f"event {name}"] = name
+        do = instant.assignments([one for one, _ in happening])
+        self.events.append(event(function, name=name, direction="rising", do=do))
 
     def _due(self) -> None:
         """The event that finds when something delayed is due."""
@@ -298,13 +327,17 @@ class Events:
         self.events.append(event(sym.time - next_time, name=name, direction="rising",
                                  do=instant.assignments([one for one, _ in slots])))
 
-    def _cancel(self, one: Occurrence) -> None:
-        """The event that finds when a trigger ceases to hold whose executions must not outlast it."""
+    def _cancel(self, one: Occurrence, comparison: Any) -> None:
+        """The event that finds where a trigger ceases to hold whose executions must not outlast it."""
+        function = function_of(comparison)
+        if is_constant(function):
+            return
         name = self.semantics.component_name(f"{one.id}_ceases")
         self.semantics.names[f"event {name}"] = name
-        do = {slot.due: constant(_never_due) for slot in one.slots}
-        do[sym.end_instance] = _any(_at_once(slot.due) for slot in one.slots)
-        self.events.append(event(ex.make("negate", (one.function,)), name=name, direction="rising", do=do))
+        ceases = opposite(with_values(one.trigger, {comparison: _false}))
+        do = {slot.due: choose(ceases, constant(_never_due), slot.due) for slot in one.slots}
+        do[sym.end_instance] = both(ceases, _any(_at_once(slot.due) for slot in one.slots))
+        self.events.append(event(ex.make("negate", (function,)), name=name, direction="rising", do=do))
 
     def _start(self) -> None:
         """What happens at the start: triggers that do not count as true before it."""
@@ -335,6 +368,7 @@ class _Instant:
     def __init__(self, events: Events, values: dict[Any, Any]) -> None:
         self.events, self.values = events, dict(values)
         self.truth: dict[Occurrence, Any] = {}
+        self.located: list[Any] = []  # comparisons that begin to hold, though rounding may leave them short of it
         self.pending: list[Pending] = []
         self.executed: list[tuple[Occurrence, Any]] = []
         self.is_open: Any = _false
@@ -343,14 +377,24 @@ class _Instant:
         """An expression with what is stored now."""
         return substituted([expression], self.values)[0]
 
+    def _holds(self, one: Occurrence) -> Any:
+        """Whether a trigger holds now."""
+        begun = {}
+        for comparison in self.located:
+            inputs = set(symbols_of([comparison]))
+            touched = _any(happens for other, happens in self.executed if other.writes & inputs)
+            begun[comparison] = either(opposite(touched), self._at(comparison))
+        return with_values(one.trigger, {c: begun.get(c, self._at(c)) for c in comparisons_of(one.trigger)})
+
     def _open(self, condition: Any) -> None:
         self.is_open = either(self.is_open, condition)
 
     def notice(self, one: Occurrence, holds: Any) -> None:
         """Looks for a trigger that does not hold, but may right afterwards, as x > 0 where x is zero: no crossing shows
         it."""
-        if one.function is not None and _is_strict(one.trigger, True):
-            self._open(both(opposite(holds), compare("equal", self._at(one.function), constant(0.0))))
+        if any(c.op in ("less", "greater") for c in comparisons_of(one.trigger)):
+            on_surface = compare("equal", self._at(function_of(one.trigger)), constant(0.0))
+            self._open(both(opposite(holds), on_surface))
 
     def happen(self, first: list[tuple[Occurrence, Any]]) -> None:
         """Triggers some events, and does what follows."""
@@ -474,7 +518,7 @@ class _Instant:
         for one in self.events.all:
             if not one.inputs & changed:
                 continue
-            holds = self._at(one.trigger)
+            holds = self._holds(one)
             newly.append((one, both(opposite(self.truth[one]), holds)))
             self.truth[one] = holds
             self.notice(one, holds)

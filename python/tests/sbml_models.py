@@ -330,6 +330,36 @@ cases = [
     Case("two events with one trigger read what was before", [
         variable("x", 1), variable("y", 2), event("time >= 0.65", {"x": "y"}), event("time >= 0.65", {"y": "x"})],
         {"x": lambda t: _step(t, 0.65, 1.0, 2.0), "y": lambda t: _step(t, 0.65, 2.0, 1.0)}),
+    Case("a trigger that holds for a moment within a step", [
+        variable("x", 1), event("time > 0.31 && time < 0.32", {"x": "2"})], {"x": lambda t: _step(t, 0.315, 1.0, 2.0)}),
+    Case("a trigger of one condition or another", [
+        variable("x", 1), variable("n", 0), rate("x", "1"), event("x > 1.55 || time > 0.25", {"n": "n + 1"})],
+        {"n": lambda t: _step(t, 0.25, 0.0, 1.0)}),
+    Case("an event with a delay", [variable("x", 1), event("time >= 0.65", {"x": "5"}, delay="0.5")],
+         {"x": lambda t: _step(t, 1.15, 1.0, 5.0)}),
+    Case("an event with a delay has values from its trigger", [
+        variable("x", 1), variable("y", 0), rate("x", "1"), event("time >= 0.65", {"y": "x"}, delay="0.5")],
+        {"y": lambda t: _step(t, 1.15, 0.0, 1.65)}),
+    Case("a delay that depends on the state", [
+        variable("x", 1), variable("y", 0), rate("x", "1"), event("time >= 0.65", {"y": "1"}, delay="x / 10")],
+        {"y": lambda t: _step(t, 0.815, 0.0, 1.0)}),
+    Case("an event that waits twice", [
+        variable("n", 0), variable("x", 0), rate("x", "6 * cos(6 * time)"),
+        event("x > 0.5", {"n": "n + 1"}, delay="1.27")], {"n": lambda t: np.where(t > 1.27 + np.pi / 36, 1.0, 0.0)}),
+    Case("a trigger that ceases to hold cancels an event that is not persistent", [
+        variable("x", 1), event("time > 0.3 && time < 0.6", {"x": "2"}, delay="0.5", persistent=False)],
+        {"x": lambda t: 1 + 0 * t}),
+    Case("a trigger that holds does not cancel an event that is not persistent", [
+        variable("x", 1), event("time > 0.3 && time < 0.9", {"x": "2"}, delay="0.55", persistent=False)],
+        {"x": lambda t: _step(t, 0.85, 1.0, 2.0)}),
+    Case("priorities order events at one instant", [
+        variable("x", 1), variable("y", 0), event("time > 0.65", {"x": "2"}, priority="1"),
+        event("time > 0.65", {"x": "3", "y": "x"}, priority="2")],
+        {"x": lambda t: _step(t, 0.65, 1.0, 2.0), "y": lambda t: _step(t, 0.65, 0.0, 1.0)}),
+    Case("an event may cancel another at the same instant", [
+        variable("x", 1), variable("y", 0), event("time > 0.65 && x < 5", {"x": "6"}, priority="2"),
+        event("time > 0.65 && x < 5", {"y": "1"}, priority="1", persistent=False)],
+        {"x": lambda t: _step(t, 0.65, 1.0, 6.0), "y": lambda t: 0 * t}),
     Case("an event of a compartment keeps amounts", [
         compartment("c", 2, constant=False), species("A", concentration=3), event("time >= 0.65", {"c": "4"})],
         {"A_amount": lambda t: 6 + 0 * t, "A_concentration": lambda t: _step(t, 0.65, 3.0, 1.5)}),
