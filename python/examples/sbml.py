@@ -3,6 +3,7 @@
 
 import pathlib
 
+import matplotlib.pyplot as plt
 import numpy as np
 
 here = pathlib.Path(__file__).parent
@@ -19,7 +20,8 @@ set_to_v = my.solve(switch, sweep, start={"u": 0, "v": 5}, time=(0, 200), rtol=1
 
 table = set_to_u.to_xarray()  # with the axes alpha_u and alpha_v; "state", a rule of the file, is (u - v) / (u + v)
 table["remembers"] = table["state"] - set_to_v.to_xarray()["state"] > 0.1
-table["remembers"].plot.pcolormesh(xscale="log", yscale="log").figure.savefig("sbml.png")
+table["remembers"].plot.pcolormesh(xscale="log", yscale="log")
+plt.savefig("sbml.png")
 # end of snippet
 
 remembers = table["remembers"].values

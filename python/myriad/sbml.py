@@ -35,8 +35,8 @@ def read_sbml(source: Path | str, *, parameters: Names | None = None, name: str 
     `parameters` names the constants that sweeps may set; the others are written into the equations. Without it sweeps
     may set all, those of kinetic laws as `reaction_parameter`.
 
-    Raises `myriad.Error` with element, id and line for what is not supported: algebraic rules, fast reactions, delays,
-    events other than those of docs/sbml.md, packages that change a model's meaning, and for what is not valid.
+    Raises `myriad.Error` with element, id and line for what is not supported: algebraic rules, fast reactions, `delay`,
+    triggers other than those of docs/sbml.md, packages that change a model's meaning, and for what is not valid.
     """
     document, model = read(source)
     swept = None

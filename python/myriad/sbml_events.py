@@ -2,11 +2,11 @@
 """Events of SBML as events of a model.
 
 A trigger is a condition, and an event of a model a real function that rises through zero: the difference of the two
-sides of a comparison. A trigger becomes true where one of its comparisons does; each is found by itself, so that none is
-missed because another ceases to hold in the same step. What is delayed waits in slots, accessories with the time when it
-is due, and one event finds the next of these times. What happens at one instant, in which order, and what that makes
-happen at once, is worked out in the action, in rounds. SBML leaves open in which order events of equal priority, or
-without one, are executed: where the order matters, the instance ends.
+sides of a comparison. A trigger becomes true where one of its comparisons does; each is found by itself, so that none
+is missed because another ceases to hold in the same step. What is delayed waits in slots, accessories with the time
+when it is due, and one event finds the next of these times. What happens at one instant, in which order, and what that
+makes happen at once, is worked out in the action, in rounds. SBML leaves open in which order events of equal priority,
+or without one, are executed: where the order matters, the instance ends.
 """
 
 from __future__ import annotations
