@@ -87,7 +87,7 @@ def solved(model, settings, times, options):
         try:
             return my.solve(model, interpreted=True, **arguments)
         except my.Error as error:
-            if "cannot be interpreted" not in str(error) or len(model.states) > 60 or len(model.events) > 8:
+            if "cannot be interpreted" not in str(error) or len(model.states) > 110 or len(model.events) > 16:
                 raise
     return my.solve(model, **arguments)
 
