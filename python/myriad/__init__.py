@@ -16,6 +16,7 @@ from .model import *  # noqa: F403
 from .options import (EventChoice as EventChoice, Options as Options, RecordChoice as RecordChoice,
                       SampleChoice as SampleChoice)
 from .run import Interrupted as Interrupted, Run as Run
+from .sbml import SbmlModel as SbmlModel, read_antimony as read_antimony, read_sbml as read_sbml
 from .solve import solve as solve
 from .statuses import status_names as status_names
 from .study import Study as Study, study as study
@@ -27,8 +28,8 @@ from .tangents import *  # noqa: F403
 __version__ = _core.version
 
 _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options", "RecordChoice", "Run",
-           "SampleChoice", "Study", "StudyResult", "cache", "controls", "methods", "open_study", "plots", "reduce",
-           "solve", "status_names", "study", "verify",
+           "SampleChoice", "SbmlModel", "Study", "StudyResult", "cache", "controls", "methods", "open_study", "plots",
+           "read_antimony", "read_sbml", "reduce", "solve", "status_names", "study", "verify",
            *(name for part in ("axes", "expression", "grid", "interpolate", "model", "symbols", "table", "tangents")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad import *` brings: nothing that has the name of a function of Python's, such as abs.

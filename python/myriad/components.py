@@ -3,8 +3,11 @@
 
 import difflib
 
+import numpy as np
+
+from . import symbols as sym
 from .errors import Error
-from .expression import is_sympy
+from .expression import Node, evaluate, is_sympy, symbols_of, text
 from .parse import sympy_name
 
 
@@ -47,6 +50,9 @@ class Components:
         self.accessories, self.integer_accessories = list(model.accessories), list(model.integer_accessories)
         self.tables = getattr(model, "shared_values", {})  # shared values that the model itself has
         self.defaults = getattr(model, "defaults", self.tables)  # of components that need not be given
+        self.aliases = getattr(model, "aliases", {})  # components by other names
+        self.outputs = getattr(model, "outputs", {})  # what a run computes from its results, as expressions
+        self.constants = getattr(model, "constants", {})  # values of symbols in outputs that are no components
         self.generated = list(getattr(model, "generated", ()))  # components that the model sets in a study
         self.events = list(model.events)
         self.event_names = [e.name for e in self.events]
@@ -58,6 +64,40 @@ class Components:
                             ("integer_accessory", self.integer_accessories)):
             self.place.update((name, (kind, number)) for number, name in enumerate(names))
 
+    def completed(self, given, begin):
+        """What is given by name, and the defaults of what is not: those that are expressions follow what is given."""
+        values, under_way = dict(given), []
+
+        def value(name):
+            if name in values or name not in self.defaults:
+                return values.get(name)
+            if name in under_way:
+                raise Error(f"the value of '{name}' at the start depends on itself: give it in the sweep or in start=")
+            under_way.append(name)
+            default = self.defaults[name]
+            values[name] = self._expression(default, value, begin) if isinstance(default, Node) else np.asarray(default)
+            under_way.pop()
+            return values[name]
+
+        for name in self.defaults:
+            value(name)
+        return values
+
+    @staticmethod
+    def _expression(expression, value, begin):
+        """The value of a default that is an expression, if all that it depends on is known, else None."""
+        known = {}
+        for symbol in symbols_of([expression]):
+            found = begin if symbol is sym.time else value(symbol.value[1])
+            if found is None:
+                return None
+            if hasattr(found, "address"):
+                raise Error(f"`{text(expression)}` is the value of a component at the start, and '{symbol.value[1]}' "
+                            "is on a GPU: copy it to the host, or give the component itself")
+            known[symbol] = np.asarray(found, float)
+        result, = evaluate([expression], known)
+        return np.asarray(result, float)
+
     def numbers(self, chosen, what, kinds):
         """The numbers of named components of each of some kinds."""
         found = {kind: [] for kind in kinds}
@@ -68,6 +108,7 @@ class Components:
             raise Error(f"{what}{chosen!r} names no components: give a list of them, as in {what}[x, v]") from None
         for key in chosen:
             name = name_of(key)
+            name = self.aliases.get(name, name)
             kind, number = self.place.get(name, (None, None))
             if kind not in found:
                 known = [n for n, (k, _) in self.place.items() if k in found]

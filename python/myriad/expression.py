@@ -823,7 +823,7 @@ def evaluate(roots, values):
                 is_whole = node.type == real and given.dtype.kind in "biu"
                 known[id(node)] = (given.astype(float) if is_whole else given)[()]
             elif node.op in ("constant", "truth"):
-                known[id(node)] = node.value
+                known[id(node)] = np.float64(node.value) if node.type == real else node.value
             elif node.op == "element":
                 known[id(node)] = node.value[0].values.flat[node.value[1]]
             elif node.op == "dot":

@@ -12,6 +12,7 @@ from . import _core
 from .components import name_of
 from .device import DeviceInput, DeviceResults
 from .errors import Error, note_in_python
+from .expression import evaluate, symbols_of
 from .grid import Sweep
 from .run_plots import Plots, html
 from .statuses import first_failure, status_names
@@ -212,6 +213,10 @@ class Run(Mapping):
             return self._ensemble.array(*place)
         if name in self.shared:
             return self.shared[name]
+        if name in self._components.aliases:
+            return self[self._components.aliases[name]]
+        if name in self._components.outputs:
+            return self._output(self._components.outputs[name])
         raise KeyError(f"there is no {name!r}: the model has {', '.join(self._components.place)}")
 
     def _times(self):
@@ -223,10 +228,46 @@ class Run(Mapping):
             return self.sample_times
         raise KeyError("the times were not recorded: give record=dict(..., time=True) or samples= to solve")
 
+    def _place_of(self, expression):
+        """Where the values of an expression are known: along "sample" or "phase", or None for the end alone."""
+        symbols = symbols_of([expression])
+        states = [s.value[1] for s in symbols if s.value[0] == "state"]
+        of_time = any(s is time for s in symbols)
+        if not states and not of_time:
+            return None
+        if self._sampled and all(n in self._sampled for n in states):
+            return "sample"
+        has_times = any(kind == "time" for kind, _ in self._recorded.values())
+        if self._recorded and all(n in self._recorded for n in states) and (has_times or not of_time):
+            return "phase"
+        return None
+
+    def _output(self, expression):
+        """The values of an expression: at the samples, or where records are, or at the end."""
+        place = self._place_of(expression)
+        known: dict[Any, Any] = {}
+        for symbol in symbols_of([expression]):
+            kind, name = symbol.value
+            if symbol in self._components.constants:
+                known[symbol] = self._components.constants[symbol]
+            elif symbol is time:
+                known[symbol] = self._times() if place else self.t
+            elif kind == "state":
+                known[symbol] = self[name] if place else self.states[name]
+            elif kind == "parameter":
+                known[symbol] = self.parameters[name][:, None] if place else self.parameters[name]
+            else:
+                known[symbol] = self.shared[name]
+        result, = evaluate([expression], known)
+        columns = {"sample": self._sampled, "phase": self._recorded, None: None}[place]
+        shape = (self.size,) if columns is None else self[next(iter(columns))].shape
+        return np.array(np.broadcast_to(result, shape))
+
     def _names(self):
         """The names of all components that have results, and of recorded times."""
         tables = self._components.tables
-        return list(dict.fromkeys([*(n for n in self._components.place if n not in tables), *self._recorded]))
+        return list(dict.fromkeys([*(n for n in self._components.place if n not in tables), *self._recorded,
+                                   *self._components.outputs]))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names())
@@ -296,6 +337,9 @@ class Run(Mapping):
             coordinates["time"] = unstacked(self.sample_times, "sample")
         for name, array in {**self.states, **self.accessories}.items():
             variables.setdefault(self._column(name), unstacked(array))
+        for name, expression in self._components.outputs.items():
+            place = self._place_of(expression)
+            variables.setdefault(self._column(name), unstacked(self[name], *([place] if place else [])))
         variables["t_last"] = (*unstacked(self.t), {"long_name": "time at which the last phase ended"})
         variables["status"] = (*unstacked(self.status), {
             "flag_values": np.arange(len(status_names), dtype=np.uint8), "flag_meanings": " ".join(status_names)})

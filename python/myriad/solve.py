@@ -70,6 +70,7 @@ def _gather(components, sweep, start, time, size):
     for source, values, kinds in (("the sweep", _sweep_values(sweep), None),
                                   ("start=", initial, ("state", "accessory", "integer_accessory"))):
         for name, value in values.items():
+            name = components.aliases.get(name, name)
             kind = components.place.get(name, (None,))[0]
             if kind is None or (kinds is not None and kind not in kinds):
                 known = [n for n, (k, _) in components.place.items()
@@ -78,10 +79,10 @@ def _gather(components, sweep, start, time, size):
             if name in given:
                 raise Error(f"'{name}' is given in the sweep and in start=: give it once")
             given[name] = numbers(value, name)
-    given = {**{name: np.asarray(value) for name, value in components.defaults.items()}, **given}
-    refuse_missing(components, given)
     begin, end = ends_of(time)
     domain = numbers(begin, "begin of time"), numbers(end, "end of time")
+    given = {name: value for name, value in components.completed(given, domain[0]).items() if value is not None}
+    refuse_missing(components, given)
     lengths = {name: len(a) for name, a in (*given.items(), ("begin of time", domain[0]), ("end of time", domain[1]))
                if a.ndim == 1}
     if size is not None:

@@ -185,8 +185,8 @@ class Study:
             raise Error("the model generates its instances, and nothing says how many: give draws=")
         varying = [k for axis in axes for k, _ in axis] + [k for k, v in constants.items() if isinstance(v, Random)]
         self._own_domains = any(self._full_name(k) in ("t_begin", "t_end") for k in varying)
-        for name, value in components.defaults.items():
-            if name not in components.tables and name not in all_names:
+        for name, value in self._defaults(components, constants, varying).items():
+            if name not in all_names:
                 made.set(self._full_name(name), value)
         empty = next((k for axis in axes for k, v in axis if len(v) == 0), None)
         if empty is not None:
@@ -210,6 +210,20 @@ class Study:
                 made.axis(self._full_name(key), value.core())
             else:
                 made.set(self._full_name(key), float(value))
+
+    @staticmethod
+    def _defaults(components, constants, varying):
+        """The values of components that are not given, as numbers."""
+        fixed = {name_of(k): v for k, v in constants.items() if _time_name(k) is None and not isinstance(v, Random)}
+        begin = next((v for k, v in constants.items() if _time_name(k) == "t_begin"), 0.0)
+        unknown = {name_of(k): np.nan for k in varying if _time_name(k) is None}
+        known = components.completed({**fixed, **unknown}, np.nan if any(_time_name(k) for k in varying) else begin)
+        found = {n: v for n, v in known.items() if n in components.defaults and n not in components.tables}
+        for name, value in found.items():
+            if name not in unknown and value is not None and not np.isfinite(value):
+                raise Error(f"'{name}' follows from what differs between the instances of the study: give it in the "
+                            "sweep or in start=, or use myriad.solve")
+        return {n: float(v) for n, v in found.items() if v is not None}
 
     def _set_kept(self, made, components, keep, anything_else):
         if keep is None:

@@ -59,7 +59,7 @@ class WithTangents:
         mirror /= np.sqrt(sum(mirror * mirror))
         start = np.eye(n) - 2 * mirror[:, None] * mirror
         self.shared_values = getattr(model, "shared_values", {})
-        self.defaults = {**self.shared_values, "transient_phases": 0,
+        self.defaults = {**getattr(model, "defaults", self.shared_values), "transient_phases": 0,
                          **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}
 
     def cpp(self) -> str:

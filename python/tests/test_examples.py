@@ -21,7 +21,7 @@ def started(tmp_path_factory):
         return place, subprocess.run([sys.executable, folder / program], cwd=place, capture_output=True, text=True,
                                      env={**os.environ, "MPLBACKEND": "Agg"}, check=False)
 
-    for package in ("matplotlib", "sympy", "xarray"):
+    for package in ("libsbml", "matplotlib", "sympy", "xarray"):
         pytest.importorskip(package)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         yield {program: pool.submit(run, program) for program in programs}
@@ -31,7 +31,7 @@ def started(tmp_path_factory):
 def test_example_runs(program, started):
     place, done = started[program].result()
     assert done.returncode == 0, done.stderr
-    if program == "duffing.py" or program.startswith("case_studies"):
+    if program in ("duffing.py", "sbml.py") or program.startswith("case_studies"):
         picture = place / pathlib.Path(program).with_suffix(".png").name
         assert picture.stat().st_size > 10_000
     if program == "duffing.py":

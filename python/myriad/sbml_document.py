@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""Files of SBML as python-libsbml reads them: checked, and with their submodels flattened."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from .errors import Error
+from .sbml_math import Refused
+
+
+_unknown_unit = 10313  # the number of libsbml's error of a reference to a unit that is not there
+
+
+def library() -> Any:
+    """The module libsbml."""
+    try:
+        import libsbml
+    except ImportError:
+        raise Error("read_sbml needs the package python-libsbml: `pip install python-libsbml`") from None
+    return libsbml
+
+
+def named(element: Any, what: str | None = None) -> str:
+    """An element for messages: "species 'S1' (line 12)"."""
+    name = element.getIdAttribute() if hasattr(element, "getIdAttribute") else element.getId()
+    name = name or (element.getVariable() if hasattr(element, "getVariable") else "") or (
+        element.getSymbol() if hasattr(element, "getSymbol") else "")
+    line = f" (line {element.getLine()})" if element.getLine() else ""
+    return f"{what or element.getElementName()}" + (f" '{name}'" if name else "") + line
+
+
+def read(source: Any) -> tuple[Any, Any]:
+    """The document of a file, or of a text that holds one, and its model without submodels."""
+    libsbml = library()
+    text = source if isinstance(source, str) and source.lstrip().startswith("<") else None
+    if text is None:
+        path = os.fspath(source)
+        if not os.path.isfile(path):
+            raise Error(f"there is no file '{path}': give the path of a file of SBML, or its text")
+        document = libsbml.readSBMLFromFile(path)
+    else:
+        document = libsbml.readSBMLFromString(text)
+    _check(libsbml, document)
+    if document.getModel() is None:
+        raise Refused("the document has no model")
+    _refuse_packages(document)
+    if document.getPlugin("comp") is not None:
+        _flatten(libsbml, document)
+    return document, document.getModel()
+
+
+def _check(libsbml: Any, document: Any) -> None:
+    """Refuses what is no valid SBML. Units are not checked: no value depends on them."""
+    if document.getNumErrors(libsbml.LIBSBML_SEV_ERROR) + document.getNumErrors(libsbml.LIBSBML_SEV_FATAL) == 0:
+        for category in (libsbml.LIBSBML_CAT_UNITS_CONSISTENCY, libsbml.LIBSBML_CAT_MODELING_PRACTICE,
+                         libsbml.LIBSBML_CAT_SBO_CONSISTENCY):
+            document.setConsistencyChecks(category, False)
+        document.checkConsistency()
+    for i in range(document.getNumErrors()):
+        error = document.getError(i)
+        if error.getErrorId() == _unknown_unit:
+            continue
+        if error.getSeverity() in (libsbml.LIBSBML_SEV_ERROR, libsbml.LIBSBML_SEV_FATAL):
+            said = " ".join(error.getMessage().split())
+            raise Refused(f"line {error.getLine()} is no valid SBML: {said}")
+
+
+def _refuse_packages(document: Any) -> None:
+    """Refuses packages of Level 3 that change what the model means."""
+    for i in range(document.getNumPlugins()):
+        name = document.getPlugin(i).getPackageName()
+        if name != "comp" and document.getPackageRequired(name) and document.getLevel() > 2 and name != (
+                "l3v2extendedmath"):
+            raise Refused(f"the package '{name}' of SBML Level 3, on which the model depends")
+    if document.getNumUnknownPackages():
+        raise Refused(f"the package {document.getUnknownPackageURI(0)} of SBML Level 3, which libsbml does not know")
+
+
+def _flatten(libsbml: Any, document: Any) -> None:
+    """Replaces submodels by what they contain."""
+    properties = libsbml.ConversionProperties()
+    properties.addOption("flatten comp", True)
+    properties.addOption("performValidation", False)
+    if document.convert(properties) != libsbml.LIBSBML_OPERATION_SUCCESS:
+        said = [document.getError(i).getMessage() for i in range(document.getNumErrors())]
+        raise Refused("the submodels cannot be flattened" + (f": {' '.join(said[-1].split())}" if said else ""))

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""Models from files of SBML: what their elements mean, and what is refused."""
+
+import argparse
+import importlib.util
+import pathlib
+import sys
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+pytest.importorskip("libsbml", reason="models of SBML are read by the package python-libsbml")
+
+import sbml_models  # noqa: E402
+from sbml_models import (Case, always, compartment, event, initially, parameter, rate, reaction, species,  # noqa: E402
+                         variable)
+
+_script = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "sbml_suite.py"
+_specification = importlib.util.spec_from_file_location("sbml_suite", _script)
+suite = importlib.util.module_from_spec(_specification)
+_specification.loader.exec_module(suite)
+_options = argparse.Namespace(device="cpu:1", compiled=False, method="dormand_prince_5", time_limit=60.0)
+
+
+def _split(case):
+    """Cases that check one species both as amount and as concentration, as two: a table has one column for it."""
+    def kind(name):
+        return name.rpartition("_")[2] if name.endswith(("_amount", "_concentration")) else ""
+
+    both = {n.rpartition("_")[0] for n in case.results if kind(n) == "amount"} & {
+        n.rpartition("_")[0] for n in case.results if kind(n) == "concentration"}
+    if not both:
+        return [case]
+    return [Case(case.name, case.parts, {n: f for n, f in case.results.items() if kind(n) != other}, case.end,
+                 case.attributes) for other in ("amount", "concentration")]
+
+
+@pytest.mark.parametrize("case", sbml_models.cases, ids=lambda case: case.name)
+def test_a_model_means_what_sbml_says(case, tmp_path):
+    for number, part in enumerate(_split(case)):
+        folder = sbml_models.write(tmp_path, part, number)
+        outcome, why = suite.outcome_of(folder, suite.models_of(folder, False)[0], _options)
+        assert outcome == "right", why
+
+
+@pytest.mark.parametrize("parts, said", sbml_models.refused, ids=lambda value: value if isinstance(value, str) else "")
+def test_what_is_not_supported_is_refused_with_its_element(parts, said):
+    with pytest.raises(my.Error) as error:
+        my.read_sbml(sbml_models.document(parts))
+    assert said in str(error.value)
+
+
+_decay = sbml_models.document([
+    compartment("c", 2), species("A", amount=3), species("B", concentration=1), parameter("k", 0.5), parameter("k2"),
+    initially("k2", "2 * k"), reaction("R", "A -> B", "c * k2 * A"), variable("total"), always("total", "A + B")])
+
+
+def test_initial_values_follow_what_they_depend_on():
+    model = my.read_sbml(_decay)
+    assert model.start() == {"c": 2, "k": 0.5, "k2": 1, "A": 1.5, "B": 1}
+    volumes, rates = np.array([1.0, 2.0, 4.0]), np.array([0.5, 0.25, 0.125])
+    run = my.solve(model, {"c": volumes, "k": rates}, time=(0, 1), interpreted=True, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(run["A"], 3 / volumes * np.exp(-2 * rates), rtol=1e-8)
+    np.testing.assert_allclose(run["total"], 3 / volumes + 1, rtol=1e-8)
+    grid = my.solve(model, my.grid(c=volumes, k=rates), time=(0, 1), interpreted=True, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(grid["A"].reshape(3, 3), 3 / volumes[:, None] * np.exp(-2 * rates), rtol=1e-8)
+
+
+def test_values_that_are_given_come_before_initial_assignments():
+    run = my.solve(my.read_sbml(_decay), {"k2": [1.0, 2.0]}, start={"A": 5}, time=(0, 1), interpreted=True, rtol=1e-10)
+    np.testing.assert_allclose(run["A"], 5 * np.exp([-1.0, -2.0]), rtol=1e-8)
+    np.testing.assert_array_equal(run["k"], 0.5)
+
+
+def test_outputs_are_where_the_states_are():
+    model = my.read_sbml(_decay)
+    run = my.solve(model, time=(0, 1), samples=11, interpreted=True)
+    np.testing.assert_array_equal(run["R"], 2 * run["k2"][:, None] * run["A"])
+    assert run["total"].shape == (1, 11)
+    phases = my.solve(model, time=(0, 1), phases=3, record=["A"], interpreted=True)
+    assert phases["R"].shape == (1, 3)  # of what is recorded
+    assert phases["total"].shape == (1,)  # of what is known at the end alone
+    table = my.solve(model, {"k": [0.5, 0.25]}, time=(0, 1), samples=11, interpreted=True).to_xarray()
+    assert table["R"].dims == ("instance", "sample") and table["total"].dims == ("instance", "sample")
+
+
+def test_constants_that_are_not_swept_are_written_into_the_equations():
+    model = my.read_sbml(_decay, parameters="k")
+    assert model.parameters == ["k", "k2"]  # which follows from k
+    run = my.solve(model, {"k": [0.5, 0.25]}, time=(0, 1), interpreted=True, rtol=1e-10)
+    np.testing.assert_allclose(run["A"], 1.5 * np.exp([-1.0, -0.5]), rtol=1e-8)
+    assert my.read_sbml(_decay, parameters=()).parameters == []
+
+
+def test_a_model_is_read_from_a_file_as_from_its_text(tmp_path):
+    (tmp_path / "model.xml").write_text(_decay)
+    assert my.read_sbml(tmp_path / "model.xml").hash == my.read_sbml(_decay).hash
+    with pytest.raises(my.Error, match="there is no file"):
+        my.read_sbml(tmp_path / "missing.xml")
+
+
+def test_compiled_and_interpreted_models_agree():
+    parts = [variable("x", 0), variable("n", 0), rate("x", "1"), event("x > 0.73", {"x": "0", "n": "n + 1"}),
+             event("n >= 2", {"x": "0.5"})]
+    model = my.read_sbml(sbml_models.document(parts))
+    runs = [my.solve(model, start={"x": [0, 0.73]}, time=(0, 3), samples=31, interpreted=interpreted, device="cpu")
+            for interpreted in (True, False)]
+    for run in runs:  # the second does not start, as its trigger is about to hold
+        assert [my.status_names[s] for s in run.status] == ["success", "not_finite"]
+    runs = [{name: run[name][:1] for name in model.states} for run in runs]
+    np.testing.assert_allclose(runs[0]["x"], runs[1]["x"], rtol=1e-9, atol=1e-9)
+    assert runs[0]["n"][0, -1] == runs[1]["n"][0, -1] >= 3
+
+
+def test_an_instance_ends_where_the_order_of_events_is_open_and_matters():
+    parts = [variable("x", 1), variable("y", 1), parameter("p", 1.5), event("time > 1", {"x": "y + 1"}),
+             event("time > p", {"y": "x + 1"})]
+    model = my.read_sbml(sbml_models.document(parts))
+    run = my.solve(model, {"p": [1.5, 1.0, 0.5]}, time=(0, 2), interpreted=True)
+    assert [my.status_names[s] for s in run.status] == ["success", "stopped_by_user", "success"]
+    assert run["x"][[0, 2]].tolist() == [2, 3] and run["y"][[0, 2]].tolist() == [3, 2]
+
+
+def test_an_instance_does_not_start_where_it_is_open_whether_a_trigger_holds():
+    """x > 1 does not hold where x is 1, but right afterwards: no crossing shows it."""
+    parts = [variable("x", 1), variable("y", 1), rate("x", "1"), event("x > 1", {"y": "2"})]
+    run = my.solve(my.read_sbml(sbml_models.document(parts)), start={"x": [0.5, 1.0, 1.5]}, time=(0, 2),
+                   interpreted=True)
+    assert [my.status_names[s] for s in run.status] == ["success", "not_finite", "success"]
+    assert run["y"][[0, 2]].tolist() == [2, 1]
+
+
+def test_a_sample_at_the_time_of_an_event_is_from_before_it():
+    run = my.solve(my.read_sbml(sbml_models.document([variable("x", 1), event("time >= 1", {"x": "2"})])), time=(0, 2),
+                   samples=[0.5, 1.0, 1.5], interpreted=True)
+    assert run["x"].tolist() == [[1, 1, 2]]
+
+
+def test_a_value_that_the_file_leaves_out_has_to_be_given():
+    text = sbml_models.document([variable("x", 1), parameter("k"), rate("x", "k")])
+    with pytest.raises(my.Error, match="the value of 'k' is missing"):
+        my.solve(my.read_sbml(text), time=(0, 1), interpreted=True)
+    assert my.solve(my.read_sbml(text), {"k": 2}, time=(0, 1), interpreted=True)["x"] == pytest.approx(3)
+
+
+def test_a_study_takes_the_values_of_the_file():
+    model = my.read_sbml(_decay)
+    result = my.study(model, {"k2": my.linspace(0.5, 1, 3)}, time=(0, 1), keep=["A"]).run()
+    np.testing.assert_allclose(result["A_end"], 1.5 * np.exp([-0.5, -0.75, -1]), rtol=1e-5)
+    with pytest.raises(my.Error, match="'k2' follows from what differs between the instances"):
+        my.study(model, {"k": my.linspace(0.5, 1, 3)}, time=(0, 1), keep=["A"])
+
+
+def test_without_libsbml_the_message_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "libsbml", None)
+    with pytest.raises(my.Error, match="pip install python-libsbml"):
+        my.read_sbml(_decay)
+
+
+def test_all_cases_have_names_of_their_own():
+    names = [case.name for case in sbml_models.cases]
+    assert len(names) == len(set(names)) >= 60
+
+
+def test_a_text_in_antimony_is_a_model():
+    pytest.importorskip("antimony", reason="the notation is read by the package antimony")
+    model = my.read_antimony("R: S1 -> S2; k*S1; k = 0.5; S1 = 10; S2 = 0; total := S1 + S2")
+    run = my.solve(model, {"k": [0.5, 1.0]}, time=(0, 1), interpreted=True, rtol=1e-10)
+    np.testing.assert_allclose(run["S1"], 10 * np.exp([-0.5, -1.0]), rtol=1e-8)
+    np.testing.assert_allclose(run["total"], 10, rtol=1e-8)
+    with pytest.raises(my.Error, match="no Antimony"):
+        my.read_antimony("S1 -> -> S2")
