@@ -143,7 +143,7 @@ public:
 
 private:
     void start();
-    std::shared_ptr<const cuda::generation> describe();
+    std::shared_ptr<const cuda::generation> make_generation();
     cuda::device_values values_of(const quantity& what) const;
 
     const study_plan& plan_;
@@ -161,11 +161,11 @@ void device_solver<R>::start() {
     if (instances_ != nullptr) return;
     const std::int64_t few = std::min(plan_.content.instances(), most_looked_at);
     instances_ = std::make_unique<device_instances<R>>(model_, where_, plan_, few);
-    how_ = describe();
+    how_ = make_generation();
 }
 
 template <class R>
-std::shared_ptr<const cuda::generation> device_solver<R>::describe() {
+std::shared_ptr<const cuda::generation> device_solver<R>::make_generation() {
     using enum component_kind;
     using valid = cuda::generated_component::valid;
     const axes& all = plan_.asked.axes;

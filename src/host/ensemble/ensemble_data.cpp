@@ -144,7 +144,7 @@ struct call_needs {
 };
 
 template <class R>
-void ensemble_data<R>::describe(instance_arrays<array_pointer, R>& pointers, counting count, step_sizes steps) {
+void ensemble_data<R>::fill_pointers(instance_arrays<array_pointer, R>& pointers, counting count, step_sizes steps) {
     if (shape->writes_time_domain) own_domains();
     const call_needs call{count, steps, scales_tolerances(), !has_common_domain()};
     const auto point = [&](const array_properties& of, auto first, auto*& pointer, auto& array) {
@@ -155,7 +155,7 @@ void ensemble_data<R>::describe(instance_arrays<array_pointer, R>& pointers, cou
     for_each_instance_array<R>(*shape, point, pointers, static_cast<arrays&>(*this));
 }
 template <class R>
-void ensemble_data<R>::describe_domain(instance_arrays<array_pointer, R>& pointers) {
+void ensemble_data<R>::fill_domain(instance_arrays<array_pointer, R>& pointers) {
     if (shape->writes_time_domain) own_domains();
     pointers.t_begin = this->t_begin.data();
     pointers.t_end = this->t_end.data();

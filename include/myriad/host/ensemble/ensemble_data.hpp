@@ -65,9 +65,9 @@ struct ensemble_data : detail::instance_arrays<component_array, R> {
     const component_array<std::int64_t>& counter(component_array<std::int64_t> arrays::*which) const;
 
     /// The arrays that a call needs, allocated if they are not there yet; the others are null.
-    void describe(detail::instance_arrays<detail::array_pointer, R>& pointers, counting count, step_sizes steps);
+    void fill_pointers(detail::instance_arrays<detail::array_pointer, R>& pointers, counting count, step_sizes steps);
     /// The part of them that may change while the ensemble is in use.
-    void describe_domain(detail::instance_arrays<detail::array_pointer, R>& pointers);
+    void fill_domain(detail::instance_arrays<detail::array_pointer, R>& pointers);
 
     /// Forgets all phases done, but not the samples.
     void restart();

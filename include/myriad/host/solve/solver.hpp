@@ -110,7 +110,7 @@ public:
         phases_left_ = model_.check_uses(data(), options_, wanted);
         phases_asked_ = 0;
         host::data_check<R> values = model_.values_of(data(), options_, wanted);
-        prepared_.describe_domain();
+        prepared_.fill_domain();
         const auto copy = [&] {
             if (engine_)
                 engine_->upload(prepared_.arguments, 0, wanted, data().untouched ? cuda::past::none : cuda::past::kept);
