@@ -42,35 +42,33 @@ library::library(std::string image, int device) {
     gpu_ = program.release();
 }
 
-namespace {
-
-template <std::vector<std::string> component_names::*which>
-host::component_label label(const host::model_shape& shape, int c, std::string_view what) {
-    return {what, c, (static_cast<const named_shape&>(shape).names.*which)[static_cast<std::size_t>(c)]};
+component_names names_from(const names_of_kinds& all) {
+    component_names made;
+#define MYRIAD_TAKE_NAMES(kind, plural, ...) made.plural = all.at(#kind);
+    MYRIAD_COMPONENT_KINDS(MYRIAD_TAKE_NAMES)
+#undef MYRIAD_TAKE_NAMES
+    return made;
 }
 
-}  // namespace
-
 named_shape::named_shape(const detail::model_numbers& of, component_names its_names)
-    : model_shape{
-          of, [](const model_shape& s, int c) { return label<&component_names::states>(s, c, "state"); },
-          [](const model_shape& s, int c) { return label<&component_names::parameters>(s, c, "parameter"); },
-          [](const model_shape& s, int c) { return label<&component_names::shared>(s, c, "shared parameter"); }},
-      names(std::move(its_names)), components{{n_state, "state"},
-                                              {n_accessory, "accessory"},
-                                              {n_integer_accessory, "integer accessory"},
-                                              {}} {
-    const auto check = [](const std::vector<std::string>& named, int count, const char* what) {
-        require(static_cast<int>(named.size()) == count, "the model has ", count, " components of kind ", what,
-                ", and ", named.size(), " names are given");
-    };
-    check(names.states, n_state, "state");
-    check(names.parameters, n_parameter, "parameter");
-    check(names.shared, n_shared, "shared");
-    check(names.shared_integers, n_shared_integer, "shared integer");
-    check(names.accessories, n_accessory, "accessory");
-    check(names.integer_accessories, n_integer_accessory, "integer accessory");
-    check(names.events, n_event, "event");
+    : model_shape{of,
+#define MYRIAD_LABEL(kind, plural, words, type)                                                              \
+    [](const model_shape& shape, int c) -> host::component_label {                                           \
+        return {words, c, static_cast<const named_shape&>(shape).names.plural[static_cast<std::size_t>(c)]}; \
+    },
+                  MYRIAD_VALUE_KINDS(MYRIAD_LABEL)
+#undef MYRIAD_LABEL
+      },
+      names(std::move(its_names)), components{
+#define MYRIAD_LIST_KIND(kind, plural, words, type) {n_##kind, words},
+                                       MYRIAD_COMPONENT_KINDS(MYRIAD_LIST_KIND)
+#undef MYRIAD_LIST_KIND
+                                   } {
+#define MYRIAD_CHECK_NAMES(kind, plural, words, type)                                                              \
+    require(static_cast<int>(names.plural.size()) == n_##kind, "the model has ", n_##kind, " components of kind ", \
+            words, ", and ", names.plural.size(), " names are given");
+    MYRIAD_COMPONENT_KINDS(MYRIAD_CHECK_NAMES)
+#undef MYRIAD_CHECK_NAMES
 }
 
 namespace {

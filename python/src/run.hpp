@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -50,8 +51,15 @@ private:
 
 /// The names of a model's components, in their order.
 struct component_names {
-    std::vector<std::string> states, parameters, shared, shared_integers, accessories, integer_accessories, events;
+#define MYRIAD_DECLARE_NAMES(kind, plural, ...) std::vector<std::string> plural;
+    MYRIAD_COMPONENT_KINDS(MYRIAD_DECLARE_NAMES)
+#undef MYRIAD_DECLARE_NAMES
 };
+
+/// Names by kind, as Python has them.
+using names_of_kinds = std::map<std::string, std::vector<std::string>>;
+/// The same by member. Throws `std::out_of_range` if a kind is missing.
+component_names names_from(const names_of_kinds& all);
 
 /// The shape of a model with names of its own.
 struct named_shape : host::model_shape {

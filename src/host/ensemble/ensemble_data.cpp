@@ -45,8 +45,10 @@ std::int64_t checked(const model_shape& shape, std::int64_t size) {
 
 template <class R>
 ensemble_data<R>::ensemble_data(const model_shape& of_model, std::int64_t n)
-    : shape(&of_model), size(checked<R>(of_model, n)), identity(next_identity()), shared(shape->n_shared, 1, unset),
-      shared_integer(shape->n_shared_integer, 1, 0) {
+    : shape(&of_model), size(checked<R>(of_model, n)), identity(next_identity()) {
+#define MYRIAD_ALLOCATE_SHARED(kind, plural, words, type) kind = {shape->n_##kind, 1, detail::unset_value<type>};
+    MYRIAD_SHARED_KINDS(MYRIAD_ALLOCATE_SHARED)
+#undef MYRIAD_ALLOCATE_SHARED
     const auto allocate = [n](const array_properties& of, auto first, auto& array) {
         if (of.presence == array_presence::always) array = {of.components, n, first};
     };

@@ -117,9 +117,9 @@ void prepared_call<R>::fill_records(record_data<R>& from) {
                         static_cast<std::int32_t>(std::int64_t{from.phases}), from.time};
     arguments.record_columns = from.values.components();
     arguments.integer_record_columns = from.integers.components();
-    put_columns(array<std::int16_t>(at.state_column), from.state, m.n_state);
-    put_columns(array<std::int16_t>(at.accessory_column), from.accessory, m.n_accessory);
-    put_columns(array<std::int16_t>(at.integer_accessory_column), from.integer_accessory, m.n_integer_accessory);
+#define MYRIAD_PUT_COLUMNS(kind, ...) put_columns(array<std::int16_t>(at.kind##_column), from.kind, m.n_##kind);
+    MYRIAD_RECORDED_KINDS(MYRIAD_PUT_COLUMNS)
+#undef MYRIAD_PUT_COLUMNS
 }
 
 template <class R>

@@ -190,9 +190,9 @@ public:
         require_memory();
         require(downloadable_, "download has no instances to copy: call upload first");
         constexpr const host::model_components& named = host::components_of<Model>;
-        named.check("components.states", chosen.states, named.state);
-        named.check("components.accessories", chosen.accessories, named.accessory);
-        named.check("components.integer_accessories", chosen.integer_accessories, named.integer_accessory);
+#define MYRIAD_CHECK_KIND(kind, plural, ...) named.check("components." #plural, chosen.plural, named.kind);
+        MYRIAD_RECORDED_KINDS(MYRIAD_CHECK_KIND)
+#undef MYRIAD_CHECK_KIND
         if (engine_) engine_->download(prepared_.arguments, &is_chosen, const_cast<components*>(&chosen));
         if (results_ == held::on_device) results_ = held::partly_on_host;
     }
@@ -305,12 +305,11 @@ private:
             return std::find(list.begin(), list.end(), static_cast<int>(component)) != list.end();
         };
         switch (kind) {
-            case detail::array_kind::state:
-                return in(chosen.states);
-            case detail::array_kind::accessory:
-                return in(chosen.accessories);
-            case detail::array_kind::integer_accessory:
-                return in(chosen.integer_accessories);
+#define MYRIAD_CHOSEN_OF_KIND(kind, plural, ...) \
+    case detail::array_kind::kind:               \
+        return in(chosen.plural);
+            MYRIAD_RECORDED_KINDS(MYRIAD_CHOSEN_OF_KIND)
+#undef MYRIAD_CHOSEN_OF_KIND
             default:
                 return true;
         }
