@@ -190,7 +190,8 @@ def kernel_for(device, model, components, method, control, sampled, precision, i
     names = components.names
     return nvrtc.kernel(*model.source(), method_type(method, control, sampled), precision,
                         tuple(len(names[kind]) for kind in kinds.shared), int(device.partition(":")[2]),
-                        bool(components.generated)), names
+                        bool(components.generated),
+                        lambda library: tape.give_model(library, model, components, method)), names
 
 
 def choose_kernel(model, components, method, control, sampled, precision, interpreted):

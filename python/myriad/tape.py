@@ -156,6 +156,22 @@ def library(model, components, method):
     return _core.Library(method, *(len(components.names[kind]) for kind in kinds.shared), may_stop, made)
 
 
+def give_model(library, model, components, method):
+    """Gives checks and notes of a GPU's program the functions of a traced model, unless they are beyond the
+    interpreter."""
+    if not hasattr(model, "rhs"):
+        return
+    writer = Writer(components)
+    try:
+        for roots in (model.rhs, [] if model.initialise else [e.function for e in model.events]):
+            writer.function(roots, [("store_result", c) for c in range(len(roots))])
+    except Error:
+        return
+    for _ in range(4 + _limits["event"]):  # no hooks
+        writer.function([], [])
+    library.give_model(_core.Tape(writer.functions, writer.codes, writer.values, writer.registers), method)
+
+
 _known: weakref.WeakKeyDictionary[Any, Any] = weakref.WeakKeyDictionary()
 
 

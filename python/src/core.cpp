@@ -472,6 +472,7 @@ NB_MODULE(_core, m) {
     });
     nb::class_<library>(m, "Library")
         .def(nb::init<const std::string&>())
+        .def("give_model", &library::give_model, "tape"_a, "method"_a)
         .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
         .def("__init__", [](library* self, const nb::bytes& image,
                             int device) { new (self) library(std::string(image.c_str(), image.size()), device); })

@@ -7,9 +7,14 @@
 
 #include <dlfcn.h>
 
+#include "myriad/host/report/stability.hpp"
+#include "myriad/host/report/stiffness.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
+#include "myriad/kernel/methods/method_list.hpp"
+#include "myriad/methods.hpp"
 #include "resident.hpp"
 #include "several_gpus.hpp"
+#include "tape_instances.hpp"
 #include "threads.hpp"
 
 namespace myriad::python {
@@ -40,6 +45,27 @@ library::library(std::string image, int device) {
     auto program = std::make_unique<device_program>(std::move(image));
     cpu_.facts = program->on(device).facts.facts;
     gpu_ = program.release();
+}
+
+namespace {
+
+template <class Method>
+constexpr auto limit_of() -> double (*)() {
+    if constexpr (host::may_be_unstable<Method>) return &host::real_stability_limit<Method>;
+    return nullptr;
+}
+
+}  // namespace
+
+void library::give_model(std::shared_ptr<const interpreted> model, const std::string& method) {
+    const auto needed =
+        static_cast<openmp::instruction_set>(interpreter(interpreted_methods().front()).instruction_set);
+    if (!host::cpu_has(needed)) return;
+    model_ = std::move(model);
+#define MYRIAD_TAKE_LIMIT(name) \
+    if (method == #name) stability_limit_ = limit_of<name>();
+    MYRIAD_METHODS(MYRIAD_TAKE_LIMIT)
+#undef MYRIAD_TAKE_LIMIT
 }
 
 component_names names_from(const names_of_kinds& all) {
@@ -88,12 +114,19 @@ host::called_model<R> called_for(const library& kernel, const named_shape& shape
     host::called_model<R> made{&shape, &shape.components, kernel.facts().call, {}};
     const bool is_for_gpu = kernel.gpu() != nullptr;
     if (is_for_gpu != (where.which() == device::kind::cuda)) return made;
+    if (!is_for_gpu) made.functions = *static_cast<const detail::instance_functions<R>*>(kernel.cpu().functions);
+    if (kernel.model() != nullptr) {
+        const auto of_tape = functions_of_tape<R>(
+            *kernel.model(), is_for_gpu ? kernel.stability_limit() : made.functions.stability_limit);
+        made.functions.rhs = of_tape.rhs;
+        made.functions.stability_limit = of_tape.stability_limit;
+        made.functions.event_resolution = of_tape.event_resolution;
+    }
+    made.enter_thread = [&kernel] { current_tape = kernel.model(); };  // what the functions interpret
     if (is_for_gpu) {
         made.on_gpu = engines_of<R>(*kernel.gpu(), where, o);
         return made;
     }
-    made.functions = *static_cast<const detail::instance_functions<R>*>(kernel.cpu().functions);
-    made.enter_thread = [&kernel] { current_tape = kernel.model(); };  // what the functions interpret
     made.on_cpu = {[&kernel](const detail::any_arguments<R>& all, const detail::run_options& how) {
                        detail::run_statistics used;
                        current_tape = kernel.model();
@@ -149,6 +182,9 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     result->first_state.resize(std::min(result->first_state.size(), used(instances.shape->names.states)));
     result->first_parameter.resize(std::min(result->first_parameter.size(), used(instances.shape->names.parameters)));
     const detail::tangent_places& tangents = models.front().facts.tangents;
+    if (instances.gpu != nullptr && !result->interrupted &&
+        host::examines_stiffness<R>(*result, data.size, o, models.front().functions))
+        instances.gpu->bring_every(host::examined_stride(data.size));
     if (tangents.n_vectors > 0 && instances.gpu != nullptr && !result->interrupted) {
         const auto bring = [&](const auto* values) {
             instances.gpu->bring(values, static_cast<std::size_t>(data.size) * sizeof *values);

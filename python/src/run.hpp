@@ -38,14 +38,20 @@ public:
     const compiled_facts& facts() const { return cpu_.facts; }
     /// The kernel of a shared object or the interpreter.
     const kernel_library& cpu() const { return cpu_; }
-    /// What an interpreter runs; null for compiled kernels.
+    /// What an interpreter runs, or the model of a GPU's program for checks and notes; null where there is none.
     const tape* model() const { return model_ ? &model_->get() : nullptr; }
+    /// Gives checks and notes of a GPU's program the model's functions, unless this CPU cannot run tapes. `method`: as
+    /// in `facts`.
+    void give_model(std::shared_ptr<const interpreted> model, const std::string& method);
+    /// See `instance_functions`.
+    double (*stability_limit() const)() { return stability_limit_; }
     /// The program for GPUs; null for the CPU's kernels.
     device_program* gpu() const { return gpu_; }
 
 private:
     kernel_library cpu_{};
     std::shared_ptr<const interpreted> model_;
+    double (*stability_limit_)() = nullptr;
     device_program* gpu_ = nullptr;  // never destroyed
 };
 
