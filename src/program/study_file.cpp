@@ -3,7 +3,6 @@
 #include "program/study_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "myriad/host/backend/device.hpp"

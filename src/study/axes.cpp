@@ -6,11 +6,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <utility>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/study/axis_rule.hpp"
 #include "myriad/study/kinds.hpp"
 
 namespace myriad {

@@ -7,8 +7,6 @@
 #include <iterator>
 #include <utility>
 
-#include "myriad/host/core/error.hpp"
-#include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/kinds.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {

@@ -6,7 +6,6 @@
 #include <iostream>
 #include <limits>
 #include <thread>
-#include <utility>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/memory/memory_need.hpp"

@@ -12,7 +12,6 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/options/option_table.hpp"
 #include "myriad/host/report/status_names.hpp"
-#include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/kinds.hpp"
 #include "myriad/version.hpp"
 

@@ -2,10 +2,8 @@
 // What studies do with each kind of components: whether it is set, recorded or shared, and where its values are.
 #pragma once
 
-#include <cstdint>
 #include <initializer_list>
 #include <type_traits>
-#include <vector>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/kernel/core/abi.hpp"

@@ -11,7 +11,6 @@
 #include "myriad/host/chunks/chunk_pipeline.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/polling_backoff.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

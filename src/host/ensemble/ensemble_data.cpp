@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "myriad/host/backend/arrays.hpp"
-#include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -2,12 +2,10 @@
 // The checks of options that depend on no model.
 #include "myriad/host/options/option_checks.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "myriad/host/options/option_table.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -16,7 +16,6 @@
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad {
 

@@ -2,7 +2,6 @@
 // The checks of options that every call makes once.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/backend/device.hpp"

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
 // A row has the kind, which is the name of its enumeration in a model, the plural in options and in Python, what
 // messages call a component, and the type of a value. Rows are grouped by what happens to the values: states and
