@@ -151,6 +151,7 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     for (const placed_kernel& k : on) {
         models.push_back(called_for<R>(*k.kernel, *instances.shape, k.where, o));
         models.back().check_kernel(k.where);
+        if (!instances.on_device.empty()) models.back().functions.event_resolution = nullptr;  // inputs are not here
         require(k.where.which() == where.which(), "the devices are of different kinds");
     }
     require(on_gpu || on.size() == 1, "the CPU is named several times");

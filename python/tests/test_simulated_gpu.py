@@ -98,6 +98,8 @@ many = my.model({**{a: rate * (b - a) for a, b in zip(s, s[1:])}, s[-1]: my.cos(
 def notes(model, device, value, tolerance=1e-6, **more):
     return my.solve(model, {rate: np.full(200, value)}, start=dict.fromkeys(model.states, 0), time=(0, 1),
                     rtol=tolerance, atol=tolerance, device=device, **more).report.notes
+assert "rodas_5p" in my.solve(one, {rate: OnGpu(np.full(200, 1e4))}, start={y: 0}, time=(0, 1), rtol=1e-6, atol=1e-6,
+                              device="cuda").report.notes[0]
 for model in (one, many):  # the second has more states than are interpreted
     for more in ({}, dict(precision="float", tolerance=1e-3)):
         cpu, gpu = (notes(model, device, 1e4, **more) for device in ("cpu", "cuda"))
@@ -114,6 +116,7 @@ for more in ({}, dict(initialise={v: 0})):  # before which events have no values
             how()
         else:
             assert "the tolerance of event 'summit' is 1e-14, but rounding changes its function" in message(how)
+            my.solve(summit, start={x: OnGpu(np.full(3, 999_999.0)), v: 10}, time=(0, 1), device="cuda")  # not checked
 """)
 
 

@@ -73,8 +73,7 @@ public:
     void fetch_every(const arguments& host, std::int64_t stride) {
         const current_device here(device_);
         arguments to = host;
-        walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access access, array_kind) {
-            if (access == array_access::read) return;
+        walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access, array_kind) {
             const std::size_t distance = bytes_of(target, stride);
             for (std::int64_t c = 0; c < components; ++c)
                 MYRIAD_CUDA(cudaMemcpy2DAsync(target + c * host.size, distance, source + c * count_, distance,
