@@ -346,6 +346,21 @@ def read(source, doxygen):
     return classes, read_macros(source), read_cmake(source)
 
 
+def expand_lists(texts):
+    """Writes out lists of rows, as `#define KINDS(row) row(a) row(b)`, where they are used as `KINDS(MACRO)`."""
+    lists = {}
+    for text in texts.values():
+        for name, row, body in re.findall(r"^\s*#\s*define (\w+)\((\w+)\)(.*)", text, flags=re.M):
+            inner = "|".join([row, *lists])
+            if re.fullmatch(rf"(\s*\b({inner})\([^()]*\))+\s*", body):
+                lists[name] = re.sub(rf"\b{row}\b(?=[()])", "\\nROW", body)
+    use = re.compile(rf"^(?!\s*#)(.*?)\b({'|'.join(lists) or '(?!)'})\(\s*(\w+)\s*\)", flags=re.M)
+    for file, text in texts.items():
+        while match := use.search(text):
+            text = text[:match.start(2)] + lists[match[2]].replace("ROW", match[3]) + "\n" + text[match.end():]
+        texts[file] = text
+
+
 def names_looked_for(source, owner):
     """What the sources look for by name in a template parameter `owner`, as `owner::name`, with its first place.
 
@@ -356,6 +371,7 @@ def names_looked_for(source, owner):
             if file.suffix in (".hpp", ".cpp", ".cu", ".cuh"):
                 text = re.sub(r"//.*|/\*.*?\*/", "", file.read_text(encoding="utf-8"))
                 texts[str(file.relative_to(source))] = text.replace("\\\n", " ")
+    expand_lists(texts)
     found = {}
     if owner == "environment":
         for file, text in texts.items():

@@ -5,6 +5,7 @@ import difflib
 
 import numpy as np
 
+from . import kinds
 from . import symbols as sym
 from .errors import Error
 from .expression import Node, evaluate, is_sympy, symbols_of, text
@@ -45,9 +46,8 @@ class Components:
     """Where a model's components are: the kind and number of each name."""
 
     def __init__(self, model):
-        self.states, self.parameters = list(model.states), list(model.parameters)
-        self.shared, self.shared_integers = list(model.shared), list(model.shared_integers)
-        self.accessories, self.integer_accessories = list(model.accessories), list(model.integer_accessories)
+        self.names = kinds.names_of(model)
+        self.states, self.event_names = self.names["state"], self.names["event"]
         self.tables = getattr(model, "shared_values", {})  # shared values that the model itself has
         self.defaults = getattr(model, "defaults", self.tables)  # of components that need not be given
         self.aliases = getattr(model, "aliases", {})  # components by other names
@@ -55,14 +55,7 @@ class Components:
         self.constants = getattr(model, "constants", {})  # values of symbols in outputs that are no components
         self.generated = list(getattr(model, "generated", ()))  # components that the model sets in a study
         self.events = list(model.events)
-        self.event_names = [e.name for e in self.events]
-        self.names = (self.states, self.parameters, self.shared, self.shared_integers, self.accessories,
-                      self.integer_accessories, self.event_names)
-        self.place = {}
-        for kind, names in (("state", self.states), ("parameter", self.parameters), ("shared", self.shared),
-                            ("shared_integer", self.shared_integers), ("accessory", self.accessories),
-                            ("integer_accessory", self.integer_accessories)):
-            self.place.update((name, (kind, number)) for number, name in enumerate(names))
+        self.place = {name: (kind, number) for kind in kinds.valued for number, name in enumerate(self.names[kind])}
 
     def completed(self, given, begin):
         """What is given by name, and the defaults of what is not: those that are expressions follow what is given."""
@@ -98,9 +91,13 @@ class Components:
         result, = evaluate([expression], known)
         return np.asarray(result, float)
 
-    def numbers(self, chosen, what, kinds):
+    def of(self, some_kinds):
+        """The names of the components of some kinds, one kind after the other."""
+        return [name for kind in some_kinds for name in self.names[kind]]
+
+    def numbers(self, chosen, what, some_kinds):
         """The numbers of named components of each of some kinds."""
-        found = {kind: [] for kind in kinds}
+        found = {kind: [] for kind in some_kinds}
         chosen = [chosen] if isinstance(chosen, str) or getattr(chosen, "op", None) == "symbol" else chosen
         try:
             chosen = list(chosen)
@@ -114,4 +111,4 @@ class Components:
                 known = [n for n, (k, _) in self.place.items() if k in found]
                 raise unknown(name, known, f"component of the model that {what} can name")
             found[kind].append(number)
-        return [found[kind] for kind in kinds]
+        return [found[kind] for kind in some_kinds]

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from . import _core
+from . import _core, kinds
 from .components import Components, by_component, unknown
 from .errors import Error, refuse_masked, refuse_options
 from .inputs import by_name, numbers, only, real, whole
@@ -132,17 +132,15 @@ def _set_records(options: _core.Options, record: Any, components: Components) ->
         return {}
     record = dict(record) if hasattr(record, "items") else {"states": record}
     only(record, RecordChoice.__annotations__, "record=")
-    kinds = ("state", "accessory", "integer_accessory")
-    named = components.numbers(record.get("states", ()), "record=", kinds)
-    others = components.numbers(record.get("accessories", ()), "record=", kinds)
-    state, accessory, integer = (a + b for a, b in zip(named, others))
+    named = components.numbers(record.get("states", ()), "record=", kinds.recorded)
+    others = components.numbers(record.get("accessories", ()), "record=", kinds.recorded)
     made = options.record
-    made.states, made.accessories, made.integer_accessories = state, accessory, integer
+    places: dict[str, tuple[str, int]] = {}
+    for kind, a, b in zip(kinds.recorded, named, others):
+        setattr(made, kinds.every[kind].plural, a + b)
+        places.update((components.names[kind][c], (kind, c)) for c in a + b)
     made.time = bool(record.get("time", False))
     made.from_phase = whole(record.get("from_phase", 0), "record from_phase")
-    places = {components.states[c]: ("state", c) for c in state}
-    places.update((components.accessories[c], ("accessory", c)) for c in accessory)
-    places.update((components.integer_accessories[c], ("integer_accessory", c)) for c in integer)
     if made.time:
         of_time = itertools.chain(("t", "time"), (f"time_{i}" for i in itertools.count(1)))
         places[next(n for n in of_time if n not in components.place)] = ("time", 0)

@@ -377,10 +377,10 @@ class Writer:
 
     def in_function(self, node):
         names, (kind, name) = self.names, node.value
-        prefix = {"state": names.y, "parameter": names.p, "shared": f"{names.p}.shared",
-                  "shared_integer": f"{names.p}.shared_integer", "accessory": f"{names.p}.accessory",
-                  "integer_accessory": f"{names.p}.integer_accessory"}.get(kind)
-        return names.t if prefix is None else f"{prefix}[{name}]"
+        if kind == "built-in":  # the time
+            return names.t
+        prefix = {"state": names.y, "parameter": names.p}.get(kind, f"{names.p}.{kind}")
+        return f"{prefix}[{name}]"
 
     def function(self, name, count, roots):
         n = self.names

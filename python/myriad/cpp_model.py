@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from .errors import Error
+from .kinds import ComponentNames
 
 if TYPE_CHECKING:
     from .hints import Names
@@ -25,7 +26,7 @@ def _names(several: Any) -> tuple[str, ...]:
     return tuple(several.replace(",", " ").split() if isinstance(several, str) else several)
 
 
-class CppModel:
+class CppModel(ComponentNames):
     """A model as a C++ struct, as in the C++ library's documentation: `text` defines the struct `struct`. The other
     arguments name its components in the order of its enumerations, as one string or a list; events may be a dict from
     names to their `direction`, `tolerance` and `stop_after`. `generates` names what the struct's `generate` sets, if a
@@ -37,9 +38,9 @@ class CppModel:
         if struct not in text:
             raise Error(f"the text of the model defines no struct {struct}: give the name of the model's struct")
         self._text, self.name = text, struct
-        self.states, self.parameters = _names(states), _names(parameters)
-        self.shared, self.shared_integers = _names(shared), _names(shared_integers)
-        self.accessories, self.integer_accessories = _names(accessories), _names(integer_accessories)
+        self._set_names({kind: _names(given) for kind, given in (
+            ("state", states), ("parameter", parameters), ("shared", shared), ("shared_integer", shared_integers),
+            ("accessory", accessories), ("integer_accessory", integer_accessories))})
         options: Any = events if hasattr(events, "items") else dict.fromkeys(_names(events), {})
         self.generated = _names(generates)
         self.generator = f"{struct}::generate" if self.generated else ""

@@ -12,6 +12,7 @@ import numpy as np
 from . import _core
 from .components import name_of
 from .errors import Error
+from .kinds import of_instances
 from .symbols import time
 
 if TYPE_CHECKING:
@@ -105,7 +106,7 @@ class DeviceResults:
             make = functools.partial(run._ensemble.samples, run._sampled[name], on_device=True)
         elif name in run._recorded:
             make = functools.partial(run._records.records, *run._recorded[name], on_device=True)
-        elif kind in ("state", "parameter", "accessory", "integer_accessory", "t", "status", "phases_done"):
+        elif kind in (*of_instances, "t", "status", "phases_done"):
             make = functools.partial(run._ensemble.device_array, kind, number)
         else:
             raise KeyError(f"there is no {name!r} on the GPU: ask run[{name!r}]")

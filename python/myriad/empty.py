@@ -5,11 +5,11 @@ import types
 
 import numpy as np
 
-from . import _core
+from . import _core, kinds
 from .errors import Error
 
 _names = _core.status_names()
-_types = {"status": np.uint8, "integer_accessory": np.int32, "shared_integer": np.int32,
+_types = {"status": np.uint8, **{kind.name: np.int32 for kind in kinds.every.values() if kind.integer},
           **dict.fromkeys(("phases_done", "accepted_steps", "rejected_steps", "located_steps", "rhs_evaluations"),
                           np.int64)}
 
@@ -19,8 +19,8 @@ class EmptyEnsemble:
 
     def __init__(self, components, given, real, capacity):
         self._real, self._capacity = real, capacity
-        self._shared = {kind: np.array([given[name] for name in names], _types.get(kind, real)) for kind, names in (
-            ("shared", components.shared), ("shared_integer", components.shared_integers))}
+        self._shared = {kind: np.array([given[name] for name in components.names[kind]], _types.get(kind, real))
+                        for kind in kinds.shared}
 
     def array(self, kind, number=0):
         return self._shared[kind] if kind in self._shared else np.empty(0, _types.get(kind, self._real))
@@ -47,7 +47,7 @@ class EmptyReport:
         self._columns, self._real = columns, real
 
     def records(self, kind, number, on_device=False):
-        return np.empty((0, self._columns), np.int32 if kind == "integer_accessory" else self._real)
+        return np.empty((0, self._columns), _types.get(kind, self._real))
 
     def __str__(self):
         return "0 instances"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import kinds
 from . import symbols as sym
 from .axes import Axis
 from .cpp import Writer, generic_problem
@@ -124,7 +125,7 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
                  name)
 
 
-class Model:
+class Model(kinds.ComponentNames):
     """A recorded model. Names of components are in the order in which results and C++ enumerate them, elements of
     tables behind the other shared values; `shared_values` has what they are. `cpp()` is its header, `hash` identifies
     it."""
@@ -312,7 +313,7 @@ class Model:
         self._accessory_targets = []
         for key, value in self._items(accessories, "accessories", self.line):
             target = self._target(key, "accessories")
-            if target.value[0] not in ("accessory", "integer_accessory"):
+            if target.value[0] not in kinds.accessories:
                 raise Error(f"{target.value[1]} is no accessory but {sym.a(target.value[0])}"
                             f"{at(self.line)}: make it by myriad.accessory(\"{target.value[1]}\")")
             self._accessory_targets.append(target)
@@ -352,13 +353,13 @@ class Model:
         for key, value in self._items(given, what, line):
             target = self._target(key, what)
             kind, name = target.value
-            if what == "generate" and kind not in ("state", "parameter", "accessory", "integer_accessory"):
+            if what == "generate" and kind not in kinds.of_instances:
                 raise Error(f"generate assigns {name}{at(line)}: it sets states, parameters and accessories; give "
                             "myriad.study the time domain and what all instances share")
             if what == "generate" and isinstance(value, Axis):
                 raise Error(f"generate sets {name} to {value!r}{at(line)}, which is for the sweep of a study: write it "
                             "with myriad.instance")
-            if kind in ("shared", "shared_integer", "event_count") or kind == "built-in" and name not in (
+            if kind in (*kinds.shared, "event_count") or kind == "built-in" and name not in (
                     "next_step", "t_begin", "t_end"):
                 raise Error(f"{what} assigns {name}{at(line)}, which no hook may: states, parameters, accessories, "
                             "next_step, t_begin and t_end can be assigned")
@@ -406,8 +407,8 @@ class Model:
         for _, assignments in hooks:
             found += [t for t, _ in assignments] + symbols_of([e for _, e in assignments])
         found += [t for t, _ in self.generate] + symbols_of([e for _, e in self.generate])
-        declared = [s for s in self._declared.values() if s.value[0] in sym.component_kinds]
-        components = {kind: [] for kind in sym.component_kinds}
+        components = {kind: [] for kind in kinds.valued}
+        declared = [s for s in self._declared.values() if s.value[0] in components]
         for symbol in dict.fromkeys(declared + found):
             if symbol.value[0] in components:
                 components[symbol.value[0]].append(symbol.value[1])
@@ -416,7 +417,6 @@ class Model:
             symbol = next(s for s in found + declared if s.value == ("state", missing[0]))
             raise Error(f"the state {missing[0]}{at(symbol.line)} has no equation{at(self.line)}: add its derivative, "
                         f"or make it a parameter if it is constant")
-        self.parameters, self.shared = components["parameter"], components["shared"]
         everything = walk(self._functions + [e for _, assignments in hooks for _, e in assignments])
         drawn = next((n for n in everything if n.op in draws), None)
         if drawn is not None:
@@ -426,24 +426,21 @@ class Model:
         everything += walk([e for _, e in self.generate])
         self.tables = tables_of(everything)
         self.shared_values = {element_name(t, i): float(v) for t in self.tables for i, v in enumerate(t.values.flat)}
-        self.scalar_shared, self.shared = self.shared, self.shared + list(self.shared_values)
-        self.shared_integers = components["shared_integer"]
-        self.accessories, self.integer_accessories = components["accessory"], components["integer_accessory"]
+        self.scalar_shared = components["shared"]
+        self._set_names({**components, "state": self.states,
+                         "shared": [*self.scalar_shared, *self.shared_values]})
         assigned = {t.value for _, assignments in hooks for t, _ in assignments}
         self.writes_parameters = any(kind == "parameter" for kind, _ in assigned)
         self.writes_time_domain = bool(assigned & {("built-in", "t_begin"), ("built-in", "t_end")})
         read = {s.value[0] for s in self._in_functions}
-        self.accessories_are_outputs = bool(self.accessories or self.integer_accessories) and not read & {
-            "accessory", "integer_accessory"}
+        self.accessories_are_outputs = any(components[kind] for kind in kinds.accessories) and not read & {
+            *kinds.accessories}
         self._hooks = hooks
 
     def enumerations(self) -> list[tuple[str, list[str]]]:
         """(kind, names) of everything that has an enumeration in C++."""
         shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
-        return [("state", self.states), ("parameter", self.parameters), ("shared", shared),
-                ("shared_integer", self.shared_integers), ("accessory", self.accessories),
-                ("integer_accessory", self.integer_accessories), ("event", [e.name for e in self.events]),
-                ("observed", [n for n, _ in self.observed])]
+        return [*{**kinds.names_of(self), "shared": shared}.items(), ("observed", [n for n, _ in self.observed])]
 
     @property
     def component_names(self) -> list[str]:
@@ -451,14 +448,14 @@ class Model:
         return [n for _, names in self.enumerations() for n in names]
 
     def _check(self):
-        kinds = {}
+        kind_of = {}
         for kind, names in self.enumerations():
             for name in names:
-                if name in kinds:
-                    clash = f"names both {sym.a(kinds[name])} and {sym.a(kind)}"
-                    clash = "is the name of two components" if kinds[name] == kind else clash
+                if name in kind_of:
+                    clash = f"names both {sym.a(kind_of[name])} and {sym.a(kind)}"
+                    clash = "is the name of two components" if kind_of[name] == kind else clash
                     raise Error(f"'{name}' {clash}{at(self.line)}: rename one of them")
-                kinds[name] = kind
+                kind_of[name] = kind
         for symbol in self._in_functions:
             kind, name = symbol.value
             if kind in ("event_count", "action") or kind == "built-in" and name != "time":
@@ -481,8 +478,8 @@ class Model:
                     if kind == "event_count" and name not in [e.name for e in self.events]:
                         raise Error(f"event_count('{name}') in {what}{at(self.line)} names no event: there are "
                                     f"{', '.join(e.name for e in self.events) or 'none'}")
-        if self.name in kinds:
-            raise Error(f"the model has the name of its {kinds[self.name]} '{self.name}'{at(self.line)}: give "
+        if self.name in kind_of:
+            raise Error(f"the model has the name of its {kind_of[self.name]} '{self.name}'{at(self.line)}: give "
                         "it another one, name='...'")
 
     # What it is used for
@@ -521,7 +518,7 @@ class Model:
         known = {sym.time: t, **{sym.symbol("state", n): v for n, v in zip(self.states, y)}}
         for symbol in self._in_functions:
             kind, name = symbol.value
-            if kind in sym.component_kinds and kind != "state":
+            if kind in kinds.valued and kind != "state":
                 if name not in values:
                     raise Error(f"derivatives needs a value of {name}: give it by name, {name}=...")
                 known[symbol] = values[name]

@@ -190,11 +190,11 @@ def _cached(source, capability, load):
     return cache.obtain(made_from.encode(), make, lambda made: load(pathlib.Path(made).read_bytes()))
 
 
-def kernel(header, struct, method, real, shared, device, generates=False):
+def kernel(header, struct, method, real, shared, device, generates=False, use=None):
     """The kernel of a model, which is C++ source with a struct of that name, for a method and a real type, both as C++
     types, and a GPU by its number; `shared`: the numbers of real and integer shared parameters; `generates`: whether
-    the model sets the instances of studies. Raises `Error` if there is no NVRTC, or with its first message if it
-    refuses the model."""
+    the model sets the instances of studies; `use` is called with a library that was loaded. Raises `Error` if there is
+    no NVRTC, or with its first message if it refuses the model."""
     begin = time.perf_counter()
     _, capability, shared_bytes = _core.gpu(device)
     place = placement(shared[0] * (8 if real == "double" else 4) + shared[1] * 4, shared_bytes)
@@ -203,6 +203,8 @@ def kernel(header, struct, method, real, shared, device, generates=False):
     if asked in _loaded:
         return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
     obtained = _cached(source, capability, lambda program: _core.Library(program, device))
+    if use is not None:
+        use(obtained.loaded)
     _loaded[asked] = obtained.loaded
     return kernel_of(obtained, "" if obtained.hit else f"NVRTC {library().version}", begin)
 

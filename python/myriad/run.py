@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from . import _core
+from . import _core, kinds
 from .components import name_of
 from .device import DeviceInput, DeviceResults
 from .errors import Error, note_in_python
@@ -151,31 +151,32 @@ class Run(Mapping):
             raise Error(f"there are no {kind!r} steps: choose one of {', '.join(names)}")
         return self._ensemble.array(names[kind])
 
+    def _last_values(self, some_kinds):
+        """The components of some kinds by name."""
+        return {name: self._ensemble.array(kind, c)
+                for kind in some_kinds for c, name in enumerate(self._components.names[kind])}
+
     @property
     def states(self) -> dict[str, Array]:
         """The states at the end by name."""
-        return {name: self._ensemble.array("state", c) for c, name in enumerate(self._components.states)}
+        return self._last_values(["state"])
 
     @property
     def accessories(self) -> dict[str, Array]:
         """The accessories at the end by name, integer ones too."""
-        found = {name: self._ensemble.array("accessory", c) for c, name in enumerate(self._components.accessories)}
-        found.update((name, self._ensemble.array("integer_accessory", c))
-                     for c, name in enumerate(self._components.integer_accessories))
-        return found
+        return self._last_values(kinds.accessories)
 
     @property
     def parameters(self) -> dict[str, Array]:
         """The parameters by name, one value per instance."""
-        return {name: self._ensemble.array("parameter", c) for c, name in enumerate(self._components.parameters)}
+        return self._last_values(["parameter"])
 
     @property
     def shared(self) -> dict[str, Any]:
         """The shared values by name, without those of tables."""
-        reals, integers = self._ensemble.array("shared"), self._ensemble.array("shared_integer")
-        tables = self._components.tables
-        return {**{name: reals[c] for c, name in enumerate(self._components.shared) if name not in tables},
-                **{name: integers[c] for c, name in enumerate(self._components.shared_integers)}}
+        return {name: value for kind in kinds.shared
+                for name, value in zip(self._components.names[kind], self._ensemble.array(kind))
+                if name not in self._components.tables}
 
     @property
     def start(self) -> dict[str, Any]:
@@ -209,7 +210,7 @@ class Run(Mapping):
         if name in self._recorded:
             return self._records.records(*self._recorded[name])
         place = self._components.place.get(name, (None,))
-        if place[0] in ("state", "accessory", "integer_accessory", "parameter"):  # and of a GPU's results no others
+        if place[0] in kinds.of_instances:  # and of a GPU's results no others
             return self._ensemble.array(*place)
         if name in self.shared:
             return self.shared[name]

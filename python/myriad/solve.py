@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core, compiler, nvrtc, tape
+from . import _core, compiler, kinds, nvrtc, tape
 from .components import Components, by_component, unknown
 from .core_options import finish_options, make_options, options_of, takes_options
 from .device import DeviceInput
@@ -56,7 +56,7 @@ def refuse_missing(components, given):
     """Refuses a call that leaves out what every instance needs."""
     for what, names, where in (
             ("initial value", components.states, "start="),
-            ("value", components.parameters + components.shared + components.shared_integers, "the sweep")):
+            ("value", components.of(["parameter", *kinds.shared]), "the sweep")):
         missing = [n for n in names if n not in given]
         if missing:
             hint = ", as generate= sets instances of studies alone" if set(missing) & set(components.generated) else ""
@@ -67,14 +67,14 @@ def _gather(components, sweep, start, time, size):
     """All inputs by name, and the number of instances."""
     given = {}
     initial = by_component(by_name(start, "start", "start={x: 1, v: 0}"), "start=")
-    for source, values, kinds in (("the sweep", _sweep_values(sweep), None),
-                                  ("start=", initial, ("state", "accessory", "integer_accessory"))):
+    for source, values, allowed in (("the sweep", _sweep_values(sweep), None),
+                                  ("start=", initial, kinds.recorded)):
         for name, value in values.items():
             name = components.aliases.get(name, name)
             kind = components.place.get(name, (None,))[0]
-            if kind is None or (kinds is not None and kind not in kinds):
+            if kind is None or (allowed is not None and kind not in allowed):
                 known = [n for n, (k, _) in components.place.items()
-                         if n not in components.tables and (kinds is None or k in kinds)]
+                         if n not in components.tables and (allowed is None or k in allowed)]
                 raise unknown(name, known, f"component of the model that {source} can set")
             if name in given:
                 raise Error(f"'{name}' is given in the sweep and in start=: give it once")
@@ -97,10 +97,8 @@ def _gather(components, sweep, start, time, size):
 
 
 def _fill(ensemble, components, given, domain, names, real):
-    for kind, known, all_names in (("state", components.states, names[0]),
-                                   ("parameter", components.parameters, names[1]),
-                                   ("accessory", components.accessories, names[4])):
-        for number in range(len(known), len(all_names)):  # which an interpreted model does not use
+    for kind in kinds.of_instances:
+        for number in range(len(components.names[kind]), len(names[kind])):  # which an interpreted model does not use
             ensemble.array(kind, number)[...] = 0
     for name, array in given.items():
         kind, number = components.place[name]
@@ -114,14 +112,14 @@ def _fill(ensemble, components, given, domain, names, real):
         elif kind in ("state", "parameter"):
             values, repeat = (array.values, array.repeat) if isinstance(array, Along) else (array, 1)
             ensemble.spread(kind, number, np.ascontiguousarray(np.atleast_1d(values), dtype=real), repeat)
-        elif kind in ("shared", "shared_integer"):
+        elif kind in kinds.shared:
             if array.ndim == 1:
                 raise Error(f"'{name}' is shared by all instances and has {len(array)} values: give one number, or "
                             "make it a parameter")
-            ensemble.array(kind)[number] = whole_numbers(array, name) if kind == "shared_integer" else array
+            ensemble.array(kind)[number] = whole_numbers(array, name) if kinds.every[kind].integer else array
         else:
             array = np.asarray(array)
-            ensemble.array(kind, number)[...] = whole_numbers(array, name) if kind == "integer_accessory" else array
+            ensemble.array(kind, number)[...] = whole_numbers(array, name) if kinds.every[kind].integer else array
     if any(isinstance(array, DeviceInput) for array in domain):
         raise Error("the times are on a GPU: copy them to the host")
     if domain[0].ndim == 0 and domain[1].ndim == 0:
@@ -192,8 +190,9 @@ def kernel_for(device, model, components, method, control, sampled, precision, i
         raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
     names = components.names
     return nvrtc.kernel(*model.source(), method_type(method, control, sampled), precision,
-                        (len(names[2]), len(names[3])), int(device.partition(":")[2]),
-                        bool(components.generated)), names
+                        tuple(len(names[kind]) for kind in kinds.shared), int(device.partition(":")[2]),
+                        bool(components.generated),
+                        lambda library: tape.give_model(library, model, components, method)), names
 
 
 def choose_kernel(model, components, method, control, sampled, precision, interpreted):
@@ -211,7 +210,7 @@ def choose_kernel(model, components, method, control, sampled, precision, interp
 def _inputs(components, given):
     """What results tell of the inputs."""
     return {name: array for name, array in given.items() if components.place[name][0] in (
-        "parameter", "shared", "shared_integer", "state")}
+        "state", "parameter", *kinds.shared)}
 
 
 @takes_options(SolveArguments)
@@ -282,11 +281,11 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     kernels = [kernel_for(d, model, components, chosen, control, samples, precision, interpreted)
                for d in devices]
     kernel, names = kernels[0]
-    finish_options(core_options, given_options, components, len(names[0]), len(names[-1]))
+    finish_options(core_options, given_options, components, len(names["state"]), len(names["event"]))
     kind: Any = _core.Ensemble64 if precision == "double" else _core.Ensemble32
     function, finish = _progress_function(progress)
     try:
-        ensemble = kind(kernel.library, *names, count)
+        ensemble = kind(kernel.library, names, count)
         _fill(ensemble, components, given, domain, names, np.dtype("f8" if precision == "double" else "f4"))
         if on_gpu and any(isinstance(array, DeviceInput) for array in given.values()):
             _core.wait_for_gpu(int(devices[0].partition(":")[2]))  # for what other libraries do there

@@ -24,6 +24,7 @@ from .errors import Error, note_in_python, with_event_names
 from .expression import Node
 from .grid import Sweep
 from .inputs import by_name, numbers, only, whole
+from .kinds import recorded as recorded_kinds
 from .methods import default, fixed_step, method_type
 from .options import Options, StudyArguments
 from .reduce import Reduction
@@ -84,7 +85,7 @@ class Study:
                                                      precision, self._interpreted)
         try:
             made = self._core = _core.Study(
-                [list(n) for n in components.names], list(components.tables.values()),
+                components.names, list(components.tables.values()),
                 getattr(model, "generator", ""), "float64" if precision == "double" else "float32",
                 getattr(model, "name", None) or "model",
                 method_type(method, control, samples is not None).replace("myriad::", ""))
@@ -204,7 +205,7 @@ class Study:
             else:
                 made.zip(pairs)
         self._shared_integers = {name_of(k): int(v) for k, v in constants.items()
-                                 if _time_name(k) is None and name_of(k) in components.shared_integers}
+                                 if _time_name(k) is None and name_of(k) in components.names["shared_integer"]}
         for key, value in constants.items():
             if isinstance(value, Random):
                 made.axis(self._full_name(key), value.core())
@@ -228,7 +229,7 @@ class Study:
     def _set_kept(self, made, components, keep, anything_else):
         if keep is None:
             keep = {} if anything_else else {
-                "end": [*components.states, *components.accessories, *components.integer_accessories]}
+                "end": components.of(recorded_kinds)}
         elif not hasattr(keep, "items"):
             keep = {"end": keep}
         only(keep, _keep_choices, "keep=")
@@ -261,7 +262,7 @@ class Study:
                                     "or give the same time= to all")
                     nvrtc.load_study_kernels(int(device.partition(":")[2]))
                 self._kernels[device], names = self._kernel_for(device)
-                self._core.add_kernel(device, self._kernels[device].library, [list(n) for n in names])
+                self._core.add_kernel(device, self._kernels[device].library, names)
         self._runs_interpreted = any(self._kernels[d].origin.startswith("interpreted") for d in devices)
         self._core.note("kernel", "interpreted" if self._runs_interpreted else "compiled")
         self._core.set_run(devices, whole(chunk or 0, "chunk", 1 << 62))

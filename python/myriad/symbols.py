@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+from . import kinds
 from .errors import Error, at, users_line
 from .expression import integer, make, real
 
@@ -20,11 +21,6 @@ __all__ = ["states", "state", "parameters", "parameter", "shared", "shared_integ
            "event_count", "time", "step", "next_step", "phase", "instance", "t_begin", "t_end", "end_phase",
            "end_instance"]
 
-# Kinds of components with the enumeration they are in, which C++ models name.
-component_kinds = {"state": "states", "parameter": "parameters", "shared": "shared values",
-                   "shared_integer": "shared integers", "accessory": "accessories",
-                   "integer_accessory": "integer accessories"}
-
 _cpp_keywords = set("""
 alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl
 concept const consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do
@@ -34,13 +30,13 @@ short signed sizeof static static_assert static_cast struct switch template this
 typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq typeof
 """.split())
 # Members that the library looks for in a model by name, and macros of C's headers.
-_reserved = set("""state parameter shared shared_integer accessory integer_accessory event observed rhs jacobian events
+_reserved = {*kinds.every, *"""observed rhs jacobian events
 observe summaries initialise after_step after_event finalise generate writes_parameters writes_time_domain
 accessories_are_outputs scalar_only rare_events large_rhs autonomous jacobian_pattern pack_batches max_block_size
 myriad std linux unix errno assert NULL NAN INFINITY EOF BUFSIZ RAND_MAX HUGE_VAL OVERFLOW UNDERFLOW DOMAIN SING PLOSS
-TLOSS stdin stdout stderr major minor alloca offsetof issubnormal math_errhandling sched_priority""".split())
+TLOSS stdin stdout stderr major minor alloca offsetof issubnormal math_errhandling sched_priority""".split()}
 _reserved_pattern = re.compile(
-    r"n_(state|parameter|shared|shared_integer|accessory|integer_accessory|event|observed|tangent|original|vectors)|"
+    rf"n_({'|'.join(kinds.every)}|observed|tangent|original|vectors)|"
     r"M_[A-Z0-9_]+|MYRIAD_.*|[A-Z0-9]+_(MAX|MIN|EPSILON|DIG)|FP_[A-Z]+")
 
 

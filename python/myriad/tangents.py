@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .errors import Error, at, users_line
+from .kinds import ComponentNames, names_of
 
 if TYPE_CHECKING:
     from .cpp_model import CppModel
@@ -26,7 +27,7 @@ def with_tangents(model: Model | CppModel, vectors: int = 1) -> WithTangents:
     return WithTangents(model, vectors)
 
 
-class WithTangents:
+class WithTangents(ComponentNames):
     """A model with tangent vectors. Component c of tangent i is the state `<c>_tangent_<i>`, and the growth of tangent
     i the accessory `growth_<i>`, counted from 1."""
 
@@ -39,15 +40,14 @@ class WithTangents:
         numbers = range(1, self.vectors + 1)
         tangents = [f"{state}_tangent_{i}" for i in numbers for state in model.states]
         self._growth = [f"growth_{i}" for i in numbers]
-        self.states = [*model.states, *tangents]
-        self.parameters, self.shared = list(model.parameters), list(model.shared)
-        self.shared_integers = [*model.shared_integers, "transient_phases"]
-        self.accessories = [*model.accessories, *self._growth, "time_summed", "phase_began"]
-        self.integer_accessories, self.events = list(model.integer_accessories), model.events
+        added = {"state": tangents, "shared_integer": ["transient_phases"],
+                 "accessory": [*self._growth, "time_summed", "phase_began"]}
+        names = {kind: [*known, *added.get(kind, ())] for kind, known in names_of(model).items()}
+        self._set_names(names)
+        self.events = model.events
         self.generated, self.generator = model.generated, model.generator
         self.generate = getattr(model, "generate", ())  # not of a model in C++
-        every = [*self.states, *self.parameters, *self.shared, *self.shared_integers, *self.accessories,
-                 *self.integer_accessories, *(e.name for e in self.events)]
+        every = [name for of_kind in names.values() for name in of_kind]
         twice = next((name for name in every if every.count(name) > 1), None)
         if twice is not None:
             raise Error(f"the model has a component '{twice}'{at(line)}, which is the name of one that tangents add: "

@@ -6,7 +6,7 @@ from __future__ import annotations
 import weakref
 from typing import Any
 
-from . import _core
+from . import _core, kinds
 from .compiler import Kernel
 from .errors import Error
 from .expression import integer, is_long, walk
@@ -14,8 +14,7 @@ from .table import element_name
 
 methods = tuple(_core.interpreted_methods())
 _codes = {name: number for number, name in enumerate(_core.tape_operations())}
-_limits = dict(zip(("states", "parameters", "accessories", "integer accessories", "events", "registers"),
-                   _core.tape_limits))
+_limits = _core.tape_limits  # the most components of each kind
 
 
 def _refuse(why):
@@ -25,6 +24,10 @@ def _refuse(why):
 
 _of_whole_numbers = {"add": "wrapping_add", "subtract": "wrapping_subtract", "multiply": "wrapping_multiply",
                      "quotient": "quotient", "remainder": "remainder"}
+
+
+def _plural(kind):
+    return kinds.every[kind].plural.replace("_", " ")
 
 
 class Writer:
@@ -62,7 +65,7 @@ class Writer:
                 uses[id(argument)] = uses.get(id(argument), 0) + 1
         for root in roots:
             uses[id(root)] = uses.get(id(root), 0) + 1
-        free = list(range(_limits["registers"]))[::-1]
+        free = list(range(_core.tape_registers))[::-1]
         register = {}
         for node in order:
             arguments = [register[id(a)] for a in node.args]
@@ -133,12 +136,10 @@ def library(model, components, method):
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
     if model.summaries:
         raise _refuse("it has extrema or integrals over a phase")
-    for kind, count in (("states", len(components.states)), ("parameters", len(components.parameters)),
-                        ("accessories", len(components.accessories)),
-                        ("integer accessories", len(components.integer_accessories)),
-                        ("events", len(components.events))):
-        if count > _limits[kind]:
-            raise _refuse(f"it has {count} {kind}, and the interpreter {_limits[kind]} at the most")
+    for kind, most in _limits.items():
+        count = len(components.names[kind])
+        if count > most:
+            raise _refuse(f"it has {count} {_plural(kind)}, and the interpreter {most} at the most")
     writer = Writer(components)
     results = [("store_result", c) for c in range(max(len(model.rhs), len(model.events)))]
     writer.function(model.rhs, results)
@@ -147,12 +148,28 @@ def library(model, components, method):
     writer.hook(model.after_step, "after_step")
     writer.hook(model.finalise, "finalise")
     writer.hook(model.generate, "generate")
-    actions = [e.do for e in model.events] + [[]] * (_limits["events"] - len(model.events))
+    actions = [e.do for e in model.events] + [[]] * (_limits["event"] - len(model.events))
     for number, assignments in enumerate(actions):
         writer.hook(assignments, f"event {number}")
     may_stop = any(t.value[0] == "action" for a in (model.after_step, *actions) for t, _ in a)
     made = _core.Tape(writer.functions, writer.codes, writer.values, writer.registers)
-    return _core.Library(method, len(components.shared), len(components.shared_integers), may_stop, made)
+    return _core.Library(method, *(len(components.names[kind]) for kind in kinds.shared), may_stop, made)
+
+
+def give_model(library, model, components, method):
+    """Gives checks and notes of a GPU's program the functions of a traced model, unless they are beyond the
+    interpreter."""
+    if not hasattr(model, "rhs"):
+        return
+    writer = Writer(components)
+    try:
+        for roots in (model.rhs, [] if model.initialise else [e.function for e in model.events]):
+            writer.function(roots, [("store_result", c) for c in range(len(roots))])
+    except Error:
+        return
+    for _ in range(4 + _limits["event"]):  # no hooks
+        writer.function([], [])
+    library.give_model(_core.Tape(writer.functions, writer.codes, writer.values, writer.registers), method)
 
 
 _known: weakref.WeakKeyDictionary[Any, Any] = weakref.WeakKeyDictionary()
@@ -168,9 +185,5 @@ def kernel(model, components, method, why):
 
 def padded(components):
     """The names of all components that the interpreter has: those of the model first."""
-    def fill(names, kind):
-        return [*names, *(f"unused {kind} {i}" for i in range(len(names), _limits[kind]))]
-
-    return (fill(components.states, "states"), fill(components.parameters, "parameters"), components.shared,
-            components.shared_integers, fill(components.accessories, "accessories"),
-            fill(components.integer_accessories, "integer accessories"), fill(components.event_names, "events"))
+    return {kind: [*names, *(f"unused {_plural(kind)} {i}" for i in range(len(names), _limits.get(kind, 0)))]
+            for kind, names in components.names.items()}

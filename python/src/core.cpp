@@ -5,14 +5,17 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <optional>
+#include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
@@ -67,20 +70,20 @@ auto with_component(ensemble<R>& e, const std::string& kind, int c, Use&& use) {
     const auto of = [&](auto& array) { return use(checked(array, c).component(c)); };
     const auto counter = [&](auto which) { return use(const_cast<std::int64_t*>(d.counter(which).data())); };
     using arrays = typename host::ensemble_data<R>::arrays;
-    if (kind == "state") return of(d.state);
-    if (kind == "parameter") return of(d.parameter);
-    if (kind == "accessory") return of(d.accessory);
-    if (kind == "integer_accessory") return of(d.integer_accessory);
+#define MYRIAD_OF_KIND(name, ...) \
+    if (kind == #name) return of(d.name);
+    MYRIAD_INSTANCE_KINDS(MYRIAD_OF_KIND)
+#undef MYRIAD_OF_KIND
     if (kind == "t_begin") return of(d.own_domains().t_begin);
     if (kind == "t_end") return of(d.own_domains().t_end);
     if (kind == "tolerance_scale") return of(d.tolerance_scales());
     if (kind == "t") return of(d.t);
     if (kind == "phases_done") return of(d.phase);
     if (kind == "status") return use(reinterpret_cast<std::uint8_t*>(d.status.data()));
-    if (kind == "accepted_steps") return counter(&arrays::accepted);
-    if (kind == "rejected_steps") return counter(&arrays::rejected);
-    if (kind == "located_steps") return counter(&arrays::located);
-    if (kind == "rhs_evaluations") return counter(&arrays::evaluations);
+#define MYRIAD_OF_COUNTER(name, array, words) \
+    if (kind == #name) return counter(&arrays::array);
+    MYRIAD_COUNTERS(MYRIAD_OF_COUNTER)
+#undef MYRIAD_OF_COUNTER
     throw error(message("there is no array ", kind));
 }
 
@@ -88,8 +91,10 @@ auto with_component(ensemble<R>& e, const std::string& kind, int c, Use&& use) {
 template <class R>
 nb::object component(nb::handle self, const std::string& kind, int c) {
     auto& e = nb::cast<ensemble<R>&>(self);
-    if (kind == "shared") return view(e.data.shared.data(), e.shape->n_shared, self);
-    if (kind == "shared_integer") return view(e.data.shared_integer.data(), e.shape->n_shared_integer, self);
+#define MYRIAD_OF_KIND(name, ...) \
+    if (kind == #name) return view(e.data.name.data(), e.shape->n_##name, self);
+    MYRIAD_SHARED_KINDS(MYRIAD_OF_KIND)
+#undef MYRIAD_OF_KIND
     return with_component(e, kind, c, [&](auto* values) {
         const std::int64_t n = e.data.size;
         if (e.gpu) e.gpu->bring(values, static_cast<std::size_t>(n) * sizeof *values);
@@ -250,9 +255,10 @@ nb::object recorded(nb::handle self, const std::string& kind, int c, bool on_dev
         if (all.gpu) all.gpu->bring(values, static_cast<std::size_t>(r.size * r.phases) * sizeof *values);
         return table(values, r.size, r.phases, self);
     };
-    if (kind == "state") return of(r.values, r.state);
-    if (kind == "accessory") return of(r.values, r.accessory);
-    if (kind == "integer_accessory") return of(r.integers, r.integer_accessory);
+#define MYRIAD_OF_KIND(name, plural, words, type) \
+    if (kind == #name) return of(r.template of_type<type>(), r.name);
+    MYRIAD_RECORDED_KINDS(MYRIAD_OF_KIND)
+#undef MYRIAD_OF_KIND
     if (kind == "time") return of(r.values, {r.time});
     throw error(message("there are no records of ", kind));
 }
@@ -261,15 +267,8 @@ template <class R>
 void bind_precision(nb::module_& m, const char* ensemble_name, const char* report_name) {
     nb::class_<ensemble<R>>(m, ensemble_name)
         .def("__init__",
-             [](ensemble<R>* self, const library& kernel, std::vector<std::string> states,
-                std::vector<std::string> parameters, std::vector<std::string> shared,
-                std::vector<std::string> shared_integers, std::vector<std::string> accessories,
-                std::vector<std::string> integer_accessories, std::vector<std::string> events, std::int64_t size) {
-                 new (self) ensemble<R>(
-                     kernel.facts().model,
-                     {std::move(states), std::move(parameters), std::move(shared), std::move(shared_integers),
-                      std::move(accessories), std::move(integer_accessories), std::move(events)},
-                     size);
+             [](ensemble<R>* self, const library& kernel, const names_of_kinds& names, std::int64_t size) {
+                 new (self) ensemble<R>(kernel.facts().model, names_from(names), size);
              })
         .def("array", &component<R>, "kind"_a, "component"_a = 0)
         .def("device_array", &device_component<R>, "kind"_a, "component"_a = 0)
@@ -289,10 +288,9 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
         .def_ro("instances", &all::instances)
         .def_ro("by_status", &all::by_status)
         .def_ro("first_failed", &all::first_failed)
-        .def_ro("accepted_steps", &all::accepted_steps)
-        .def_ro("rejected_steps", &all::rejected_steps)
-        .def_ro("located_steps", &all::located_steps)
-        .def_ro("rhs_evaluations", &all::rhs_evaluations)
+#define MYRIAD_BIND_COUNTER(name, ...) .def_ro(#name, &all::name)
+            MYRIAD_COUNTERS(MYRIAD_BIND_COUNTER)
+#undef MYRIAD_BIND_COUNTER
         .def_ro("lanes", &all::lanes)
         .def_ro("threads", &all::threads)
         .def_ro("seconds", &all::seconds)
@@ -312,6 +310,24 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
             return text.str();
         });
     m.def("solve", &solve_from_python<R>, "kernels"_a, "ensemble"_a, "options"_a, "progress"_a.none() = nb::none());
+}
+
+/// What Python knows of every kind of components: name, plural, words in messages, whether its values are integers, and
+/// whether they can be recorded, and each instance has its own.
+nb::list component_kinds() {
+    using R = double;
+    const std::set<std::string_view> recorded{
+#define MYRIAD_NAME_KIND(kind, ...) #kind,
+        MYRIAD_RECORDED_KINDS(MYRIAD_NAME_KIND)};
+    const std::set<std::string_view> of_instances{MYRIAD_INSTANCE_KINDS(MYRIAD_NAME_KIND)};
+#undef MYRIAD_NAME_KIND
+    nb::list all;
+#define MYRIAD_ADD_KIND(kind, plural, words, type)                                                       \
+    all.append(nb::make_tuple(#kind, #plural, words, std::is_integral_v<type>, recorded.contains(#kind), \
+                              of_instances.contains(#kind)));
+    MYRIAD_COMPONENT_KINDS(MYRIAD_ADD_KIND)
+#undef MYRIAD_ADD_KIND
+    return all;
 }
 
 /// The options of a struct, by their names: choices as text, tolerances and numbers of components as lists.
@@ -428,8 +444,15 @@ NB_MODULE(_core, m) {
     m.attr("methods") = std::vector<std::string>{MYRIAD_METHODS(METHOD_NAME)};
 #undef METHOD_NAME
     m.def("tape_operations", &tape_operations);
-    m.attr("tape_limits") =
-        nb::make_tuple(tape_states, tape_parameters, tape_accessories, tape_integers, tape_events, tape_registers);
+    m.attr("component_kinds") = component_kinds();
+    nb::dict limits;
+    const detail::model_numbers& most = interpreter(interpreted_methods().front()).facts.model;
+#define MYRIAD_LIMIT_OF_KIND(kind, ...) limits[#kind] = most.n_##kind;
+    MYRIAD_INSTANCE_KINDS(MYRIAD_LIMIT_OF_KIND)
+#undef MYRIAD_LIMIT_OF_KIND
+    limits["event"] = most.n_event;
+    m.attr("tape_limits") = limits;
+    m.attr("tape_registers") = tape_registers;
     nb::class_<interpreted>(m, "Tape").def("__init__", [](interpreted* self, const tape_functions& functions,
                                                           const std::vector<int>& codes,
                                                           const std::vector<double>& values,
@@ -448,6 +471,7 @@ NB_MODULE(_core, m) {
     });
     nb::class_<library>(m, "Library")
         .def(nb::init<const std::string&>())
+        .def("give_model", &library::give_model, "tape"_a, "method"_a)
         .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
         .def("__init__", [](library* self, const nb::bytes& image,
                             int device) { new (self) library(std::string(image.c_str(), image.size()), device); })

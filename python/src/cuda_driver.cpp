@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The part of the CUDA runtime that backends/cuda uses, on top of the driver's library, libcuda.so.1.
 #include <array>
-#include <atomic>
 #include <mutex>
 
 #include <cuda_runtime.h>

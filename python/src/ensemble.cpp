@@ -41,10 +41,10 @@ public:
                 found.t.fill(data_type::unset);
             }
             found.restart();
-            found.accessory.fill(data_type::unset);
-            found.integer_accessory.fill(0);
-            found.shared.fill(data_type::unset);
-            found.shared_integer.fill(0);
+#define MYRIAD_UNSET(kind, plural, words, type) found.kind.fill(detail::unset_value<type>);
+            MYRIAD_ACCESSORY_KINDS(MYRIAD_UNSET)
+            MYRIAD_SHARED_KINDS(MYRIAD_UNSET)
+#undef MYRIAD_UNSET
             return found;
         }
         return data_type(shape, size);

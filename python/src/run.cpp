@@ -7,9 +7,14 @@
 
 #include <dlfcn.h>
 
+#include "myriad/host/report/stability.hpp"
+#include "myriad/host/report/stiffness.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
+#include "myriad/kernel/methods/method_list.hpp"
+#include "myriad/methods.hpp"
 #include "resident.hpp"
 #include "several_gpus.hpp"
+#include "tape_instances.hpp"
 #include "threads.hpp"
 
 namespace myriad::python {
@@ -44,33 +49,52 @@ library::library(std::string image, int device) {
 
 namespace {
 
-template <std::vector<std::string> component_names::*which>
-host::component_label label(const host::model_shape& shape, int c, std::string_view what) {
-    return {what, c, (static_cast<const named_shape&>(shape).names.*which)[static_cast<std::size_t>(c)]};
+template <class Method>
+constexpr auto limit_of() -> double (*)() {
+    if constexpr (host::may_be_unstable<Method>) return &host::real_stability_limit<Method>;
+    return nullptr;
 }
 
 }  // namespace
 
+void library::give_model(std::shared_ptr<const interpreted> model, const std::string& method) {
+    const auto needed =
+        static_cast<openmp::instruction_set>(interpreter(interpreted_methods().front()).instruction_set);
+    if (!host::cpu_has(needed)) return;
+    model_ = std::move(model);
+#define MYRIAD_TAKE_LIMIT(name) \
+    if (method == #name) stability_limit_ = limit_of<name>();
+    MYRIAD_METHODS(MYRIAD_TAKE_LIMIT)
+#undef MYRIAD_TAKE_LIMIT
+}
+
+component_names names_from(const names_of_kinds& all) {
+    component_names made;
+#define MYRIAD_TAKE_NAMES(kind, plural, ...) made.plural = all.at(#kind);
+    MYRIAD_COMPONENT_KINDS(MYRIAD_TAKE_NAMES)
+#undef MYRIAD_TAKE_NAMES
+    return made;
+}
+
 named_shape::named_shape(const detail::model_numbers& of, component_names its_names)
-    : model_shape{
-          of, [](const model_shape& s, int c) { return label<&component_names::states>(s, c, "state"); },
-          [](const model_shape& s, int c) { return label<&component_names::parameters>(s, c, "parameter"); },
-          [](const model_shape& s, int c) { return label<&component_names::shared>(s, c, "shared parameter"); }},
-      names(std::move(its_names)), components{{n_state, "state"},
-                                              {n_accessory, "accessory"},
-                                              {n_integer_accessory, "integer accessory"},
-                                              {}} {
-    const auto check = [](const std::vector<std::string>& named, int count, const char* what) {
-        require(static_cast<int>(named.size()) == count, "the model has ", count, " components of kind ", what,
-                ", and ", named.size(), " names are given");
-    };
-    check(names.states, n_state, "state");
-    check(names.parameters, n_parameter, "parameter");
-    check(names.shared, n_shared, "shared");
-    check(names.shared_integers, n_shared_integer, "shared integer");
-    check(names.accessories, n_accessory, "accessory");
-    check(names.integer_accessories, n_integer_accessory, "integer accessory");
-    check(names.events, n_event, "event");
+    : model_shape{of,
+#define MYRIAD_LABEL(kind, plural, words, type)                                                              \
+    [](const model_shape& shape, int c) -> host::component_label {                                           \
+        return {words, c, static_cast<const named_shape&>(shape).names.plural[static_cast<std::size_t>(c)]}; \
+    },
+                  MYRIAD_VALUE_KINDS(MYRIAD_LABEL)
+#undef MYRIAD_LABEL
+      },
+      names(std::move(its_names)), components{
+#define MYRIAD_LIST_KIND(kind, plural, words, type) {n_##kind, words},
+                                       MYRIAD_COMPONENT_KINDS(MYRIAD_LIST_KIND)
+#undef MYRIAD_LIST_KIND
+                                   } {
+#define MYRIAD_CHECK_NAMES(kind, plural, words, type)                                                              \
+    require(static_cast<int>(names.plural.size()) == n_##kind, "the model has ", n_##kind, " components of kind ", \
+            words, ", and ", names.plural.size(), " names are given");
+    MYRIAD_COMPONENT_KINDS(MYRIAD_CHECK_NAMES)
+#undef MYRIAD_CHECK_NAMES
 }
 
 namespace {
@@ -90,12 +114,19 @@ host::called_model<R> called_for(const library& kernel, const named_shape& shape
     host::called_model<R> made{&shape, &shape.components, kernel.facts().call, {}};
     const bool is_for_gpu = kernel.gpu() != nullptr;
     if (is_for_gpu != (where.which() == device::kind::cuda)) return made;
+    if (!is_for_gpu) made.functions = *static_cast<const detail::instance_functions<R>*>(kernel.cpu().functions);
+    if (kernel.model() != nullptr) {
+        const auto of_tape = functions_of_tape<R>(
+            *kernel.model(), is_for_gpu ? kernel.stability_limit() : made.functions.stability_limit);
+        made.functions.rhs = of_tape.rhs;
+        made.functions.stability_limit = of_tape.stability_limit;
+        made.functions.event_resolution = of_tape.event_resolution;
+    }
+    made.enter_thread = [&kernel] { current_tape = kernel.model(); };  // what the functions interpret
     if (is_for_gpu) {
         made.on_gpu = engines_of<R>(*kernel.gpu(), where, o);
         return made;
     }
-    made.functions = *static_cast<const detail::instance_functions<R>*>(kernel.cpu().functions);
-    made.enter_thread = [&kernel] { current_tape = kernel.model(); };  // what the functions interpret
     made.on_cpu = {[&kernel](const detail::any_arguments<R>& all, const detail::run_options& how) {
                        detail::run_statistics used;
                        current_tape = kernel.model();
@@ -120,6 +151,7 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     for (const placed_kernel& k : on) {
         models.push_back(called_for<R>(*k.kernel, *instances.shape, k.where, o));
         models.back().check_kernel(k.where);
+        if (!instances.on_device.empty()) models.back().functions.event_resolution = nullptr;  // inputs are not here
         require(k.where.which() == where.which(), "the devices are of different kinds");
     }
     require(on_gpu || on.size() == 1, "the CPU is named several times");
@@ -151,6 +183,9 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     result->first_state.resize(std::min(result->first_state.size(), used(instances.shape->names.states)));
     result->first_parameter.resize(std::min(result->first_parameter.size(), used(instances.shape->names.parameters)));
     const detail::tangent_places& tangents = models.front().facts.tangents;
+    if (instances.gpu != nullptr && !result->interrupted &&
+        host::examines_stiffness<R>(*result, data.size, o, models.front().functions))
+        instances.gpu->bring_every(host::examined_stride(data.size));
     if (tangents.n_vectors > 0 && instances.gpu != nullptr && !result->interrupted) {
         const auto bring = [&](const auto* values) {
             instances.gpu->bring(values, static_cast<std::size_t>(data.size) * sizeof *values);

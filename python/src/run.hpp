@@ -4,9 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "device_library.hpp"
@@ -37,21 +37,34 @@ public:
     const compiled_facts& facts() const { return cpu_.facts; }
     /// The kernel of a shared object or the interpreter.
     const kernel_library& cpu() const { return cpu_; }
-    /// What an interpreter runs; null for compiled kernels.
+    /// What an interpreter runs, or the model of a GPU's program for checks and notes; null where there is none.
     const tape* model() const { return model_ ? &model_->get() : nullptr; }
+    /// Gives checks and notes of a GPU's program the model's functions, unless this CPU cannot run tapes. `method`: as
+    /// in `facts`.
+    void give_model(std::shared_ptr<const interpreted> model, const std::string& method);
+    /// See `instance_functions`.
+    double (*stability_limit() const)() { return stability_limit_; }
     /// The program for GPUs; null for the CPU's kernels.
     device_program* gpu() const { return gpu_; }
 
 private:
     kernel_library cpu_{};
     std::shared_ptr<const interpreted> model_;
+    double (*stability_limit_)() = nullptr;
     device_program* gpu_ = nullptr;  // never destroyed
 };
 
 /// The names of a model's components, in their order.
 struct component_names {
-    std::vector<std::string> states, parameters, shared, shared_integers, accessories, integer_accessories, events;
+#define MYRIAD_DECLARE_NAMES(kind, plural, ...) std::vector<std::string> plural;
+    MYRIAD_COMPONENT_KINDS(MYRIAD_DECLARE_NAMES)
+#undef MYRIAD_DECLARE_NAMES
 };
+
+/// Names by kind, as Python has them.
+using names_of_kinds = std::map<std::string, std::vector<std::string>>;
+/// The same by member. Throws `std::out_of_range` if a kind is missing.
+component_names names_from(const names_of_kinds& all);
 
 /// The shape of a model with names of its own.
 struct named_shape : host::model_shape {

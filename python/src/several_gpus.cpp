@@ -3,22 +3,20 @@
 #include "several_gpus.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <thread>
-#include <utility>
 
+#include "myriad/host/chunks/chunk_pipeline.hpp"
 #include "myriad/host/chunks/chunk_plan.hpp"
-#include "myriad/host/chunks/chunked_solve.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/core/error.hpp"
-#include "myriad/host/threads/polling_backoff.hpp"
 
 namespace myriad::python {
 
@@ -44,39 +42,39 @@ struct parts_of_call {
     cuda::kernel_facts facts{};
 };
 
-/// The work of one GPU: one part is copied while another one is integrated.
+/// The work of one GPU, in a thread of its own.
 template <class R>
 class gpu_worker {
 public:
-    gpu_worker(const host::called_model<R>& model, const detail::any_arguments<R>& arguments, parts_of_call& all)
-        : source_(model.on_gpu), arguments_(arguments), all_(all) {
-        slots_[0].engine = source_.take();
-        clock_ = slots_[0].engine->start_clock();
-    }
+    gpu_worker(const host::called_model<R>& model, const detail::any_arguments<R>& arguments, const options& o,
+               parts_of_call& all)
+        : all_(all), pipeline_(model.on_gpu, arguments), plan_(o, arguments, pipeline_.first()) {}
 
     /// Instances of the largest part that it takes.
-    std::int64_t largest(const options& o) { return host::chunk_plan(o, arguments_, *slots_[0].engine).largest(); }
+    std::int64_t largest() const { return plan_.largest(); }
 
     /// From the part that begins with that instance on.
     void work(std::int64_t first) {
         try {
-            for (std::size_t turn = 0; first < all_.size && !all_.stopped; ++turn) {
-                slot& s = slots_[turn % slots_.size()];
-                take_back(s);
-                if (s.engine == nullptr) s.engine = source_.take();
-                s.count = std::min(all_.part, all_.size - first);
-                s.engine->upload(arguments_, first, s.count, all_.past);
-                s.engine->integrate(arguments_);
-                s.engine->download(arguments_);
-                first = all_.next.fetch_add(all_.part);
+            std::promise<void> ready;
+            ready.set_value();  // all inputs are checked
+            const std::shared_future<void> checked = ready.get_future().share();
+            const auto back = [this](std::int64_t begin, std::int64_t end) { all_.done += end - begin; };
+            const auto meanwhile = [this]() -> cuda::engine<R>* {
+                pipeline_.stop(all_.asked);
+                const bool may_add = pipeline_.engine_count() < std::max(plan_.at_a_time(), std::int64_t{2});
+                return may_add ? &pipeline_.add_engine(all_.part) : nullptr;
+            };
+            for (; first < all_.size && !all_.stopped; first = all_.next.fetch_add(all_.part)) {
+                cuda::engine<R>& engine = pipeline_.free_engine(meanwhile, back);
+                pipeline_.submit(engine, first, std::min(all_.part, all_.size - first), all_.past, checked);
             }
-            for (slot& s : slots_) take_back(s);
+            pipeline_.finish([this] { pipeline_.stop(all_.asked); }, back);
             const std::lock_guard lock(all_.mutex);
             if (first < all_.size) all_.left.push_back(first);
-            all_.kernel_seconds = std::max(all_.kernel_seconds, kernel_seconds_);
-            all_.facts = slots_[0].engine->facts();
-            for (slot& s : slots_)
-                if (s.engine != nullptr) source_.give(std::move(s.engine));
+            all_.kernel_seconds = std::max(all_.kernel_seconds, pipeline_.kernel_seconds());
+            all_.facts = pipeline_.first().facts();
+            pipeline_.give_back();
         } catch (...) {
             const std::lock_guard lock(all_.mutex);
             if (!all_.failure) all_.failure = std::current_exception();
@@ -88,33 +86,9 @@ public:
     }
 
 private:
-    struct slot {
-        std::unique_ptr<cuda::engine<R>> engine;
-        std::int64_t count = 0;  // instances under way
-    };
-
-    void take_back(slot& s) {
-        if (s.count == 0) return;
-        for (host::polling_backoff waiting; !s.engine->idle(); waiting.pause()) {
-            const detail::stop_request asked = all_.asked;
-            if (!ends_kernels(asked) || asked == std::exchange(told_, asked)) continue;
-            for (slot& one : slots_)
-                if (one.engine != nullptr) one.engine->stop(asked);
-        }
-        s.engine->wait();
-        all_.done += std::exchange(s.count, 0);
-        const auto [from, to] = s.engine->kernel_interval(clock_);
-        kernel_seconds_ += std::max(0.0, to - std::max(from, kernels_until_));
-        kernels_until_ = std::max(kernels_until_, to);
-    }
-
-    const host::engine_source<R>& source_;
-    const detail::any_arguments<R>& arguments_;
     parts_of_call& all_;
-    std::array<slot, 2> slots_;
-    detail::stop_request told_ = detail::stop_request::none;  // to the engines
-    void* clock_ = nullptr;
-    double kernel_seconds_ = 0, kernels_until_ = 0;
+    host::chunk_pipeline<R> pipeline_;
+    host::chunk_plan plan_;
 };
 
 }  // namespace
@@ -147,13 +121,13 @@ void integrate_on_several(const std::vector<placed_kernel>& on, const std::vecto
     const host::work_count before = data.untouched ? host::work_count{} : host::counted_work(data, data.size);
     parts_of_call all(data.size, data.untouched ? cuda::past::none : cuda::past::kept);
     std::vector<std::unique_ptr<gpu_worker<R>>> workers;
-    for (const auto& m : models) workers.push_back(std::make_unique<gpu_worker<R>>(m, call.arguments(), all));
+    for (const auto& m : models) workers.push_back(std::make_unique<gpu_worker<R>>(m, call.arguments(), o, all));
     // As many for each GPU as on one alone, so that the faster ones take more of them, but none too small.
     constexpr std::int64_t worth_a_part = 65'536, most = 8;
     const auto gpus = static_cast<std::int64_t>(on.size());
     const std::int64_t parts = gpus * std::clamp<std::int64_t>(data.size / (gpus * worth_a_part), 1, most);
     std::int64_t part = (data.size + parts - 1) / parts;
-    for (const auto& w : workers) part = std::min(part, w->largest(o));
+    for (const auto& w : workers) part = std::min(part, w->largest());
     all.part = part;
     all.next = gpus * part;  // each has one to begin with
 

@@ -4,12 +4,10 @@
 #include "study.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +19,7 @@
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -50,15 +49,15 @@ using studies::element;
 /// Those that a study sets and keeps: tables have values already.
 std::vector<studies::component> components_of(const model_of_study& model) {
     std::vector<studies::component> all;
-    const auto add = [&](component_kind kind, const std::vector<std::string>& names, std::size_t but = 0) {
+    const auto add = [&](component_kind kind, const std::vector<std::string>& names, std::size_t but) {
         for (std::size_t c = 0; c + but < names.size(); ++c) all.push_back({kind, static_cast<int>(c), names[c]});
     };
-    add(component_kind::state, model.names.states);
-    add(component_kind::parameter, model.names.parameters);
-    add(component_kind::accessory, model.names.accessories);
-    add(component_kind::integer_accessory, model.names.integer_accessories);
-    add(component_kind::shared, model.names.shared, model.tables.size());
-    add(component_kind::shared_integer, model.names.shared_integers);
+#define MYRIAD_ADD_NAMES(kind, plural, ...)       \
+    add(component_kind::kind, model.names.plural, \
+        component_kind::kind == component_kind::shared ? model.tables.size() : 0);
+    MYRIAD_INSTANCE_KINDS(MYRIAD_ADD_NAMES)
+    MYRIAD_SHARED_KINDS(MYRIAD_ADD_NAMES)
+#undef MYRIAD_ADD_NAMES
     return all;
 }
 
@@ -215,12 +214,6 @@ ensemble_reduction sum_by_python(const std::string& name, const std::vector<std:
                     " numbers, and ", sums.size(), " are expected: change its size");
             for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += values[i];
         });
-}
-
-using names_of_kinds = std::vector<std::vector<std::string>>;
-component_names names_from(const names_of_kinds& n) {
-    require(n.size() == 7, "a model has seven kinds of components");
-    return {n[0], n[1], n[2], n[3], n[4], n[5], n[6]};
 }
 
 nb::object or_none(const nb::object& o) { return o.is_valid() ? o : nb::none(); }

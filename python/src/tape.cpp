@@ -3,7 +3,6 @@
 #include "tape.hpp"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
 

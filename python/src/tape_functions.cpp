@@ -62,17 +62,20 @@ void apply_to_whole_numbers(tape_code code, bool is_long, const R& x, const R& y
             const std::int64_t a = whole(detail::get_lane(x, i)), b = whole(detail::get_lane(y, i));
             const auto short_a = static_cast<std::int32_t>(a), short_b = static_cast<std::int32_t>(b);
             const std::int64_t of = is_long ? of_whole_numbers(code, a, b) : of_whole_numbers(code, short_a, short_b);
-            detail::set_lane(result, i, static_cast<double>(of));
+            detail::set_lane(result, i, static_cast<real_of<R>>(of));
         }
     }
 }
 
+#define MYRIAD_INSTANTIATE_FUNCTIONS(R)                              \
+    template void apply_function(tape_code, const R&, const R&, R&); \
+    template void apply_to_whole_numbers(tape_code, bool, const R&, const R&, R&);
 using lanes = pack<double, tape_batches>;
-template void apply_function(tape_code, const double&, const double&, double&);
-template void apply_function(tape_code, const lanes&, const lanes&, lanes&);
-template void apply_function(tape_code, const dual<double>&, const dual<double>&, dual<double>&);
-template void apply_to_whole_numbers(tape_code, bool, const double&, const double&, double&);
-template void apply_to_whole_numbers(tape_code, bool, const lanes&, const lanes&, lanes&);
-template void apply_to_whole_numbers(tape_code, bool, const dual<double>&, const dual<double>&, dual<double>&);
+MYRIAD_INSTANTIATE_FUNCTIONS(double)
+MYRIAD_INSTANTIATE_FUNCTIONS(float)
+MYRIAD_INSTANTIATE_FUNCTIONS(lanes)
+MYRIAD_INSTANTIATE_FUNCTIONS(dual<double>)
+MYRIAD_INSTANTIATE_FUNCTIONS(dual<float>)
+#undef MYRIAD_INSTANTIATE_FUNCTIONS
 
 }  // namespace myriad::python

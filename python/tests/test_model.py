@@ -3,6 +3,7 @@
 
 import concurrent.futures
 import copy
+import inspect
 import itertools
 import math
 import pickle
@@ -361,3 +362,11 @@ def test_numpys_functions_of_the_vector_of_states():
 def test_names_of_arguments_that_are_all_taken():
     model = my.model({"y": "s + u + state_", "s": "y", "u": "y", "state_": "1"})
     assert "y_1[s] + y_1[u] + y_1[state_]" in model.cpp()
+
+
+def test_every_kind_of_component_has_names_in_every_model_and_a_symbol():
+    from myriad import kinds
+    plurals = [kind.plural for kind in kinds.every.values()]
+    assert sorted(plurals) == sorted(kinds.ComponentNames.__annotations__)
+    assert set(plurals) <= set(inspect.signature(my.CppModel).parameters)
+    assert all(getattr(my, kind)(f"one_{kind}").value == (kind, f"one_{kind}") for kind in kinds.valued)

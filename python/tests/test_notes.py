@@ -70,9 +70,9 @@ def test_long_phases_spoil_exponents_without_a_note():
     assert notes(0.1) == []
 
 
-def test_an_event_tolerance_below_rounding_is_taken():
+def test_an_event_tolerance_below_rounding_is_taken(interpreted):
     event = my.event(x - 1e6, name="summit", tolerance=1e-14)
     model = my.model({x: v, v: 0 * x - 1}, events=[event])
     with pytest.raises(my.Error, match="the tolerance of event 'summit' is 1e-14, but rounding changes its function"):
-        my.solve(model, start={x: 999_999, v: 10}, time=(0, 1), device="cpu")
+        my.solve(model, start={x: 999_999, v: 10}, time=(0, 1), device="cpu", interpreted=interpreted)
     my.solve(model, start={x: 999_999, v: 10}, time=(0, 1), device="cpu", events={"summit": dict(tolerance=1e-8)})

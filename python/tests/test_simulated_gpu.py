@@ -90,6 +90,36 @@ for size, more in ((3, {}), (100, dict(schedule="dynamic")), (1000, dict(phases=
 """)
 
 
+def test_notes_and_checks_of_a_call_are_missing_on_gpus(run):
+    run("""
+y, rate, s = my.state("y"), my.parameter("rate"), my.states(" ".join(f"s_{i}" for i in range(12)))
+one = my.model({y: rate * (my.sin(t) - y) + my.cos(t)})
+many = my.model({**{a: rate * (b - a) for a, b in zip(s, s[1:])}, s[-1]: my.cos(t) - rate * s[-1]})
+def notes(model, device, value, tolerance=1e-6, **more):
+    return my.solve(model, {rate: np.full(200, value)}, start=dict.fromkeys(model.states, 0), time=(0, 1),
+                    rtol=tolerance, atol=tolerance, device=device, **more).report.notes
+assert "rodas_5p" in my.solve(one, {rate: OnGpu(np.full(200, 1e4))}, start={y: 0}, time=(0, 1), rtol=1e-6, atol=1e-6,
+                              device="cuda").report.notes[0]
+for model in (one, many):  # the second has more states than are interpreted
+    for more in ({}, dict(precision="float", tolerance=1e-3)):
+        cpu, gpu = (notes(model, device, 1e4, **more) for device in ("cpu", "cuda"))
+        assert len(cpu) == len(gpu) == 1 and "rodas_5p" in gpu[0]
+        assert cpu[0].partition("(")[0] == gpu[0].partition("(")[0]
+for value, more in ((1.0, {}), (1e4, dict(advice=False)), (1e4, dict(method="rodas_5p"))):
+    assert notes(one, "cuda", value, **more) == []
+
+for more in ({}, dict(initialise={v: 0})):  # before which events have no values
+    summit = my.model({x: v, v: 0 * x - 1}, events=[my.event(x - 1e6, name="summit", tolerance=1e-14)], **more)
+    call = lambda how, **options: how(summit, start={x: 999_999, v: 10}, time=(0, 1), **options)
+    for how in (lambda: call(my.solve, device="cuda"), lambda: call(my.study, sweep={}).run(device="cuda")):
+        if more:
+            how()
+        else:
+            assert "the tolerance of event 'summit' is 1e-14, but rounding changes its function" in message(how)
+            my.solve(summit, start={x: OnGpu(np.full(3, 999_999.0)), v: 10}, time=(0, 1), device="cuda")  # not checked
+""")
+
+
 def test_chunks_have_the_bits_of_a_whole(run):
     script = """
 gpu = my.solve(model, sweep(270_000), start={x: 1, v: 0.1}, time=(0, 0.1), device="cuda")

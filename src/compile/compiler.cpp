@@ -10,7 +10,6 @@
 #include <system_error>
 #include <utility>
 
-#include "myriad/host/core/error.hpp"
 #include "myriad/version.hpp"
 
 namespace myriad::compiling {

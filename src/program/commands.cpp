@@ -8,7 +8,6 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -181,7 +180,7 @@ void compile_model(const study_file::model_choice& wanted, const model_source& s
     }
 }
 
-void show_list(const char* what, const std::vector<std::string>& names) {
+void show_list(const std::string& what, const std::vector<std::string>& names) {
     if (names.empty()) return;
     std::string line = message("  ", what, ':');
     line.resize(std::max<std::size_t>(line.size() + 1, 22), ' ');
@@ -190,13 +189,15 @@ void show_list(const char* what, const std::vector<std::string>& names) {
 }
 
 void show_model(const program_model& model) {
-    using enum studies::component_kind;
     std::cout << plain_name(model.names.model()) << '\n';
     constexpr std::pair<studies::component_kind, const char*> kinds[] = {
-        {state, "states"},          {parameter, "parameters"},
-        {shared, "shared"},         {shared_integer, "shared integers"},
-        {accessory, "accessories"}, {integer_accessory, "integer accessories"}};
-    for (const auto& [kind, what] : kinds) {
+#define MYRIAD_KIND_AND_PLURAL(kind, plural, ...) {studies::component_kind::kind, #plural},
+        MYRIAD_VALUE_KINDS(MYRIAD_KIND_AND_PLURAL)
+#undef MYRIAD_KIND_AND_PLURAL
+    };
+    for (const auto& [kind, plural] : kinds) {
+        std::string what = plural;
+        std::replace(what.begin(), what.end(), '_', ' ');
         std::vector<std::string> names;
         for (const studies::component& c : model.names.all())
             if (c.kind == kind) names.push_back(c.name.empty() ? std::to_string(c.number) : c.name);

@@ -3,7 +3,6 @@
 #include "program/model_source.hpp"
 
 #include <cerrno>
-#include <cstdint>
 #include <filesystem>
 #include <set>
 #include <string_view>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The models that the program knows.
-#include <algorithm>
 #include <utility>
 
 #include "myriad/host/core/error.hpp"

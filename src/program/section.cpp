@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <optional>
 
 namespace myriad::programs {

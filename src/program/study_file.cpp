@@ -3,17 +3,21 @@
 #include "program/study_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/options/option_table.hpp"
+#include "myriad/study/kinds.hpp"
 
 namespace myriad::programs {
 
 using studies::component;
 using studies::component_kind;
 using studies::component_names;
+using studies::instance_kinds;
+using studies::model_kinds;
+using studies::recorded_kinds;
+using studies::settable_kinds;
 using enum studies::component_kind;
 
 namespace {
@@ -81,8 +85,7 @@ bool is_kind(const toml_value::entry& e) {
     if (table == nullptr ||
         std::any_of(table->begin(), table->end(), [](const auto& inner) { return maker_of(inner.key) != nullptr; }))
         return false;
-    constexpr component_kind kinds[] = {state, parameter, accessory, integer_accessory, shared, shared_integer};
-    return std::any_of(std::begin(kinds), std::end(kinds), [&](component_kind k) { return name_of(k) == e.key; });
+    return std::any_of(model_kinds.begin(), model_kinds.end(), [&](component_kind k) { return name_of(k) == e.key; });
 }
 
 /// Calls a function for every component in a table, with its name and its key in messages. Components may be in tables
@@ -104,7 +107,7 @@ void for_each_component(const toml_value& table, const std::string& path, Functi
 std::vector<std::string> names_of(const component_names& all, std::initializer_list<component_kind> kinds) {
     std::vector<std::string> names;
     for (const component& c : all.all())
-        if (!c.name.empty() && std::find(kinds.begin(), kinds.end(), c.kind) != kinds.end()) names.push_back(c.name);
+        if (!c.name.empty() && studies::among(kinds, c.kind)) names.push_back(c.name);
     return names;
 }
 
@@ -214,12 +217,6 @@ void study_file::set_up(any_study& study, const program_model& model, const std:
 // Instances
 // ---------------------------------------------------------------------------------------------------------------------
 
-namespace {
-
-constexpr auto settable = {state, parameter, accessory, integer_accessory, shared, shared_integer, t_begin, t_end};
-
-}  // namespace
-
 void study_file::read_axes(any_study& study) {
     root_.with("axes", [&](const toml_value& v, const std::string& path) {
         if (const auto* const array = v.as<toml_value::array>()) {  // one dimension each
@@ -228,7 +225,7 @@ void study_file::read_axes(any_study& study) {
         }
         for_each_component(v, path, [&](const std::string& name, const toml_value& given, const std::string& key) {
             const axis_values all = axis_in(given, key);
-            with_component(*names_, name, given, key, settable, [&] { study.axis(name, all); });
+            with_component(*names_, name, given, key, settable_kinds, [&] { study.axis(name, all); });
         });
     });
     root_.with("repeat", [&](const toml_value& v, const std::string& name) {
@@ -246,14 +243,15 @@ void study_file::read_dimension(any_study& study, const toml_value& table, const
     if (paired.empty()) throw wrong(table, path, "this axis has no component: write k = {linspace = [0, 1, 11]}");
     if (paired.size() == 1) {
         const auto& [name, all] = paired[0];
-        with_component(*names_, name, *places[0].first, places[0].second, settable, [&] { study.axis(name, all); });
+        with_component(*names_, name, *places[0].first, places[0].second, settable_kinds,
+                       [&] { study.axis(name, all); });
         return;
     }
     std::vector<std::string> full_names;
     for (std::size_t i = 0; i < paired.size(); ++i) {
         const std::string& name = paired[i].first;
-        with_component(*names_, name, *places[i].first, places[i].second, settable,
-                       [&] { full_names.push_back(names_->find(name, settable).full_name()); });
+        with_component(*names_, name, *places[i].first, places[i].second, settable_kinds,
+                       [&] { full_names.push_back(names_->find(name, settable_kinds).full_name()); });
     }
     try {
         study.zip(paired);
@@ -272,7 +270,7 @@ void study_file::read_values(any_study& study) {
     root_.with("set", [&](const toml_value& v, const std::string& path) {
         for_each_component(v, path, [&](const std::string& name, const toml_value& given, const std::string& key) {
             const double value = number_in(given, key);
-            with_component(*names_, name, given, key, settable, [&] { study.set(name, value); });
+            with_component(*names_, name, given, key, settable_kinds, [&] { study.set(name, value); });
         });
     });
     root_.with("time_domain", [&](const toml_value& v, const std::string& key) {
@@ -316,9 +314,8 @@ public:
 
 private:
     static component_kind kind_of(std::string_view name) {
-        for (const component_kind kind : {state, accessory})
-            if (name_of(kind) == name) return kind;
-        return integer_accessory;
+        return *std::find_if(recorded_kinds.begin(), recorded_kinds.end(),
+                             [&](component_kind kind) { return name_of(kind) == name; });
     }
 
     void set(const toml_value& v, const std::string& key, std::vector<double>& to) const { to = numbers_in(v, key); }
@@ -391,11 +388,11 @@ void study_file::read_kept(kept_values& keep) {
     section from(v, "keep");
     from.with("end", [&](const toml_value& list, const std::string& key) {
         keep.end = texts_in(list, key);
-        static constexpr auto kinds = {state, parameter, accessory, integer_accessory};
         for (const toml_value* const item : items_in(list)) {
             const std::string& name = text_in(*item, key);
             if (name != "t")
-                with_component(*names_, name, *item, key, kinds, [&] { static_cast<void>(names_->find(name, kinds)); });
+                with_component(*names_, name, *item, key, instance_kinds,
+                               [&] { static_cast<void>(names_->find(name, instance_kinds)); });
         }
     });
     from.read("records", keep.records);

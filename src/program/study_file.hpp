@@ -2,7 +2,6 @@
 // A study as a TOML file describes it: which model it is of, and all that `any_study` takes. Host code only.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <initializer_list>
 #include <string>

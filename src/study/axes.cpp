@@ -6,11 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <utility>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/study/axis_rule.hpp"
+#include "myriad/study/kinds.hpp"
 
 namespace myriad {
 
@@ -86,10 +85,6 @@ axis_values normal(double mean, double standard_deviation) {
 
 namespace {
 
-bool is_integer(component_kind kind) {
-    return kind == component_kind::integer_accessory || kind == component_kind::shared_integer;
-}
-bool is_shared(component_kind kind) { return kind == component_kind::shared || kind == component_kind::shared_integer; }
 /// Refuses what the component cannot have.
 void check_values(const component& c, const axis_values& all) {
     if (!is_integer(c.kind)) return;
@@ -106,9 +101,7 @@ void check_values(const component& c, const axis_values& all) {
 }  // namespace
 
 const component& axes::find_free(std::string_view name) const {
-    using enum component_kind;
-    const component& c =
-        names_.find(name, {state, parameter, accessory, integer_accessory, shared, shared_integer, t_begin, t_end});
+    const component& c = names_.find(name, studies::settable_kinds);
     for (const entry& e : entries_)
         require(!(e.what == c), host::named_component(c.full_name()), " is given twice: give it one axis or one value");
     require(!is_shared(c.kind), c.full_name(),
@@ -167,11 +160,9 @@ void axes::repeat(std::int64_t count, std::string_view name) {
 }
 
 void axes::set(std::string_view name, double value) {
-    using enum component_kind;
-    const component& c =
-        names_.find(name, {state, parameter, accessory, integer_accessory, shared, shared_integer, t_begin, t_end});
-    require(std::isfinite(value) || (c.kind == t_end && std::isinf(value)), c.full_name(), " is set to ", value,
-            ", and needs a finite value");
+    const component& c = names_.find(name, studies::settable_kinds);
+    require(std::isfinite(value) || (c.kind == component_kind::t_end && std::isinf(value)), c.full_name(),
+            " is set to ", value, ", and needs a finite value");
     axis_values one(axis_values::kind::linear, value, value, 1);
     check_values(c, one);
     for (entry& e : entries_) {

@@ -10,6 +10,7 @@
 #include "myriad/host/threads/default_arithmetic.hpp"
 #include "myriad/host/threads/parallel.hpp"
 #include "myriad/kernel/core/abi.hpp"
+#include "myriad/study/kinds.hpp"
 #include "myriad/study/studied_model.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
@@ -66,21 +67,18 @@ void host_instances<R>::set(const axes& all, std::int64_t first) {
         return nullptr;
     };
     // What no axis sets is what a new ensemble has, since the last integration has changed it.
-    const auto set_all = [&](component_kind kind, auto& array, auto unset) {
+    const auto set_all = [&]<class T>(component_kind kind, host::component_array<T>& array) {
         for (int c = 0; c < array.components(); ++c) {
             const axes::entry* const e = entry_of(kind, c);
             if (e == nullptr) {
-                array.fill_component(c, unset);
+                array.fill_component(c, detail::unset_value<T>);
             } else {
                 all.fill(*e, first, array.length(), array.component(c));
             }
         }
     };
+    for (const component_kind kind : instance_kinds) with_array(kind, data, [&](auto& array) { set_all(kind, array); });
     const R unset = host::ensemble_data<R>::unset;
-    set_all(state, data.state, unset);
-    set_all(parameter, data.parameter, unset);
-    set_all(accessory, data.accessory, unset);
-    set_all(integer_accessory, data.integer_accessory, std::int32_t{0});
     R begin = unset, end = unset;
     bool varies = false;
     for (const axes::entry& e : all.entries()) {
@@ -165,9 +163,6 @@ void host_solver<R>::copy(const quantity& what, std::byte* to) const {
     const component& c = what.what;
     const host::record_data<R>& r = instances_->records();
     const host::sample_data<R>& s = instances_->samples();
-    const auto recorded = [&](const std::vector<std::int16_t>& columns, const char* kind) {
-        return r.values.component(r.find(columns, c.number, kind));
-    };
     switch (what.from) {
         case origin::axis: {
             const auto& entries = plan_.asked.axes.entries();
@@ -176,14 +171,12 @@ void host_solver<R>::copy(const quantity& what, std::byte* to) const {
             return plan_.asked.axes.fill(*e, first_, size, reinterpret_cast<R*>(to));
         }
         case origin::record:
-            if (c.kind == component_kind::integer_accessory) {
-                transpose(r.integers.component(r.find(r.integer_accessory, c.number, "integer accessory")), size, inner,
-                          to);
-                return mark_missing_phases(data.phase.data(), plan_.asked.options.record.from_phase, size, inner, to);
-            }
-            return transpose(
-                c.kind == component_kind::state ? recorded(r.state, "state") : recorded(r.accessory, "accessory"), size,
-                inner, to);
+            with_columns(r, c.kind, [&](const auto& values, const std::vector<std::int16_t>& columns) {
+                transpose(values.component(columns[static_cast<std::size_t>(c.number)]), size, inner, to);
+            });
+            if (is_integer(c.kind))
+                mark_missing_phases(data.phase.data(), plan_.asked.options.record.from_phase, size, inner, to);
+            return;
         case origin::record_time:
             return transpose(r.values.component(r.time), size, inner, to);
         case origin::sample:
@@ -193,30 +186,19 @@ void host_solver<R>::copy(const quantity& what, std::byte* to) const {
         case origin::samples_stored:
             return transpose(s.stored.data(), size, 1, to);
         case origin::end:
-            switch (c.kind) {
-                case component_kind::state:
-                    return transpose(data.state.component(c.number), size, 1, to);
-                case component_kind::parameter:
-                    return transpose(data.parameter.component(c.number), size, 1, to);
-                case component_kind::accessory:
-                    return transpose(data.accessory.component(c.number), size, 1, to);
-                default:
-                    return transpose(data.integer_accessory.component(c.number), size, 1, to);
-            }
+            return with_array(c.kind, data,
+                              [&](const auto& array) { transpose(array.component(c.number), size, 1, to); });
         case origin::end_time:
             return transpose(data.t.data(), size, 1, to);
         case origin::status:
             return transpose(data.status.data(), size, 1, to);
         case origin::phases_done:
             return transpose(data.phase.data(), size, 1, to);
-        case origin::accepted_steps:
-            return copy_or_zero(data.counters()[0], size, to);
-        case origin::rejected_steps:
-            return copy_or_zero(data.counters()[1], size, to);
-        case origin::located_steps:
-            return copy_or_zero(data.counters()[2], size, to);
-        case origin::rhs_evaluations:
-            return copy_or_zero(data.counters()[3], size, to);
+#define MYRIAD_COPY_COUNTER(name, array, words) \
+    case origin::name:                          \
+        return copy_or_zero(data.array.data(), size, to);
+            MYRIAD_COUNTERS(MYRIAD_COPY_COUNTER)
+#undef MYRIAD_COPY_COUNTER
     }
 }
 

@@ -7,8 +7,7 @@
 #include <iterator>
 #include <utility>
 
-#include "myriad/host/core/error.hpp"
-#include "myriad/kernel/core/abi.hpp"
+#include "myriad/study/kinds.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
@@ -18,17 +17,23 @@ std::string exact_text(double value) {
 }
 
 const char* name_of(component_kind kind) {
-    constexpr const char* names[] = {"state",  "parameter",      "accessory", "integer_accessory",
-                                     "shared", "shared_integer", "t_begin",   "t_end"};
-    return names[static_cast<int>(kind)];
+    switch (kind) {
+#define MYRIAD_NAME_OF_KIND(kind, ...) \
+    case component_kind::kind:         \
+        return #kind;
+        MYRIAD_VALUE_KINDS(MYRIAD_NAME_OF_KIND)
+#undef MYRIAD_NAME_OF_KIND
+        case component_kind::t_begin:
+            return "t_begin";
+        case component_kind::t_end:
+            return "t_end";
+    }
+    return "";
 }
 
 namespace {
 
 bool is_time(component_kind kind) { return kind == component_kind::t_begin || kind == component_kind::t_end; }
-bool among(std::initializer_list<component_kind> kinds, component_kind kind) {
-    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
-}
 
 /// Names that results use for something else.
 bool is_reserved(std::string_view name) {
@@ -80,9 +85,7 @@ std::string component_names::variable(const component& c) const {
 }
 
 std::string component_names::initial_variable(const component& c) const {
-    using enum component_kind;
-    const bool changes = c.kind == state || c.kind == accessory || c.kind == integer_accessory;
-    return variable(c) + (changes ? "_begin" : "");
+    return variable(c) + (among(recorded_kinds, c.kind) ? "_begin" : "");
 }
 
 std::string component_names::choices(std::initializer_list<component_kind> kinds) const {

@@ -9,6 +9,7 @@
 #include "myriad/host/threads/default_arithmetic.hpp"
 #include "myriad/host/threads/polling_backoff.hpp"
 #include "myriad/kernel/core/abi.hpp"
+#include "myriad/study/kinds.hpp"
 #include "myriad/study/studied_model.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
@@ -143,7 +144,7 @@ public:
 
 private:
     void start();
-    std::shared_ptr<const cuda::generation> describe();
+    std::shared_ptr<const cuda::generation> make_generation();
     cuda::device_values values_of(const quantity& what) const;
 
     const study_plan& plan_;
@@ -161,11 +162,11 @@ void device_solver<R>::start() {
     if (instances_ != nullptr) return;
     const std::int64_t few = std::min(plan_.content.instances(), most_looked_at);
     instances_ = std::make_unique<device_instances<R>>(model_, where_, plan_, few);
-    how_ = describe();
+    how_ = make_generation();
 }
 
 template <class R>
-std::shared_ptr<const cuda::generation> device_solver<R>::describe() {
+std::shared_ptr<const cuda::generation> device_solver<R>::make_generation() {
     using enum component_kind;
     using valid = cuda::generated_component::valid;
     const axes& all = plan_.asked.axes;
@@ -189,10 +190,13 @@ std::shared_ptr<const cuda::generation> device_solver<R>::describe() {
     const double unset = static_cast<double>(host::ensemble_data<R>::unset);
     // What the model's `generate` is to set is checked after it.
     const valid finite = made->calls_model ? valid::any : valid::finite;
-    set(state, arrays.state, data.state.components(), unset, finite);
-    set(parameter, arrays.parameter, data.parameter.components(), unset, finite);
-    set(accessory, arrays.accessory, data.accessory.components(), unset, valid::any);
-    set(integer_accessory, arrays.integer_accessory, data.integer_accessory.components(), 0, valid::any);
+    for (const component_kind kind : instance_kinds) {
+        const int components = with_array(kind, data, [](const auto& array) { return array.components(); });
+        with_array(kind, arrays, [&]<class T>(T* array) {
+            set(kind, array, components, static_cast<double>(detail::unset_value<std::remove_const_t<T>>),
+                kind == state || kind == parameter ? finite : valid::any);
+        });
+    }
     if (arrays.t_begin != nullptr) {
         set(t_begin, arrays.t_begin, 1, unset, valid::finite);
         set(t_end, arrays.t_end, 1, unset, valid::finite);
@@ -251,14 +255,13 @@ cuda::device_values device_solver<R>::values_of(const quantity& what) const {
             made.seed = plan_.asked.axes.seed();
             break;
         case origin::record:
-            if (c.kind == component_kind::integer_accessory) {
-                at(arrays.record.integers, records.integer_accessory[number] * made.inner);
-                made.ends_with_phases = true;
-                made.from_phase = static_cast<std::int32_t>(plan_.asked.options.record.from_phase);
-            } else {
-                const auto& columns = c.kind == component_kind::state ? records.state : records.accessory;
-                at(arrays.record.values, columns[number] * made.inner);
-            }
+            with_columns(records, c.kind, [&](const auto&, const std::vector<std::int16_t>& columns) {
+                at(is_integer(c.kind) ? static_cast<const void*>(arrays.record.integers) : arrays.record.values,
+                   columns[number] * made.inner);
+            });
+            if (!is_integer(c.kind)) break;
+            made.ends_with_phases = true;
+            made.from_phase = static_cast<std::int32_t>(plan_.asked.options.record.from_phase);
             break;
         case origin::record_time:
             at(arrays.record.values, records.time * made.inner);
@@ -273,11 +276,7 @@ cuda::device_values device_solver<R>::values_of(const quantity& what) const {
             at(arrays.sample.stored);
             break;
         case origin::end:
-            at(c.kind == component_kind::state       ? static_cast<const void*>(arrays.state)
-               : c.kind == component_kind::parameter ? static_cast<const void*>(arrays.parameter)
-               : c.kind == component_kind::accessory ? static_cast<const void*>(arrays.accessory)
-                                                     : static_cast<const void*>(arrays.integer_accessory),
-               c.number);
+            with_array(c.kind, arrays, [&](const void* array) { at(array, c.number); });
             break;
         case origin::end_time:
             at(arrays.t);
@@ -288,18 +287,12 @@ cuda::device_values device_solver<R>::values_of(const quantity& what) const {
         case origin::phases_done:
             at(arrays.phase);
             break;
-        case origin::accepted_steps:
-            at(arrays.accepted);
-            break;
-        case origin::rejected_steps:
-            at(arrays.rejected);
-            break;
-        case origin::located_steps:
-            at(arrays.located);
-            break;
-        case origin::rhs_evaluations:
-            at(arrays.evaluations);
-            break;
+#define MYRIAD_PLACE_OF_COUNTER(name, array, words) \
+    case origin::name:                              \
+        at(arrays.array);                           \
+        break;
+            MYRIAD_COUNTERS(MYRIAD_PLACE_OF_COUNTER)
+#undef MYRIAD_PLACE_OF_COUNTER
     }
     return made;
 }

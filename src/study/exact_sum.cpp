@@ -7,9 +7,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "myriad/kernel/core/abi.hpp"
-#include "myriad/kernel/study/reduced_values.hpp"
-
 namespace myriad::studies::inline MYRIAD_ABI {
 
 namespace {

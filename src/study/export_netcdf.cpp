@@ -27,7 +27,6 @@ void export_netcdf(const studies::results&, const std::string& path, const netcd
 #include <set>
 #include <span>
 #include <type_traits>
-#include <utility>
 
 #include <fcntl.h>
 #include <netcdf.h>

@@ -3,7 +3,6 @@
 #include "myriad/study/handed_out_run.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/status_names.hpp"

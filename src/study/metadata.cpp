@@ -3,9 +3,7 @@
 #include "myriad/study/metadata.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <numeric>
 #include <type_traits>
 
 #include "json_numbers.hpp"

@@ -7,8 +7,6 @@
 #include <cerrno>
 #include <csignal>
 #include <exception>
-#include <string>
-#include <string_view>
 #include <system_error>
 #include <vector>
 

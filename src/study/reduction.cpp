@@ -2,7 +2,6 @@
 // The reductions.
 #include "myriad/study/reduction.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>

@@ -8,11 +8,9 @@
 #include <cstring>
 #include <mutex>
 #include <utility>
-#include <vector>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/memory/memory_need.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -20,7 +19,6 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/work_sharing.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
@@ -39,7 +37,7 @@ struct used_device {
     const std::size_t number;
     std::mutex turn;  // of the thread that integrates
     std::atomic<bool> failed{false};
-    std::string why;                     // it failed
+    marked_text why;                     // it failed
     std::atomic<bool> exploring{false};  // a thread has its first chunk, which shows how fast it is
 };
 
@@ -174,7 +172,8 @@ private:
                 fail(std::current_exception());
             } else if (std::all_of(devices_.begin(), devices_.end(),
                                    [](const used_device& u) { return u.failed.load(); })) {
-                fail(std::make_exception_ptr(error(message("no device is left: the last one failed with: ", d.why))));
+                fail(std::make_exception_ptr(
+                    error(marked_message("no device is left: the last one failed with: ", d.why))));
             }
         } catch (...) {
             fail(std::current_exception());
@@ -367,7 +366,7 @@ private:
         } catch (const handed_back&) {
             throw;
         } catch (const std::exception& e) {
-            if (on_device && !d.failed) drop(d, e.what());
+            if (on_device && !d.failed) drop(d, e);
             throw;
         }
     }
@@ -453,12 +452,13 @@ private:
         }
         changed_.notify_all();
     }
-    void drop(used_device& d, const std::string& why) {
-        d.why = why;
+    void drop(used_device& d, const std::exception& why) {
+        const auto* const known = dynamic_cast<const error*>(&why);
+        d.why = {why.what(), known != nullptr ? known->marks() : std::vector<mark>()};
         d.failed = true;
         sharing_.drop(d.number);
-        warn(
-            message("device ", d.where.name(), " is left out, and its chunks are done by others, as it failed: ", why));
+        warn(message("device ", d.where.name(),
+                     " is left out, and its chunks are done by others, as it failed: ", why.what()));
     }
     void warn(std::string text) {
         const std::lock_guard lock(mutex_);

@@ -8,8 +8,6 @@
 #include <signal.h>
 #include <time.h>
 
-#include "myriad/kernel/core/abi.hpp"
-
 namespace myriad::studies::inline MYRIAD_ABI {
 
 namespace {

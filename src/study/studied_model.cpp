@@ -3,7 +3,6 @@
 #include "myriad/study/studied_model.hpp"
 
 #include "myriad/host/core/instruction_set.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 

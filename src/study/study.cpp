@@ -6,12 +6,12 @@
 #include <iostream>
 #include <limits>
 #include <thread>
-#include <utility>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/memory/memory_need.hpp"
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/study/chunk_solver.hpp"
+#include "myriad/study/kinds.hpp"
 #include "myriad/study/result_keeper.hpp"
 #include "myriad/study/runner.hpp"
 #include "myriad/study/stop_signals.hpp"
@@ -183,13 +183,11 @@ void any_study::reduce(ensemble_reduction r) {
 }
 
 void any_study::unit(std::string_view component, std::string unit) {
-    using enum studies::component_kind;
     if (component == "t") {
         units_["t"] = std::move(unit);
         return;
     }
-    const auto kinds = {state, parameter, accessory, integer_accessory, shared, shared_integer};
-    units_[model_->names().find(component, kinds).full_name()] = std::move(unit);
+    units_[model_->names().find(component, studies::model_kinds).full_name()] = std::move(unit);
 }
 
 void any_study::store(std::string folder, const studies::store_options& how) {

@@ -12,7 +12,7 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/options/option_table.hpp"
 #include "myriad/host/report/status_names.hpp"
-#include "myriad/kernel/core/abi.hpp"
+#include "myriad/study/kinds.hpp"
 #include "myriad/version.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
@@ -141,8 +141,7 @@ json value_of(const T& value, const component_names& names) {
 }
 json names_of(const component_names& names, const char* kind, const component_list& list) {
     json made = json::array();
-    for (const int c : list)
-        made.push_back(names.find(message(kind, '.', c), {state, accessory, integer_accessory}).full_name());
+    for (const int c : list) made.push_back(names.find(message(kind, '.', c), recorded_kinds).full_name());
     return made;
 }
 
@@ -227,14 +226,11 @@ std::string long_name(origin from, const component& what) {
             return "how the integration ended";
         case origin::phases_done:
             return "number of phases done";
-        case origin::accepted_steps:
-            return "number of accepted steps";
-        case origin::rejected_steps:
-            return "number of rejected steps";
-        case origin::located_steps:
-            return "number of steps that ended at a located event";
-        case origin::rhs_evaluations:
-            return "number of evaluations of the right-hand side";
+#define MYRIAD_WORDS_OF_COUNTER(name, array, words) \
+    case origin::name:                              \
+        return "number of " words;
+            MYRIAD_COUNTERS(MYRIAD_WORDS_OF_COUNTER)
+#undef MYRIAD_WORDS_OF_COUNTER
     }
     return "";
 }
@@ -291,7 +287,7 @@ private:
                 "out, stop the run when it is time, or bound the steps of an instance by max_steps");
         if (!asked_.generator.empty()) return;
         for (const component& c : names_.all()) {
-            if (c.kind == accessory || c.kind == integer_accessory || c.kind == shared_integer) continue;
+            if (c.kind == accessory || is_integer(c.kind)) continue;
             const auto& entries = asked_.axes.entries();
             const bool is_set =
                 std::any_of(entries.begin(), entries.end(), [&](const axes::entry& e) { return e.what == c; });
@@ -309,7 +305,7 @@ private:
     std::vector<attribute> unit_of(const component& c) const {
         return unit_of(c.kind == t_begin || c.kind == t_end ? "t" : c.full_name());
     }
-    element type_of(const component& c) const { return c.kind == integer_accessory ? element::i32 : asked_.real; }
+    element type_of(const component& c) const { return is_integer(c.kind) ? element::i32 : asked_.real; }
     quantity& add(origin from, std::string name, element type, bool stored, std::vector<dimension> inner = {},
                   std::vector<attribute> attributes = {}, const component& what = {}) {
         for (const quantity& q : plan_.quantities)
@@ -359,9 +355,9 @@ private:
                 add(origin::record, names_.variable(c), type_of(c), asked_.keep.records, {phase}, unit_of(c), c);
             }
         };
-        add_all(state, o.states);
-        add_all(accessory, o.accessories);
-        add_all(integer_accessory, o.integer_accessories);
+#define MYRIAD_ADD_KIND(kind, plural, ...) add_all(kind, o.plural);
+        MYRIAD_RECORDED_KINDS(MYRIAD_ADD_KIND)
+#undef MYRIAD_ADD_KIND
         if (o.time) add(origin::record_time, "t", asked_.real, asked_.keep.records, {phase}, unit_of("t"));
     }
     void add_samples() {
@@ -381,17 +377,16 @@ private:
             add(origin::end_time, "t_last", asked_.real, stored, {}, unit_of("t"));
             return;
         }
-        const component& c = names_.find(name, {state, accessory, integer_accessory, parameter});
+        const component& c = names_.find(name, instance_kinds);
         add(origin::end, names_.variable(c) + "_end", type_of(c), stored, {}, unit_of(c), c);
     }
     void add_work() {
         if (!asked_.keep.work) return;
         add(origin::phases_done, "phases_done", element::i32, true);
         if (asked_.options.counting == counting::off) return;
-        add(origin::accepted_steps, "accepted_steps", element::i64, true);
-        add(origin::rejected_steps, "rejected_steps", element::i64, true);
-        add(origin::located_steps, "located_steps", element::i64, true);
-        add(origin::rhs_evaluations, "rhs_evaluations", element::i64, true);
+#define MYRIAD_ADD_COUNTER(name, ...) add(origin::name, #name, element::i64, true);
+        MYRIAD_COUNTERS(MYRIAD_ADD_COUNTER)
+#undef MYRIAD_ADD_COUNTER
     }
     void add_status() {
         std::vector<std::int64_t> values;
@@ -414,9 +409,8 @@ private:
         };
         if (known() == nullptr && name == "t_last") add_end("t", false);
         for (const component& c : names_.all()) {
-            const bool has_end =
-                c.kind == state || c.kind == accessory || c.kind == integer_accessory || c.kind == parameter;
-            if (known() == nullptr && has_end && name == names_.variable(c) + "_end") add_end(c.full_name(), false);
+            if (known() == nullptr && among(instance_kinds, c.kind) && name == names_.variable(c) + "_end")
+                add_end(c.full_name(), false);
         }
         if (const quantity* const found = known()) return found->as;
         std::string all;

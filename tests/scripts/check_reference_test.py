@@ -29,7 +29,7 @@ CHANGES = (
 )
 
 # The same for names that are looked for in a model, a method or the environment.
-CONCEPTS = "include/myriad/kernel/model/concepts.hpp"
+CONCEPTS, KINDS = "include/myriad/kernel/model/concepts.hpp", "include/myriad/kernel/model/component_kinds.hpp"
 MEMBER_CHANGES = (
     ("docs/model_members.md", r"### `pack_batches`\n", "", "pack_batches"),
     ("docs/model_members.md", r"\| `n_vectors` \|.*\n", "", "n_vectors"),
@@ -38,7 +38,7 @@ MEMBER_CHANGES = (
     (CONCEPTS, r"MYRIAD_MODEL_DECLARATION\(scalar_only\)\n", r"\g<0>MYRIAD_MODEL_DECLARATION(new_declaration)\n",
      "new_declaration"),
     (CONCEPTS, r"MYRIAD_HOOK_NAME\(finalise\)\n", r"\g<0>MYRIAD_HOOK_NAME(new_hook)\n", "new_hook"),
-    (CONCEPTS, r"MYRIAD_MODEL_ENUMERATION\(event\)\n", r"\g<0>MYRIAD_MODEL_ENUMERATION(new_kind)\n",
+    (KINDS, r'row\(event, events, "event", void\)', r'\g<0> row(new_kind, new_kinds, "new kind", void)',
      ("new_kind", "n_new_kind")),
     ("backends/openmp/myriad/openmp/packs.hpp", r"requires \{ Model::pack_batches; \}",
      r"requires { Model::pack_batches; Model::new_member; }", "new_member"),

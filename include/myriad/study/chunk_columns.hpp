@@ -5,9 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/kernel/core/status.hpp"

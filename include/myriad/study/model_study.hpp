@@ -33,12 +33,10 @@ void add_components(std::vector<component>& all, component_kind kind) {
 template <class Model>
 component_names names_of_components() {
     std::vector<component> all;
-    add_components<host::state_numbering, Model>(all, component_kind::state);
-    add_components<host::parameter_numbering, Model>(all, component_kind::parameter);
-    add_components<host::accessory_numbering, Model>(all, component_kind::accessory);
-    add_components<host::integer_accessory_numbering, Model>(all, component_kind::integer_accessory);
-    add_components<host::shared_numbering, Model>(all, component_kind::shared);
-    add_components<host::shared_integer_numbering, Model>(all, component_kind::shared_integer);
+#define MYRIAD_ADD_COMPONENTS(kind, ...) add_components<host::kind##_numbering, Model>(all, component_kind::kind);
+    MYRIAD_INSTANCE_KINDS(MYRIAD_ADD_COMPONENTS)
+    MYRIAD_SHARED_KINDS(MYRIAD_ADD_COMPONENTS)
+#undef MYRIAD_ADD_COMPONENTS
     return {std::string(host::enumeration_name<Model>()), std::move(all)};
 }
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "myriad/host/backend/arrays.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/axes.hpp"
@@ -45,10 +45,9 @@ enum class origin {
     end_time,
     status,
     phases_done,
-    accepted_steps,
-    rejected_steps,
-    located_steps,
-    rhs_evaluations,
+#define MYRIAD_NAME_COUNTER(name, ...) name,
+    MYRIAD_COUNTERS(MYRIAD_NAME_COUNTER)
+#undef MYRIAD_NAME_COUNTER
 };
 
 /// A variable that is computed for each instance.

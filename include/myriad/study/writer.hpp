@@ -17,7 +17,6 @@
 #include <mutex>
 #include <set>
 #include <string>
-#include <string_view>
 #include <thread>
 
 #include "myriad/kernel/core/abi.hpp"

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>  // which has an attribute of the name of a macro below
 #include <tuple>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #define __global__
 #define __device__
 #define __forceinline__ inline __attribute__((always_inline))
+#define __noinline__ __attribute__((noinline))
 #define __launch_bounds__(threads)
 #define __grid_constant__
 

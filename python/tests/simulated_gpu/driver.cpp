@@ -4,6 +4,7 @@
 // device.hpp, whose threads are run one block at a time, each with a stack of its own. MYRIAD_SIMULATED_GPUS says how
 // many devices there are, MYRIAD_SIMULATED_CAPABILITY which, MYRIAD_SIMULATED_MEGABYTES what memory each has, and
 // MYRIAD_SIMULATED_LAUNCHES how many kernels the last one runs before it fails.
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -284,7 +285,29 @@ DRIVER cuMemcpyAsync(std::uintptr_t to, std::uintptr_t from, std::size_t bytes, 
     std::memcpy(reinterpret_cast<void*>(to), reinterpret_cast<const void*>(from), bytes);
     return success;
 }
-DRIVER cuMemcpy2DAsync_v2(const void*, void*) { return invalid_value; }  // for pinned memory alone
+/// CUDA_MEMCPY2D of cuda.h.
+struct copy_of_rows {
+    std::size_t from_x, from_y;
+    unsigned from_kind;
+    const void* from_host;
+    std::uintptr_t from_device;
+    void* from_array;
+    std::size_t from_pitch, to_x, to_y;
+    unsigned to_kind;
+    void* to_host;
+    std::uintptr_t to_device;
+    void* to_array;
+    std::size_t to_pitch, width, height;
+};
+DRIVER cuMemcpy2DAsync_v2(const copy_of_rows* all, void* where) {
+    NEEDS_CONTEXT;
+    if (all->width > std::min(all->from_pitch, all->to_pitch)) return invalid_value;
+    wait_for(where);
+    for (std::size_t row = 0; row < all->height; ++row)
+        std::memcpy(reinterpret_cast<void*>(all->to_device + row * all->to_pitch),
+                    reinterpret_cast<const void*>(all->from_device + row * all->from_pitch), all->width);
+    return success;
+}
 DRIVER cuMemsetD8Async(std::uintptr_t memory, unsigned char value, std::size_t bytes, void* where) {
     NEEDS_CONTEXT;
     wait_for(where);

@@ -11,7 +11,6 @@
 #include "myriad/host/backend/cost_order.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/memory/memory_need.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -13,7 +13,6 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "myriad/kernel/core/abi.hpp"
-
 namespace myriad::host::inline MYRIAD_ABI {
 
 void chunk_plan::cut(const options& o, const cuda::any_engine& worker, std::int64_t copied) {

@@ -4,14 +4,12 @@
 
 #include <atomic>
 #include <cstddef>
-#include <utility>
 
 #include <unistd.h>
 
 #include "myriad/host/chunks/chunk_plan.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/object_pool.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -5,10 +5,6 @@
 #include <locale>
 #include <ostream>
 #include <sstream>
-#include <utility>
-#include <vector>
-
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

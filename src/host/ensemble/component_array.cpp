@@ -9,7 +9,6 @@
 #include "myriad/host/memory/memory_need.hpp"
 #include "myriad/host/memory/pinned.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "myriad/host/backend/arrays.hpp"
-#include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 
@@ -45,8 +43,10 @@ std::int64_t checked(const model_shape& shape, std::int64_t size) {
 
 template <class R>
 ensemble_data<R>::ensemble_data(const model_shape& of_model, std::int64_t n)
-    : shape(&of_model), size(checked<R>(of_model, n)), identity(next_identity()), shared(shape->n_shared, 1, unset),
-      shared_integer(shape->n_shared_integer, 1, 0) {
+    : shape(&of_model), size(checked<R>(of_model, n)), identity(next_identity()) {
+#define MYRIAD_ALLOCATE_SHARED(kind, plural, words, type) kind = {shape->n_##kind, 1, detail::unset_value<type>};
+    MYRIAD_SHARED_KINDS(MYRIAD_ALLOCATE_SHARED)
+#undef MYRIAD_ALLOCATE_SHARED
     const auto allocate = [n](const array_properties& of, auto first, auto& array) {
         if (of.presence == array_presence::always) array = {of.components, n, first};
     };
@@ -144,7 +144,7 @@ struct call_needs {
 };
 
 template <class R>
-void ensemble_data<R>::describe(instance_arrays<array_pointer, R>& pointers, counting count, step_sizes steps) {
+void ensemble_data<R>::fill_pointers(instance_arrays<array_pointer, R>& pointers, counting count, step_sizes steps) {
     if (shape->writes_time_domain) own_domains();
     const call_needs call{count, steps, scales_tolerances(), !has_common_domain()};
     const auto point = [&](const array_properties& of, auto first, auto*& pointer, auto& array) {
@@ -155,7 +155,7 @@ void ensemble_data<R>::describe(instance_arrays<array_pointer, R>& pointers, cou
     for_each_instance_array<R>(*shape, point, pointers, static_cast<arrays&>(*this));
 }
 template <class R>
-void ensemble_data<R>::describe_domain(instance_arrays<array_pointer, R>& pointers) {
+void ensemble_data<R>::fill_domain(instance_arrays<array_pointer, R>& pointers) {
     if (shape->writes_time_domain) own_domains();
     pointers.t_begin = this->t_begin.data();
     pointers.t_end = this->t_end.data();

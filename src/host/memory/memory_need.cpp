@@ -10,9 +10,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "myriad/host/core/error.hpp"
-#include "myriad/kernel/core/abi.hpp"
-
 namespace myriad::host::inline MYRIAD_ABI {
 
 std::string bytes_text(double bytes, int digits) {

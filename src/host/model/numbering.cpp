@@ -5,7 +5,6 @@
 #include <ostream>
 
 #include "myriad/host/core/error.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

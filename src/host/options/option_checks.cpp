@@ -2,12 +2,10 @@
 // The checks of options that depend on no model.
 #include "myriad/host/options/option_checks.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "myriad/host/options/option_table.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 
@@ -127,9 +125,11 @@ void model_components::check(const char* what, const component_list& chosen, con
         const int c = chosen[i];
         const std::string_view of = chosen.enumeration(i);
         // If components of this kind have no enumeration, enumerators of the other kinds are wrong nevertheless.
-        const bool fits =
-            of.empty() || of == kind.enumeration ||
-            (kind.enumeration.empty() && std::find(enumerations.begin(), enumerations.end(), of) == enumerations.end());
+        bool of_another = false;
+#define MYRIAD_COMPARE_KIND(other, ...) of_another = of_another || of == other.enumeration;
+        MYRIAD_COMPONENT_KINDS(MYRIAD_COMPARE_KIND)
+#undef MYRIAD_COMPARE_KIND
+        const bool fits = of.empty() || of == kind.enumeration || (kind.enumeration.empty() && !of_another);
         require(fits, named_option(what), " names component ", c, " by an enumerator of ", of,
                 ", which numbers other components",
                 kind.enumeration.empty() ? std::string() : message(" than ", kind.enumeration),
@@ -228,9 +228,9 @@ void option_limits::check(const options& o) const {
         check_each(*this, o.record, "record.");
         require(o.record.from_phase < o.phases, named_option("record.from_phase"), " is ", o.record.from_phase,
                 ", but the call has ", o.phases, " phases (counted from 0): nothing would be recorded");
-        components.check("record.states", o.record.states, components.state);
-        components.check("record.accessories", o.record.accessories, components.accessory);
-        components.check("record.integer_accessories", o.record.integer_accessories, components.integer_accessory);
+#define MYRIAD_CHECK_KIND(kind, plural, ...) components.check("record." #plural, o.record.plural, components.kind);
+        MYRIAD_RECORDED_KINDS(MYRIAD_CHECK_KIND)
+#undef MYRIAD_CHECK_KIND
     } else {
         check_no_records(o.record);
     }

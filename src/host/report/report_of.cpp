@@ -16,7 +16,6 @@
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad {
 
@@ -81,22 +80,25 @@ record_data<R>::record_data(const model_shape& shape, const record_options& o, s
     phases = of_phases - o.from_phase;
     from_phase = o.from_phase;
     std::int16_t columns = 0, integer_columns = 0;
-    const auto number = [](std::vector<std::int16_t>& of, int count, const component_list& chosen, std::int16_t& next) {
+    const auto number = [&](std::vector<std::int16_t>& of, int count, const component_list& chosen, auto type) {
         of.assign(static_cast<std::size_t>(count), -1);
-        for (const int c : chosen) of[static_cast<std::size_t>(c)] = next++;
+        for (const int c : chosen)
+            of[static_cast<std::size_t>(c)] = std::is_same_v<decltype(type), R> ? columns++ : integer_columns++;
     };
-    number(state, shape.n_state, o.states, columns);
-    number(accessory, shape.n_accessory, o.accessories, columns);
+#define MYRIAD_NUMBER_COLUMNS(kind, plural, words, type) number(kind, shape.n_##kind, o.plural, type());
+    MYRIAD_RECORDED_KINDS(MYRIAD_NUMBER_COLUMNS)
+#undef MYRIAD_NUMBER_COLUMNS
     if (o.time) time = columns++;
-    number(integer_accessory, shape.n_integer_accessory, o.integer_accessories, integer_columns);
     values = component_array<R>(columns, size * phases, std::numeric_limits<R>::quiet_NaN());
     integers = component_array<std::int32_t>(integer_columns, size * phases, 0);
 }
 template <class R>
 double record_data<R>::bytes_for(const record_options& o, std::int64_t phases, std::int64_t size) {
-    const std::size_t reals = o.states.size() + o.accessories.size() + (o.time ? 1 : 0);
-    return static_cast<double>(size) * static_cast<double>(phases - o.from_phase) *
-           static_cast<double>(sizeof(R) * reals + sizeof(std::int32_t) * o.integer_accessories.size());
+    std::size_t bytes = o.time ? sizeof(R) : 0;
+#define MYRIAD_ADD_BYTES(kind, plural, words, type) bytes += sizeof(type) * o.plural.size();
+    MYRIAD_RECORDED_KINDS(MYRIAD_ADD_BYTES)
+#undef MYRIAD_ADD_BYTES
+    return static_cast<double>(size) * static_cast<double>(phases - o.from_phase) * static_cast<double>(bytes);
 }
 template <class R>
 int record_data<R>::find(const std::vector<std::int16_t>& columns, std::int64_t c, const char* what) const {

@@ -246,8 +246,7 @@ bool accuracy_allows_more(const ensemble_data<R>& e, std::int64_t i, double h, c
 template <class R>
 stiffness find_stiffness(const ensemble_data<R>& e, const options& o, double limit, const single_instances<R>& rhs) {
     stiffness found;
-    const std::int64_t size = e.size, stride = std::max<std::int64_t>(size / 64, 1);
-    for (std::int64_t i = 0; i < size; i += stride) {
+    for (std::int64_t i = 0; i < e.size; i += examined_stride(e.size)) {
         const double h = std::abs(step_of(e, i));
         if (!std::isfinite(h) || h >= o.maximum_step) continue;
         ++found.looked_at;
@@ -261,9 +260,7 @@ stiffness find_stiffness(const ensemble_data<R>& e, const options& o, double lim
 
 template <class R>
 void note_stiffness(report_of<R>& r, const ensemble_data<R>& e, const options& o, const single_instances<R>& of) {
-    constexpr std::int64_t worthwhile = 200;
-    if (of.call.rhs == nullptr || o.advice == advice::off) return;
-    if (r.accepted_steps + r.rejected_steps < worthwhile * e.size) return;
+    if (!examines_stiffness<R>(r, e.size, o, of.call)) return;
     add_note(r.notes, find_stiffness(e, o, of.call.stability_limit(), of));
 }
 

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "myriad/host/core/error.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 
@@ -46,19 +45,19 @@ prepared_call<R>::prepared_call(ensemble_data<R>& data, sample_data<R>& samples,
     arguments.model = data.shape;
     arrays_.resize((static_cast<std::size_t>(arguments.offsets().end) + sizeof(double) - 1) / sizeof(double));
     arguments.arrays = array<std::byte>(0);
-    describe_options(o, facts);
+    fill_options(o, facts);
     if (facts.scales_tolerances) data.tolerance_scales();  // allocates them
     arguments.size = data.size;
     arguments.first_index = data.first_index;
-    data.describe(arguments, o.counting, steps_of(facts));
-    describe_domain();
+    data.fill_pointers(arguments, o.counting, steps_of(facts));
+    fill_domain();
     arguments.shared = {data.shared.data(), data.shared_integer.data()};
-    describe_records(records);
-    describe_samples(o.samples, samples);
+    fill_records(records);
+    fill_samples(o.samples, samples);
 }
 
 template <class R>
-void prepared_call<R>::describe_options(const options& o, const call_facts& facts) {
+void prepared_call<R>::fill_options(const options& o, const call_facts& facts) {
     auto& a = arguments;
     const argument_offsets<R> at = a.offsets();
     a.phases = static_cast<std::int32_t>(o.phases);
@@ -110,20 +109,20 @@ void put_columns(std::int16_t* to, const std::vector<std::int16_t>& columns, int
 }  // namespace
 
 template <class R>
-void prepared_call<R>::describe_records(record_data<R>& from) {
+void prepared_call<R>::fill_records(record_data<R>& from) {
     const model_numbers& m = *arguments.model;
     const argument_offsets<R> at = arguments.offsets();
     arguments.record = {from.values.data(), from.integers.data(), static_cast<std::int32_t>(from.from_phase),
                         static_cast<std::int32_t>(std::int64_t{from.phases}), from.time};
     arguments.record_columns = from.values.components();
     arguments.integer_record_columns = from.integers.components();
-    put_columns(array<std::int16_t>(at.state_column), from.state, m.n_state);
-    put_columns(array<std::int16_t>(at.accessory_column), from.accessory, m.n_accessory);
-    put_columns(array<std::int16_t>(at.integer_accessory_column), from.integer_accessory, m.n_integer_accessory);
+#define MYRIAD_PUT_COLUMNS(kind, ...) put_columns(array<std::int16_t>(at.kind##_column), from.kind, m.n_##kind);
+    MYRIAD_RECORDED_KINDS(MYRIAD_PUT_COLUMNS)
+#undef MYRIAD_PUT_COLUMNS
 }
 
 template <class R>
-void prepared_call<R>::describe_samples(const sample_options& o, sample_data<R>& samples) {
+void prepared_call<R>::fill_samples(const sample_options& o, sample_data<R>& samples) {
     std::int16_t* const columns = array<std::int16_t>(arguments.offsets().sample_column);
     put_columns(columns, {}, arguments.model->n_state);
     if (o.empty()) return;
@@ -158,8 +157,8 @@ void prepared_call<R>::describe_samples(const sample_options& o, sample_data<R>&
 }
 
 template <class R>
-void prepared_call<R>::describe_domain() {
-    data_.describe_domain(arguments);
+void prepared_call<R>::fill_domain() {
+    data_.fill_domain(arguments);
     arguments.common_t_begin = data_.common_begin;
     arguments.common_t_end = data_.common_end;
 }

@@ -4,21 +4,17 @@
 
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <limits>
 #include <mutex>
-#include <vector>
 
 #include "myriad/host/checks/event_tolerances.hpp"
 #include "myriad/host/chunks/chunked_solve.hpp"
-#include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/stiffness.hpp"
 #include "myriad/host/report/tangent_note.hpp"
 #include "myriad/host/threads/parallel.hpp"
-#include "myriad/kernel/core/abi.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 

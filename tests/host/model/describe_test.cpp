@@ -101,7 +101,8 @@ struct unnamed {
 
 TEST_CASE("a complete model is described with every component and hook", "[describe]") {
     CHECK(describe<complete>() ==
-          "components: 2 state, 2 parameter, 1 shared, 1 shared integer, 2 accessory, 3 integer accessory, 1 event\n"
+          "components: 2 state, 2 parameter, 1 shared parameter, 1 shared integer, 2 accessory, 3 integer accessory, "
+          "1 event\n"
           "hooks: rhs, events, initialise, after_step (scalar), after_event, finalise\n"
           "declares: nothing\n"
           "stiff methods: Jacobian by dual numbers, LU factors on GPUs in registers\n");
@@ -109,7 +110,8 @@ TEST_CASE("a complete model is described with every component and hook", "[descr
 
 TEST_CASE("a bare model is described with its right-hand side alone", "[describe]") {
     CHECK(describe<bare>() ==
-          "components: 2 state, 1 parameter, 0 shared, 0 shared integer, 0 accessory, 0 integer accessory, 0 event\n"
+          "components: 2 state, 1 parameter, 0 shared parameter, 0 shared integer, 0 accessory, 0 integer accessory, "
+          "0 event\n"
           "hooks: rhs\n"
           "declares: nothing\n"
           "stiff methods: Jacobian by dual numbers, LU factors on GPUs in registers\n");

@@ -2,8 +2,6 @@
 // MYRIAD_CUDA(call): checks a CUDA call; the error it throws names the call, the problem and a remedy.
 #pragma once
 
-#include <string>
-
 #include <cuda_runtime.h>
 
 #include "myriad/host/core/error.hpp"

@@ -2,7 +2,6 @@
 // The engine of the CUDA backend: device memory, transfers and kernels for one chunk of an ensemble, all in one stream.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>

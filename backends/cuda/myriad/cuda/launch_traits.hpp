@@ -26,7 +26,7 @@ struct kernel_traits {
 template <class R>
 struct launch_offsets {
     explicit constexpr launch_offsets(const detail::model_numbers& m) {
-        const detail::argument_offsets<R> behind(m.n_state, m.n_accessory, m.n_integer_accessory, m.n_event);
+        const detail::argument_offsets<R> behind(m);
         queue = to_words(arrays + behind.end);
         shared_integer = shared() + detail::at_least_one(m.n_shared) * static_cast<int>(sizeof(R));
         end = to_words(shared_integer + detail::at_least_one(m.n_shared_integer) * 4);

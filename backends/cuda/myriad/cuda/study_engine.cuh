@@ -69,6 +69,19 @@ public:
         });
         base::wait();
     }
+    /// Copies all of every `stride`th instance to its place in the arrays on the host.
+    void fetch_every(const arguments& host, std::int64_t stride) {
+        const current_device here(device_);
+        arguments to = host;
+        walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access, array_kind) {
+            const std::size_t distance = bytes_of(target, stride);
+            for (std::int64_t c = 0; c < components; ++c)
+                MYRIAD_CUDA(cudaMemcpy2DAsync(target + c * host.size, distance, source + c * count_, distance,
+                                              sizeof *target, static_cast<std::size_t>((count_ + stride - 1) / stride),
+                                              cudaMemcpyDeviceToHost, stream_.get()));
+        });
+        base::wait();
+    }
     void rest() override {
         {
             const current_device here(device_);

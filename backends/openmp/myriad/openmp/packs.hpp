@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <type_traits>
 
 #include <sched.h>
 #include <time.h>
@@ -141,7 +140,7 @@ struct team_run {
 template <class Model, class R>
 kernel_arguments<Model, R> arguments_of(const any_arguments<R>& from) {
     using arrays = argument_arrays<Model, R>;
-    constexpr argument_offsets<R> at(n_state<Model>, n_accessory<Model>, n_integer_accessory<Model>, n_event<Model>);
+    constexpr argument_offsets<R> at(numbers_of<Model>);
 #define MYRIAD_CHECK_PLACE(type, name, count) static_assert(offsetof(arrays, name) == at.name);
     MYRIAD_ARGUMENT_ARRAYS(MYRIAD_CHECK_PLACE)
 #undef MYRIAD_CHECK_PLACE

@@ -18,9 +18,7 @@ struct any_arguments : argument_head<R> {
     const std::byte* arrays;
     std::int32_t record_columns, integer_record_columns, sample_columns;  // as many as there are of each type
 
-    argument_offsets<R> offsets() const {
-        return {model->n_state, model->n_accessory, model->n_integer_accessory, model->n_event};
-    }
+    argument_offsets<R> offsets() const { return argument_offsets<R>(*model); }
 };
 
 }  // namespace myriad::detail

@@ -16,7 +16,15 @@ enum class array_access { read, update, write };
 
 /// What an array holds, for callers that need only some of them. Bookkeeping is what an instance needs in order to
 /// continue in a later call; before the first it is zero, or, for t, never read.
-enum class array_kind { state, accessory, integer_accessory, input, bookkeeping, samples, records };
+enum class array_kind {
+#define MYRIAD_NAME_KIND(kind, ...) kind,
+    MYRIAD_RECORDED_KINDS(MYRIAD_NAME_KIND)
+#undef MYRIAD_NAME_KIND
+        input,
+    bookkeeping,
+    samples,
+    records
+};
 
 /// When an ensemble allocates an array.
 enum class array_presence {
@@ -28,6 +36,12 @@ enum class array_presence {
     counters_of_step_sizes,
 };
 
+// What is counted of each instance: the name in results, the array, and what it is for people.
+#define MYRIAD_COUNTERS(row)                                                                        \
+    row(accepted_steps, accepted, "accepted steps") row(rejected_steps, rejected, "rejected steps") \
+        row(located_steps, located, "steps that ended at a located event")                          \
+            row(rhs_evaluations, evaluations, "evaluations of the right-hand side")
+
 struct array_properties {
     int components;
     array_access access;
@@ -35,6 +49,10 @@ struct array_properties {
     array_presence presence;
     const char* name;  // in messages on memory
 };
+
+/// A component before the user sets it.
+template <class T>
+inline constexpr T unset_value = std::numeric_limits<T>::has_quiet_NaN ? std::numeric_limits<T>::quiet_NaN() : T(0);
 
 /// Calls `visit(properties, first value, array of each of the arguments...)` for all arrays of the instances of such a
 /// model; each argument is an `instance_arrays`. The first value is that before the user sets one, or before the first
@@ -45,9 +63,8 @@ void for_each_instance_array(const model_numbers& m, Visit&& visit, Arrays&... a
     using access = array_access;
     using kind = array_kind;
     using presence = array_presence;
-    constexpr R unset = std::numeric_limits<R>::quiet_NaN();
-    constexpr const char *domains = "time domains", *accessories = "accessories", *counters = "counters",
-                         *rest = "times, phases and statuses";
+    constexpr R unset = unset_value<R>;
+    constexpr const char *domains = "time domains", *counters = "counters", *rest = "times, phases and statuses";
     const access times = m.writes_time_domain ? access::update : access::read;
     const access parameters = m.writes_parameters ? access::update : access::read;
     const int with_events = m.n_event > 0 ? 1 : 0;
@@ -61,11 +78,14 @@ void for_each_instance_array(const model_numbers& m, Visit&& visit, Arrays&... a
     add(1, access::read, kind::input, presence::tolerance_scales, "tolerance scales", R(1), a.tolerance_scale...);
     add(1, times, kind::input, presence::own_domains, domains, unset, a.t_begin...);
     add(1, times, kind::input, presence::own_domains, domains, unset, a.t_end...);
-    add(m.n_parameter, parameters, kind::input, presence::always, "parameters", unset, a.parameter...);
-    add(m.n_state, access::update, kind::state, presence::always, "states", unset, a.state...);
-    add(m.n_accessory, access::update, kind::accessory, presence::always, accessories, unset, a.accessory...);
-    add(m.n_integer_accessory, access::update, kind::integer_accessory, presence::always, accessories, std::int32_t{0},
-        a.integer_accessory...);
+#define MYRIAD_ADD_INPUT(which, plural, words, type) \
+    add(m.n_##which, parameters, kind::input, presence::always, #plural, unset_value<type>, a.which...);
+    MYRIAD_PARAMETER_KINDS(MYRIAD_ADD_INPUT)
+#undef MYRIAD_ADD_INPUT
+#define MYRIAD_ADD_RESULT(which, plural, words, type) \
+    add(m.n_##which, access::update, kind::which, presence::always, #plural, unset_value<type>, a.which...);
+    MYRIAD_RECORDED_KINDS(MYRIAD_ADD_RESULT)
+#undef MYRIAD_ADD_RESULT
     keep(1, presence::always, rest, unset, a.t...);
     keep(1, presence::step_sizes, "step sizes", R(0), a.h_next...);
     keep(1, presence::always, rest, std::int32_t{0}, a.phase...);

@@ -44,9 +44,11 @@ struct run_statistics {
 /// How many components of each kind a model has. Part of the names of its kernels, so that host code compiled with a
 /// different model of the same name does not link to them.
 template <class Model>
-using component_counts =
-    std::integer_sequence<int, n_state<Model>, n_parameter<Model>, n_shared<Model>, n_shared_integer<Model>,
-                          n_accessory<Model>, n_integer_accessory<Model>, n_event<Model>>;
+using component_counts = std::integer_sequence<int
+#define MYRIAD_COUNT(kind, ...) , n_##kind<Model>
+                                                   MYRIAD_COMPONENT_KINDS(MYRIAD_COUNT)
+#undef MYRIAD_COUNT
+                                               >;
 
 /// Defined by MYRIAD_INSTANTIATE along with the kernels. It is not weak, so that linkers refuse a program with two
 /// models of one name: the kernels of one would run for both.

@@ -104,12 +104,13 @@ void make_consistent(ensemble<Model, R>& e) {
         bool done = part.count == 0;
         for (int iteration = 0; iteration < 50 && !done; ++iteration) {
             inputs<Model, R> p;
-            for (int c = 0; c < detail::n_parameter<Model>; ++c) p.parameter[c] = e.parameter(c)[i];
+#define MYRIAD_READ_KIND(kind, ...) \
+    for (int c = 0; c < detail::n_##kind<Model>; ++c) p.kind[c] = e.kind(c)[i];
+            MYRIAD_PARAMETER_KINDS(MYRIAD_READ_KIND)
             if constexpr (!detail::accessories_are_outputs<Model>) {
-                for (int c = 0; c < detail::n_accessory<Model>; ++c) p.accessory[c] = e.accessory(c)[i];
-                for (int c = 0; c < detail::n_integer_accessory<Model>; ++c)
-                    p.integer_accessory[c] = e.integer_accessory(c)[i];
+                MYRIAD_ACCESSORY_KINDS(MYRIAD_READ_KIND)
             }
+#undef MYRIAD_READ_KIND
             if constexpr ((detail::n_shared<Model>) > 0) p.shared = &e.shared(0);
             if constexpr ((detail::n_shared_integer<Model>) > 0) p.shared_integer = &e.shared_integer(0);
             vec<R, detail::n_state<Model>> state;

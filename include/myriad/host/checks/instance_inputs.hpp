@@ -13,12 +13,13 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class R>
 inputs<Model, R> inputs_of(const argument_head<R>& a, std::int64_t i) {
     inputs<Model, R> p;
-    for (int c = 0; c < n_parameter<Model>; ++c) p.parameter[c] = a.parameter[c * a.size + i];
+#define MYRIAD_READ_KIND(kind, ...) \
+    for (int c = 0; c < n_##kind<Model>; ++c) p.kind[c] = a.kind[c * a.size + i];
+    MYRIAD_PARAMETER_KINDS(MYRIAD_READ_KIND)
     if constexpr (!accessories_are_outputs<Model>) {
-        for (int c = 0; c < n_accessory<Model>; ++c) p.accessory[c] = a.accessory[c * a.size + i];
-        for (int c = 0; c < n_integer_accessory<Model>; ++c)
-            p.integer_accessory[c] = a.integer_accessory[c * a.size + i];
+        MYRIAD_ACCESSORY_KINDS(MYRIAD_READ_KIND)
     }
+#undef MYRIAD_READ_KIND
     p.shared.values = a.shared.real;
     p.shared_integer.values = a.shared.integer;
     return p;

@@ -3,10 +3,6 @@
 // same time.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <utility>
-
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/chunks/chunk_plan.hpp"

@@ -65,9 +65,9 @@ struct ensemble_data : detail::instance_arrays<component_array, R> {
     const component_array<std::int64_t>& counter(component_array<std::int64_t> arrays::*which) const;
 
     /// The arrays that a call needs, allocated if they are not there yet; the others are null.
-    void describe(detail::instance_arrays<detail::array_pointer, R>& pointers, counting count, step_sizes steps);
+    void fill_pointers(detail::instance_arrays<detail::array_pointer, R>& pointers, counting count, step_sizes steps);
     /// The part of them that may change while the ensemble is in use.
-    void describe_domain(detail::instance_arrays<detail::array_pointer, R>& pointers);
+    void fill_domain(detail::instance_arrays<detail::array_pointer, R>& pointers);
 
     /// Forgets all phases done, but not the samples.
     void restart();
@@ -97,8 +97,9 @@ struct ensemble_data : detail::instance_arrays<component_array, R> {
     moved_number<std::uint64_t> identity;  // unique; moves with the memory
     occupancy occupied;
     std::int64_t phases_asked = 0;  // upper bound over all instances
-    component_array<R> shared;
-    component_array<std::int32_t> shared_integer;
+#define MYRIAD_DECLARE_SHARED(kind, plural, words, type) component_array<type> kind;
+    MYRIAD_SHARED_KINDS(MYRIAD_DECLARE_SHARED)
+#undef MYRIAD_DECLARE_SHARED
     R common_begin = unset, common_end = unset;
     ended_instances<R> ended_before;  // what is remembered from earlier calls
     // for readers of what there is no memory for; allocated by the first one

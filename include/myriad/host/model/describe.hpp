@@ -57,11 +57,13 @@ template <class Model>
     add(declares, detail::large_rhs<Model>, "large_rhs");
     add(declares, detail::autonomous<Model>, "autonomous");
     add(declares, detail::has_jacobian_pattern<Model>, "jacobian_pattern");
+    std::string counts;
+#define MYRIAD_SHOW_COUNT(kind, plural, words, type) \
+    counts += message(counts.empty() ? "" : ", ", detail::n_##kind<Model>, ' ', words);
+    MYRIAD_COMPONENT_KINDS(MYRIAD_SHOW_COUNT)
+#undef MYRIAD_SHOW_COUNT
     return message(
-        "components: ", detail::n_state<Model>, " state, ", detail::n_parameter<Model>, " parameter, ",
-        detail::n_shared<Model>, " shared, ", detail::n_shared_integer<Model>, " shared integer, ",
-        detail::n_accessory<Model>, " accessory, ", detail::n_integer_accessory<Model>, " integer accessory, ",
-        detail::n_event<Model>, " event\nhooks: ", hooks, "\ndeclares: ", declares.empty() ? "nothing" : declares,
+        "components: ", counts, "\nhooks: ", hooks, "\ndeclares: ", declares.empty() ? "nothing" : declares,
         "\nstiff methods: ", detail::gives_jacobian<Model> ? "the model's Jacobian" : "Jacobian by dual numbers",
         ", LU factors ", host::lu_factors_of<Model>(), '\n');
 }

@@ -11,9 +11,9 @@ namespace myriad::host::inline MYRIAD_ABI {
 
 /// How many components of each kind a model has, and how messages name them.
 struct model_shape : model_numbers {
-    component_label (*state)(const model_shape&, int);
-    component_label (*parameter)(const model_shape&, int);
-    component_label (*shared)(const model_shape&, int);
+#define MYRIAD_DECLARE_LABEL(kind, ...) component_label (*kind)(const model_shape&, int);
+    MYRIAD_VALUE_KINDS(MYRIAD_DECLARE_LABEL)
+#undef MYRIAD_DECLARE_LABEL
 };
 /// What a numbering calls component c of any model of that shape.
 template <class Numbering>
@@ -21,11 +21,10 @@ component_label label_of(const model_shape&, int c) {
     return Numbering::label(c);
 }
 template <class Model>
-inline constexpr model_shape shape_of{
-    numbers_of<Model>,
-    &label_of<state_numbering<Model>>,
-    &label_of<parameter_numbering<Model>>,
-    &label_of<shared_numbering<Model>>,
+inline constexpr model_shape shape_of{numbers_of<Model>,
+#define MYRIAD_LABEL_OF(kind, ...) &label_of<kind##_numbering<Model>>,
+                                      MYRIAD_VALUE_KINDS(MYRIAD_LABEL_OF)
+#undef MYRIAD_LABEL_OF
 };
 
 }  // namespace myriad::host::inline MYRIAD_ABI

@@ -74,7 +74,7 @@ void check_component(std::int64_t number, int count, std::string_view what);
 
 // How the components of a kind are numbered and named. `index` takes an integer, or an enumerator of the enumeration
 // for this kind: any other is a mistake.
-#define MYRIAD_NUMBERING(kind, words)                                                                                 \
+#define MYRIAD_NUMBERING(kind, plural, words, type)                                                                   \
     template <class Model>                                                                                            \
     struct kind##_numbering {                                                                                         \
         static constexpr std::string_view what = words;                                                               \
@@ -115,13 +115,7 @@ void check_component(std::int64_t number, int count, std::string_view what);
             return label(static_cast<int>(number));                                                                   \
         }                                                                                                             \
     };
-MYRIAD_NUMBERING(state, "state")
-MYRIAD_NUMBERING(parameter, "parameter")
-MYRIAD_NUMBERING(accessory, "accessory")
-MYRIAD_NUMBERING(integer_accessory, "integer accessory")
-MYRIAD_NUMBERING(shared, "shared parameter")
-MYRIAD_NUMBERING(shared_integer, "shared integer")
-MYRIAD_NUMBERING(event, "event")
+MYRIAD_COMPONENT_KINDS(MYRIAD_NUMBERING)
 #undef MYRIAD_NUMBERING
 
 }  // namespace myriad::host::inline MYRIAD_ABI

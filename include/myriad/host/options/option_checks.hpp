@@ -2,7 +2,6 @@
 // The checks of options that every call makes once.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -24,23 +23,19 @@ struct listed_components {
 };
 /// The components of a model, and the names of all its enumerations.
 struct model_components {
-    listed_components state, accessory, integer_accessory;
-    std::array<std::string_view, 7> enumerations;
+#define MYRIAD_DECLARE_KIND(kind, ...) listed_components kind;
+    MYRIAD_COMPONENT_KINDS(MYRIAD_DECLARE_KIND)
+#undef MYRIAD_DECLARE_KIND
 
     /// Refuses components of another kind, nonexistent components, and components named twice.
     void check(const char* what, const component_list& chosen, const listed_components& kind) const;
 };
-template <template <class> class numbering, class Model>
-inline constexpr listed_components listed{numbering<Model>::count, numbering<Model>::enumeration()};
 template <class Model>
 inline constexpr model_components components_of{
-    listed<state_numbering, Model>,
-    listed<accessory_numbering, Model>,
-    listed<integer_accessory_numbering, Model>,
-    {state_numbering<Model>::enumeration(), parameter_numbering<Model>::enumeration(),
-     accessory_numbering<Model>::enumeration(), integer_accessory_numbering<Model>::enumeration(),
-     shared_numbering<Model>::enumeration(), shared_integer_numbering<Model>::enumeration(),
-     event_numbering<Model>::enumeration()}};
+#define MYRIAD_LIST_KIND(kind, ...) .kind = {kind##_numbering<Model>::count, kind##_numbering<Model>::enumeration()},
+    MYRIAD_COMPONENT_KINDS(MYRIAD_LIST_KIND)
+#undef MYRIAD_LIST_KIND
+};
 
 /// The properties of a model, a method and a real type that the options must fit.
 struct option_limits {

@@ -23,11 +23,10 @@ constexpr instance_functions<R> functions_of() {
         };
         all.stability_limit = &host::real_stability_limit<Method>;
     }
-    if constexpr (host::event_resolution<Model, R>::is_known) {
+    if constexpr (host::event_resolution_is_known<Model>) {
         all.event_resolution = [](const argument_head<R>& a, std::int64_t i, R* finest) {
-            host::event_resolution<Model, R>(detail::begin_of(a, i), detail::state_of<Model>(a, i),
-                                             detail::inputs_of<Model>(a, i))
-                .write(finest);
+            host::write_event_resolution<Model, R>(detail::begin_of(a, i), detail::state_of<Model>(a, i),
+                                                   detail::inputs_of<Model>(a, i), finest);
         };
     }
     if constexpr (generates<Model, R>) {

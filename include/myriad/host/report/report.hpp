@@ -4,9 +4,7 @@
 
 #include "myriad/host/core/host_only.hpp"
 
-#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include <Eigen/Core>
 

@@ -95,11 +95,22 @@ struct record_data {
 
     moved_number<std::int64_t> size = 0, phases = 0;
     std::int64_t from_phase = 0;
-    std::vector<std::int16_t> state, accessory, integer_accessory;  // columns of each; -1: not recorded
+#define MYRIAD_DECLARE_COLUMNS(kind, ...) std::vector<std::int16_t> kind;  // -1: not recorded
+    MYRIAD_RECORDED_KINDS(MYRIAD_DECLARE_COLUMNS)
+#undef MYRIAD_DECLARE_COLUMNS
     std::int16_t time = -1;
     bool recorded = false;  // also of records that were moved away
     component_array<R> values;
     component_array<std::int32_t> integers;
+    /// Those of components of that type.
+    template <class T>
+    const component_array<T>& of_type() const {
+        if constexpr (std::is_same_v<T, R>) {
+            return values;
+        } else {
+            return integers;
+        }
+    }
 };
 extern template struct record_data<double>;
 extern template struct record_data<float>;

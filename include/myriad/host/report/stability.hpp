@@ -11,10 +11,12 @@
 
 namespace myriad::host::inline MYRIAD_ABI {
 
+/// Whether steps of a method may be limited by stability.
+template <class Method>
+inline constexpr bool may_be_unstable = Method::embedded_order > 0 && !detail::solves_linear_systems<Method>;
 /// Whether a stiff method may be worth advising. Stiff methods do not support tangents.
 template <class Model, class Method>
-inline constexpr bool may_advise_stiff_methods =
-    Method::embedded_order > 0 && !detail::solves_linear_systems<Method> && detail::n_tangent<Model> == 0;
+inline constexpr bool may_advise_stiff_methods = may_be_unstable<Method>&& detail::n_tangent<Model> == 0;
 
 /// The stability function of an explicit method at a real z: the factor of one step for y' = z y / h. Hairer, Wanner,
 /// Solving ODE II, IV.2, eq. (2.9).

@@ -13,6 +13,15 @@
 
 namespace myriad::host::inline MYRIAD_ABI {
 
+/// The distance between the 64 or so instances that are examined.
+constexpr std::int64_t examined_stride(std::int64_t size) { return size < 128 ? 1 : size / 64; }
+/// Whether `note_stiffness` examines instances.
+template <class R>
+bool examines_stiffness(const report_of<R>& r, std::int64_t size, const options& o, const instance_functions<R>& call) {
+    constexpr std::int64_t worthwhile = 200;  // steps per instance
+    return call.rhs != nullptr && o.advice == advice::on && r.accepted_steps + r.rejected_steps >= worthwhile * size;
+}
+
 /// For an explicit method whose steps are stable up to `limit`, examines 64 or so instances in their current states.
 /// Steps limited by stability stay near that limit; those limited by accuracy resolve the fastest mode and stay well
 /// below. But a step may be near both limits, as in the calm parts of chaotic motion: then a stiff method gains

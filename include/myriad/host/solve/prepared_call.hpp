@@ -38,7 +38,7 @@ public:
     prepared_call& operator=(const prepared_call&) = delete;
 
     /// Takes the time domain from the ensemble, where it may have changed.
-    void describe_domain();
+    void fill_domain();
     /// Pins its own memory, for copies to and from a GPU.
     void pin(int device) { own_times_.pin(device); }
     /// An array behind the head, which is at that place.
@@ -50,9 +50,9 @@ public:
     any_arguments<R> arguments{};
 
 private:
-    void describe_options(const options& o, const call_facts& facts);
-    void describe_records(record_data<R>& records);
-    void describe_samples(const sample_options& o, sample_data<R>& samples);
+    void fill_options(const options& o, const call_facts& facts);
+    void fill_records(record_data<R>& records);
+    void fill_samples(const sample_options& o, sample_data<R>& samples);
 
     ensemble_data<R>& data_;
     std::vector<double> arrays_;  // doubles, for their alignment

@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/backend/device.hpp"
@@ -110,7 +109,7 @@ public:
         phases_left_ = model_.check_uses(data(), options_, wanted);
         phases_asked_ = 0;
         host::data_check<R> values = model_.values_of(data(), options_, wanted);
-        prepared_.describe_domain();
+        prepared_.fill_domain();
         const auto copy = [&] {
             if (engine_)
                 engine_->upload(prepared_.arguments, 0, wanted, data().untouched ? cuda::past::none : cuda::past::kept);
@@ -190,9 +189,9 @@ public:
         require_memory();
         require(downloadable_, "download has no instances to copy: call upload first");
         constexpr const host::model_components& named = host::components_of<Model>;
-        named.check("components.states", chosen.states, named.state);
-        named.check("components.accessories", chosen.accessories, named.accessory);
-        named.check("components.integer_accessories", chosen.integer_accessories, named.integer_accessory);
+#define MYRIAD_CHECK_KIND(kind, plural, ...) named.check("components." #plural, chosen.plural, named.kind);
+        MYRIAD_RECORDED_KINDS(MYRIAD_CHECK_KIND)
+#undef MYRIAD_CHECK_KIND
         if (engine_) engine_->download(prepared_.arguments, &is_chosen, const_cast<components*>(&chosen));
         if (results_ == held::on_device) results_ = held::partly_on_host;
     }
@@ -305,12 +304,11 @@ private:
             return std::find(list.begin(), list.end(), static_cast<int>(component)) != list.end();
         };
         switch (kind) {
-            case detail::array_kind::state:
-                return in(chosen.states);
-            case detail::array_kind::accessory:
-                return in(chosen.accessories);
-            case detail::array_kind::integer_accessory:
-                return in(chosen.integer_accessories);
+#define MYRIAD_CHOSEN_OF_KIND(kind, plural, ...) \
+    case detail::array_kind::kind:               \
+        return in(chosen.plural);
+            MYRIAD_RECORDED_KINDS(MYRIAD_CHOSEN_OF_KIND)
+#undef MYRIAD_CHOSEN_OF_KIND
             default:
                 return true;
         }

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "myriad/kernel/core/macros.hpp"
+#include "myriad/kernel/model/component_kinds.hpp"
 
 namespace myriad::detail {
 
@@ -21,14 +22,9 @@ namespace myriad::detail {
     }                                               \
     template <class Model>                          \
     inline constexpr int count = count##_of<Model>();
-MYRIAD_MODEL_COUNT(n_state)
-MYRIAD_MODEL_COUNT(n_parameter)
-MYRIAD_MODEL_COUNT(n_shared)
-MYRIAD_MODEL_COUNT(n_shared_integer)
-MYRIAD_MODEL_COUNT(n_accessory)
-MYRIAD_MODEL_COUNT(n_integer_accessory)
-MYRIAD_MODEL_COUNT(n_event)
-MYRIAD_MODEL_COUNT(n_observed)
+#define MYRIAD_COUNT_OF_KIND(kind, ...) MYRIAD_MODEL_COUNT(n_##kind)
+MYRIAD_ENUMERATED_KINDS(MYRIAD_COUNT_OF_KIND)
+#undef MYRIAD_COUNT_OF_KIND
 /// Number of states, the last ones, that event functions do not read (`with_tangents`).
 MYRIAD_MODEL_COUNT(n_tangent)
 #undef MYRIAD_MODEL_COUNT
@@ -36,7 +32,7 @@ MYRIAD_MODEL_COUNT(n_tangent)
 // Enumerations: `enum state { ..., n_state };`, or an unnamed one, recognised by its count. enumerates_<kind>: whether
 // E is the model's enumeration of such components. counts_<kind>: false if the model has the enumeration but not the
 // count.
-#define MYRIAD_MODEL_ENUMERATION(kind)                                                                            \
+#define MYRIAD_MODEL_ENUMERATION(kind, ...)                                                                       \
     template <class Model, class E>                                                                               \
     constexpr bool enumerates_##kind() {                                                                          \
         bool same = false;                                                                                        \
@@ -53,26 +49,20 @@ MYRIAD_MODEL_COUNT(n_tangent)
             return true;                                                                                          \
         }                                                                                                         \
     }
-MYRIAD_MODEL_ENUMERATION(state)
-MYRIAD_MODEL_ENUMERATION(parameter)
-MYRIAD_MODEL_ENUMERATION(shared)
-MYRIAD_MODEL_ENUMERATION(shared_integer)
-MYRIAD_MODEL_ENUMERATION(accessory)
-MYRIAD_MODEL_ENUMERATION(integer_accessory)
-MYRIAD_MODEL_ENUMERATION(event)
-MYRIAD_MODEL_ENUMERATION(observed)
+MYRIAD_ENUMERATED_KINDS(MYRIAD_MODEL_ENUMERATION)
 #undef MYRIAD_MODEL_ENUMERATION
 
 /// Whether E is one of the model's enumerations of components, of any kind.
 template <class Model, class E>
-inline constexpr bool enumerates_any =
-    enumerates_state<Model, E>() || enumerates_parameter<Model, E>() || enumerates_shared<Model, E>() ||
-    enumerates_shared_integer<Model, E>() || enumerates_accessory<Model, E>() ||
-    enumerates_integer_accessory<Model, E>() || enumerates_event<Model, E>() || enumerates_observed<Model, E>();
+inline constexpr bool enumerates_any = false
+#define MYRIAD_ENUMERATES(kind, ...) || enumerates_##kind<Model, E>()
+    MYRIAD_ENUMERATED_KINDS(MYRIAD_ENUMERATES)
+#undef MYRIAD_ENUMERATES
+    ;
 
 // Refuses an index of type I into components of a kind: any index if the model has none of them, or an enumerator of
 // another kind.
-#define MYRIAD_INDEX_CHECK(kind)                                                                                      \
+#define MYRIAD_INDEX_CHECK(kind, ...)                                                                                 \
     template <class Model, class I>                                                                                   \
     constexpr bool check_##kind##_index() {                                                                           \
         static_assert(n_##kind<Model> > 0,                                                                            \
@@ -84,9 +74,8 @@ inline constexpr bool enumerates_any =
     }                                                                                                                 \
     template <class Model, class I>                                                                                   \
     inline constexpr bool kind##_index_fits = check_##kind##_index<Model, I>();
-MYRIAD_INDEX_CHECK(parameter)
-MYRIAD_INDEX_CHECK(shared)
-MYRIAD_INDEX_CHECK(shared_integer)
+MYRIAD_PARAMETER_KINDS(MYRIAD_INDEX_CHECK)
+MYRIAD_SHARED_KINDS(MYRIAD_INDEX_CHECK)
 #undef MYRIAD_INDEX_CHECK
 
 // Declarations: `static constexpr bool name = true;` in the model.
@@ -146,14 +135,9 @@ MYRIAD_HOOK_NAME(initialise)
 MYRIAD_HOOK_NAME(after_step)
 MYRIAD_HOOK_NAME(after_event)
 MYRIAD_HOOK_NAME(finalise)
-MYRIAD_HOOK_NAME(n_state)
-MYRIAD_HOOK_NAME(n_parameter)
-MYRIAD_HOOK_NAME(n_shared)
-MYRIAD_HOOK_NAME(n_shared_integer)
-MYRIAD_HOOK_NAME(n_accessory)
-MYRIAD_HOOK_NAME(n_integer_accessory)
-MYRIAD_HOOK_NAME(n_event)
-MYRIAD_HOOK_NAME(n_observed)
+#define MYRIAD_NAME_OF_COUNT(kind, ...) MYRIAD_HOOK_NAME(n_##kind)
+MYRIAD_ENUMERATED_KINDS(MYRIAD_NAME_OF_COUNT)
+#undef MYRIAD_NAME_OF_COUNT
 #undef MYRIAD_HOOK_NAME
 
 /// Whether other files can name a type: in an anonymous namespace, each file has a type of its own. Recognised by the
@@ -189,21 +173,14 @@ constexpr bool check_model() {
     static_assert(std::is_class_v<Model>, "a model is a struct with static member functions");
     static_assert(!std::is_final_v<Model>,
                   "the model is declared final: its hooks cannot be found by name; remove `final`");
-#define MYRIAD_COUNT_CHECK(kind)                                                                    \
+#define MYRIAD_COUNT_CHECK(kind, ...)                                                               \
     static_assert(counts_##kind<Model>(),                                                           \
                   "the model has an enumeration `" #kind "` without its count: make n_" #kind       \
                   " its last enumerator, `enum " #kind " { ..., n_" #kind " };`, without `class`"); \
     static_assert(                                                                                  \
         !has_n_##kind<Model> || requires { Model::n_##kind; },                                      \
         "the model's n_" #kind " is private: a model is a struct, whose enumerations and functions are public");
-    MYRIAD_COUNT_CHECK(state)
-    MYRIAD_COUNT_CHECK(parameter)
-    MYRIAD_COUNT_CHECK(shared)
-    MYRIAD_COUNT_CHECK(shared_integer)
-    MYRIAD_COUNT_CHECK(accessory)
-    MYRIAD_COUNT_CHECK(integer_accessory)
-    MYRIAD_COUNT_CHECK(event)
-    MYRIAD_COUNT_CHECK(observed)
+    MYRIAD_ENUMERATED_KINDS(MYRIAD_COUNT_CHECK)
 #undef MYRIAD_COUNT_CHECK
     static_assert(n_state<Model> > 0,
                   "the model has no state: give it `enum state { x, ..., n_state };` with at least one component");

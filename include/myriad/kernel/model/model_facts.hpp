@@ -11,7 +11,9 @@ namespace myriad::detail {
 
 /// How many components of each kind a model has, and what its hooks write.
 struct model_numbers {
-    std::int32_t n_state, n_parameter, n_shared, n_shared_integer, n_accessory, n_integer_accessory, n_event;
+#define MYRIAD_DECLARE_NUMBER(kind, ...) std::int32_t n_##kind;
+    MYRIAD_COMPONENT_KINDS(MYRIAD_DECLARE_NUMBER)
+#undef MYRIAD_DECLARE_NUMBER
     bool writes_parameters, writes_time_domain;
 
     constexpr bool operator==(const model_numbers&) const = default;
@@ -38,14 +40,10 @@ struct call_facts {
 
 template <class Model>
 inline constexpr model_numbers numbers_of{
-    .n_state = n_state<Model>,
-    .n_parameter = n_parameter<Model>,
-    .n_shared = n_shared<Model>,
-    .n_shared_integer = n_shared_integer<Model>,
-    .n_accessory = n_accessory<Model>,
-    .n_integer_accessory = n_integer_accessory<Model>,
-    .n_event = n_event<Model>,
-    .writes_parameters = writes_parameters<Model>,
+#define MYRIAD_NUMBER_OF(kind, ...) .n_##kind = n_##kind<Model>,
+    MYRIAD_COMPONENT_KINDS(MYRIAD_NUMBER_OF)
+#undef MYRIAD_NUMBER_OF
+        .writes_parameters = writes_parameters<Model>,
     .writes_time_domain = writes_time_domain<Model>,
 };
 

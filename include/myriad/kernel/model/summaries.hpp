@@ -3,7 +3,6 @@
 // with the accessory that receives it. Declared in the model, read at compile time.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <type_traits>

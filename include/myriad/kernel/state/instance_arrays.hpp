@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "myriad/kernel/core/status.hpp"
+#include "myriad/kernel/model/component_kinds.hpp"
 
 namespace myriad::detail {
 
@@ -12,15 +13,15 @@ namespace myriad::detail {
 /// is known of each one besides its type is in host/backend/arrays.hpp.
 template <template <class> class Array, class R>
 struct instance_arrays {
+#define MYRIAD_DECLARE_ARRAY(kind, plural, words, type) Array<type> kind;
     // read; parameters and times are written only if the model declares it
-    Array<R> parameter;
+    MYRIAD_PARAMETER_KINDS(MYRIAD_DECLARE_ARRAY)
     Array<R> t_begin, t_end;  // none if all instances have the same domain
     Array<R> tolerance_scale;
     // read and written
     Array<R> t;
-    Array<R> state;
-    Array<R> accessory;
-    Array<std::int32_t> integer_accessory;
+    MYRIAD_RECORDED_KINDS(MYRIAD_DECLARE_ARRAY)
+#undef MYRIAD_DECLARE_ARRAY
     // needed to continue in a later call
     Array<R> h_next;               // step to try next
     Array<std::int32_t> phase;     // phases done

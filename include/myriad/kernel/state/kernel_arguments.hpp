@@ -7,6 +7,7 @@
 
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/model/model_facts.hpp"
 #include "myriad/kernel/state/instance_arrays.hpp"
 
 namespace myriad {
@@ -126,10 +127,13 @@ struct argument_head : instance_range, instance_arrays<array_pointer, R> {
     array(std::int16_t, sample_column, n_state)
 // clang-format on
 
-/// Where the arrays of a model with so many components are, in bytes from the first.
+/// Where the arrays of such a model are, in bytes from the first.
 template <class R>
 struct argument_offsets {
-    constexpr argument_offsets(int n_state, int n_accessory, int n_integer_accessory, int n_event) {
+    explicit constexpr argument_offsets(const model_numbers& of) {
+#define MYRIAD_COUNT(kind, ...) [[maybe_unused]] const int n_##kind = of.n_##kind;
+        MYRIAD_COMPONENT_KINDS(MYRIAD_COUNT)
+#undef MYRIAD_COUNT
 #define MYRIAD_PLACE_ARRAY(type, name, count) \
     name = end;                               \
     end += static_cast<int>(sizeof(type)) * at_least_one(count);
@@ -148,8 +152,9 @@ struct argument_offsets {
 template <class Model, class R>
 struct argument_arrays {
 private:
-    static constexpr int n_state = detail::n_state<Model>, n_accessory = detail::n_accessory<Model>,
-                         n_integer_accessory = detail::n_integer_accessory<Model>, n_event = detail::n_event<Model>;
+#define MYRIAD_COUNT(kind, ...) static constexpr int n_##kind = detail::n_##kind<Model>;
+    MYRIAD_COMPONENT_KINDS(MYRIAD_COUNT)
+#undef MYRIAD_COUNT
 
 public:
 #define MYRIAD_DECLARE_ARRAY(type, name, count) type name[at_least_one(count)];

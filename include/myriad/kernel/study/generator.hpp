@@ -49,23 +49,21 @@ inline constexpr bool generates = requires(generated_instance<Model, R>& i) {
 template <class Model, class R>
 MYRIAD_FUNCTION bool generate_instance(const instance_arrays<array_pointer, R>& arrays, const instance_range& range,
                                        const shared_parameters<R>& shared, std::uint64_t seed, std::int64_t i) {
-    vec<R, n_state<Model>> y;
-    vec<R, n_parameter<Model>> parameter;
-    vec<R, n_accessory<Model>> accessory;
-    vec<std::int32_t, n_integer_accessory<Model>> integer_accessory;
+#define MYRIAD_DECLARE_VALUES(kind, plural, words, type) vec<type, n_##kind<Model>> kind;
+    MYRIAD_INSTANCE_KINDS(MYRIAD_DECLARE_VALUES)
+#undef MYRIAD_DECLARE_VALUES
     const auto each = [&](auto&& visit) MYRIAD_LAMBDA {
         const auto visit_all = [&](auto& values, auto* array, int count) MYRIAD_LAMBDA {
             for (int c = 0; c < count; ++c) visit(values[c], array[c * range.size + i]);
         };
-        visit_all(y, arrays.state, n_state<Model>);
-        visit_all(parameter, arrays.parameter, n_parameter<Model>);
-        visit_all(accessory, arrays.accessory, n_accessory<Model>);
-        visit_all(integer_accessory, arrays.integer_accessory, n_integer_accessory<Model>);
+#define MYRIAD_VISIT_KIND(kind, ...) visit_all(kind, arrays.kind, n_##kind<Model>);
+        MYRIAD_INSTANCE_KINDS(MYRIAD_VISIT_KIND)
+#undef MYRIAD_VISIT_KIND
     };
     each([](auto& value, auto& stored) MYRIAD_LAMBDA { value = stored; });
     const std::int64_t index = range.first_index + i;
     generated_instance<Model, R> instance{index,
-                                          y,
+                                          state,
                                           parameter,
                                           accessory,
                                           integer_accessory,
@@ -74,7 +72,7 @@ MYRIAD_FUNCTION bool generate_instance(const instance_arrays<array_pointer, R>& 
                                           random_numbers<R>(seed, index, phase_of_generator)};
     Model::generate(instance);
     each([](auto& value, auto& stored) MYRIAD_LAMBDA { stored = value; });
-    bool finite = all_finite(y);
+    bool finite = all_finite(state);
     if constexpr (n_parameter < Model >> 0) finite = finite && all_finite(parameter);
     return finite;
 }
