@@ -232,6 +232,14 @@ template <class Model, class S>
 using stage_factors =
     std::conditional_t<factorises_sparsely<Model>, sparse_lu_factors<Model, S>, lu_factors<S, n_state<Model>>>;
 
+/// 1 / h. Steps to an event may be as short as 1e-320. If 1 / (h gamma) or its reciprocal would leave the normal
+/// numbers, those of a slightly longer step are used, over which nothing changes either.
+template <class S>
+MYRIAD_FUNCTION S reciprocal_of_step(const S& h) {
+    using R = real_of<S>;
+    return copysign(S(R(1)) / max(abs(h), S(R(64) / largest_of<R>)), h);
+}
+
 /// Loops over the components of a state: written out where the factors are, as one index that is no constant puts an
 /// array into a GPU's local memory.
 template <class Model, class S>
@@ -246,9 +254,7 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
     using loop = component_loop<Model, S>;
-    // Steps to an event may be as short as 1e-320. If 1 / (h gamma) would overflow, the matrix of a slightly longer
-    // step is used, over which nothing changes either.
-    const S per_h = copysign(S(R(1)) / max(abs(h), S(R(16) / largest_of<R>)), h);
+    const S per_h = detail::reciprocal_of_step(h);
     stage_factors<Model, S> lu;
     trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
     vec<S, n> slope_t;

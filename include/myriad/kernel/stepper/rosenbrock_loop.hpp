@@ -16,6 +16,9 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// and 250 (4096).
 inline constexpr int largest_stages_written_out = 1024;
 
+/// Components whose sums over stages are added up in registers at a time.
+inline constexpr int summed_at_once = 16;
+
 template <class Method, class Model, class S>
 constexpr bool loops_over_stages_of() {
     if constexpr (factorises_sparsely<Model> && lanes_of<S> == 1) {
@@ -68,7 +71,7 @@ MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& 
                                                trial_step<Method, R, n_state<Model>>& trial) {
     constexpr int n = n_state<Model>;
     using loop = unrolled_loop<n>;
-    const R per_h = copysign(R(1) / max(abs(h), R(16) / largest_of<R>), h);
+    const R per_h = detail::reciprocal_of_step(h);
     stage_factors<Model, R> lu;
     trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
     vec<R, n> slope_t;
@@ -77,18 +80,26 @@ MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& 
     vec<R, n> slope = trial.k[0];
     MYRIAD_ROLLED
     for (int i = 0; i <= Method::stages; ++i) {
-        vec<R, n> increment{}, right{};
-        MYRIAD_ROLLED
-        for (int j = 0; j < i; ++j) {
-            const R weight = rosenbrock_table_of<Method, R>.argument[i][j];
-            const R coupling = rosenbrock_table_of<Method, R>.coupling[i][j] * per_h;
-            loop::all([&](auto c) MYRIAD_LAMBDA {
-                const R u = trial.u[j][c];
-                increment[c] = fma(weight, u, increment[c]);
-                right[c] = fma(coupling, u, right[c]);
+        vec<R, n> right;
+        static_for<0, (n + summed_at_once - 1) / summed_at_once>([&](auto part) MYRIAD_LAMBDA {
+            constexpr int begin = decltype(part)::value * summed_at_once;
+            constexpr int count = n - begin < summed_at_once ? n - begin : summed_at_once;
+            R increment[count]{}, moved[count]{};
+            MYRIAD_ROLLED
+            for (int j = 0; j < i; ++j) {
+                const R weight = rosenbrock_table_of<Method, R>.argument[i][j];
+                const R coupling = rosenbrock_table_of<Method, R>.coupling[i][j];
+                static_for<0, count>([&](auto c) MYRIAD_LAMBDA {
+                    const R u = trial.u[j][begin + c];
+                    increment[c] = fma(weight, u, increment[c]);
+                    moved[c] = fma(coupling, u, moved[c]);
+                });
+            }
+            static_for<0, count>([&](auto c) MYRIAD_LAMBDA {
+                trial.y[begin + c] = y[begin + c] + increment[c];
+                right[begin + c] = moved[c];
             });
-        }
-        loop::all([&](auto c) MYRIAD_LAMBDA { trial.y[c] = y[c] + increment[c]; });
+        });
         if (i == Method::stages) break;
         const bool at_end = Method::first_same_as_last && i == Method::stages - 1;
         if (i > 0) {
@@ -106,7 +117,7 @@ MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& 
             right = moved;
         }
         loop::all([&](auto c) MYRIAD_LAMBDA {
-            right[c] = right[c] + slope[c];
+            right[c] = fma(per_h, right[c], slope[c]);
             if constexpr (depends_on_time<Model>)
                 right[c] = fma(h * rosenbrock_table_of<Method, R>.time_weight[i], slope_t[c], right[c]);
         });
