@@ -87,7 +87,10 @@ void prepared_call<R>::describe_options(const options& o, const call_facts& fact
     }
     for (std::size_t j = 0; j < static_cast<std::size_t>(a.model->n_event); ++j) {
         const event_options e = o.events.empty() ? event_options{} : o.events[j];
-        array<event_arguments<R>>(at.event)[j] = {static_cast<R>(e.tolerance), static_cast<std::int32_t>(e.stop_after)};
+        const R tolerance = static_cast<R>(e.tolerance);
+        array<event_arguments<R>>(at.event)[j] = {tolerance,
+                                                  tolerance > R(0) ? tolerance : std::numeric_limits<R>::infinity(),
+                                                  static_cast<std::int32_t>(e.stop_after)};
         const auto asks_for = [&](direction d) { return e.direction == d || e.direction == direction::either; };
         const auto bit = std::uint32_t{1} << (j % 32);
         if (asks_for(direction::rising)) array<std::uint32_t>(at.rising)[j / 32] |= bit;

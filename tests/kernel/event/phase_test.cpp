@@ -107,6 +107,27 @@ TEMPLATE_TEST_CASE("a phase that stops on its event does not find it again in th
     }
 }
 
+TEMPLATE_TEST_CASE("an event that ended a phase does not end the next at its start, however closely it was located", "",
+                   ALL_METHODS) {
+    // Tops of swings, phase by phase; time starts anew in each, so that nothing shows how well it resolved the last.
+    std::vector<motion> swings;
+    for (int i = 0; i < 300; ++i) swings.push_back({.v = std::pow(10.0, -(i % 5)), .k = 0.5 + 0.005 * i});
+    for (const double step : {1e-2, 1e-3}) {
+        auto e = ensemble_of(swings, {velocity(), never(), never()}, 0, 20);
+        auto o = options_for(0, step, myriad::direction::falling);
+        o.relative_tolerance = 1e-9;
+        o.events[0].stop_after = 1;
+        o.phases = 3;
+        solve<TestType>(e, o);
+        int wrong = 0;
+        for (int i = 0; i < static_cast<int>(swings.size()); ++i) {
+            const double period = 2 * pi / std::sqrt(swings[static_cast<std::size_t>(i)].k);
+            wrong += !agree(times_of(e, 0, i), {period / 4, period, period}, 1e-5);
+        }
+        CHECK(wrong == 0);
+    }
+}
+
 TEMPLATE_TEST_CASE("a phase that another event stops within the tolerance of a crossing keeps it for the next", "",
                    ALL_METHODS) {
     constexpr double tolerance = 1e-3;

@@ -43,6 +43,11 @@ private:
     __device__ __forceinline__ stop_request read() const {
         const std::uint32_t* stop = stop_;
         MYRIAD_FORGET(stop);  // else the address stays in registers through the loop
+        return read(stop);
+    }
+    /// Out of line, as nvcc takes a loop whose end depends on a value in memory for one that waits for it, and yields
+    /// in every turn.
+    static __device__ __noinline__ stop_request read(const std::uint32_t* stop) {
         return stop != nullptr ? static_cast<stop_request>(*static_cast<const volatile std::uint32_t*>(stop))
                                : stop_request::none;
     }

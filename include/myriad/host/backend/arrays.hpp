@@ -69,7 +69,7 @@ void for_each_instance_array(const model_numbers& m, Visit&& visit, Arrays&... a
     keep(1, presence::always, rest, unset, a.t...);
     keep(1, presence::step_sizes, "step sizes", R(0), a.h_next...);
     keep(1, presence::always, rest, std::int32_t{0}, a.phase...);
-    keep(m.n_event, presence::always, rest, std::int16_t{0}, a.side...);
+    keep(m.n_event, presence::always, rest, std::int32_t{0}, a.side...);
     keep(1, presence::always, rest, std::uint8_t{0}, a.ended...);
     keep(1, presence::always, rest, myriad::status::not_started, a.status...);
     keep(1, presence::counters, counters, std::int64_t{0}, a.accepted...);

@@ -35,11 +35,12 @@ struct event_detector {
         // A function has crossed if it was above zero and is below, or was below and is above.
         seen.crossed = ~(e.above ^ below);
         seen.busy = e.flags[e.in_question] | (seen.crossed & (sides.asked() | ~e.left)).any_of();
-        if (any(sides.s.final_step)) {
+        // Without a branch in one lane, for which nearly every step would pay more than these comparisons.
+        if (!is_pack<S> || any(sides.s.final_step)) {
             masks far;
             far.clear();
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) far.set(j, abs(g1[j]) > S(sides.end_tolerance(j)));
+            for (int j = 0; j < m; ++j) far.set(j, abs(g1[j]) > S(sides.args.event[j].end_tolerance));
             seen.busy = seen.busy | (sides.s.final_step & !far.all_of());
         }
         return seen;
@@ -58,32 +59,32 @@ struct event_detector {
         }
         const mask busy = sides.s.running() & seen.busy;
         mask follow = accepted & !busy;
-        if (MYRIAD_UNLIKELY(any(busy))) {
-            const ends_type ends = ends_of(trial, t1, seen.g1);
-            if constexpr (is_pack<S>) {
-                // Copies, so that only these need an address and the caller's variables stay in registers.
-                mask still_accepted = accepted;
-                locator.look_out_of_line(busy, ends, seen, still_accepted, events);
-                accepted = still_accepted;
-            } else {
-                if (accepted) {
-                    const trial_outcome outcome = locator.look_closer(0, ends, seen, events);
-                    accepted = outcome != trial_outcome::is_redone;
-                    follow = outcome == trial_outcome::stands_before_sides;
+        auto& e = sides.e;
+        if (is_pack<S> || MYRIAD_UNLIKELY(any(busy | seen.crossed.any_of()))) {
+            if (MYRIAD_UNLIKELY(any(busy))) {
+                const ends_type ends = ends_of(trial, t1, seen.g1);
+                if constexpr (is_pack<S>) {
+                    // Copies, so that only these need an address and the caller's variables stay in registers.
+                    mask still_accepted = accepted;
+                    locator.look_out_of_line(busy, ends, seen, still_accepted, events);
+                    accepted = still_accepted;
                 } else {
-                    locator.give_up(0);
+                    if (accepted) {
+                        const trial_outcome outcome = locator.look_closer(0, ends, seen, events);
+                        accepted = outcome != trial_outcome::is_redone;
+                        follow = outcome == trial_outcome::stands_before_sides;
+                    } else {
+                        locator.give_up(0);
+                    }
                 }
             }
-        }
-        auto& e = sides.e;
-        masks crossed = seen.crossed.in(follow);
-        // A function whose event was just located, maybe past zero, changes its side after the event's action.
-        if constexpr (!is_pack<S>) crossed = crossed & ~events.which;
-        if (is_pack<S> || MYRIAD_UNLIKELY(any(crossed.any_of()))) {
+            masks crossed = seen.crossed.in(follow);
+            // A function whose event was just located, maybe past zero, changes its side after the event's action.
+            if constexpr (!is_pack<S>) crossed = crossed & ~events.which;
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j) crossed.set(j, crossed[j] & (seen.g1[j] != S(R(0))));  // zero is on either side
+            e.above = e.above ^ crossed;
         }
-        e.above = e.above ^ crossed;
         e.left = e.left | masks::all_in(follow);
     }
 

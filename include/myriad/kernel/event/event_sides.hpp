@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/scalar/arithmetic.hpp"
 #include "myriad/kernel/scalar/mask_set.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -18,24 +19,41 @@ enum class kept_side : std::uint8_t {
     fired = 4,    // it fired: the next phase takes the side that the function is heading for
 };
 
-/// What a phase keeps of an event function for the next, in the two bytes of `kernel_arguments::side`. Zero is nothing.
+/// What a phase keeps of an event function for the next, in the four bytes of `kernel_arguments::side`. Zero is
+/// nothing.
 class kept_event {
 public:
-    MYRIAD_FUNCTION explicit kept_event(std::int16_t code) : code_(code) {}
+    MYRIAD_FUNCTION explicit kept_event(std::int32_t code) : code_(code) {}
     /// `lingered` is the number of actions in a row after which the function has not left the surface.
     MYRIAD_FUNCTION kept_event(bool above, kept_side kind, std::int32_t lingered)
         : code_((above ? 1 : 0) + 2 * static_cast<int>(kind) + 16 * (lingered < most ? lingered : most)) {}
 
-    MYRIAD_FUNCTION std::int16_t code() const { return static_cast<std::int16_t>(code_); }
+    /// The same with how far from zero the event was located: the exponent of a value g of its function.
+    template <class R>
+    MYRIAD_FUNCTION kept_event at_value(R g) const {
+        const auto exponent = arithmetic<R>::to_bits(abs(g)) >> mantissa_bits<R>;
+        return kept_event(code_ + (static_cast<std::int32_t>(exponent) << exponent_place));
+    }
+    /// A bound on that: the next greater power of two.
+    template <class R>
+    MYRIAD_FUNCTION R value_bound() const {
+        using bits = typename arithmetic<R>::bits;
+        return arithmetic<R>::from_bits(static_cast<bits>((code_ >> exponent_place) + 1) << mantissa_bits<R>);
+    }
+
+    MYRIAD_FUNCTION std::int32_t code() const { return code_; }
     MYRIAD_FUNCTION bool above() const { return code_ % 2 != 0; }
     MYRIAD_FUNCTION kept_side kind() const { return static_cast<kept_side>(code_ / 2 % 8); }
-    MYRIAD_FUNCTION std::int32_t lingered() const { return code_ / 16; }
+    MYRIAD_FUNCTION std::int32_t lingered() const { return code_ / 16 % (most + 1); }
     /// Whether a function that is not on its surface now is on the side that it shows, and nothing else is known.
     MYRIAD_FUNCTION bool is_plain() const { return kind() == kept_side::unknown || kind() == kept_side::beyond; }
 
 private:
     static constexpr std::int32_t most = 2047;  // a larger number is kept as this
-    int code_;
+    static constexpr int exponent_place = 16;
+    template <class R>
+    static constexpr int mantissa_bits = sizeof(R) == sizeof(double) ? 52 : 23;
+    std::int32_t code_;
 };
 
 /// What every step of a pack compares its event functions with. What few steps need is in event_memory.

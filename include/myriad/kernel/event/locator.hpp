@@ -406,7 +406,7 @@ private:
             const R g = side[j] * step.g1[j], speed = -side[j] * slope[j] * sign_of(step.h);  // towards zero
             const R last_speed = (side[j] * step.g[j] - g) / abs(step.h);
             const bool at_zero = g <= R(0) || g <= (speed < last_speed ? speed : last_speed) * rounding;
-            const bool close = abs(g) <= sides.end_tolerance(j);
+            const bool close = abs(g) <= sides.args.event[j].end_tolerance;
             // The discriminant of the parabola through the last step's start, with the slope at its end.
             const R bend = (last_speed - speed) / abs(step.h);
             const bool turns = speed * speed <= R(8) * bend * (abs(g) + own.near.rounding(j));

@@ -52,12 +52,6 @@ struct side_follower {
         for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA { begin_lane(i); });
     }
 
-    /// The value of event function j beyond which nothing can happen at the end of the domain.
-    MYRIAD_FUNCTION R end_tolerance(int j) const {
-        const R tolerance = args.event[j].tolerance;
-        return tolerance > R(0) ? tolerance : infinity_of<R>;
-    }
-
     /// Stores the sides of lane i for its next phase. A phase without a step has not evaluated its event functions.
     MYRIAD_FUNCTION void keep(int i) const {
         if (s.iterations_of(args, i) == 0) return;
@@ -161,9 +155,9 @@ struct side_follower {
     /// Whether a function with value g has crossed from the given side, by more than `past`.
     MYRIAD_FUNCTION bool crosses(int j, R side, R g, R past) const { return is_asked(j, side) && side * g < -past; }
 
-    /// Sets open sides to where the functions are heading, or to where they are if they are not on the surface, as
-    /// after the host moved the state. The side that a phase has kept for one on the surface stands, unless its event
-    /// fired there: then the host may have turned the flow round, which shows in a slope that is not rounding itself.
+    /// Sets open sides to where the functions, on the surface at the start of the step, are heading. The side that a
+    /// phase has kept for one there stands, unless its event fired there: then the host may have turned the flow round,
+    /// which shows in a slope that is not rounding itself.
     MYRIAD_FUNCTION void settle_open_sides(int i, const step_ends<Model, R>& step, const reals& rounding) {
         const auto& own = memory_of(i);
         const flags open = own.open, held = own.held, fired_last = own.fired_last;
@@ -172,11 +166,10 @@ struct side_follower {
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             if (!open[j]) continue;
-            const bool on_surface = abs(step.g[j]) <= max(args.event[j].tolerance, rounding[j]);
             const bool turns = fired_last[j] && abs(slope[j] * step.h) > rounding[j];
             const R heading =
                 held[j] && !turns ? (e.above.get(j, i) ? R(1) : R(-1)) : sign_of(slope[j]) * sign_of(step.h);
-            put_side(j, i, on_surface ? heading : sign_of(step.g[j]));
+            put_side(j, i, heading);
         }
     }
 
@@ -223,10 +216,11 @@ private:
             if (is_fresh(j, i)) kept = kept_side::fired;
             if (!e.left.get(j, i) && own.on_jump[j]) kept = kept_side::on_jump;
             if (side == R(0)) kept = kept_side::unknown;
-            kept_at(j, i) = kept_event(side > R(0), kept, e.left.get(j, i) ? 0 : own.lingered[j]).code();
+            const kept_event all(side > R(0), kept, e.left.get(j, i) ? 0 : own.lingered[j]);
+            kept_at(j, i) = (kept == kept_side::fired ? all.at_value(g[j]) : all).code();
         }
     }
-    MYRIAD_FUNCTION std::int16_t& kept_at(int j, int i) const {
+    MYRIAD_FUNCTION std::int32_t& kept_at(int j, int i) const {
         return args.side[static_cast<std::int64_t>(j) * args.size + s.instance[i]];
     }
     MYRIAD_FUNCTION bool fires_at_jump(int j, int i, const fired& events) const {
@@ -372,16 +366,19 @@ private:
         for (int j = 0; j < m; ++j) {
             const kept_event kept(kept_at(j, i));
             const kept_side kind = kept.kind();
-            const bool beyond = abs(g[j]) > rounding[j] && kind != kept_side::fired;
+            const bool fired = kind == kept_side::fired, keeps = fired || kind == kept_side::within;
+            const R tolerance = max(args.event[j].tolerance, rounding[j]);
+            // An event is located only as closely as the time resolves, and that may have started anew.
+            const R band = fired ? max(tolerance, kept.template value_bound<R>()) : keeps ? tolerance : rounding[j];
+            const bool beyond = abs(g[j]) > band;
             undefined = undefined || g[j] != g[j];
             at_jump.set(j, beyond && kind == kept_side::on_jump);
             // Flights that accumulate may do so over many phases that another event ends.
-            const bool away = abs(g[j]) > max(args.event[j].tolerance, rounding[j]);
-            own.lingered[j] = away ? 0 : kept.lingered();
+            own.lingered[j] = abs(g[j]) > tolerance ? 0 : kept.lingered();
             e.left.set(j, i, own.lingered[j] == 0);
             put_side(j, i, beyond ? sign_of(g[j]) : R(0));
-            own.fired_last.set(j, kind == kept_side::fired);
-            if (kind == kept_side::within || kind == kept_side::fired) {
+            own.fired_last.set(j, fired);
+            if (keeps && !beyond) {
                 e.above.set(j, i, kept.above());
                 own.open.set(j, true);
                 own.held.set(j, true);

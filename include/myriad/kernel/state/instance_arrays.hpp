@@ -24,7 +24,7 @@ struct instance_arrays {
     // needed to continue in a later call
     Array<R> h_next;               // step to try next
     Array<std::int32_t> phase;     // phases done
-    Array<std::int16_t> side;      // per event: see kept_event
+    Array<std::int32_t> side;      // per event: see kept_event
     Array<std::uint8_t> ended;     // by action::end_instance or a failure
     Array<myriad::status> status;  // how the last phase ended
     // work done in all calls; none if counting is off

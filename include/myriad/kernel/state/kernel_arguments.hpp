@@ -37,6 +37,7 @@ constexpr int at_least_one(int n) { return n > 0 ? n : 1; }
 template <class R>
 struct event_arguments {
     R tolerance;              // unit of the event function
+    R end_tolerance;          // the same at the end of the time domain, beyond which nothing can happen there
     std::int32_t stop_after;  // detections that end the phase; 0: none
 };
 
