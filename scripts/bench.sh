@@ -13,7 +13,7 @@ Usage: scripts/bench.sh [--compiler NAME] [--arch LIST] [--threads LIST] [--deps
 
 Installs the packages that are missing (as root or with sudo), builds the benchmark in build/bench-NAME-ARCH, runs it,
 writes results/bench_NAME.csv and .png and prints the table. See benchmarks/README.md. CVODE takes part if SUNDIALS 6 or
-7 is installed or in DIR/sundials.
+7 is installed or in DIR/sundials; then there is results/bench_stiff_NAME_ARCH.csv, too.
 
 Options:
   --compiler NAME  compiler, g++ (default) or clang++
@@ -83,8 +83,8 @@ name=$(basename "$compiler")
 export OMP_WAIT_POLICY=passive
 if [[ -d $deps/sundials ]]; then export LD_LIBRARY_PATH="$deps/sundials/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"; fi
 
-# build ARCH: sets `program`. No contraction in Myriad's own code, so that results do not depend on the width of the
-# packs; the other libraries may contract.
+# build ARCH: sets `program`, and `stiff_program`, which is there if CVODE is. No contraction in Myriad's own code, so
+# that results do not depend on the width of the packs; the other libraries may contract.
 build() {
     local folder=build/bench-$name-$1
     say "Building the benchmark in $folder"
@@ -93,9 +93,12 @@ build() {
         -DMYRIAD_BUILD_VALIDATION=OFF -DMYRIAD_BUILD_BENCHMARKS=ON -DMYRIAD_BENCHMARK_HIGH_ORDER=ON \
         -DMYRIAD_ARCH="$1" -DMYRIAD_FP_CONTRACT=off ${options[@]+"${options[@]}"} ||
         fail "The configuration failed, see above."
-    quietly "$folder/build.log" cmake --build "$folder" --target cpu_peers --parallel "$(nproc)" ||
+    local targets=(cpu_peers)
+    if grep -q '^MYRIAD_SUNDIALS_cvode:FILEPATH=/' "$folder/CMakeCache.txt"; then targets+=(stiff_peers); fi
+    quietly "$folder/build.log" cmake --build "$folder" --target "${targets[@]}" --parallel "$(nproc)" ||
         fail "The build failed, see above."
     program=$folder/benchmarks/cpu_peers/cpu_peers
+    stiff_program=$folder/benchmarks/stiff_peers/stiff_peers
 }
 
 output=results/bench_$name.csv
@@ -128,6 +131,10 @@ for arch in "${archs[@]}"; do
     if [[ $quick == no ]]; then
         measure --cases lorenz_rk4 --implementations odeint,myriad --repetitions 3 \
             --instances 1,4,16,64,256,1024,4096,16384,65536
+    fi
+    if [[ -x $stiff_program ]]; then
+        say "Running stiff_peers for $arch to results/bench_stiff_${name}_$arch.csv"
+        "$stiff_program" | tee "results/bench_stiff_${name}_$arch.csv" || worst=$?
     fi
     # The same number of instances for every number of threads, enough for the largest.
     if [[ -n $threads ]]; then

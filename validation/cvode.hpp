@@ -75,6 +75,8 @@ public:
         check(CVodeSetUserData(memory_, this), "CVodeSetUserData");
         check(CVodeSetLinearSolver(memory_, solver_, matrix_), "CVodeSetLinearSolver");
         check(CVodeSetMaxNumSteps(memory_, 1000000), "CVodeSetMaxNumSteps");
+        // A restart amid fast reactions begins with steps below the resolution of t, as it should.
+        check(CVodeSetMaxHnilWarns(memory_, -1), "CVodeSetMaxHnilWarns");
         if (directions_.empty()) return;
         check(CVodeRootInit(memory_, static_cast<int>(directions_.size()), &cvode::call_g), "CVodeRootInit");
         check(CVodeSetRootDirection(memory_, directions_.data()), "CVodeSetRootDirection");

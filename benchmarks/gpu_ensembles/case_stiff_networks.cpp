@@ -116,10 +116,13 @@ std::vector<measurement> measure_pollution(std::int64_t size, const measure_opti
     const problem<problems::pollution> fine{at(1e-6, 1e-6), &fill_pollution<double>, &start_pollution<double>};
     problem<problems::pollution> coarse = fine;
     coarse.options = at(1e-4, 1e-4);
-    const problem<problems::pollution, float> single{at(1e-4, 1e-6), &fill_pollution<float>, &start_pollution<float>};
+    problem<problems::pollution> same = fine;
+    same.options = at(1e-4, 1e-6);
+    const problem<problems::pollution, float> single{same.options, &fill_pollution<float>, &start_pollution<float>};
     const auto truth = truth_of(fine, size, how.device);
     return {measure_method<myriad::rodas_5p>("rodas_5p 1e-6", fine, size, how, truth),
             measure_method<myriad::rosenbrock_23>("rosenbrock_23 1e-4", coarse, size, how, truth),
+            measure_method<myriad::rodas_5p>("rodas_5p 1e-4", same, size, how, truth),
             measure_method<myriad::rodas_5p>("rodas_5p float 1e-4", single, size, how, truth)};
 }
 

@@ -53,6 +53,11 @@ MUTATIONS = {
                                   "h = h + R(0) * s.data.t;", "orbit"),
     "weights_rounded_one_by_one": ("kernel/methods/weights.hpp", "sizeof(R) >= sizeof(double)) return rounded;",
                                    "true) return rounded;", "orbit"),
+    "entry_left_out_of_the_pattern": ("kernel/scalar/dependence.hpp", "both.on[w] = a.on[w] | b.on[w];",
+                                      "both.on[w] = a.on[w] ^ b.on[w];", "hires"),
+    "factors_solved_in_another_order": ("kernel/stepper/sparse_lu.hpp",
+                                        "loop::template range_backwards<0, n_state<Model>>(",
+                                        "loop::template range<0, n_state<Model>>(", "hires"),
 }
 DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_accepted"]
 SECONDS = 120  # so that an endless loop is detected too

@@ -19,11 +19,16 @@ problem kepler_problem();
 problem timed_circle_problem();
 problem robertson_problem();
 problem oregonator_problem();
+problem pollution_problem();
+problem hires_problem();
+problem ring_modulator_problem();
+problem ring_of_48_problem();
 
 inline std::vector<problem> all_problems() {
-    return {lorenz_problem(),       duffing_problem(),       van_der_pol_problem(), keller_miksis_problem(),
-            relief_valve_problem(), bouncing_ball_problem(), heat_problem(),        kepler_problem(),
-            timed_circle_problem(), robertson_problem(),     oregonator_problem()};
+    return {lorenz_problem(),       duffing_problem(),        van_der_pol_problem(), keller_miksis_problem(),
+            relief_valve_problem(), bouncing_ball_problem(),  heat_problem(),        kepler_problem(),
+            timed_circle_problem(), robertson_problem(),      oregonator_problem(),  pollution_problem(),
+            hires_problem(),        ring_modulator_problem(), ring_of_48_problem()};
 }
 
 /// A solution known only at the end and only for one instance.

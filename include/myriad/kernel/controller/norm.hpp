@@ -37,10 +37,10 @@ MYRIAD_FUNCTION S larger_scale(const S& a, const S& b) {
     return larger(a, b);
 }
 /// The largest of non-negative numbers; NaN if one of them is.
-template <class S, int n>
+template <class Method, class S, int n>
 MYRIAD_FUNCTION S largest_ratio(const vec<S, n>& a) {
     S largest = a[0], sum = a[0];
-    MYRIAD_UNROLL
+    MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
     for (int c = 1; c < n; ++c) {
         largest = larger(a[c], largest);
         sum = sum + a[c];
@@ -68,10 +68,10 @@ MYRIAD_FUNCTION double larger_scale(const double& a, const double& b) {
     const unsigned upper = ::max(static_cast<unsigned>(__double2hiint(a)), static_cast<unsigned>(__double2hiint(b)));
     return __hiloint2double(static_cast<int>(upper), 0);
 }
-template <int n>
+template <class Method, int n>
 MYRIAD_FUNCTION double largest_ratio(const vec<double, n>& a) {
     double largest = a[0];
-    MYRIAD_UNROLL
+    MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
     for (int c = 1; c < n; ++c) largest = larger_scale(a[c], largest);
     return largest;
 }
@@ -89,7 +89,7 @@ MYRIAD_FUNCTION error_scale<S, n_state<Model>> scale_of_errors(const kernel_argu
                                                                const vec<S, n_state<Model>>& y1) {
     error_scale<S, n_state<Model>> scale;
     S largest = S(real_of<S>(0));  // may skip NaN
-    MYRIAD_UNROLL
+    MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
     for (int c = 0; c < n_state<Model>; ++c) {
         const S atol = S(args.absolute_tolerance[c]), rtol = S(args.relative_tolerance[c]);
         const S size = larger_magnitude(y[c], y1[c]);
@@ -111,7 +111,7 @@ MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const
     if constexpr (averages_errors<Method>) {
         using R = real_of<C>;
         C squares = C(R(0));
-        MYRIAD_UNROLL
+        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
         for (int c = 0; c < n; ++c) {
             const C ratio = static_cast<C>(error_ratio(factor * sum(c), scale[c]));
             squares = fma(ratio, ratio, squares);
@@ -119,9 +119,9 @@ MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const
         return sqrt(squares * C(R(1.0 / n)));
     } else {
         vec<S, n> ratio;
-        MYRIAD_UNROLL
+        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
         for (int c = 0; c < n; ++c) ratio[c] = error_ratio(sum(c), scale[c]);
-        return static_cast<C>(largest_ratio(ratio) * abs(factor));
+        return static_cast<C>(largest_ratio<Method>(ratio) * abs(factor));
     }
 }
 

@@ -31,6 +31,9 @@
 #define MYRIAD_RECONVERGE __syncwarp()
 /// Unrolls the following loop; in device code only up to 32 iterations, so that large states stay loops.
 #define MYRIAD_UNROLL _Pragma("unroll 32")
+/// The same up to another number of iterations, a constant expression.
+#define MYRIAD_UNROLL_UP_TO(count) MYRIAD_PRAGMA(unroll(count))
+#define MYRIAD_PRAGMA(text) _Pragma(#text)
 /// In device code, unrolls the following loop over steps, in which constants are reloaded in every iteration.
 #define MYRIAD_UNROLL_BY_FOUR _Pragma("unroll 4")
 /// Keeps device code from unrolling the following loop.
@@ -40,6 +43,7 @@
 #else
 #define MYRIAD_RECONVERGE static_cast<void>(0)
 #define MYRIAD_UNROLL
+#define MYRIAD_UNROLL_UP_TO(count)
 #define MYRIAD_UNROLL_BY_FOUR
 #define MYRIAD_ROLLED
 #define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))
@@ -70,6 +74,7 @@
 #else
 #define MYRIAD_UNROLL _Pragma("GCC unroll 128")
 #endif
+#define MYRIAD_UNROLL_UP_TO(count) MYRIAD_UNROLL
 #define MYRIAD_BACKEND_HEADER "myriad/openmp/run.hpp"
 #if defined(__AVX512F__)
 #define MYRIAD_TARGET openmp_avx512

@@ -172,7 +172,7 @@ struct integrator {
         if constexpr (!is_pack<S>) {
             if (!accepted) return;
         }
-        MYRIAD_UNROLL
+        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
         for (int c = 0; c < n; ++c) s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]);
         if constexpr (shows_step) s.data.h = select(accepted, s.h, s.data.h);
         stepping_type{args, s}.advance(accepted, end_time(), events.fired_lanes());

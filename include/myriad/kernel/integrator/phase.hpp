@@ -106,7 +106,7 @@ private:
 
     MYRIAD_FUNCTION void load(int i) {
         const std::int64_t index = s.instance[i];
-        MYRIAD_UNROLL
+        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
         for (int c = 0; c < n; ++c) set_lane(s.data.y[c], i, at(args.state, c, i));
         MYRIAD_UNROLL
         for (int c = 0; c < n_parameter<Model>; ++c) set_lane(s.data.parameter[c], i, at(args.parameter, c, i));
@@ -130,7 +130,7 @@ private:
 
     MYRIAD_FUNCTION void store(int i) const {
         const std::int64_t index = s.instance[i];
-        MYRIAD_UNROLL
+        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
         for (int c = 0; c < n; ++c) at(args.state, c, i) = get_lane(s.data.y[c], i);
         if constexpr (writes_parameters<Model>) {
             MYRIAD_UNROLL
@@ -263,7 +263,7 @@ private:
             return array[(static_cast<std::int64_t>(column) * r.phases + row) * args.size + s.instance[i]];
         };
         if (r.time_column >= 0) to(r.values, r.time_column) = get_lane(s.data.t, i);
-        MYRIAD_UNROLL
+        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
         for (int c = 0; c < n; ++c)
             if (args.state_column[c] >= 0) to(r.values, args.state_column[c]) = get_lane(s.data.y[c], i);
         MYRIAD_UNROLL

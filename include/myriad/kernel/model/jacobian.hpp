@@ -16,7 +16,7 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const dual<S>& t, 
                                                               const inputs<Model, S>& p) {
     const auto f = Model::template rhs<dual<S>>(t, y, p);
     vec<S, n_state<Model>> out;
-    MYRIAD_UNROLL
+    MYRIAD_UNROLL_UP_TO(128)
     for (int c = 0; c < n_state<Model>; ++c) out[c] = f[c].derivative;
     return out;
 }
@@ -25,7 +25,7 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const dual<S>& t, 
 template <class S, int n>
 MYRIAD_FUNCTION vec<dual<S>, n> constants(const vec<S, n>& y) {
     vec<dual<S>, n> out;
-    MYRIAD_UNROLL
+    MYRIAD_UNROLL_UP_TO(128)
     for (int c = 0; c < n; ++c) out[c] = dual<S>(y[c]);
     return out;
 }

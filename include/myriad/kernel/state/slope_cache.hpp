@@ -98,7 +98,7 @@ public:
         const mask needed = lanes & !end_known_;
         if (any(needed)) {
             const state fresh = detail::evaluate_rhs<Model>(t1, y1, at);
-            MYRIAD_UNROLL
+            MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
             for (int c = 0; c < n; ++c) end_[c] = select(needed, fresh[c], end_[c]);
             evaluations = count_where(needed, evaluations);
             end_known_ = end_known_ | needed;
@@ -110,13 +110,13 @@ public:
     MYRIAD_FUNCTION void accept(const mask& accepted, const trial_step<Method, S, n>& trial) {
         if constexpr (!keeps_start) return;
         if constexpr (Method::first_same_as_last) {
-            MYRIAD_UNROLL
+            MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
             for (int c = 0; c < n; ++c) start_[c] = select(accepted, trial.slope_end()[c], start_[c]);
         } else {
             start_known_ = start_known_ & !accepted;
             if constexpr (knows_end) {
                 const mask known = accepted & end_known_;
-                MYRIAD_UNROLL
+                MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
                 for (int c = 0; c < n; ++c) start_[c] = select(known, end_[c], start_[c]);
                 start_known_ = start_known_ | known;
             }
@@ -129,7 +129,7 @@ private:
         const mask needed = lanes & !start_known_;
         if (!any(needed)) return;
         const state fresh = detail::evaluate_rhs<Model>(t, at.y, at);
-        MYRIAD_UNROLL
+        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
         for (int c = 0; c < n; ++c) start_[c] = select(needed, fresh[c], start_[c]);
         evaluations = count_where(needed, evaluations);
         start_known_ = start_known_ | needed;

