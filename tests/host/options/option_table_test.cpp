@@ -16,7 +16,7 @@ using namespace myriad;
 using host::option_effect;
 using host::option_row;
 
-constexpr host::model_components two_states{{2, ""}, {0, ""}, {0, ""}, {}};
+constexpr host::model_components two_states{.state = {2, ""}};
 constexpr host::option_limits limits{two_states, 1, false, true, true, 53, [](double value) { return value; }};
 
 std::string refusal_of(const options& o) {

@@ -23,7 +23,7 @@ struct listed_components {
 };
 /// The components of a model, and the names of all its enumerations.
 struct model_components {
-#define MYRIAD_DECLARE_KIND(kind, ...) listed_components kind;
+#define MYRIAD_DECLARE_KIND(kind, ...) listed_components kind{};
     MYRIAD_COMPONENT_KINDS(MYRIAD_DECLARE_KIND)
 #undef MYRIAD_DECLARE_KIND
 
