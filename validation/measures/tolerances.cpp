@@ -175,6 +175,8 @@ void measure_tolerances(session& s, const problem& p, const method_entry& m, con
         logarithms_of_error.push_back(std::log10(error));
     }
     if (!p.error_follows_tolerance || logarithms_of_error.size() < 2) return;
+    // The two loosest tolerances alone, where the reference's error hides the others, say little of the order.
+    if (logarithms_of_tolerance.front() - logarithms_of_tolerance.back() < 1.5) return;
     // The step is proportional to tolerance^(1/(q+1)), q the order of the estimate, and the error to step^p.
     const double slope = (logarithms_of_error.back() - logarithms_of_error.front()) /
                          (logarithms_of_tolerance.back() - logarithms_of_tolerance.front());
