@@ -22,7 +22,9 @@ STYLES = {"CVODE": ("#000000", "x", ":"), "odeint cash_karp": (figures.RED, "+",
           "rodas_5p": (figures.RED, "h", "--")}
 NAMES = {"lorenz": "Lorenz", "duffing": "Duffing", "van_der_pol": "van der Pol", "keller_miksis": "Keller–Miksis",
          "relief_valve": "relief valve", "heat": "heat conduction", "kepler": "Kepler", "timed_circle": "timed circle",
-         "robertson": "Robertson", "oregonator": "Oregonator"}
+         "robertson": "Robertson", "oregonator": "Oregonator",
+         "pollution": "pollution", "hires": "HIRES", "ring_modulator": "ring modulator",
+         "ring_of_48": "ring of 48 states"}
 # Problems without a panel, each with the reason.
 LEFT_OUT = {"bouncing_ball": "No panel for the bouncing ball:\nits flights are parabolas, which\n"
                              "every method integrates exactly,\nso that its errors do not\nfollow the tolerance."}
