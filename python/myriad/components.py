@@ -76,6 +76,15 @@ class Components:
             value(name)
         return values
 
+    def follows(self, name, others, given):
+        """Whether the default of a component depends on any of other components, or on "t", through defaults of others
+        that are not given."""
+        default = self.defaults.get(name)
+        if not isinstance(default, Node) or name in given:
+            return False
+        names = {"t" if symbol is sym.time else symbol.value[1] for symbol in symbols_of([default])}
+        return bool(names & set(others)) or any(self.follows(n, others, given) for n in names - {name})
+
     @staticmethod
     def _expression(expression, value, begin):
         """The value of a default that is an expression, if all that it depends on is known, else None."""

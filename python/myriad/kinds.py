@@ -10,8 +10,8 @@ from . import _core
 
 
 class Kind(NamedTuple):
-    """One kind: the name of its enumeration in C++, that of a model's attribute in Python, what messages call a
-    component, and what its values are."""
+    """One kind: its enumeration in C++, the model's attribute in Python, what messages call a component, whether its
+    values are integers, whether they can be recorded, and whether each instance has its own."""
 
     name: str
     plural: str

@@ -77,9 +77,10 @@ class Report:
 
 class Run(Mapping):
     """The results of one call of `solve`, a mapping from names to arrays. `run["x"]` is that of a sampled state, one
-    row per instance and one column per sample; of a recorded component, one column per phase; of others the value at
-    the end, or that of an input. Its length is the number of names, `size` that of the instances. Arrays are views of
-    the core's memory, not copies. Results of a GPU are copied to the host when they are first asked for."""
+    row per instance and one column per sample; of a recorded component, one column per phase; of others the
+    value at the end, or that of an input. Its length is the number of names; `size` is the number of instances.
+    Arrays are views of the core's memory, not copies. Results of a GPU are copied to the host when they are
+    first asked for."""
 
     def __init__(self, components: Components, ensemble: Any, report: Any, kernel: Any, sweep: Any,
                  inputs: dict[str, Any], recorded: dict[str, tuple[str, int]], sampled: dict[str, int], seconds: float,
@@ -246,22 +247,30 @@ class Run(Mapping):
     def _output(self, expression):
         """The values of an expression: at the samples, or where records are, or at the end."""
         place = self._place_of(expression)
+        times: Any
+        if place == "sample":
+            times, states = self.sample_times, self.samples
+            shape = times.shape
+        elif place == "phase":
+            times = next((self._records.records(*p) for p in self._recorded.values() if p == ("time", 0)), None)
+            states = self.records
+            shape = next(iter(states.values())).shape
+        else:
+            times, states, shape = self.t, self.states, (self.size,)
         known: dict[Any, Any] = {}
         for symbol in symbols_of([expression]):
             kind, name = symbol.value
             if symbol in self._components.constants:
                 known[symbol] = self._components.constants[symbol]
             elif symbol is time:
-                known[symbol] = self._times() if place else self.t
+                known[symbol] = times
             elif kind == "state":
-                known[symbol] = self[name] if place else self.states[name]
+                known[symbol] = states[name]
             elif kind == "parameter":
                 known[symbol] = self.parameters[name][:, None] if place else self.parameters[name]
             else:
                 known[symbol] = self.shared[name]
         result, = evaluate([expression], known)
-        columns = {"sample": self._sampled, "phase": self._recorded, None: None}[place]
-        shape = (self.size,) if columns is None else self[next(iter(columns))].shape
         return np.array(np.broadcast_to(result, shape))
 
     def _names(self):
@@ -382,6 +391,10 @@ class Run(Mapping):
         for name, array in {**self.states, **self.accessories}.items():
             if not long:
                 table[self._column(name)] = array
+        for name in self._components.outputs:
+            array = self[name]
+            if array.ndim == 2 or not long:
+                table[self._column(name)] = array.ravel()
         names = pandas.Categorical.from_codes(self.status, status_names)
         table["status"] = names.repeat(columns)
         frame = pandas.DataFrame(table)

@@ -117,7 +117,7 @@ class Study:
         """The core's name of a component."""
         if (of_time := _time_name(key)) is not None:
             return of_time
-        name = name_of(key)
+        name = self._components.aliases.get(name_of(key), name_of(key))
         if name in self._components.place:
             return f"{self._components.place[name][0]}.{name}"
         if name in ("t_begin", "t_end"):
@@ -215,16 +215,20 @@ class Study:
     @staticmethod
     def _defaults(components, constants, varying):
         """The values of components that are not given, as numbers."""
-        fixed = {name_of(k): v for k, v in constants.items() if _time_name(k) is None and not isinstance(v, Random)}
+        def component(key):
+            return components.aliases.get(name_of(key), name_of(key))
+
+        fixed = {component(k): v for k, v in constants.items() if _time_name(k) is None and not isinstance(v, Random)}
         begin = next((v for k, v in constants.items() if _time_name(k) == "t_begin"), 0.0)
-        unknown = {name_of(k): np.nan for k in varying if _time_name(k) is None}
-        known = components.completed({**fixed, **unknown}, np.nan if any(_time_name(k) for k in varying) else begin)
+        unknown = {component(k): np.nan for k in varying if _time_name(k) is None}
+        differ = {*unknown, *({"t"} if any(_time_name(k) == "t_begin" for k in varying) else ())}
+        known = components.completed({**fixed, **unknown}, begin)
         found = {n: v for n, v in known.items() if n in components.defaults and n not in components.tables}
-        for name, value in found.items():
-            if name not in unknown and value is not None and not np.isfinite(value):
+        for name in found:
+            if name not in fixed and name not in unknown and components.follows(name, differ, fixed):
                 raise Error(f"'{name}' follows from what differs between the instances of the study: give it in the "
                             "sweep or in start=, or use myriad.solve")
-        return {n: float(v) for n, v in found.items() if v is not None}
+        return {n: float(v) for n, v in found.items() if v is not None and n not in unknown}
 
     def _set_kept(self, made, components, keep, anything_else):
         if keep is None:

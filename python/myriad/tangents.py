@@ -59,6 +59,8 @@ class WithTangents(ComponentNames):
         mirror /= np.sqrt(sum(mirror * mirror))
         start = np.eye(n) - 2 * mirror[:, None] * mirror
         self.shared_values = getattr(model, "shared_values", {})
+        self.aliases, self.outputs = getattr(model, "aliases", {}), getattr(model, "outputs", {})
+        self.constants = getattr(model, "constants", {})
         self.defaults = {**getattr(model, "defaults", self.shared_values), "transient_phases": 0,
                          **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}
 

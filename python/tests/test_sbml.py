@@ -153,6 +153,24 @@ def test_a_study_takes_the_values_of_the_file():
         my.study(model, {"k": my.linspace(0.5, 1, 3)}, time=(0, 1), keep=["A"])
 
 
+def test_a_value_that_follows_from_an_axis_by_a_comparison_is_refused_in_a_study():
+    text = sbml_models.document([variable("x", 1), parameter("k", 1), parameter("high"), rate("x", "high"),
+                                 initially("high", "piecewise(1, k > 2, 0)")])
+    with pytest.raises(my.Error, match="'high' follows from what differs between the instances"):
+        my.study(my.read_sbml(text), {"k": my.linspace(1, 3, 3)}, time=(0, 1), keep=["x"])
+
+
+def test_outputs_at_samples_take_nothing_from_records():
+    text = sbml_models.document([variable("x", 1), rate("x", "2"), variable("twice"), always("twice", "2 * x + time")])
+    run = my.solve(my.read_sbml(text), time=(0, 1), samples=11, record=dict(states=["x"], time=True), interpreted=True)
+    np.testing.assert_allclose(run["twice"], 2 * run.samples["x"] + run.sample_times, rtol=1e-12)
+
+
+def test_tangents_keep_the_outputs_of_a_model():
+    run = my.solve(my.with_tangents(my.read_sbml(_decay)), time=(0, 1))
+    np.testing.assert_allclose(run["total"], run["A"] + run["B"])
+
+
 def test_without_libsbml_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "libsbml", None)
     with pytest.raises(my.Error, match="pip install python-libsbml"):

@@ -43,7 +43,7 @@ public:
     void release(std::int64_t chunk) { keeper_->release(chunk); }
     /// Whether all chunks are done.
     bool complete() { return keeper_->complete(); }
-    /// Instances whose chunks are done, by whichever process.
+    /// Instances whose chunks are done, by any process.
     std::int64_t instances_done() { return keeper_->instances_done(); }
 
     // For `any_study`.

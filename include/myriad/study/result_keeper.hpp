@@ -28,7 +28,7 @@ public:
     virtual bool complete() = 0;
     /// What may be wrong with what is there.
     virtual std::vector<std::string> warnings() const { return {}; }
-    /// Instances whose chunks are done, by whichever process.
+    /// Instances whose chunks are done, by any process.
     virtual std::int64_t instances_done() = 0;
     /// The results; the keeper need not outlive them.
     virtual std::shared_ptr<const results> kept() const = 0;

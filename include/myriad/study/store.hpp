@@ -74,7 +74,7 @@ struct damage {
 
 /// How much of a study is done.
 struct store_progress {
-    std::int64_t chunks = 0;                                          ///< done, by whichever process
+    std::int64_t chunks = 0;                                          ///< done, by any process
     std::int64_t all_chunks = 0;                                      ///< that there are
     std::int64_t instances = 0;                                       ///< in the chunks that are done
     std::int64_t all_instances = 0;                                   ///< that there are

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every change of sign between the points that are looked at is an event, whatever the function's size and however
-// long the steps; a tolerance says only how closely it is located. A function that touches zero has no event.
+// Every change of sign between the points where functions are evaluated is an event, whatever the function's size and
+// however long the steps; a tolerance says only how closely it is located. A function that touches zero has no event.
 #include "tests/catch.hpp"
 #include "tests/kernel/event/levels.hpp"
 #include "tests/kernel/event/logged_motions.hpp"

@@ -16,8 +16,8 @@ namespace myriad::detail {
 /// each step the one of least Markowitz count, (entries of its row - 1) (entries of its column - 1), among those left
 /// (Markowitz, Management Science 3, 1957, 255; Duff, Erisman and Reid, Direct Methods for Sparse Matrices, 7.2). Of
 /// several, the one that has to wait for the fewest steps before it: then many steps do not depend on each other, and a
-/// processor overlaps them. In a ring of 32 states 5 steps follow on each other instead of 16, and 28 instead of 122
-/// operations in a solve with a ring of 64.
+/// processor overlaps them. In a ring of 32 states the longest chain has 6 steps instead of 17; a solve with a ring of
+/// 64 has 28 instead of 122 operations in a row.
 template <int n>
 struct symbolic_lu {
     int pivot[n]{};          // the row and column that are eliminated in each step
