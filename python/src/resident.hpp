@@ -37,7 +37,7 @@ public:
 
     /// Copies to the host, unless that is done, what belongs into the ensemble's memory there, such as a component.
     void bring(const void* values, std::size_t bytes);
-    /// Copies all of every `stride`th instance to its place on the host.
+    /// Copies all of every `stride`th instance but its samples to its place on the host.
     void bring_every(std::int64_t stride) { engine_->fetch_every(call_->arguments, stride); }
     /// Whether nothing of what is kept between calls was brought besides the statuses.
     bool left_bookkeeping(const host::ensemble_data<R>& data) const;

@@ -69,11 +69,12 @@ public:
         });
         base::wait();
     }
-    /// Copies all of every `stride`th instance to its place in the arrays on the host.
+    /// Copies all of every `stride`th instance but its samples to its place in the arrays on the host.
     void fetch_every(const arguments& host, std::int64_t stride) {
         const current_device here(device_);
         arguments to = host;
-        walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access, array_kind) {
+        walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access, array_kind kind) {
+            if (kind == array_kind::samples) return;
             const std::size_t distance = bytes_of(target, stride);
             for (std::int64_t c = 0; c < components; ++c)
                 MYRIAD_CUDA(cudaMemcpy2DAsync(target + c * host.size, distance, source + c * count_, distance,
