@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A model whose file has functions of its own with the names of the library's internals, in CUDA kernels.
 //
-// limit: integrate_ensemble<strangely_named, runge_kutta_4> stack 176 spill 0
+// limit: integrate_ensemble<strangely_named, runge_kutta_4> stack 184 spill 32
 // limit: integrate_ensemble<strangely_named, cash_karp> stack 184 spill 32 registers 96
 
 #include <myriad/cuda/kernel.cuh>

@@ -17,7 +17,11 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class Method>
 inline constexpr bool costs_differ = is_adaptive<Method> || has_events<Model> || has_after_step<Model>;
 
-/// What the host asks of a kernel that is running: a `stop_request` in device memory, or null.
+/// What the host asks of a kernel that is running: a `stop_request` in device memory, or null. It is read out of line
+/// in kernels with adaptive steps or events: nvcc takes a loop whose end depends on a value in memory for one that
+/// waits for it, and yields in every turn. Beside a call, kernels of fixed steps without events would need more
+/// registers.
+template <bool out_of_line>
 class request_of_host {
 public:
     __device__ __forceinline__ explicit request_of_host(const std::uint32_t* stop) : stop_(stop) {}
@@ -43,11 +47,14 @@ private:
     __device__ __forceinline__ stop_request read() const {
         const std::uint32_t* stop = stop_;
         MYRIAD_OPTIMISATION_BARRIER(stop);  // else the address stays in registers through the loop
-        return read(stop);
+        if constexpr (out_of_line) {
+            return read_out_of_line(stop);
+        } else {
+            return read(stop);
+        }
     }
-    /// Out of line, as nvcc takes a loop whose end depends on a value in memory for one that waits for it, and yields
-    /// in every turn.
-    static __device__ __noinline__ stop_request read(const std::uint32_t* stop) {
+    static __device__ __noinline__ stop_request read_out_of_line(const std::uint32_t* stop) { return read(stop); }
+    static __device__ __forceinline__ stop_request read(const std::uint32_t* stop) {
         return stop != nullptr ? static_cast<stop_request>(*static_cast<const volatile std::uint32_t*>(stop))
                                : stop_request::none;
     }
@@ -57,7 +64,7 @@ private:
 };
 
 /// A thread's source of one instance, that of the thread's number.
-class own_instance : public request_of_host {
+class own_instance : public request_of_host<false> {
 public:
     __device__ __forceinline__ own_instance(const std::int64_t size, const std::uint32_t*, unsigned long long*,
                                             const std::uint32_t* stop)
@@ -79,7 +86,7 @@ private:
 };
 
 /// A source of that instance and, if there is a queue, of further ones from the queue.
-class queued_instances : public request_of_host {
+class queued_instances : public request_of_host<true> {
 public:
     __device__ __forceinline__ queued_instances(std::int64_t size, const std::uint32_t* order,
                                                 unsigned long long* queue, const std::uint32_t* stop)
