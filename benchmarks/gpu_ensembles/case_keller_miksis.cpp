@@ -20,7 +20,7 @@ benchmark_case keller_miksis_case() {
     return {.name = "keller_miksis",
             .work =
                 "64 phases tau in [0, 1] from (1, 0), t and step restarted in each, Cash-Karp, tolerances 1e-10, f1 = "
-                "logspace(20 kHz, 1000 kHz, N) at 1.5 bar, power and angles by exp2(y log2 x), sinpi and cospi",
+                "geomspace(20 kHz, 1000 kHz, N) at 1.5 bar, power and angles by exp2(y log2 x), sinpi and cospi",
             .error = "difference of 64 instances from the CPU backend after 1 phase, over max(1, |value|)",
             .allowed_error = 1e-7,
             .sizes = {8192, 46080},

@@ -12,7 +12,7 @@
 
 namespace gpu_ensembles {
 
-// Bubbles driven with 1.5 bar at f1 = logspace(20 kHz, 1000 kHz, N) and not driven at f2.
+// Bubbles driven with 1.5 bar at f1 = geomspace(20 kHz, 1000 kHz, N) and not driven at f2.
 inline void fill_bubbles(myriad::ensemble<keller_miksis>& instances) {
     using model = keller_miksis;
     const Eigen::ArrayXd logarithm =

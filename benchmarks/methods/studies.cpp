@@ -98,7 +98,7 @@ std::string wrong_reactions(const myriad::ensemble<robertson>& e, double toleran
 
 study<keller_miksis> keller_miksis_study() {
     return {.name = "keller_miksis",
-            .work = std::to_string(periods) + " periods from (1, 0), f1 = logspace(20 kHz, 1000 kHz, N) at 1.5 bar",
+            .work = std::to_string(periods) + " periods from (1, 0), f1 = geomspace(20 kHz, 1000 kHz, N) at 1.5 bar",
             .on_cpu = 1024,
             .on_gpu = 46080,
             .tolerances = six_to_twelve,

@@ -57,6 +57,11 @@ class Components:
         self.events = list(model.events)
         self.place = {name: (kind, number) for kind in kinds.valued for number, name in enumerate(self.names[kind])}
 
+    def component(self, key):
+        """The name of a component that is given by its symbol, its name, or another name of it."""
+        name = name_of(key)
+        return self.aliases.get(name, name)
+
     def completed(self, given, begin):
         """What is given by name, and the defaults of what is not: those that are expressions follow what is given."""
         values, under_way = dict(given), []
@@ -113,8 +118,7 @@ class Components:
         except TypeError:
             raise Error(f"{what}{chosen!r} names no components: give a list of them, as in {what}[x, v]") from None
         for key in chosen:
-            name = name_of(key)
-            name = self.aliases.get(name, name)
+            name = self.component(key)
             kind, number = self.place.get(name, (None, None))
             if kind not in found:
                 known = [n for n, (k, _) in self.place.items() if k in found]

@@ -70,7 +70,7 @@ def _gather(components, sweep, start, time, size):
     for source, values, allowed in (("the sweep", _sweep_values(sweep), None),
                                   ("start=", initial, kinds.recorded)):
         for name, value in values.items():
-            name = components.aliases.get(name, name)
+            name = components.component(name)
             kind = components.place.get(name, (None,))[0]
             if kind is None or (allowed is not None and kind not in allowed):
                 known = [n for n, (k, _) in components.place.items()

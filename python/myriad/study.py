@@ -117,7 +117,7 @@ class Study:
         """The core's name of a component."""
         if (of_time := _time_name(key)) is not None:
             return of_time
-        name = self._components.aliases.get(name_of(key), name_of(key))
+        name = self._components.component(key)
         if name in self._components.place:
             return f"{self._components.place[name][0]}.{name}"
         if name in ("t_begin", "t_end"):
@@ -215,12 +215,10 @@ class Study:
     @staticmethod
     def _defaults(components, constants, varying):
         """The values of components that are not given, as numbers."""
-        def component(key):
-            return components.aliases.get(name_of(key), name_of(key))
-
-        fixed = {component(k): v for k, v in constants.items() if _time_name(k) is None and not isinstance(v, Random)}
+        fixed = {components.component(k): v for k, v in constants.items()
+                 if _time_name(k) is None and not isinstance(v, Random)}
         begin = next((v for k, v in constants.items() if _time_name(k) == "t_begin"), 0.0)
-        unknown = {component(k): np.nan for k in varying if _time_name(k) is None}
+        unknown = {components.component(k): np.nan for k in varying if _time_name(k) is None}
         differ = {*unknown, *({"t"} if any(_time_name(k) == "t_begin" for k in varying) else ())}
         known = components.completed({**fixed, **unknown}, begin)
         found = {n: v for n, v in known.items() if n in components.defaults and n not in components.tables}

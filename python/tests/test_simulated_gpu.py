@@ -90,7 +90,7 @@ for size, more in ((3, {}), (100, dict(schedule="dynamic")), (1000, dict(phases=
 """)
 
 
-def test_notes_and_checks_of_a_call_are_missing_on_gpus(run):
+def test_a_gpu_has_the_notes_and_checks_of_a_cpu(run):
     run("""
 y, rate, s = my.state("y"), my.parameter("rate"), my.states(" ".join(f"s_{i}" for i in range(12)))
 one = my.model({y: rate * (my.sin(t) - y) + my.cos(t)})

@@ -47,7 +47,7 @@ benchmark_case keller_miksis_cash_karp() {
     return {.name = "keller_miksis_cash_karp",
             .work =
                 "4 phases tau in [0, 1], t and step restarted in each, tolerances 1e-10, one frequency f1 = "
-                "logspace(20 kHz, 1000 kHz, N) at 1.5 bar, start (1, 0), largest radius kept",
+                "geomspace(20 kHz, 1000 kHz, N) at 1.5 bar, start (1, 0), largest radius kept",
             .difference = "state after 1 phase (some instances are chaotic), against order 8 in long double at 1e-16",
             .allowed_difference = 1e-8,
             .tolerance = 1e-10,

@@ -132,8 +132,7 @@ constexpr int max_block_size() {
 }
 
 /// Blocks of that size that nvcc keeps registers for; with 0 as it finds best. Sparse factors and stages are more than
-/// registers hold, so that fewer threads with all of them are faster: rosenbrock_23 on 20 states 0.75 instead of 1.13
-/// ms, rodas_5p in single precision on 32 states 16.8 instead of 20.6 ms (NVIDIA H200).
+/// registers hold, so that fewer threads with more registers each are faster (docs/gpu.md).
 template <class Model, class Method>
 constexpr int least_blocks() {
     if constexpr (rosenbrock_method<Method>) {

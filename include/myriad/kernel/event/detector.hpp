@@ -29,7 +29,7 @@ struct event_detector {
         // A function has crossed if it was above zero and is below, or was below and is above.
         detected.crossed = ~(e.above ^ below);
         detected.to_locate = e.flags[e.in_question] | (detected.crossed & (sides.asked() | ~e.left)).any_of();
-        // Without a branch in one lane, for which nearly every step would pay more than these comparisons.
+        // A single lane has no branch here: in every step it would cost more than these comparisons.
         if (!is_pack<S> || any(sides.s.final_step)) {
             masks far;
             far.clear();
@@ -39,8 +39,8 @@ struct event_detector {
         }
         return detected;
     }
-    /// Functions that have crossed in accepted trials of these lanes, in which only those events fired that are in
-    /// `located`, are on their other side.
+    /// Puts the functions that have crossed in the accepted trials of these lanes on their other side, but for those
+    /// whose events were just located.
     MYRIAD_FUNCTION void change_sides(const mask& lanes, const detection& detected, const masks& located) const {
         masks crossed = detected.crossed.in(lanes);
         // A function whose event was just located, maybe past zero, changes its side after the event's action.

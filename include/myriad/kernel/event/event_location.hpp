@@ -99,8 +99,7 @@ struct event_location {
 
     /// The event to which the step was redone is reached.
     MYRIAD_FUNCTION void end(int i) const {
-        sides.memory_of(i).locating = false;
-        sides.update_in_question(i);
+        give_up(i);
         stepping<Model, Method, S>{sides.args, sides.s}.resume(i, sides.memory_of(i).redo.resume);
     }
     /// A redone step that failed its error test is not redone: the controller sets the length of the next.

@@ -44,7 +44,7 @@ struct side_resolver {
             const kept_side kind = kept.kind();
             const bool fired = kind == kept_side::fired, keeps = fired || kind == kept_side::within;
             const R tolerance = max(args.event[j].tolerance, rounding[j]);
-            // An event is located only as closely as the time resolves, and that may have started anew.
+            // An event is located only as closely as t resolves, and t may have started anew since.
             const R band = fired ? max(tolerance, kept.template value_bound<R>()) : keeps ? tolerance : rounding[j];
             const bool beyond = abs(g[j]) > band;
             undefined = undefined || g[j] != g[j];
