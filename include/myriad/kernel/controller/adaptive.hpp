@@ -57,13 +57,14 @@ struct adaptive_stepping {
     MYRIAD_FUNCTION void resume(int i, R h) { set_lane(s.data.h_next, i, h); }
     MYRIAD_FUNCTION R time(int i) const { return get_lane(s.data.t, i); }
 
-    /// The next step of every lane: the proposed one, or the rest of the domain. A step that falls short of t_end by
-    /// less than 1/1024 of itself is stretched, so that no sliver remains; its error is tested as usual. The state
-    /// advances by exactly the same step as t; otherwise the difference would accumulate.
-    MYRIAD_FUNCTION void propose() {
+    /// The next step of every lane: the proposed one, or the rest of the domain; the former in lanes that are
+    /// `locating` an event before that. A step that falls short of t_end by less than 1/1024 of itself is stretched, so
+    /// that no sliver remains; its error is tested as usual. The state advances by exactly the same step as t;
+    /// otherwise the difference would accumulate.
+    MYRIAD_FUNCTION void propose(const mask& locating) {
         S remaining = s.data.t_end - s.data.t;
         if constexpr (keeps_low) remaining = remaining - s.steps.time_low;
-        s.final_step = abs(remaining) <= abs(s.data.h_next) * S(R(1 + 1.0 / 1024));
+        s.final_step = (abs(remaining) <= abs(s.data.h_next) * S(R(1 + 1.0 / 1024))) & !locating;
         S h = copysign(s.data.h_next, remaining);
         if constexpr (!keeps_low) h = (s.data.t + h) - s.data.t;
         s.h = select(s.final_step, remaining, h);
@@ -79,11 +80,10 @@ struct adaptive_stepping {
     /// largest ratio of error to tolerance and p the order of the error estimate, within the options' limits (Hairer,
     /// Norsett, Wanner, Solving ODE I, II.4, eq. (4.13)); or by the controller chosen with `controlled`. Lanes whose
     /// trial is not finite (or not `valid`, or singular) are rejected with the smallest factor. Lanes rejected at the
-    /// minimum step are stuck; so are those whose step does not advance t (it ends, at `t1`, where it began), as far as
-    /// `may_stick` lets them.
-    template <class MayStick>
+    /// minimum step are stuck; so are those whose step does not advance t (it ends, at `t1`, where it began).
+    template <class EndStuck>
     MYRIAD_FUNCTION step_decision<S> judge(const trial_step<Method, S, n>& trial, const S& t1, mask valid,
-                                           MayStick&& may_stick) {
+                                           EndStuck&& end_stuck) {
         if constexpr (solves_linear_systems<Method>) valid = valid & !trial.singular;
         error_norm<S> error = detail::scaled_error<Model, Method>(args, s.data.y, s.h, trial);
         if constexpr (scales_tolerances<Method>)
@@ -114,17 +114,16 @@ struct adaptive_stepping {
         S next = s.h * S(factor);
         const S minimum = S(args.minimum_step), maximum = S(args.maximum_step);
         const mask ends = accepted & (t1 == s.data.t_end);
-        mask still = s.running() & (t1 == s.data.t);
-        if (MYRIAD_UNLIKELY(any(ends | still | (s.running() & !clearly_between(minimum, next, maximum))))) {
+        const mask still = s.running() & (t1 == s.data.t);
+        // One branch for all that is rare.
+        if (MYRIAD_UNLIKELY(any(ends | still | stuck | (s.running() & !clearly_between(minimum, next, maximum))))) {
             S size = limited(abs(next), minimum, maximum);
             // A step cut short by the end of the domain says little about the step size to continue with.
             size = select(ends, larger(size, abs(s.data.h_next)), size);
             next = copysign(size, s.h);
-            still = may_stick(still);
-            accepted = accepted & !still;
-            stuck = stuck | still;
+            accepted = accepted & !end_stuck(stuck, still);
         }
-        return {accepted, next, stuck};
+        return {accepted, next};
     }
     /// Why the trial of lane i, which is stuck, failed.
     MYRIAD_FUNCTION status failure_of(int i) const {

@@ -51,7 +51,7 @@ struct fixed_stepping {
         lay(i, t);
     }
 
-    MYRIAD_FUNCTION void resume(int, R) {}
+    MYRIAD_FUNCTION void resume(int i, R) { set_lane(s.data.h_next, i, get_lane(s.steps.step, i)); }
     /// Time of lane i's committed state, exactly t_end after the last step. For rare use: it reads the ensemble's
     /// array, so that models whose right-hand side does not depend on time keep no time in registers.
     MYRIAD_FUNCTION R time(int i) const {
@@ -59,10 +59,11 @@ struct fixed_stepping {
         return fma(static_cast<R>(get_lane(s.steps.done, i)), get_lane(s.steps.step, i), args.t[s.instance[i]]);
     }
 
-    /// The next step of every lane: the fixed one, or the rest of the domain.
-    MYRIAD_FUNCTION void propose() {
-        s.final_step = s.steps.left <= count(1);
-        s.h = s.steps.step;
+    /// The next step of every lane: the fixed one, or the rest of the domain; that of event location in lanes that are
+    /// `locating`.
+    MYRIAD_FUNCTION void propose(const mask& locating) {
+        s.final_step = (s.steps.left <= count(1)) & !locating;
+        s.h = has_events<Model> ? select(locating, s.data.h_next, s.steps.step) : s.steps.step;
         if (MYRIAD_UNLIKELY(any(s.final_step))) {
             for_each_lane(s.running() & s.final_step, [&](int i) MYRIAD_LAMBDA {
                 R beyond = detail::elapsed_beyond(args.t[s.instance[i]], domain_end(i),
@@ -83,12 +84,13 @@ struct fixed_stepping {
         return select(s.final_step, s.data.t_end, t1);
     }
 
-    template <class MayStick>
+    template <class EndStuck>
     MYRIAD_FUNCTION step_decision<S> judge(const trial_step<Method, S, n>& trial, const S&, const mask& valid,
-                                           MayStick&&) const {
-        const mask finite = valid & all_finite(trial.y);
-        const mask accepted = s.running() & finite, failed = s.running() & !finite;
-        return {accepted, s.data.h_next, failed};
+                                           EndStuck&& end_stuck) const {
+        const mask finite = valid & all_finite(trial.y), failed = s.running() & !finite;
+        if (MYRIAD_UNLIKELY(any(failed))) end_stuck(failed, mask(false));
+        const mask accepted = s.running() & finite;
+        return {accepted, s.data.h_next};
     }
     MYRIAD_FUNCTION status failure_of(int) const { return status::not_finite; }
 

@@ -11,7 +11,6 @@ template <class S>
 struct step_decision {
     mask_of<S> accepted;  // the others are rejected
     S next;               // length of the next trial, signed; fixed steps keep theirs
-    mask_of<S> stuck;     // rejected lanes whose step cannot get shorter: their phase fails
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -14,10 +14,12 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 ///     load(i), store(i)              what an instance keeps between phases and calls
 ///     choose_step(i, phase)          the step that `initialise` sees
 ///     begin(i, t)                    a phase of lane i begins at t, after `initialise`
-///     propose()                      the next trial: s.h, s.final_step
+///     propose(locating)              the next trial: s.h, s.final_step; `locating`: redone, to end at an event
 ///     end_time()                     the time at which it ends
-///     judge(trial, t1, valid, may_stick)
-///                                    accepts or rejects the trial: a `step_decision`, which the loop carries out
+///     judge(trial, t1, valid, end_stuck)
+///                                    accepts or rejects the trial: a `step_decision`, which the loop carries out;
+///                                    `end_stuck(failed, still)` ends the lanes that failed at their shortest step and,
+///                                    of those whose step does not advance t, the ones that it returns
 ///     failure_of(i)                  the status of lane i, if it is stuck
 ///     advance(accepted, t1, at_event)
 ///                                    advances time in accepted lanes; sets s.ended at the phase's end

@@ -49,13 +49,23 @@ struct event_driver {
         for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA { tracker{sides()}.begin(i); });
     }
     /// Stores the sides of lane i for its next phase.
-    MYRIAD_FUNCTION void store(int i) { tracker{sides()}.store(i); }
+    MYRIAD_FUNCTION void store(int i) {
+        if (e.flags.get(e.locating, i)) event_location<Model, Method, S>{sides()}.end(i);
+        tracker{sides()}.store(i);
+    }
     /// Makes the next phase of lane i begin with all sides unknown.
     MYRIAD_FUNCTION void reset(int i) { tracker{sides()}.reset(i); }
 
     // Trial steps
-    /// Sets the length of the next trial in lanes that redo their step.
-    MYRIAD_FUNCTION void propose_step() { locator{sides()}.propose_step(); }
+    /// The lanes that redo their step, to end at an event. They may not be ended if their step does not advance t: a
+    /// flight between events may be shorter than the resolution of t.
+    MYRIAD_FUNCTION mask locating() const {
+        if constexpr (m > 0) {
+            return e.flags[e.locating];
+        } else {
+            return mask(false);
+        }
+    }
     /// What the event functions g1 at the end of a trial show, whether it will be accepted or not.
     MYRIAD_FUNCTION detection detect(const values& g1) { return detector{sides()}.detect(g1); }
     /// Whether the location of an event begins with this trial, rather than goes on.
@@ -69,8 +79,6 @@ struct event_driver {
         for (int j = 0; j < m; ++j) lanes = lanes & (detected.g1[j] == detected.g1[j]);
         return lanes;
     }
-    /// Those of the lanes that may be ended if their step does not advance t.
-    MYRIAD_FUNCTION mask may_stick(const mask& lanes) { return locator{sides()}.may_stick(lanes); }
 
     /// Locates events in accepted trials that end at t1. Lanes that crossed, or stopped short of their target, are set
     /// up for a redone step and removed from `accepted`. `fired` then holds the events that fired: at the end of the

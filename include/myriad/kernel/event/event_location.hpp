@@ -58,7 +58,7 @@ struct event_location {
         auto& s = sides.s;
         auto& own = sides.memory_of(i);
         auto& redo = own.redo;
-        const bool again = own.locating;
+        const bool again = sides.is_locating(i);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= near.band(j);
@@ -82,11 +82,9 @@ struct event_location {
         } else {
             redo.begin(step.h, guess, get_lane(s.data.h_next, i));
         }
+        if (redo.length != R(0)) return redo_step(i);
         add_to_count(s.located, i);
-        const bool here = redo.length == R(0);
-        own.locating = !here;
-        sides.update_in_question(i);
-        if (!here) return;
+        give_up(i);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool close = abs(step.g[j]) <= max(redo.tolerance[j], near.floor(j));
@@ -97,6 +95,13 @@ struct event_location {
         stepping<Model, Method, S>{args, s}.resume(i, redo.resume);
     }
 
+    /// The next trial has the length that `redo` says.
+    MYRIAD_FUNCTION void redo_step(int i) const {
+        add_to_count(sides.s.located, i);
+        set_lane(sides.s.data.h_next, i, sides.memory_of(i).redo.length);
+        sides.e.flags.set(sides.e.locating, i, true);
+        sides.e.flags.set(sides.e.in_question, i, true);
+    }
     /// The event to which the step was redone is reached.
     MYRIAD_FUNCTION void end(int i) const {
         give_up(i);
@@ -104,7 +109,7 @@ struct event_location {
     }
     /// A redone step that failed its error test is not redone: the controller sets the length of the next.
     MYRIAD_FUNCTION void give_up(int i) const {
-        sides.memory_of(i).locating = false;
+        sides.e.flags.set(sides.e.locating, i, false);
         sides.update_in_question(i);
     }
 };

@@ -15,7 +15,6 @@ struct event_memory {
     using flags = mask_set<bool, n_event<Model>>;
     redone_step<R, n_event<Model>> redo;
     event_nearness<R, n_event<Model>> near;  // of the trial in which events are located
-    bool locating;                           // the next trial is redone, to end at an event
     flags open;                              // on the surface, side not yet known
     flags held;                              // so, unless the state was moved: then it is the side noted
     flags fired_last;                        // the event fired where the last phase ended
@@ -29,7 +28,6 @@ struct event_memory {
     /// As at the start of a phase in which no function is on its surface or at a jump.
     MYRIAD_FUNCTION void clear() {
         redo.clear();
-        locating = false;
         open.clear(), held.clear(), fired_last.clear(), fresh.clear(), on_jump.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < n_event<Model>; ++j) lingered[j] = 0;

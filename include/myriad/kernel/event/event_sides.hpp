@@ -63,6 +63,7 @@ struct event_sides {
     using masks = mask_set<mask, n_event<Model>>;
     enum lane_flag {
         in_question,  // every trial has to go to the locator: event_memory says why
+        locating,     // the next trial is redone, to end at an event
         undefined,    // a function is NaN at the committed state
         kept_plain,   // the last phase of the instance has kept all functions as beyond zero, or a hook has moved them
         lane_flags

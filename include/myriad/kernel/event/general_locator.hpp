@@ -29,6 +29,7 @@ struct general_locator {
         step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
         near.roundings = step.roundings();
         resolver{sides}.resolve_open_sides(i, step, near.roundings);
+        const bool locating = sides.is_locating(i);
         reals side;
         flags crossed;
         crossed.clear();
@@ -37,10 +38,10 @@ struct general_locator {
             side[j] = sides.side_of(j, i);
             // Only as far as it was on the other side at the start may a function be there without having crossed.
             const R start = own.on_jump[j] ? R(0) : -side[j] * step.g[j];
-            const R tolerance = own.locating ? own.redo.tolerance[j] : sides.args.event[j].tolerance;
+            const R tolerance = locating ? own.redo.tolerance[j] : sides.args.event[j].tolerance;
             near.floors[j] = max(near.roundings[j], start);
             near.bands[j] = max(tolerance, near.floors[j]);
-            const bool located = own.locating && (own.redo.target == j || own.redo.crossed[j]);
+            const bool located = locating && (own.redo.target == j || own.redo.crossed[j]);
             near.pasts[j] = located ? near.bands[j] : near.floors[j];
             crossed.set(j, sides.crosses(j, side[j], step.g1[j], near.past(j)) && !sides.is_at_jump(j, i, step.h));
         }
@@ -50,7 +51,6 @@ struct general_locator {
             part.scanned = true;
             crossed = scan(i, step, side, part);
         }
-        const bool locating = own.locating;
         const bool is_last = get_lane(sides.s.final_step, i) && ends_near_root(i, step);
         arrival reached{};
         if (locating) {
@@ -189,7 +189,7 @@ private:
                 further = abs(reached.gap) <= reached.band && redo.improve(step.h, guess, reached.gap > R(0));
             }
             if (further) {
-                add_to_count(sides.s.located, i);
+                location{sides}.redo_step(i);
                 return trial_outcome::is_redone;
             }
         }

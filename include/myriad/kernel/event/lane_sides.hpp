@@ -62,10 +62,12 @@ struct lane_sides {
         memory_of(i).held.set(j, false);
         e.above.set(j, i, side > R(0));
     }
+    /// Whether the next trial of lane i is redone, to end at an event.
+    MYRIAD_FUNCTION bool is_locating(int i) const { return e.flags.get(e.locating, i); }
     /// Sets whether the next trial of lane i has to go to the locator. To be called after what decides it changed.
     MYRIAD_FUNCTION void update_in_question(int i) const {
         const auto& own = memory_of(i);
-        e.flags.set(e.in_question, i, own.locating || (own.open | own.on_jump).any_of() || args.sub_samples > 1);
+        e.flags.set(e.in_question, i, is_locating(i) || (own.open | own.on_jump).any_of() || args.sub_samples > 1);
     }
 
     /// The crossings that are events, from where the functions are.

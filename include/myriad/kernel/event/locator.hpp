@@ -27,27 +27,6 @@ struct event_locator {
 
     lane_sides<Model, Method, S> sides;
 
-    /// Sets the length of the next trial in lanes that redo their step.
-    MYRIAD_FUNCTION void propose_step() const {
-        auto& s = sides.s;
-        const mask in_question = sides.e.flags[sides.e.in_question];
-        if (!MYRIAD_UNLIKELY(any(in_question))) return;
-        for_each_lane(in_question, [&](int i) MYRIAD_LAMBDA {
-            const auto& own = sides.memory_of(i);
-            if (!own.locating) return;
-            set_lane(s.h, i, own.redo.length);
-            set_lane(s.final_step, i, false);
-        });
-    }
-    /// Those of the lanes that may be ended if their step does not advance t: a flight between events may be shorter
-    /// than the resolution of t.
-    MYRIAD_FUNCTION mask may_stick(mask lanes) const {
-        for_each_lane(lanes & sides.e.flags[sides.e.in_question], [&](int i) MYRIAD_LAMBDA {
-            if (sides.memory_of(i).locating) set_lane(lanes, i, false);
-        });
-        return lanes;
-    }
-
     /// Checks the trial of one lane in which an event may have fired.
     MYRIAD_FUNCTION trial_outcome locate(int i, const trial_ends<Model, S>& ends, const event_detection<S, m>& detected,
                                          fired& events) const {
@@ -67,6 +46,7 @@ struct event_locator {
             // Not the pack's values, which may round differently from those they are compared with.
             step.g1 = detail::evaluate_events<Model>(step.t1, step.y1, p);
         }
+        if (leaves_plainly(i, step)) return trial_outcome::stands;
         return general_locator<Model, Method, S>{sides}.locate(i, step, ends, events);
     }
 
@@ -84,6 +64,40 @@ struct event_locator {
     }
 
 private:
+    /// Whether a trial does what nearly all do that begin on a surface where the last phase ended: it leaves, as the
+    /// slopes at its start show, and no other function has crossed. If so, sets the sides at its end. That can be told
+    /// without rounding errors, too, if tolerances were given.
+    MYRIAD_FUNCTION bool leaves_plainly(int i, const ends_of_step& step) const {
+        auto& e = sides.e;
+        auto& own = sides.memory_of(i);
+        if (!(own.held & own.open).any_of() || sides.is_locating(i) || own.on_jump.any_of() ||
+            sides.args.sub_samples > 1)
+            return false;
+        const reals slope = step.slopes();
+        flags above = e.above.of_lane(i);
+        bool plain = !sides.is_timeless(i, step.h);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const R tolerance = sides.args.event[j].tolerance, g = step.g1[j], first = slope[j] * step.h;
+            plain = plain && tolerance > R(0) && abs(g) > tolerance;
+            if (own.open[j]) {
+                plain = plain && own.held[j];
+                if (own.fired_last[j]) {
+                    plain = plain && abs(first) > tolerance;
+                    above.set(j, first > R(0));
+                }
+            }
+            plain = plain && above[j] == (g > R(0));
+        }
+        if (!plain) return false;
+        e.above.set_of_lane(i, above);
+        e.left.set_of_lane(i, flags::all_in(true));
+        own.open.clear();
+        own.held.clear();
+        own.fresh.clear();
+        sides.update_in_question(i);
+        return true;
+    }
     /// Whether a trial does what nearly all do that come here: one function, of those in `crossed`, has crossed, or
     /// the step ends close to its event. That can be told without the rounding errors of the event functions if these
     /// are smaller than tolerances that were given: every function has a side and is beyond its tolerance, or at the
@@ -97,7 +111,7 @@ private:
             const R tolerance = sides.args.event[j].tolerance, g = abs(step.g1[j]);
             const bool left = sides.e.left.get(j, i), stays = (step.g1[j] > R(0)) == sides.e.above.get(j, i);
             const bool is_target = own.redo.target == j;
-            const bool here = own.locating && is_target && left && g <= R(arrival_part) * own.redo.tolerance[j];
+            const bool here = sides.is_locating(i) && is_target && left && g <= R(arrival_part) * own.redo.tolerance[j];
             plain = plain && tolerance > R(0) && (here || (g > tolerance && (left || stays)));
             arrives = arrives || here;
             others = others || !left || (!is_target && own.redo.crossed[j]);

@@ -33,6 +33,7 @@ struct side_tracker {
         e.above.set_of_lane(i, ~negative(g));
         e.left.set_of_lane(i, flags::all_in(true));
         e.flags.set(e.undefined, i, false);
+        e.flags.set(e.locating, i, false);
         e.flags.set(e.in_question, i, sides.args.sub_samples > 1);
         bool clear = sides.are_beyond_tolerances(g);
         if (!e.flags.get(e.kept_plain, i)) {

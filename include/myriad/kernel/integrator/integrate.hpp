@@ -58,17 +58,16 @@ struct integrator {
             ++s.iteration;
             const step_decision<S> decided = judge(trial, detected, events);
             mask accepted = decided.accepted;
+            // A single lane has no branch here: in every step it would cost more than this addition.
+            s.rejected = count_where(s.running() & !accepted, s.rejected);
             if constexpr (has_events<Model>) events.locate(trial, end_time(), detected, accepted);
             if constexpr (samples)
                 sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted, events.fired_lanes());
             mask summarised;
             if constexpr (has_summaries<Model>)
                 summarised = summariser<Model, Method, S>{s}.summarise(trial, end_time(), accepted);
-            if constexpr (is_pack<S>) {
-                reject(decided);
-            } else if (!accepted) {
-                reject(decided);
-                if (!events.fired_lanes()) continue;
+            if constexpr (!is_pack<S>) {
+                if (!accepted && !events.fired_lanes()) continue;
             }
             commit(trial, accepted, events);
             hook_driver<Model, Method, S> hooks{args, s, events};
@@ -120,8 +119,7 @@ struct integrator {
 
     /// The length of the next trial and the slope at its start.
     MYRIAD_FUNCTION void propose_step(event_driver_type& events) {
-        stepping_type{args, s}.propose();
-        if constexpr (has_events<Model>) events.propose_step();
+        stepping_type{args, s}.propose(events.locating());
         s.slopes.prepare(s.now(), s.data, s.extra_evaluations);
     }
 
@@ -142,29 +140,21 @@ struct integrator {
         }
     }
 
-    /// Accepts or rejects the trial by its error and its finiteness, and sets the next step.
+    /// Accepts or rejects the trial by its error and its finiteness, and sets the next step. Ends lanes that are stuck.
     MYRIAD_FUNCTION step_decision<S> judge(const trial_type& trial, const detection_type& detected,
                                            event_driver_type& events) {
         s.slopes.invalidate_end();
         stepping_type steps{args, s};
         mask defined = mask(true);
         if constexpr (has_events<Model>) defined = events.defined(detected);
-        const step_decision<S> decided = steps.judge(trial, end_time(), defined, [&](const mask& lanes) MYRIAD_LAMBDA {
-            if constexpr (has_events<Model>) {
-                return events.may_stick(lanes);
-            } else {
-                return lanes;
-            }
-        });
+        const auto end_stuck = [&](const mask& failed, mask still) MYRIAD_LAMBDA {
+            still = still & !events.locating();
+            for_each_lane(failed | still, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, steps.failure_of(i)); });
+            return still;
+        };
+        const step_decision<S> decided = steps.judge(trial, end_time(), defined, end_stuck);
         if constexpr (is_adaptive<Method>) s.data.h_next = select(s.running(), decided.next, s.data.h_next);
         return decided;
-    }
-    /// Counts the lanes that step-size control has rejected, and ends those that are stuck.
-    MYRIAD_FUNCTION void reject(const step_decision<S>& decided) {
-        const mask rejected = s.running() & !decided.accepted;
-        if (!any(rejected)) return;
-        s.rejected = count_where(rejected, s.rejected);
-        for_each_lane(decided.stuck, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, stepping_type{args, s}.failure_of(i)); });
     }
 
     /// Commits the new state of the accepted lanes.
