@@ -16,6 +16,9 @@ void check_count(const char* name, std::int64_t value, std::int64_t least, std::
 
 namespace {
 
+/// Fixed steps are counted in the state's real type, exact up to its mantissa.
+std::int64_t most_steps(int digits) { return digits > 31 ? 2'000'000'000 : 16'000'000; }
+
 void check_tolerance_count(const char* name, const per_component& t, std::size_t components) {
     require(t.size() == 1 || t.size() == components, named_option(name), " has ", t.size(),
             " values, but the model has ", components, " state components: give one value for all, or one for each");
@@ -151,6 +154,12 @@ void option_limits::check_kept(const char* key, double value, const char* name) 
             ", which is infinite in single precision: give a smaller value or ",
             phrase("use_doubles", "use an ensemble of doubles"));
 }
+std::int64_t step_limit(const options& o, bool adaptive, int digits) {
+    // One that a few instances of a large ensemble may reach without holding up the call for minutes.
+    constexpr std::int64_t adaptive_steps = 200'000;
+    return o.max_steps > 0 ? o.max_steps : adaptive ? adaptive_steps : most_steps(digits);
+}
+
 void option_limits::check(const options& o) const {
     require(computes_as_written(), "the library ", not_as_written);
     check_each(*this, o, "");
@@ -199,8 +208,7 @@ void option_limits::check(const options& o) const {
             named_option("maximum_step"), " ", o.maximum_step, ": no step size is left; exchange them");
     require(static_cast<float>(o.shrink_limit) < 1, named_option("shrink_limit"), " is ", o.shrink_limit,
             ", which is 1 in single precision, that of step-size control: give a smaller value, such as 0.1");
-    // Fixed steps are counted in the state's real type, exact up to its mantissa.
-    check_count("max_steps", o.max_steps, 1, digits > 31 ? 2'000'000'000 : 16'000'000);
+    if (o.max_steps != 0) check_count("max_steps", o.max_steps, 1, most_steps(digits));
     require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), named_option("events"), " has ",
             o.events.size(), " entries, but the model has ", n_event,
             " event functions: give one entry for each, or none for defaults");

@@ -15,6 +15,7 @@
 
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/core/error.hpp"
+#include "myriad/host/options/option_checks.hpp"
 #include "myriad/host/threads/parallel.hpp"
 
 namespace myriad {
@@ -218,10 +219,11 @@ void note_ended(report_of<R>& r, const ensemble_data<R>& e, std::int64_t count) 
 
 // Without numbers of instances, which the report has, so that parts of a study say the same.
 template <class R>
-void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::int64_t count) {
+void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, const call_facts& facts,
+                   std::int64_t count) {
     const auto any = [&](status s) { return r.by_status[static_cast<std::size_t>(s)] > 0; };
     if (any(status::max_steps))
-        r.notes.push_back(message("max_steps: ", o.max_steps,
+        r.notes.push_back(message("max_steps: ", step_limit(o, facts.adaptive(), std::numeric_limits<R>::digits),
                                   " trial steps did not take an instance to the end of its phase: raise max_steps, or "
                                   "look at why the steps are so short"));
     if (any(status::interrupted) && o.time_limit > 0)
@@ -268,13 +270,15 @@ template work_count counted_work(const ensemble_data<double>&, std::int64_t, std
 template void add_summary(const ensemble_data<double>&, report_of<double>&, std::int64_t, std::int64_t);
 template void summarise(const ensemble_data<double>&, report_of<double>&, std::int64_t);
 template void note_ended(report_of<double>&, const ensemble_data<double>&, std::int64_t);
-template void note_failures(report_of<double>&, const ensemble_data<double>&, const options&, std::int64_t);
+template void note_failures(report_of<double>&, const ensemble_data<double>&, const options&, const call_facts&,
+                            std::int64_t);
 template void note_raised_tolerances(report_of<double>&, const options&);
 template work_count counted_work(const ensemble_data<float>&, std::int64_t, std::int64_t);
 template void add_summary(const ensemble_data<float>&, report_of<float>&, std::int64_t, std::int64_t);
 template void summarise(const ensemble_data<float>&, report_of<float>&, std::int64_t);
 template void note_ended(report_of<float>&, const ensemble_data<float>&, std::int64_t);
-template void note_failures(report_of<float>&, const ensemble_data<float>&, const options&, std::int64_t);
+template void note_failures(report_of<float>&, const ensemble_data<float>&, const options&, const call_facts&,
+                            std::int64_t);
 template void note_raised_tolerances(report_of<float>&, const options&);
 
 }  // namespace host::inline MYRIAD_ABI

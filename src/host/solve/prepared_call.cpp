@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/host/options/option_checks.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 
@@ -65,7 +66,7 @@ void prepared_call<R>::fill_options(const options& o, const call_facts& facts) {
     a.phases_per_time = o.phase_length > 0 ? R(1) / a.phase_length : R(0);
     a.carry_time = o.phase_time == phase_time::carry_on || o.phase_length > 0;
     a.carry_step = o.phase_step == phase_step::carry_on;
-    a.max_steps = static_cast<std::int32_t>(o.max_steps);
+    a.max_steps = static_cast<std::int32_t>(step_limit(o, facts.adaptive(), std::numeric_limits<R>::digits));
     a.step = static_cast<R>(std::isnan(o.step) ? 1e-2 : o.step);
     a.minimum_step = static_cast<R>(o.minimum_step);
     a.maximum_step = static_cast<R>(o.maximum_step);

@@ -208,7 +208,7 @@ void solve_call<R>::integrate(report_of<R>& result) {
     }
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     note_ended(result, instances, instances.size);
-    note_failures(result, instances, o, instances.size);
+    note_failures(result, instances, o, model_.facts, instances.size);
     instances.remember_ended();
     if (relay.failure) std::rethrow_exception(relay.failure);
     result.device = where.name();

@@ -380,9 +380,6 @@ TEST_CASE("counts that are not positive, or that no kernel can count to, are ref
         o.phases = bad;
         options_refused(o, {"phases is ", "must be from 1 to"});
         o = {};
-        o.max_steps = bad;
-        options_refused(o, {"max_steps is ", "must be from 1 to"});
-        o = {};
         o.sub_samples = bad;
         options_refused(o, {"sub_samples is ", "must be from 1 to"});
         o = {};
@@ -391,6 +388,9 @@ TEST_CASE("counts that are not positive, or that no kernel can count to, are ref
     }
     for (const std::int64_t bad : {std::int64_t{-1}, huge}) {
         options o;
+        o.max_steps = bad;
+        options_refused(o, {"max_steps is ", "must be from 1 to"});
+        o = {};
         o.events.resize(1);
         o.events[0].stop_after = bad;
         auto e = good_oscillators();

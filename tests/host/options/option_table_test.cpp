@@ -129,8 +129,8 @@ TEST_CASE("the rows of the table of options are what readers need: each once, wi
     const auto row = [&](const std::string& name) {
         return *std::find_if(rows.begin(), rows.end(), [&](const option_row& r) { return r.name == name; });
     };
-    CHECK(row("max_steps").initial == "1000000");
-    CHECK(row("max_steps").range == "[1, 2000000000]");
+    CHECK(row("max_steps").initial == "0");
+    CHECK(row("max_steps").range == "0 or [1, 2000000000]");
     CHECK(row("max_steps").type == "whole number");
     CHECK(row("step").initial == "");
     CHECK(row("step").range == "(0, inf)");

@@ -37,6 +37,9 @@ inline constexpr model_components components_of{
 #undef MYRIAD_LIST_KIND
 };
 
+/// The trial steps that a phase may take, with a real type of so many digits.
+std::int64_t step_limit(const options& o, bool adaptive, int digits);
+
 /// The properties of a model, a method and a real type that the options must fit.
 struct option_limits {
     const model_components& components;

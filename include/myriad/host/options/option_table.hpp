@@ -215,8 +215,9 @@ struct option_table<options> {
         option_entry{"shrink_limit", &o::shrink_limit, results, "", between(0, 1),
                      "smallest factor from one step to the next",
                      "give the smallest factor from one step to the next, such as 0.1"},
-        option_entry{"max_steps", &o::max_steps, results, "", from_to(1, 2e9),
-                     "trial steps per phase; an instance that needs more ends as `max_steps`"},
+        option_entry{"max_steps", &o::max_steps, results, "", zero_or(from_to(1, 2e9)),
+                     "trial steps per phase; an instance that needs more ends as `max_steps`; 0: 200 000 adaptive "
+                     "steps, or as many fixed ones as it takes"},
         option_entry{"time_limit", &o::time_limit, call, "seconds", from_to(0, infinite),
                      "time from the beginning of the call after which what is left ends as `interrupted`: instances "
                      "under way where they are, the others as they were; 0: no limit",

@@ -124,9 +124,11 @@ struct options {
     double step = std::numeric_limits<double>::quiet_NaN();
     double minimum_step = 0;                                        ///< smallest step size; 0: the resolution of t
     double maximum_step = std::numeric_limits<double>::infinity();  ///< largest step size; infinity: no limit
-    double growth_limit = 5;             ///< largest factor from one step to the next; rounded to single precision
-    double shrink_limit = 0.1;           ///< smallest factor from one step to the next, rounded in the same way
-    std::int64_t max_steps = 1'000'000;  ///< trial steps per phase; an instance that needs more ends as `max_steps`
+    double growth_limit = 5;    ///< largest factor from one step to the next; rounded to single precision
+    double shrink_limit = 0.1;  ///< smallest factor from one step to the next, rounded in the same way
+    /// Trial steps per phase; an instance that needs more ends as `max_steps`. 0: 200 000 adaptive steps, or as many
+    /// fixed ones as it takes.
+    std::int64_t max_steps = 0;
     /// Seconds from the beginning of the call after which what is left ends as `interrupted`: instances under way where
     /// they are, the others as they were. 0, or infinity: no limit. Solvers, which are asynchronous, and studies, which
     /// go on where they were stopped, refuse it.

@@ -151,7 +151,8 @@ void note_ended(report_of<R>& r, const ensemble_data<R>& e, std::int64_t count);
 /// Adds notes on instances that ended because of a limit, with what to do: `max_steps`, `time_limit`, or the resolution
 /// of time.
 template <class R>
-void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::int64_t count);
+void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, const call_facts& facts,
+                   std::int64_t count);
 /// Adds a note if a relative tolerance was below what the precision can reach.
 template <class R>
 void note_raised_tolerances(report_of<R>& r, const options& o);

@@ -229,7 +229,7 @@ public:
         host::summarise(data(), report_, count_);
         report_.notes.clear();
         host::note_ended(report_, data(), count_);
-        host::note_failures(report_, data(), options_, count_);
+        host::note_failures(report_, data(), options_, model_.facts, count_);
         if (model_.facts.adaptive()) host::note_raised_tolerances<R>(report_, options_);
         host::note_matrix<Method>(report_);
         report_.device = where_.name();
