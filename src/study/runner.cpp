@@ -291,9 +291,10 @@ private:
             const std::int64_t rest = range.count - at;
             const std::int64_t count = std::min(piece, sharing_.part(d.number, rest, left()));
             try {
+                // For no more than this part: a slow device may give the rest back.
                 for (std::size_t q = 0; q < wanted.size(); ++q)
                     if (wanted[q])
-                        made.values[q].resize(static_cast<std::size_t>(range.count) * bytes_of(plan_.quantities[q]));
+                        made.values[q].resize(static_cast<std::size_t>(at + count) * bytes_of(plan_.quantities[q]));
                 as_device(d, solver, [&] { solver.prepare(range.first + at, count); });
                 const auto progress = [&](std::int64_t done) {
                     mine.done = at + done;

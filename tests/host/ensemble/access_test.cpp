@@ -254,7 +254,7 @@ TEST_CASE("an ensemble that is being integrated is refused to a second call, fro
     CHECK((e.state(bare::x) == expected.state(bare::x)).all());
     o.progress = [](std::int64_t, std::int64_t) { throw std::runtime_error("enough"); };
     CHECK_THROWS_AS(solve<cash_karp>(one_thread, e, o), std::runtime_error);
-    refused([&] { solve<cash_karp>(one_thread, e, options{.max_steps = 0}); }, {"max_steps"});
+    refused([&] { solve<cash_karp>(one_thread, e, options{.max_steps = -1}); }, {"max_steps"});
     CHECK(solve<cash_karp>(one_thread, e).count(status::success) == 1000);  // no turn was skipped
 }
 

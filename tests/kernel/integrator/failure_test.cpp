@@ -486,6 +486,18 @@ TEST_CASE("as many steps as max_steps are enough") {
         }
     });
 }
+TEST_CASE("a forgotten max_steps ends adaptive steps after 200 000 and lets as many fixed ones be taken as are needed") {
+    auto adaptive = healthy(1, 1e6), fixed = healthy(1, 250'000.0 / 1024);
+    options o;
+    o.step = o.maximum_step = 1.0 / 1024;
+    const auto report = solve<myriad::cash_karp>(tests::test_device(1), adaptive, o);
+    CHECK(adaptive.status(0) == status::max_steps);
+    CHECK(adaptive.accepted_steps()[0] + adaptive.rejected_steps()[0] == 200'000);
+    CHECK(report.notes.back().find("max_steps: 200000 trial steps") == 0);
+    solve<runge_kutta_4>(tests::test_device(1), fixed, fixed_step(1.0 / 1024));
+    CHECK(fixed.status(0) == status::success);
+    CHECK(fixed.accepted_steps()[0] == 250'000);
+}
 TEST_CASE("with step-size control, max_steps counts rejected trials too") {
     each_adaptive_method([]<class Method> {
         for (const std::int64_t most : {1, 5, 30}) {
