@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Union
 import numpy as np
 import numpy.typing as npt
 
-from .expression import Expression
+from .expression import Expression, Node
 
 if TYPE_CHECKING:
     from .cpp_model import CppModel
@@ -36,6 +36,8 @@ Tolerance = Union[float, Sequence[float], npt.NDArray[np.floating[Any]], Mapping
 Progress = Union[bool, Callable[[int, int], object], None]
 # Names, as "x v" or in a list, or symbols.
 Names = Union[str, Expression, Iterable[Any]]
+# What a hook or an event of a model sets: targets, and the values that they get.
+Assignments = list[tuple[Node, Node]]
 # A model of any kind.
 AnyModel = Union["Model", "CppModel", "WithTangents"]
 Path = Union[str, "os.PathLike[str]"]
