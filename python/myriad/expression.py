@@ -494,10 +494,6 @@ def _logical(op: str, a: object, b: object) -> Condition:
 # ----------------------------------------------------------------------------------------------------------------------
 
 
-def _exp2(x: Any) -> Any:
-    return 2.0 ** x
-
-
 _unary: dict[str, Callable[..., Any]] = {  # for the values of constants and for `evaluate`; C++ uses myriad's own
     "sqrt": np.sqrt, "cbrt": np.cbrt, "floor": np.floor, "sin": np.sin, "cos": np.cos, "tan": np.tan,
     "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh,

@@ -119,13 +119,6 @@ class Sweep:
                         "instances: give one")
         return values.reshape(self.shape + values.shape[1:])
 
-    def with_constants(self, constants: dict[str, float]) -> Sweep:
-        """The same with further values that are equal for all instances."""
-        twice = [n for n in constants if n in self.names]
-        if twice:
-            raise Error(f"'{twice[0]}' is given twice{at(users_line())}: give it one value")
-        return Sweep(self.axes, self.coordinates, {**self.constants, **constants})
-
     def __len__(self) -> int:
         return self.size
 
@@ -204,14 +197,3 @@ def zip(mapping: Mapping[Any, Any] | None = None, **arrays: Values) -> Sweep:
         return Sweep([(name, values)], {name: (name, values)}, constants)
     axis = "instance"
     return Sweep([(axis, np.arange(next(iter(lengths.values()))))], {n: (axis, v) for n, v in along.items()}, constants)
-
-
-def as_sweep(given: Any) -> Sweep:
-    """A sweep from what users give to `solve`: a sweep, or a dictionary {name or symbol: number or array}, whose arrays
-    are zipped."""
-    if isinstance(given, Sweep):
-        return given
-    if isinstance(given, dict):
-        return zip(given)
-    raise Error(f"{type(given).__name__} is no sweep{at(users_line())}: give a dictionary {{k: values}}, "
-                "myriad.grid or myriad.zip")

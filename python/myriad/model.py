@@ -301,8 +301,6 @@ class Model(kinds.ComponentNames):
             made.append(Event(None, given.name or f"event_{i + 1}", given.direction, given.tolerance, given.stop_after,
                               None))
             made[-1].line = given.line
-            self._event_names = [e.name for e in made]
-        self._event_names = [e.name for e in made]
         for one, given in zip(made, events):
             what = f"event {one.name}"
             one.function = to_real(self._real(self._value(given.function, what), what))

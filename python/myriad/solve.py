@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from .grid import Sweep
 from .inputs import Along, by_name, numbers, whole, whole_numbers
 from .methods import default, fixed_step, method_type
 from .options import Options, SolveArguments
+from .progress import ProgressDisplay
 from .run import Interrupted, Run
 
 if TYPE_CHECKING:
@@ -131,26 +132,6 @@ def _fill(ensemble: Any, components: Components, given: Mapping[str, Any], domai
     else:
         ensemble.array("t_begin")[...] = domain[0]
         ensemble.array("t_end")[...] = domain[1]
-
-
-def _progress_function(progress: Progress) -> tuple[Callable[[int, int], object] | None, Callable[[], None]]:
-    """The function to call with the numbers of instances done and of all, and what to do at the end."""
-    if not progress:
-        return None, lambda: None
-    if callable(progress):
-        return progress, lambda: None
-    try:
-        from tqdm.auto import tqdm
-    except ImportError:
-        raise Error("progress=True shows a bar of the package tqdm, which is missing: `pip install tqdm`, or give a "
-                    "function of two numbers, instances done and all") from None
-    bar = tqdm(unit="instance", unit_scale=True)
-
-    def show(done: int, total: int) -> None:
-        bar.total = total
-        bar.update(done - bar.n)
-
-    return show, bar.close
 
 
 def _device_name(device: str, interpreted: bool | None) -> tuple[str, str | None]:
@@ -289,7 +270,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     kernel, names = kernels[0]
     finish_options(core_options, given_options, components, len(names["state"]), len(names["event"]))
     kind: Any = _core.Ensemble64 if precision == "double" else _core.Ensemble32
-    function, finish = _progress_function(progress)
+    display = ProgressDisplay(progress)
     try:
         ensemble = kind(kernel.library, names, count)
         _fill(ensemble, components, given, domain, names, np.dtype("f8" if precision == "double" else "f4"))
@@ -303,11 +284,11 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                 raise Error(f"'tolerance_scale' has {len(scale)} values for {count} instances: give one for each")
             ensemble.array("tolerance_scale")[...] = scale
         report, failure = _core.solve([(k.library, d) for (k, _), d in zip(kernels, devices)], ensemble,
-                                      core_options, function)
+                                      core_options, display if progress else None)
     except Error as error:
         raise with_event_names(error, components.event_names) from None
     finally:
-        finish()
+        display.close()
     run = Run(components, ensemble, report, kernel, sweep, _inputs(components, given), recorded, sampled,
               clock.perf_counter() - begin, core_options.record.from_phase, [no_gpu] if no_gpu else [])
     if failure is not None:

@@ -27,6 +27,7 @@ from .inputs import by_name, numbers, only, whole
 from .kinds import recorded as recorded_kinds
 from .methods import default, fixed_step, method_type
 from .options import Options, StudyArguments
+from .progress import ProgressDisplay
 from .reduce import Reduction
 from .run import Interrupted
 from .solve import device_names, ends_of, kernel_for, refuse_missing
@@ -310,7 +311,7 @@ class Study:
         if device == "auto" and executor is not None:
             device = "cpu:1"
         devices, no_gpu = device_names(device, self._interpreted)
-        show = _Progress(progress)
+        show = ProgressDisplay(progress)
         try:
             if not folder and self._has_store:  # from an earlier run
                 self._build(*self._given[:2], **self._given[2])
@@ -351,35 +352,6 @@ class Study:
                         f"{error}") from None
 
 
-class _Progress:
-    """A function of the numbers of instances done and of all, or a bar."""
-
-    def __init__(self, wanted: Progress) -> None:
-        self._function, self._bar = wanted if callable(wanted) else None, None
-        if wanted and not callable(wanted):
-            try:
-                from tqdm.auto import tqdm
-            except ImportError:
-                raise Error("progress=True shows a bar of the package tqdm, which is missing: `pip install tqdm`, or "
-                            "give a function of two numbers, instances done and all") from None
-            self._bar = tqdm(unit="instance", unit_scale=True)
-
-    def __call__(self, done: int, total: int, earlier: int = 0, seconds: float = 0.0,
-                 by_status: Mapping[str, int] | None = None) -> None:
-        if self._function is not None:
-            self._function(done, total)
-        if self._bar is not None:
-            self._bar.total, self._bar.n, self._bar.initial = total, done, earlier
-            failed = {n: c for n, c in (by_status or {}).items() if not n.startswith(("success", "stopped"))}
-            self._bar.set_postfix(failed, refresh=False)
-            self._bar.refresh()
-
-    def close(self) -> None:
-        """Ends the bar."""
-        if self._bar is not None:
-            self._bar.close()
-
-
 # -- Executors ---------------------------------------------------------------------------------------------------------
 
 _received = threading.local()  # the last study of each thread of a worker, and its devices and chunks
@@ -405,7 +377,7 @@ class _ExecutedRun:
     _patience = 10.0  # seconds, with chunks under way when the run ends early
 
     def __init__(self, study: Study, executor: Any, devices: Sequence[str], chunk: int | None, folder: str | None,
-                 show: _Progress) -> None:
+                 show: ProgressDisplay) -> None:
         self._study, self._executor, self._devices, self._folder, self._show = study, executor, devices, folder, show
         workers = getattr(executor, "_max_workers", None)
         workers = workers if isinstance(workers, int) and workers > 0 else 16
