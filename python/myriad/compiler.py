@@ -17,8 +17,8 @@ _include = pathlib.Path(__file__).parent / "include"
 
 
 def find_compiler() -> _core.Compiler | None:
-    """The compiler to use: that of $MYRIAD_CXX or $CXX, g++ or clang++ on the PATH, or the one of the package ziglang;
-    None if there is none."""
+    """The compiler to use: what $MYRIAD_CXX or $CXX names, g++ or clang++ on the PATH, or the compiler of the package
+    ziglang; None if there is none."""
     zig = importlib.util.find_spec("ziglang")
     # Its program, and not `python -m ziglang`, which would run a ziglang.py of the current folder.
     program = "" if zig is None or zig.origin is None else str(pathlib.Path(zig.origin).parent / "zig")

@@ -291,7 +291,7 @@ def _wrap(line: str, indent: int) -> list[str]:
 
 
 def _depends_on_instance(node: Node) -> bool:
-    """Whether a value differs between instances, so that its type is that of the state and not of a shared value."""
+    """Whether a value differs between instances, so that it has the type of the state and not of a shared value."""
     return any(n.op == "symbol" and n.value[0] not in ("shared", "shared_integer") for n in walk([node]))
 
 

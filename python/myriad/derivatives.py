@@ -100,7 +100,7 @@ def dependencies(roots: Sequence[Node], symbols: Sequence[Node]) -> list[list[in
 
 def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int, Expression]] | None:
     """For each root {number of a symbol: derivative by it}, or None if an operation has no rule here, as the lookup in
-    a table. Derivatives of steps, as those of `floor`, are zero and left out."""
+    a table. Derivatives of functions with steps, such as `floor`, are zero and left out."""
     one = ex.constant(1.0)
     number = {id(s): i for i, s in enumerate(symbols)}
     found: dict[int, dict[int, Expression]] = {}

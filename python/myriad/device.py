@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Arrays on GPUs: those of other libraries as values of a sweep, and results where they are."""
+"""Arrays on GPUs: other libraries' arrays as values of a sweep, and results where they are."""
 
 from __future__ import annotations
 

@@ -284,7 +284,7 @@ def remainder(a: object, b: object) -> Expression:
 
 
 def is_long(node: Node) -> bool:
-    """Whether a whole number has 64 bits, as that of the instance has; others have 32."""
+    """Whether a whole number has 64 bits, as the number of the instance has; others have 32."""
     return any(n.value == ("built-in", "instance") for n in walk([node]) if n.op == "symbol")
 
 

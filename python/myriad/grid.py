@@ -37,7 +37,7 @@ def _name(key: Component, line: tuple[str, int] | None) -> str:
 
 
 def as_numbers(values: Any) -> Array:
-    """What users give as numbers, as an array; also objects that are real numbers, as those of `fractions`."""
+    """What users give as numbers, as an array; also objects that are real numbers, as in `fractions`."""
     try:
         array = np.asarray(drawn(values))
     except ValueError as why:  # lists of different lengths

@@ -30,7 +30,7 @@ Written = Union[Expression, float, str, Any]
 Values = Union[npt.ArrayLike, Any]
 # Values by component.
 ByComponent = Mapping[Any, Any]
-# One for all states, one for each, or those of some states.
+# One for all states, one for each, or values by state.
 Tolerance = Union[float, Sequence[float], npt.NDArray[np.floating[Any]], Mapping[Any, float]]
 # True for a bar, or a function of the numbers of instances done and of all.
 Progress = Union[bool, Callable[[int, int], object], None]

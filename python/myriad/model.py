@@ -108,7 +108,7 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
     """Records a model.
 
     `equations` is a dictionary {state: its derivative}; or a function f(t, y, ...) that returns the derivatives, as for
-    SciPy, with the names of its states in `states` and those of its further arguments that all instances share in
+    SciPy, with the names of its states in `states`, and the names of further arguments that all instances share in
     `shared`; or a string "x' = v; v' = -x" with all names in `parameters` and `shared`. In a dictionary keys and values
     may be strings or SymPy's symbols and expressions, named in the same way.
 
@@ -154,7 +154,7 @@ class Model(kinds.ComponentNames):
         self._check()
 
     def _default_name(self, equations: object) -> str:
-        """The name of the function, if it can be that of a struct, or "model"."""
+        """The name of the function, if a struct can have it, or "model"."""
         for name in (getattr(equations, "__name__", ""), "model"):
             try:
                 if name not in self.component_names:

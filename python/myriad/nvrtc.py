@@ -53,7 +53,7 @@ def _major(path: pathlib.Path) -> int:
 @functools.lru_cache(maxsize=4)
 def _find(chosen: str | None, driver: int) -> pathlib.Path | None:
     """The newest NVRTC that the driver can load kernels of; where there is none such, the oldest."""
-    found = sorted((p for p in _candidates() if p.is_file()), key=_major)  # of equals, that of a wheel comes first
+    found = sorted((p for p in _candidates() if p.is_file()), key=_major)  # of equal ones, a wheel's comes first
     fitting = [p for p in found if _major(p) <= driver]
     if fitting:
         newest = _major(fitting[-1])

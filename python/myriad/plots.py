@@ -77,7 +77,7 @@ def _logarithmic(axis: Axis, set_scale: Callable[[str], object]) -> None:
 def bifurcation(x: Any, y: Any, *, xlabel: str | None = None, ylabel: str | None = None, axes: Axes | None = None,
                 **style: Any) -> Any:
     """Points (x, y) of a bifurcation diagram: x has one value per instance, y a row of values, one for each phase.
-    Further arguments are those of matplotlib's `plot`. Many points are drawn as their density."""
+    Further arguments go to matplotlib's `plot`. Many points are drawn as their density."""
     xlabel, ylabel = _label(x, xlabel), _label(y, ylabel)
     x, y = _numbers(x, "x", (1,)), _numbers(y, "y", (1, 2))
     if len(x) != len(y):
@@ -113,7 +113,7 @@ def parameter_map(x: Any, y: Any, z: Any, *, xlabel: str | None = None, ylabel: 
                   zlabel: str | None = None, names: Sequence[str] | None = None, axes: Axes | None = None,
                   **style: Any) -> Any:
     """A quantity z over two parameters in colour: z has shape (len(x), len(y)). NaN is left grey. With `names`, z has
-    whole numbers that stand for these names. Further arguments are those of matplotlib's `pcolormesh`."""
+    whole numbers that stand for these names. Further arguments go to matplotlib's `pcolormesh`."""
     xlabel, ylabel, zlabel = _label(x, xlabel), _label(y, ylabel), _label(z, zlabel)
     x, y, z = _numbers(x, "x", (1,)), _numbers(y, "y", (1,)), _numbers(z, "z", (2,))
     if z.shape != (len(x), len(y)):

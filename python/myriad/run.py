@@ -77,9 +77,9 @@ class Report:
 
 
 class Run(Mapping):
-    """The results of one call of `solve`, a mapping from names to arrays. `run["x"]` is that of a sampled state, one
-    row per instance and one column per sample; of a recorded component, one column per phase; of others the
-    value at the end, or that of an input. Its length is the number of names; `size` is the number of instances.
+    """The results of one call of `solve`, a mapping from names to arrays. `run["x"]` has one row per instance: for a
+    sampled state one column per sample, for a recorded component one column per phase, and for others the value at the
+    end, or the value of an input. Its length is the number of names; `size` is the number of instances.
     Arrays are views of the core's memory, not copies. Results of a GPU are copied to the host when they are
     first asked for."""
 
@@ -99,7 +99,7 @@ class Run(Mapping):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The lengths of the sweep's axes; those of a sweep without axes are its size alone."""
+        """The lengths of the sweep's axes; a sweep without axes has its size alone."""
         return tuple(self.sweep.shape) if self.sweep is not None else (self.size,)
 
     @property
@@ -175,7 +175,7 @@ class Run(Mapping):
 
     @property
     def shared(self) -> dict[str, Any]:
-        """The shared values by name, without those of tables."""
+        """The shared values by name, without the tables'."""
         return {name: value for kind in kinds.shared
                 for name, value in zip(self._components.names[kind], self._ensemble.array(kind))
                 if name not in self._components.tables}
@@ -223,7 +223,7 @@ class Run(Mapping):
         raise KeyError(f"there is no {name!r}: the model has {', '.join(self._components.place)}")
 
     def _times(self) -> Array:
-        """The recorded times, or those of the samples."""
+        """The recorded times, or the times of the samples."""
         for place in self._recorded.values():
             if place == ("time", 0):
                 return self._records.records(*place)
@@ -314,7 +314,7 @@ class Run(Mapping):
         return self._free(f"{name}_", self._components.place) if name in _own_names else name
 
     def _in_dataset(self, name: str) -> str:
-        """The name of an input in a dataset, where a state's own name is that of its result."""
+        """The name of an input in a dataset, where a state's own name stands for its result."""
         if name in self._components.states:
             return self._free(f"{name}_start", self._components.place)
         return self._column(name) if name in self._components.place else name

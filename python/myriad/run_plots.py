@@ -76,7 +76,7 @@ class Plots:
 
     def time_series(self, y: Component, *, instances: npt.ArrayLike | None = None, axes: Axes | None = None,
                     **style: Any) -> Any:
-        """The samples of a state over time, for the first five instances or those of the given numbers."""
+        """The samples of a state over time, for the first five instances or the given ones."""
         run, y = self._run, name_of(y)
         chosen, labels = self._instances(instances)
         if y not in run.samples:
@@ -86,8 +86,8 @@ class Plots:
 
     def phase_portrait(self, x: Component, y: Component, *, instances: npt.ArrayLike | None = None,
                        axes: Axes | None = None, **style: Any) -> Any:
-        """The samples of one state over those of another; without samples the points recorded at the ends of phases.
-        For the first five instances or those of the given numbers."""
+        """The samples of one state over another; without samples the points recorded at the ends of phases.
+        For the first five instances or the given ones."""
         run, x, y = self._run, name_of(x), name_of(y)
         chosen, labels = self._instances(instances)
         points = not (x in run.samples and y in run.samples)

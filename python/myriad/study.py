@@ -286,9 +286,9 @@ class Study:
         store      a folder, in which the study goes on if it is run again, also by several processes at a time, each
                    with this call; it is a Zarr group (version 3). None: results are in memory
         device     a device or a list of devices, which are used at the same time: "cpu", "cpu:4", "cuda", "cuda:1", or
-                   "auto", which is as in `solve`; with an executor those of each worker, by default "cpu:1"
+                   "auto", which is as in `solve`; with an executor the devices of each worker, by default "cpu:1"
         chunk      instances that are computed and stored together; None: by memory and number. A store keeps its own
-        executor   any executor of `concurrent.futures`, as ProcessPoolExecutor or those of Dask, loky, mpi4py and
+        executor   any executor of `concurrent.futures`, as ProcessPoolExecutor or one of Dask, loky, mpi4py and
                    Parsl: its workers compute chunks, and send their values here, where they are kept
         check      what is looked at of a store that exists: "sizes" of files, or "checksums", for which all is read
         expiry     seconds after which chunks of a process on another machine that gives no sign of life are taken over
@@ -297,7 +297,7 @@ class Study:
         progress   True for a bar, or a function of the numbers of instances done and of all
 
         A GPU that fails is left out with a warning, and its chunks are done by the other devices. GPUs of one kind give
-        the same bits; those of a CPU differ by rounding errors.
+        the same bits; a CPU's results differ by rounding errors.
 
         Ctrl-C ends a run when the chunks under way are done, or after ten seconds, and raises `myriad.Interrupted`,
         whose `run` has what is done; so does the store, in which the next run goes on. Raises `myriad.Error` if the
@@ -496,8 +496,8 @@ def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     units     {component: unit} for results; notes: {key: text}, anything that tells this study from others, such as the
               version of data: a store that was made with other notes is refused
 
-    method, control, precision, interpreted, options, record, samples, events, rtol and atol are those of `solve`.
-    Inputs that are not finite mark their instances as invalid_input. Names of results are those of the C++ library: "x"
+    method, control, precision, interpreted, options, record, samples, events, rtol and atol are as in `solve`.
+    Inputs that are not finite mark their instances as invalid_input. Results have the C++ library's names: "x"
     at recorded phases, "x_sample", "x_end", "t_last", "status"; of initial values of states "x_begin". Raises
     `myriad.Error`.
 

@@ -59,7 +59,7 @@ class StudyResult(Mapping):
 
     @property
     def done(self) -> int:
-        """The number of instances whose results are there, of whichever run."""
+        """The number of instances whose results are there, from this run or another."""
         return self._results.instances_done
 
     @property
@@ -154,7 +154,7 @@ class StudyResult(Mapping):
         return verify(self.folder) if self.folder is not None else []
 
     def _written(self) -> dict[str, Any]:
-        """Variables, those of instances first, but for reductions that are not there before all is done."""
+        """Variables with a value per instance, and then reductions, which are not there before all is done."""
         there = [name for name, rest in self._variables.items() if rest[3] or self._results.written(name)]
         return {name: self._variables[name] for name in sorted(there, key=lambda name: not self._variables[name][3])}
 
@@ -163,7 +163,7 @@ class StudyResult(Mapping):
         return _fill_values[type_name] if type_name.startswith("float") or not self.complete else None
 
     def to_xarray(self) -> xarray.Dataset:
-        """The results as an `xarray.Dataset` along the axes of the study; those of a store are read when they are used,
+        """The results as an `xarray.Dataset` along the axes of the study. A store is read when its values are used,
         chunk by chunk. What is not done is NaN, or the attribute `_FillValue` of integers."""
         try:
             import xarray

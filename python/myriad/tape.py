@@ -196,6 +196,6 @@ def kernel(model: AnyModel, components: Components, method: str, why: str) -> Ke
 
 
 def padded(components: Components) -> dict[str, list[str]]:
-    """The names of all components that the interpreter has: those of the model first."""
+    """The names of all components that the interpreter has, beginning with the model's."""
     return {kind: [*names, *(f"unused {_plural(kind)} {i}" for i in range(len(names), _limits.get(kind, 0)))]
             for kind, names in components.names.items()}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How large the whole numbers of `generate` become in a study, and the refusal of those that would be cut."""
+"""How large the whole numbers of `generate` become in a study, and the refusal of numbers that would be cut."""
 
 from __future__ import annotations
 

@@ -184,7 +184,7 @@ def draw(plots, numpy, data, asked):
 
 
 def libraries():
-    """The modules that draw, and numpy: those of the Python package, which are beside this file."""
+    """The modules that draw, and numpy. They are the Python package's, and lie beside this file."""
     _, numpy = figures.import_libraries()
     from pictures import errors, plots  # pylint: disable=import-outside-toplevel
     return plots, numpy, errors.Error
