@@ -19,6 +19,7 @@ commands() {
 }
 commands >said 2>&1 || fail "the commands of the documentation fail: $(<said)"
 grep -q '^4608 of 4608 instances: 4608 success' said || fail "not all instances were integrated: $(<said)"
+myriad info bifurcation --json | tr -d ' \n' | grep -qF '"x":{"dimensions":["k","phase"]' || fail 'no array of x'
 if plotting_python >/dev/null; then
     # snippet: plot
     myriad plot bifurcation

@@ -35,7 +35,7 @@ public:
     /// How many there are.
     int size() const { return size_; }
     /// What this rank computes on. With GPUs, those whose number on the machine is this rank's number there, modulo the
-    /// number of ranks there; if there are more ranks than GPUs, one GPU, the rank's number modulo that of GPUs.
+    /// number of ranks there; if there are more ranks than GPUs, one GPU, the rank's number modulo the number of GPUs.
     /// Without, the CPU with this rank's share of the cores: of those that it may use, each shared with the other ranks
     /// of the machine that may use it, and one at least.
     const std::vector<device>& devices() const { return devices_; }

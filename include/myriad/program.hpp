@@ -34,7 +34,7 @@ struct program_model {
     std::vector<program_method> methods;  ///< for which it was compiled
 };
 
-/// Adds a model, or methods to one of the same name. `sizes` are those of the types that the program shares with the
+/// Adds a model, or methods to one of the same name. `sizes` are the sizes of types that the program shares with the
 /// file that registers the model: throws `error` if they are others here, as for a file that was compiled with headers
 /// of another version.
 void add_model(program_model added, std::size_t sizes);

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Myriad: very large ensembles of small systems of ordinary differential equations, from models written in Python."""
 
+from __future__ import annotations
+
 import builtins as _builtins
 import sys as _sys
 
@@ -36,14 +38,5 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
 __all__ = [name for name in _public if not hasattr(_builtins, name)]
 
 
-_renamed = {"logspace": "geomspace", "random_uniform": "uniform", "random_normal": "normal"}
-
-
-def __getattr__(name):
-    if name in _renamed:
-        raise AttributeError(f"myriad.{name} is myriad.{_renamed[name]}, NumPy's name")
-    raise AttributeError(f"module 'myriad' has no attribute '{name}'")
-
-
-def __dir__():
+def __dir__() -> list[str]:
     return sorted([*_public, "__version__"])

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import pathlib
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from . import _core
 
@@ -21,12 +23,12 @@ def directory() -> pathlib.Path:
 class Obtained:
     """What `obtain` loaded, whether it was in the cache, and why it is not kept, if that is so."""
 
-    loaded: object
+    loaded: Any
     hit: bool
     unusable: object = None
 
 
-def obtain(made_from, make, load):
+def obtain(made_from: bytes, make: Callable[[str], None], load: Callable[[str], object]) -> Obtained:
     """What `load(path)` makes of a file that was made from something, as `Obtained`. `made_from` has everything that it
     depends on, as bytes. If there is no such file that is whole and can be loaded, `make(folder)` writes it there, as
     model.so; other processes that want the same wait for it. A file that cannot be loaded is not kept."""

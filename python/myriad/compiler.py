@@ -8,6 +8,7 @@ import pathlib
 import threading
 import time
 from dataclasses import dataclass
+from typing import Any
 
 from . import _core, cache
 from .errors import Error
@@ -15,19 +16,19 @@ from .errors import Error
 _include = pathlib.Path(__file__).parent / "include"
 
 
-def find_compiler():
-    """The compiler to use: that of $MYRIAD_CXX or $CXX, g++ or clang++ on the PATH, or the one of the package ziglang;
-    None if there is none."""
+def find_compiler() -> _core.Compiler | None:
+    """The compiler to use: what $MYRIAD_CXX or $CXX names, g++ or clang++ on the PATH, or the compiler of the package
+    ziglang; None if there is none."""
     zig = importlib.util.find_spec("ziglang")
     # Its program, and not `python -m ziglang`, which would run a ziglang.py of the current folder.
     program = "" if zig is None or zig.origin is None else str(pathlib.Path(zig.origin).parent / "zig")
     return _core.find_compiler(str(_include), program)
 
 
-_found: dict = {}
+_found: dict[Any, _core.Compiler | None] = {}
 
 
-def known_compiler():
+def known_compiler() -> _core.Compiler | None:
     """What `find_compiler` found for these variables of the environment."""
     asked = tuple(map(os.environ.get, ("MYRIAD_CXX", "CXX", "PATH")))
     if asked not in _found:
@@ -35,21 +36,24 @@ def known_compiler():
     return _found[asked]
 
 
-def compiler():
+def compiler() -> _core.Compiler:
     """The compiler of this process. Raises `Error` if there is none."""
-    return known_compiler() or _core.refuse_without_compiler()
+    if (found := known_compiler()) is not None:
+        return found
+    _core.refuse_without_compiler()
+    raise AssertionError  # never, as that raises
 
 
-def source_of(header, struct, method, real):
+def source_of(header: str, struct: str, method: str, real: str) -> str:
     """The file that is compiled: the model's header and the request for its kernel."""
     return (f"#include <myriad/python/kernel_library.hpp>\n\n{header}\n"
             f"using myriad_method = {method};\nMYRIAD_KERNEL_LIBRARY({struct}, myriad_method, {real})\n")
 
 
-_begun: set = set()
+_begun: set[str] = set()
 
 
-def _compile(by, source, folder):
+def _compile(by: _core.Compiler, source: str, folder: str) -> None:
     """Compiles, and then has the compiler prepare the library's headers beside the program's own work, if they are not.
     A program that ends earlier waits for that, a few seconds at most."""
     if not by.compile(source, folder) and by.identity not in _begun:
@@ -57,12 +61,12 @@ def _compile(by, source, folder):
         threading.Thread(target=_prepare, args=(by,)).start()
 
 
-def _prepare(by):
+def _prepare(by: _core.Compiler) -> None:
     with contextlib.suppress(Error):  # the cache cannot be used, of which the call itself has told
         by.prepare()
 
 
-def _load(by, path):
+def _load(by: _core.Compiler, path: str) -> _core.Library:
     try:
         return _core.Library(path)
     except Error as error:
@@ -74,21 +78,21 @@ def _load(by, path):
 class Kernel:
     """A loaded kernel and where it came from."""
 
-    library: object
+    library: Any  # of the core; None for a run without instances
     origin: str  # "compiled by g++", "cache", "memory", or "interpreted" and why
     seconds: float  # that it took to get
 
 
-def kernel_of(obtained, by, begin):
+def kernel_of(obtained: cache.Obtained, by: str, begin: float) -> Kernel:
     """What was obtained from the cache as a `Kernel`."""
     why = f" ({obtained.unusable})" if obtained.unusable else ""
     return Kernel(obtained.loaded, "cache" if obtained.hit else f"compiled by {by}{why}", time.perf_counter() - begin)
 
 
-_loaded: dict = {}
+_loaded: dict[Any, _core.Library] = {}
 
 
-def kernel(header, struct, method, real):
+def kernel(header: str, struct: str, method: str, real: str) -> Kernel:
     """The kernel of a model, which is C++ source with a struct of that name, for a method and a real type, both as C++
     types. Raises `Error` if there is no compiler, or with its first message if it refuses the model."""
     begin = time.perf_counter()

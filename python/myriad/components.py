@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The names of a model's components."""
 
+from __future__ import annotations
+
 import difflib
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,20 +15,22 @@ from .errors import Error
 from .expression import Node, evaluate, is_sympy, symbols_of, text
 from .parse import sympy_name
 
+if TYPE_CHECKING:
+    from .hints import AnyModel, Array, ByComponent, Component, SomeComponents
 
-def name_of(key):
+
+def name_of(key: Component) -> str:
     """The name of a component: a symbol's, SymPy's too, or the text itself."""
     if isinstance(key, str):
         return key
     if is_sympy(key):
         return sympy_name(key)
-    value = getattr(key, "value", None)
-    if getattr(key, "op", None) == "symbol" and value[0] != "built-in":
-        return value[1]
+    if isinstance(key, Node) and key.op == "symbol" and key.value[0] != "built-in":
+        return key.value[1]
     raise Error(f"{key!r} is no component of a model: give a symbol, such as x, or its name, such as \"x\"")
 
 
-def by_component(values, what):
+def by_component(values: ByComponent, what: str) -> dict[str, Any]:
     """Values by the names of components; refuses one that is given by its symbol and by its name."""
     named = {}
     for key, value in values.items():
@@ -35,7 +41,7 @@ def by_component(values, what):
     return named
 
 
-def unknown(name, known, what):
+def unknown(name: str, known: Iterable[str], what: str) -> Error:
     """The error of a name that is none of the known ones."""
     near = [k for k in known if k.lower() == name.lower()] or difflib.get_close_matches(name, known, 1)
     hint = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}" if known else "there is none"
@@ -45,7 +51,7 @@ def unknown(name, known, what):
 class Components:
     """Where a model's components are: the kind and number of each name."""
 
-    def __init__(self, model):
+    def __init__(self, model: AnyModel) -> None:
         self.names = kinds.names_of(model)
         self.states, self.event_names = self.names["state"], self.names["event"]
         self.tables = getattr(model, "shared_values", {})  # shared values that the model itself has
@@ -57,16 +63,16 @@ class Components:
         self.events = list(model.events)
         self.place = {name: (kind, number) for kind in kinds.valued for number, name in enumerate(self.names[kind])}
 
-    def component(self, key):
+    def component(self, key: Component) -> str:
         """The name of a component that is given by its symbol, its name, or another name of it."""
         name = name_of(key)
         return self.aliases.get(name, name)
 
-    def completed(self, given, begin):
+    def completed(self, given: Mapping[str, Any], begin: Any) -> dict[str, Any]:
         """What is given by name, and the defaults of what is not: those that are expressions follow what is given."""
         values, under_way = dict(given), []
 
-        def value(name):
+        def value(name: str) -> Any:
             if name in values or name not in self.defaults:
                 return values.get(name)
             if name in under_way:
@@ -81,7 +87,7 @@ class Components:
             value(name)
         return values
 
-    def follows(self, name, others, given):
+    def follows(self, name: str, others: Collection[str], given: Collection[str]) -> bool:
         """Whether the default of a component depends on any of other components, or on "t", through defaults of others
         that are not given."""
         default = self.defaults.get(name)
@@ -91,7 +97,7 @@ class Components:
         return bool(names & set(others)) or any(self.follows(n, others, given) for n in names - {name})
 
     @staticmethod
-    def _expression(expression, value, begin):
+    def _expression(expression: Node, value: Callable[[str], Any], begin: Any) -> Array | None:
         """The value of a default that is an expression, if all that it depends on is known, else None."""
         known = {}
         for symbol in symbols_of([expression]):
@@ -105,21 +111,21 @@ class Components:
         result, = evaluate([expression], known)
         return np.asarray(result, float)
 
-    def of(self, some_kinds):
+    def of(self, some_kinds: Iterable[str]) -> list[str]:
         """The names of the components of some kinds, one kind after the other."""
         return [name for kind in some_kinds for name in self.names[kind]]
 
-    def numbers(self, chosen, what, some_kinds):
+    def numbers(self, chosen: SomeComponents, what: str, some_kinds: Sequence[str]) -> list[list[int]]:
         """The numbers of named components of each of some kinds."""
-        found = {kind: [] for kind in some_kinds}
-        chosen = [chosen] if isinstance(chosen, str) or getattr(chosen, "op", None) == "symbol" else chosen
+        found: dict[str, list[int]] = {kind: [] for kind in some_kinds}
+        chosen = [chosen] if isinstance(chosen, (str, Node)) else chosen
         try:
             chosen = list(chosen)
         except TypeError:
             raise Error(f"{what}{chosen!r} names no components: give a list of them, as in {what}[x, v]") from None
         for key in chosen:
             name = self.component(key)
-            kind, number = self.place.get(name, (None, None))
+            kind, number = self.place.get(name, ("", -1))
             if kind not in found:
                 known = [n for n, (k, _) in self.place.items() if k in found]
                 raise unknown(name, known, f"component of the model that {what} can name")

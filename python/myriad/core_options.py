@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From `Options` to those of the core, by the table of options that the core has."""
+"""From `Options` to the options of the core, by the table of options that the core has."""
 
 from __future__ import annotations
 

@@ -1,13 +1,22 @@
 # SPDX-License-Identifier: MIT
 """A recorded model as the header that a C++ user would write: enumerations, rhs, events and hooks."""
 
+from __future__ import annotations
+
 import copy
 import itertools
 import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from .derivatives import dependencies, derivatives
 from .expression import (as_number, condition, draws, infix, integer, is_long, number_text, real, symbols_of, text,
                          walk, write)
+
+if TYPE_CHECKING:
+    from .expression import Node
+    from .hints import Assignments
+    from .model import Model
 
 _columns = 116  # inside the struct
 _deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
@@ -40,26 +49,26 @@ _instructions = {"pow": 40, "powr": 40, "find_interval": 20, "atan2": 25, "tan":
 _shared_work = ("sincos.sine", "sincos.cosine", "sincospi.sine", "sincospi.cosine", "dot")
 
 
-def _converts(node, argument):
+def _converts(node: Node, argument: Node) -> bool:
     """Whether an argument is a whole number, not a constant, in an operation of real ones."""
     return (argument.type == integer and argument.op != "constant" and
             (node.type == real or node.type == condition and any(a.type == real for a in node.args)))
 
 
-def _is_plain(node):
+def _is_plain(node: Node) -> bool:
     """Whether an expression is one number for all instances, so that packs do not come into it."""
     return all(n.value[0] in ("shared", "shared_integer") if n.op == "symbol" else n.op != "select" or n.type == real
                for n in walk([node]))
 
 
-def _is_natural(node):
+def _is_natural(node: Node) -> bool:
     """Whether a whole number cannot be negative, as numbers of instances, phases and detections."""
     return all(n.value >= 0 if n.op == "constant" else
                n.value[0] in ("built-in", "event_count") if n.op == "symbol" else
                n.op in ("quotient", "remainder", "min", "max") for n in walk([node]))
 
 
-def generic_problem(roots):
+def generic_problem(roots: Iterable[Node]) -> Node | None:
     """The first node that cannot be computed for a whole pack, or None: packs of whole numbers have no products and do
     not mix with real ones."""
     for node in walk(roots):
@@ -72,7 +81,7 @@ def generic_problem(roots):
 class Names:
     """The names that a model's functions use for their arguments: the usual ones unless a component has that name."""
 
-    def __init__(self, model):
+    def __init__(self, model: Model) -> None:
         self.taken = {*model.component_names, "i", "j"}
         self.y = self._free("y", "s", "u", "state_")
         self.p = self._free("p", "in", "inputs")
@@ -82,14 +91,14 @@ class Names:
         self.of_lane = f"std::remove_cvref_t<decltype({self.lane}.t)>"  # the type of its numbers
         self.real_of_lane = f"myriad::real_of<{self.of_lane}>"
 
-    def in_generate(self):
+    def in_generate(self) -> Names:
         """The names in `generate`, whose argument is no lane but an instance of a study."""
         names = copy.copy(self)
         names.lane = self._free("instance", "one", "instance_")
         names.of_lane = names.real_of_lane = f"typename std::remove_cvref_t<decltype({names.lane})>::real"
         return names
 
-    def _free(self, *candidates):
+    def _free(self, *candidates: str) -> str:
         numbered = (f"{candidates[0]}_{i}" for i in itertools.count(1))
         return next(c for c in itertools.chain(candidates, numbered) if c not in self.taken)
 
@@ -97,14 +106,14 @@ class Names:
 class Body:
     """The statements that compute some expressions, shared subexpressions first, and the text of each expression."""
 
-    def __init__(self, roots, names, symbol, scalar):
+    def __init__(self, roots: Sequence[Node], names: Names, symbol: Callable[[Node], str], scalar: bool) -> None:
         self.names, self.symbol, self.scalar = names, symbol, scalar
         self.shared = f"{names.lane if symbol.__name__ == 'in_hook' else names.p}.shared"
-        self.lines = []
-        self.named = {}
-        self.numbers = {}
+        self.lines: list[str] = []
+        self.named: dict[int, str] = {}
+        self.numbers: dict[str, int] = {}
         self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, "event"}
-        uses = {}
+        uses: dict[int, int] = {}
         order = walk(roots)
         computed = {(node.op.partition(".")[0], *map(id, node.args)) if node.op in _shared_work else node: node
                     for node in order}
@@ -116,7 +125,7 @@ class Body:
         # C++ evaluates operands in any order: draws within expressions are statements of their own, in one order
         drawn = [node for node in order if node.op in draws]
         in_order = all(uses[id(node)] == 1 and any(node is root for root in roots) for node in drawn)
-        depth = {}
+        depth: dict[int, int] = {}
         for node in order:
             if id(node) in self.named:
                 continue
@@ -135,7 +144,7 @@ class Body:
                 self.named[id(node)] = name
                 depth[id(node)] = 0
 
-    def _name(self, base):
+    def _name(self, base: str) -> str:
         """A name that nothing else has: `base`, or with a number."""
         name = base
         while name in self.used_names:
@@ -144,7 +153,7 @@ class Body:
         self.used_names.add(name)
         return name
 
-    def _sine_and_cosine(self, node, order):
+    def _sine_and_cosine(self, node: Node, order: Iterable[Node]) -> None:
         function = node.op.partition(".")[0]
         sine, cosine = self._name("sine"), self._name("cosine")
         argument = self.text(node.args[0])
@@ -155,7 +164,7 @@ class Body:
             if other.args and other.args[0] is node.args[0] and other.op.startswith(function + "."):
                 self.named[id(other)] = sine if other.op.endswith(".sine") else cosine
 
-    def reads(self, node):
+    def reads(self, node: Node) -> set[int]:
         """The symbols that the text of an expression names, by id."""
         found, stack = set(), [node]
         while stack:
@@ -166,7 +175,7 @@ class Body:
                     found.add(id(node))
         return found
 
-    def _product(self, node, order):
+    def _product(self, node: Node, order: Iterable[Node]) -> None:
         """Products of rows of a table with one vector, in a loop over all rows that are used."""
         table, _ = node.value
         n, kind = len(node.args), self.names.R
@@ -187,7 +196,7 @@ class Body:
         for other in same:
             self.named[id(other)] = f"{product}[{other.value[1] // n - first}]"
 
-    def early(self, node, name):
+    def early(self, node: Node, name: str) -> str:
         """The name of a variable with the value that the expression has here."""
         if id(node) in self.named or not node.args and node.op != "symbol":
             return self.text(node)
@@ -195,11 +204,11 @@ class Body:
         self.lines.append(f"const auto {name} = {self.text(node)};")
         return name
 
-    def text(self, node):
+    def text(self, node: Node) -> str:
         return write(node, self._leaf, self._call, self._convert, self._operator)
 
     @staticmethod
-    def _operator(node):
+    def _operator(node: Node) -> tuple[str, int] | None:
         """C++'s operators. Those of whole numbers would be undefined at the ends of their range, and round quotients
         towards zero."""
         if node.type == integer and not (node.op in ("quotient", "remainder") and node.args[1].op == "constant" and
@@ -207,14 +216,14 @@ class Body:
             return None
         return infix.get(node.op)
 
-    def _convert(self, node, argument):
+    def _convert(self, node: Node, argument: Node) -> str | None:
         """The conversion of an argument, as the text before its parenthesis."""
         if not _converts(node, argument):
             return None
         R = self.names.R
         return R if self.scalar else f"static_cast<myriad::real_of<{R}>>"
 
-    def _leaf(self, node):
+    def _leaf(self, node: Node) -> str | None:
         if id(node) in self.named:
             return self.named[id(node)]
         if node.op == "symbol":
@@ -230,7 +239,7 @@ class Body:
             return str(node.value) if node.type == integer else self._number(node.value)
         return None
 
-    def _number(self, value):
+    def _number(self, value: float) -> str:
         if value in (float("inf"), float("-inf")):
             infinity = f"myriad::infinity_of<myriad::real_of<{self.names.R}>>"
             return infinity if value > 0 else "-" + infinity
@@ -239,7 +248,7 @@ class Body:
             return str(int(value))
         return f"{self.names.R}({number_text(float(value))})"
 
-    def _call(self, node, arguments):
+    def _call(self, node: Node, arguments: list[str]) -> str:
         function = _of_whole_numbers.get(node.op, node.op) if node.type == integer else node.op
         if function in ("lookup", "find_interval"):
             table, first, *numbers = node.value
@@ -260,12 +269,12 @@ class Body:
         return f"myriad::{function}({', '.join(values)})"
 
 
-def _wrap(line, indent):
+def _wrap(line: str, indent: int) -> list[str]:
     """A statement in lines of at most 120 columns, broken after commas and operators."""
     first, rest = " " * indent, " " * (indent + 4)
     if len(first) + len(line) <= _columns:
         return [first + line]
-    words = []
+    words: list[str] = []
     for word in line.split(" "):
         if words and word in ("+", "-", "*", "/", "%", "&&", "||", "<", "<=", ">", ">=", "==", "!=", "="):
             words[-1] += " " + word
@@ -281,12 +290,12 @@ def _wrap(line, indent):
     return lines + [current]
 
 
-def _depends_on_instance(node):
-    """Whether a value differs between instances, so that its type is that of the state and not of a shared value."""
+def _depends_on_instance(node: Node) -> bool:
+    """Whether a value differs between instances, so that it has the type of the state and not of a shared value."""
     return any(n.op == "symbol" and n.value[0] not in ("shared", "shared_integer") for n in walk([node]))
 
 
-def work(roots):
+def work(roots: Iterable[Node]) -> int:
     """About how many instructions compute some expressions."""
     return sum(2 * len(n.args) if n.op == "dot" else _instructions.get(n.op, 1) for n in walk(roots) if n.args)
 
@@ -294,11 +303,11 @@ def work(roots):
 class Writer:
     """Writes one model."""
 
-    def __init__(self, model, names=None):
+    def __init__(self, model: Model, names: Names | None = None) -> None:
         self.model = model
         self.names = names or Names(model)
 
-    def header(self, name):
+    def header(self, name: str) -> str:
         model = self.model
         out = ["// SPDX-License-Identifier: MIT", "// Written by Myriad's Python package from a traced model.",
                "#pragma once", "", "#include <myriad/model.hpp>", ""]
@@ -337,11 +346,11 @@ class Writer:
             out += [""] + ["    " + line if line else line for line in block]
         return "\n".join(out + ["};", ""])
 
-    def description(self):
+    def description(self) -> list[str]:
         lines = [f"{s}' = {text(e)}" for s, e in zip(self.model.states, self.model.rhs)]
         return lines if len(lines) <= 8 else lines[:7] + [f"... and {len(lines) - 7} more equations"]
 
-    def declarations(self):
+    def declarations(self) -> list[str]:
         model = self.model
         declared = [name for name in ("accessories_are_outputs", "writes_parameters", "writes_time_domain")
                     if getattr(model, name)]
@@ -349,7 +358,7 @@ class Writer:
             declared.append("large_rhs")
         return [f"static constexpr bool {name} = true;" for name in declared]
 
-    def jacobian(self):
+    def jacobian(self) -> tuple[list[str], list[list[str]]]:
         """What stiff methods need of a large model: the pattern of its Jacobian, whether it depends on time, as lines,
         and the derivatives, in a list of one function or none."""
         model = self.model
@@ -375,14 +384,14 @@ class Writer:
 
     # Functions of the state
 
-    def in_function(self, node):
+    def in_function(self, node: Node) -> str:
         names, (kind, name) = self.names, node.value
         if kind == "built-in":  # the time
             return names.t
         prefix = {"state": names.y, "parameter": names.p}.get(kind, f"{names.p}.{kind}")
         return f"{prefix}[{name}]"
 
-    def function(self, name, count, roots):
+    def function(self, name: str, count: int | str, roots: Sequence[Node]) -> list[str]:
         n = self.names
         body = Body(roots, n, self.in_function, scalar=False)
         values = []
@@ -412,14 +421,14 @@ class Writer:
 
     # Hooks
 
-    def in_hook(self, node):
+    def in_hook(self, node: Node) -> str:
         lane, (kind, name) = self.names.lane, node.value
         if kind == "built-in":
             return f"{lane}.{_headers[name]}"
         member = {"state": "y"}.get(kind, kind)
         return f"{lane}.{member}[{name}]"
 
-    def statements(self, assignments, scalar):
+    def statements(self, assignments: Assignments, scalar: bool) -> tuple[list[str], dict[str, str]]:
         """The lines of assignments that take effect together, none seeing what another one has assigned, and the
         conditions that end a phase or an instance."""
         targets = [(t, e) for t, e in assignments if t.value[0] != "action"]
@@ -427,7 +436,9 @@ class Writer:
         plans = [self.plan(target, value, scalar) for target, value in targets]
         roots = [e for only_if, _, value in plans for e in (only_if, value) if e is not None]
         body = Body(roots + list(ends.values()), self.names, self.in_hook, scalar)
-        early, assigned = {}, set()  # what later assignments compute from components that are assigned before
+        # What later assignments compute from components that are assigned before.
+        early: dict[int, str] = {}
+        assigned: set[int] = set()
         for target, value in targets:
             if body.reads(value) & assigned:
                 early[id(target)] = body.early(value, "next_" + target.value[1])
@@ -448,7 +459,7 @@ class Writer:
         return body.lines, conditions
 
     @staticmethod
-    def plan(target, value, scalar):
+    def plan(target: Node, value: Node, scalar: bool) -> tuple[Node | None, str, Node]:
         """An assignment as (condition or None, operator, value): `if` where it keeps the old value, += where it adds to
         it."""
         only_if = None
@@ -463,19 +474,19 @@ class Writer:
                 return only_if, operator, value.args[1]
         return only_if, "=", value
 
-    def block(self, lines):
+    def block(self, lines: list[str]) -> list[str]:
         """Lines of a scalar hook, with the name of its real type if they need it."""
         n = self.names
         if any(re.search(rf"\b{n.R}\b", line) for line in lines):
             lines = [f"using {n.R} = {n.real_of_lane};"] + lines
         return [wrapped for line in lines for wrapped in _wrap(line, 4)]
 
-    def hook(self, name, assignments):
+    def hook(self, name: str, assignments: Assignments) -> list[str]:
         lines, _ = self.statements(assignments, scalar=True)
         return [f"MYRIAD_FUNCTION static void {name}(auto& {self.names.lane}) {{", *self.block(lines), "}"]
 
     @staticmethod
-    def returned(conditions):
+    def returned(conditions: Mapping[str, str]) -> list[str]:
         """The statements that return an action."""
         lines = []
         if "end_instance" in conditions:
@@ -487,7 +498,7 @@ class Writer:
         either = f"{phase} ? myriad::action::end_phase : myriad::action::proceed"
         return lines + [f"return {simple.get(phase, either)};"]
 
-    def after_step(self):
+    def after_step(self) -> list[str]:
         n, assignments = self.names, self.model.after_step
         values = [e for _, e in assignments]
         ends = {t.value[1] for t, _ in assignments if t.value[0] == "action"}
@@ -504,7 +515,7 @@ class Writer:
         return [f"template <class {n.R}>", f"MYRIAD_FUNCTION static {result} after_step(auto& {n.lane}) {{",
                 *(wrapped for line in lines for wrapped in _wrap(line, 4)), "}"]
 
-    def after_event(self):
+    def after_event(self) -> list[str]:
         n, events = self.names, self.model.events
         acting = [e for e in events if e.do]
         ends = any(t.value[0] == "action" for e in acting for t, _ in e.do)

@@ -2,14 +2,23 @@
 """Derivatives of recorded expressions by symbols, as expressions: the Jacobian that stiff methods use. Entries that are
 always zero are left out."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
 from . import expression as ex
+
+if TYPE_CHECKING:
+    from .expression import Condition, Expression, Node
+    from .hints import Operand
 
 _ln2, _ln10 = 0.6931471805599453, 2.302585092994046
 
 
 # The partial derivatives of an operation by its arguments: None where it does not depend on one, a condition where the
 # argument is passed on if it holds.
-_partials = {
+_partials: dict[str, Callable[..., Sequence[Any]]] = {
     "add": lambda f, a, b: (1, 1),
     "subtract": lambda f, a, b: (1, -1),
     "multiply": lambda f, a, b: (b, a),
@@ -60,12 +69,13 @@ _partials = {
 }
 
 
-def _of_power(f, base, exponent, power):
+def _of_power(f: Expression, base: Expression, exponent: Expression,
+              power: Callable[[Operand, Operand], Expression]) -> tuple[Expression, Expression | None]:
     by_exponent = f * ex.log(base) if exponent.op != "constant" else None
     return exponent * power(base, exponent - 1), by_exponent
 
 
-def _times(partial, derivative):
+def _times(partial: Expression | Condition | int, derivative: Expression) -> Expression:
     """A product in which a condition chooses between the derivative and zero."""
     if isinstance(partial, ex.Condition):
         return ex.where(partial, derivative, 0.0)
@@ -76,10 +86,10 @@ def _times(partial, derivative):
     return partial * derivative
 
 
-def dependencies(roots, symbols):
+def dependencies(roots: Sequence[Node], symbols: Sequence[Node]) -> list[list[int]]:
     """For each root the numbers of the symbols that it depends on, in order."""
     bit = {id(s): 1 << i for i, s in enumerate(symbols)}
-    masks = {}
+    masks: dict[int, int] = {}
     for node in ex.walk(roots):
         mask = bit.get(id(node), 0)
         for argument in node.args:
@@ -88,14 +98,14 @@ def dependencies(roots, symbols):
     return [[i for i in range(len(symbols)) if masks[id(root)] >> i & 1] for root in roots]
 
 
-def derivatives(roots, symbols):
+def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int, Expression]] | None:
     """For each root {number of a symbol: derivative by it}, or None if an operation has no rule here, as the lookup in
-    a table. Derivatives of steps, as those of `floor`, are zero and left out."""
+    a table. Derivatives of functions with steps, such as `floor`, are zero and left out."""
     one = ex.constant(1.0)
     number = {id(s): i for i, s in enumerate(symbols)}
-    found = {}
+    found: dict[int, dict[int, Expression]] = {}
     for node in ex.walk(roots):
-        total = {}
+        total: dict[int, Expression] = {}
         if id(node) in number:
             total[number[id(node)]] = one
         elif node.type == ex.real and any(found[id(a)] for a in node.args):

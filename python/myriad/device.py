@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Arrays on GPUs: those of other libraries as values of a sweep, and results where they are."""
+"""Arrays on GPUs: other libraries' arrays as values of a sweep, and results where they are."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class DeviceInput:
 
     ndim = 1
 
-    def __init__(self, array, name):
+    def __init__(self, array: Any, name: str) -> None:
         self._array = array  # kept, and with it the memory
         interface = getattr(array, "__cuda_array_interface__", None)
         if interface is not None:
@@ -59,7 +59,7 @@ class DeviceInput:
         if step != size and self._length > 1:
             raise Error(f"'{name}' on the GPU has its values {step} bytes apart: make it contiguous there")
 
-    def __len__(self):
+    def __len__(self) -> int:
         return self._length
 
 
@@ -73,14 +73,14 @@ class DeviceArray:
         self.address, self.shape, dtype, self.device, self._strides = _core.facts_of_own_array(capsule)
         self.dtype = np.dtype(dtype)
 
-    def __dlpack__(self, **_):
+    def __dlpack__(self, **_: object) -> object:
         return self._make()
 
-    def __dlpack_device__(self):
+    def __dlpack_device__(self) -> tuple[int, int]:
         return _cuda, self.device
 
     @property
-    def __cuda_array_interface__(self):
+    def __cuda_array_interface__(self) -> dict[str, Any]:
         strides = tuple(s * self.dtype.itemsize for s in self._strides)
         return {"shape": self.shape, "typestr": self.dtype.str, "data": (self.address, False), "version": 3,
                 "strides": strides, "stream": None}

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: MIT
 """What the package raises: one class, so that callers can tell its messages from those of other packages."""
 
+from __future__ import annotations
+
 import difflib
 import os
 import re
 import sys
+import types
+from collections.abc import Collection, Iterable
 
 import numpy as np
 
@@ -75,9 +79,9 @@ class UnknownOption(Error, TypeError):
     """A call names an option that does not exist."""
 
 
-def users_line():
+def users_line() -> tuple[str, int] | None:
     """File and line of the innermost caller outside this package, as (file, line), or None."""
-    frame = sys._getframe(1)
+    frame: types.FrameType | None = sys._getframe(1)
     while frame is not None and frame.f_code.co_filename.startswith(_here):
         frame = frame.f_back
     return None if frame is None else (frame.f_code.co_filename, frame.f_lineno)
@@ -97,7 +101,7 @@ _elsewhere = {
 _needless = ("jac", "jac_sparsity", "lband", "uband", "vectorized", "Dfun", "tfirst")
 
 
-def refuse_options(given, known, call):
+def refuse_options(given: Iterable[str], known: Collection[str], call: str) -> None:
     """Refuses options that a call does not have, {name: value}, with what it has in their place."""
     for name in given:
         if name in _needless:
@@ -110,7 +114,7 @@ def refuse_options(given, known, call):
         raise UnknownOption(f"{call} has no option '{name}'{at(users_line())}: {hint}")
 
 
-def refuse_masked(values, what):
+def refuse_masked(values: object, what: str) -> None:
     """Refuses a masked array, whose hidden values would count as given."""
     if isinstance(values, np.ma.MaskedArray):
         if np.ma.is_masked(values):
@@ -118,6 +122,6 @@ def refuse_masked(values, what):
                         ".filled(0.0), or leave out their instances")
 
 
-def at(line):
+def at(line: tuple[str, int] | None) -> str:
     """', FILE:LINE' for messages; nothing where the line is not known."""
     return "" if line is None else f" ({os.path.basename(line[0])}:{line[1]})"

@@ -13,7 +13,7 @@ import operator
 import threading
 import uuid
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -48,7 +48,7 @@ class Node:
     def __hash__(self) -> int:
         return id(self) >> 4
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         return make, (self.op, self.args, self.value, self.type)
 
     def __repr__(self) -> str:
@@ -75,7 +75,7 @@ def make(op: str, args: tuple[Any, ...] = (), value: Any = None, type: str = rea
         return node
 
 
-def constant(number):
+def constant(number: object) -> Any:
     """The node of a number."""
     if isinstance(number, (bool, np.bool_)):
         return make("truth", value=bool(number), type=condition)
@@ -96,14 +96,14 @@ def constant(number):
     raise TypeError
 
 
-def is_sympy(value):
+def is_sympy(value: object) -> bool:
     """Whether it is an object of SymPy, which is not imported for this."""
     return any((base.__module__ or "").partition(".")[0] == "sympy" for base in type(value).__mro__)
 
 
-def as_node(value):
+def as_node(value: object) -> Expression | Condition:
     """A node from an expression, a number, an array without axes, or a SymPy expression without free symbols."""
-    if isinstance(value, Node):
+    if isinstance(value, (Expression, Condition)):
         return value
     refuse_masked(value, "a constant")
     if isinstance(value, np.ndarray) and value.ndim == 0:
@@ -122,32 +122,32 @@ def as_node(value):
                 "symbols from myriad.states, myriad.parameter and so on")
 
 
-def as_number(value):
+def as_number(value: object) -> Expression:
     """A real or integer node."""
     node = as_node(value)
-    if node.type == condition:
+    if isinstance(node, Condition):
         raise Error(f"`{text(node)}` is a condition and not a number{at(users_line())}: use "
                     "myriad.where(condition, 1.0, 0.0)")
     return node
 
 
-def as_condition(value):
+def as_condition(value: object) -> Condition:
     """A node that is true or false."""
     node = as_node(value)
-    if node.type != condition:
+    if not isinstance(node, Condition):
         raise Error(f"`{text(node)}` is a number and not a condition{at(users_line())}: compare it with something")
     return node
 
 
-def _is_constant(node):
+def _is_constant(node: Node) -> bool:
     return node.op == "constant"
 
 
-def _is_whole(node):
+def _is_whole(node: Node) -> bool:
     return _is_constant(node) and node.type == integer
 
 
-def to_real(node):
+def to_real(node: Expression) -> Expression:
     """Whole constants beside real numbers are real, so that x - 1 and x - 1.0 are the same."""
     if node.type != integer:
         return node
@@ -160,7 +160,7 @@ def to_real(node):
     return node
 
 
-def _float(value):
+def _float(value: int) -> Expression:
     try:
         return constant(float(value))
     except OverflowError:
@@ -168,7 +168,8 @@ def _float(value):
                     f"{at(users_line())}") from None
 
 
-def _arithmetic(op, fold, a, b, always_real=False):
+def _arithmetic(op: str, fold: Callable[[Any, Any], Any], a: object, b: object,
+                always_real: bool = False) -> Expression:
     a, b = as_number(a), as_number(b)
     is_integer = a.type == b.type == integer and not always_real
     if _is_constant(a) and _is_constant(b):
@@ -188,7 +189,7 @@ def _arithmetic(op, fold, a, b, always_real=False):
     return make(op, (to_real(a), to_real(b)))
 
 
-def _power(base, exponent):
+def _power(base: object, exponent: object) -> Expression:
     """base ** exponent: whole exponents by multiplication, as myriad::pow does it, 0.5 as a square root."""
     base, exponent = as_number(base), as_number(exponent)
     if _is_constant(exponent):
@@ -207,7 +208,7 @@ def _power(base, exponent):
     return make("pow", (to_real(base), to_real(exponent)))
 
 
-def _whole_power(base, n):
+def _whole_power(base: Expression, n: int) -> Expression:
     if n < 0:
         return 1.0 / _whole_power(base, -n)
     if n > 1 << 20:
@@ -222,7 +223,7 @@ def _whole_power(base, n):
     return constant(1 if base.type == integer else 1.0) if result is None else result
 
 
-def _compare(op, fold, a, b):
+def _compare(op: str, fold: Callable[[Any, Any], bool], a: object, b: object) -> Condition:
     a, b = as_number(a), as_number(b)
     if _is_constant(a) and _is_constant(b):
         return constant(fold(a.value, b.value))
@@ -231,37 +232,37 @@ def _compare(op, fold, a, b):
     return make(op, (a, b), type=condition)
 
 
-def _is_array(other):
+def _is_array(other: object) -> bool:
     return isinstance(other, np.ndarray) and other.ndim > 0
 
 
 def _binary(build: Callable[[Any, Any], Any]) -> tuple[Any, Any]:
-    def forward(self, other):
+    def forward(self: Node, other: object) -> Any:
         return NotImplemented if _is_array(other) else build(self, other)
 
-    def backward(self, other):
+    def backward(self: Node, other: object) -> Any:
         return NotImplemented if _is_array(other) else build(other, self)
 
     return forward, backward
 
 
-def add(a, b):
+def add(a: object, b: object) -> Expression:
     return _arithmetic("add", operator.add, a, b)
 
 
-def subtract(a, b):
+def subtract(a: object, b: object) -> Expression:
     return _arithmetic("subtract", operator.sub, a, b)
 
 
-def multiply(a, b):
+def multiply(a: object, b: object) -> Expression:
     return _arithmetic("multiply", operator.mul, a, b)
 
 
-def divide(a, b):
+def divide(a: object, b: object) -> Expression:
     return _arithmetic("divide", operator.truediv, a, b, always_real=True)
 
 
-def _division(op, of_whole, fold, a, b):
+def _division(op: str, of_whole: str, fold: Callable[[Any, Any], Any], a: object, b: object) -> Expression:
     """// or %, as Python has them."""
     a, b = as_number(a), as_number(b)
     is_integer = a.type == b.type == integer
@@ -274,16 +275,16 @@ def _division(op, of_whole, fold, a, b):
     return make(op, (to_real(a), to_real(b)))
 
 
-def floor_divide(a, b):
+def floor_divide(a: object, b: object) -> Expression:
     return _division("floor_divide", "quotient", operator.floordiv, a, b)
 
 
-def remainder(a, b):
+def remainder(a: object, b: object) -> Expression:
     return _division("floor_mod", "remainder", operator.mod, a, b)
 
 
-def is_long(node):
-    """Whether a whole number has 64 bits, as that of the instance has; others have 32."""
+def is_long(node: Node) -> bool:
+    """Whether a whole number has 64 bits, as the number of the instance has; others have 32."""
     return any(n.value == ("built-in", "instance") for n in walk([node]) if n.op == "symbol")
 
 
@@ -292,7 +293,7 @@ class _NumpyFunctions:
 
     __slots__ = ()
 
-    def __array_ufunc__(self, ufunc, method, *inputs, **options):
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
         from .numpy_functions import of_numbers
         function = of_numbers(ufunc)
         if function is None or method != "__call__" or options:
@@ -300,7 +301,8 @@ class _NumpyFunctions:
                         "the functions of myriad")
         return elementwise(function, *inputs)
 
-    def __array_function__(self, function, types, args, options):
+    def __array_function__(self, function: Callable[..., Any], types: Iterable[type], args: Iterable[Any],
+                           options: Mapping[str, Any]) -> Any:
         from .numpy_functions import of_arrays
         if (ours := of_arrays(function)) is not None:
             return ours(*args, **options)
@@ -311,7 +313,7 @@ class _NumpyFunctions:
 class Vector(np.ndarray):
     """An array of expressions: NumPy's functions of it are this module's, element by element."""
 
-    def __array_ufunc__(self, ufunc, method, *inputs, out=None, **options):
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, out: Any = None, **options: Any) -> Any:
         from .numpy_functions import of_numbers
         function = of_numbers(ufunc)
         if function is not None and method == "__call__" and not options:
@@ -328,21 +330,22 @@ class Vector(np.ndarray):
         out[0][...] = result
         return out[0]
 
-    def __array_function__(self, function, types, args, options):
+    def __array_function__(self, function: Callable[..., Any], types: Iterable[type], args: Iterable[Any],
+                           options: Mapping[str, Any]) -> Any:
         from .numpy_functions import of_arrays
         if (ours := of_arrays(function)) is not None:
             return ours(*args, **options)
         return super().__array_function__(function, types, args, options)
 
 
-def vector(expressions):
+def vector(expressions: Sequence[Node]) -> Vector:
     """A `Vector` of some expressions."""
     made = np.empty(len(expressions), object)
     made[:] = expressions
     return made.view(Vector)
 
 
-def elementwise(function, *inputs):
+def elementwise(function: Callable[..., Any], *inputs: Any) -> Any:
     """A function of arrays from one of their elements."""
     arrays = []
     for x in inputs:
@@ -410,22 +413,22 @@ class Expression(Node, _NumpyFunctions):
     def __abs__(self) -> Expression:
         return abs(self)
 
-    def __round__(self, digits=None):
+    def __round__(self, digits: int | None = None) -> Expression:
         if digits:
             raise Error(f"`{text(self)}` is rounded to {digits} digits{at(users_line())}: there is rounding to whole "
                         "numbers alone, as in round(10 * x) / 10")
         return round(self)
 
-    def __floor__(self):
+    def __floor__(self) -> Expression:
         return floor(self)
 
-    def __ceil__(self):
+    def __ceil__(self) -> Expression:
         return ceil(self)
 
-    def __trunc__(self):
+    def __trunc__(self) -> Expression:
         return trunc(self)
 
-    def _refuse_number(self, *_):
+    def _refuse_number(self, *_: object) -> NoReturn:
         raise Error(f"`{text(self)}` is not a number yet, while the model is recorded{at(users_line())}: use the "
                     "functions of myriad (myriad.sin, not math.sin), and keep it in arrays of objects, as "
                     "np.zeros_like(y) or np.zeros(2, dtype=object) makes them")
@@ -433,20 +436,20 @@ class Expression(Node, _NumpyFunctions):
     __float__ = __int__ = __index__ = __complex__ = _refuse_number
 
 
-def _both(a, b):
+def _both(a: object, b: object) -> Condition:
     return _logical("and", a, b)
 
 
-def _either(a, b):
+def _either(a: object, b: object) -> Condition:
     return _logical("or", a, b)
 
 
-def _equal(a, b):
+def _equal(a: object, b: object) -> Condition:
     a, b = as_condition(a), as_condition(b)
     return make("truth", value=True, type=condition) if a is b else (a & b) | (~a & ~b)
 
 
-def _differ(a, b):
+def _differ(a: object, b: object) -> Condition:
     return ~_equal(a, b)
 
 
@@ -478,7 +481,7 @@ class Condition(Node, _NumpyFunctions):
             "not", (self,), type=condition)
 
 
-def _logical(op, a, b):
+def _logical(op: str, a: object, b: object) -> Condition:
     a, b = as_condition(a), as_condition(b)
     for one, other in ((a, b), (b, a)):
         if one.op == "truth":
@@ -491,11 +494,7 @@ def _logical(op, a, b):
 # ----------------------------------------------------------------------------------------------------------------------
 
 
-def _exp2(x):
-    return 2.0 ** x
-
-
-_unary = {  # for the values of constants and for `evaluate`; C++ uses myriad's own
+_unary: dict[str, Callable[..., Any]] = {  # for the values of constants and for `evaluate`; C++ uses myriad's own
     "sqrt": np.sqrt, "cbrt": np.cbrt, "floor": np.floor, "sin": np.sin, "cos": np.cos, "tan": np.tan,
     "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh,
     "exp": np.exp, "exp2": np.exp2, "log": np.log, "log2": np.log2, "log10": np.log10,
@@ -507,7 +506,7 @@ _unary = {  # for the values of constants and for `evaluate`; C++ uses myriad's 
 
 
 def _function(name: str, description: str) -> Callable[[Operand], Expression]:
-    def function(x):
+    def function(x: Operand) -> Expression:
         return make(name, (to_real(as_number(x)),))
 
     function.__name__ = function.__qualname__ = name
@@ -520,7 +519,7 @@ cbrt = _function("cbrt", "Cube root.")
 _floor, _rint = _function("floor", ""), _function("rint", "")
 
 
-def _of_real(x, function):
+def _of_real(x: Operand, function: Callable[[Expression], Expression]) -> Expression:
     """A function that leaves whole numbers as they are."""
     x = as_number(x)
     return x if x.type == integer else function(x)
@@ -568,7 +567,7 @@ reciprocal = _function("reciprocal", "1 / x without a division, for normal x wit
 
 
 def _function_of_two(name: str, description: str) -> Callable[[Operand, Operand], Expression]:
-    def function(a, b):
+    def function(a: Operand, b: Operand) -> Expression:
         return make(name, (to_real(as_number(a)), to_real(as_number(b))))
 
     function.__name__ = function.__qualname__ = name
@@ -614,7 +613,7 @@ def sincospi(x: Operand) -> tuple[Expression, Expression]:
     return make("sincospi.sine", (x,)), make("sincospi.cosine", (x,))
 
 
-def _extreme(op, pick, arguments):
+def _extreme(op: str, pick: Callable[[Any, Any], Any], arguments: tuple[Any, ...]) -> Expression:
     if len(arguments) == 1 and not isinstance(arguments[0], Node):
         arguments = tuple(arguments[0])
     if not arguments:
@@ -660,7 +659,7 @@ def where(condition: Condition | bool, a: Any, b: Any) -> Any:
 draws = ("uniform", "normal")
 
 
-def _draw(kind, a, b):
+def _draw(kind: str, a: Operand, b: Operand) -> Expression:
     """A draw, with a number of its own: two equal calls are two draws."""
     return make(kind, (to_real(as_number(a)), to_real(as_number(b))), value=uuid.uuid4().int)
 
@@ -686,7 +685,7 @@ def is_finite(x: Operand) -> Condition:
 # ----------------------------------------------------------------------------------------------------------------------
 
 
-def walk(roots):
+def walk(roots: Iterable[Node]) -> list[Node]:
     """All nodes that the roots need, each once, arguments before what uses them; in a fixed order."""
     seen, order = set(), []
     for root in roots:
@@ -705,7 +704,7 @@ def walk(roots):
     return order
 
 
-def symbols_of(roots):
+def symbols_of(roots: Iterable[Node]) -> list[Node]:
     """The symbols in these expressions, in the order in which they are first needed."""
     return [node for node in walk(roots) if node.op == "symbol"]
 
@@ -720,7 +719,8 @@ _prefix = {"negate": "-", "not": "!"}
 _atom, _unary_precedence = 9, 8
 
 
-def write(root, leaf, call, convert, operator_of):
+def write(root: Node, leaf: Callable[[Node], str | None], call: Callable[[Node, list[str]], str],
+          convert: Callable[[Node, Node], str | None], operator_of: Callable[[Node], tuple[str, int] | None]) -> str:
     """An expression as text with as few parentheses as C++ and Python need. `leaf(node)` is the text of a node without
     arguments or one that has a name, else None; `call(node, arguments)` that of a function; `convert(node, argument)`
     is the type that an argument is converted to first, or None; `operator_of(node)` is the sign and the precedence of
@@ -744,8 +744,7 @@ def write(root, leaf, call, convert, operator_of):
         stack.pop()
         arguments = [texts[id(a)] for a in node.args]
         for i, argument in enumerate(node.args):
-            to = convert and convert(node, argument)
-            if to:
+            if to := convert(node, argument):
                 arguments[i] = (f"{to}({arguments[i][0]})", _atom)
         if (sign := operator_of(node)) is not None:
             symbol, precedence = sign
@@ -768,7 +767,7 @@ def write(root, leaf, call, convert, operator_of):
 _called = {"select": "where", "rint": "round"}  # in Python
 
 
-def number_text(value):
+def number_text(value: float) -> str:
     """A number as Python writes it, whole ones without a fraction."""
     if isinstance(value, float) and value.is_integer() and -1e15 < value < 1e15 and math.copysign(1, value) == 1 - 2 * (
             value < 0):
@@ -776,9 +775,9 @@ def number_text(value):
     return repr(value)
 
 
-def text(node):
+def text(node: Node) -> str:
     """An expression for messages and comments, cut where it is long."""
-    def leaf(n):
+    def leaf(n: Node) -> str | None:
         if n.op == "symbol":
             return n.value[1]
         if n.op in ("constant", "truth"):
@@ -799,7 +798,7 @@ def text(node):
 # Values
 # ----------------------------------------------------------------------------------------------------------------------
 
-_operations = {
+_operations: dict[str, Callable[..., Any]] = {
     "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
     "quotient": np.floor_divide, "remainder": np.mod, "floor_divide": np.floor_divide, "floor_mod": np.mod,
     "fmod": np.fmod, "negate": operator.neg, "less": operator.lt,
@@ -812,7 +811,7 @@ _operations = {
 }
 
 
-def evaluate(roots, values):
+def evaluate(roots: Sequence[Node], values: Mapping[Any, Any]) -> list[Any]:
     """The values of expressions by NumPy: `values` has a number or an array for each symbol. Slow; a second opinion for
     tests and for looking at a model. Where C++ has functions of its own, the last places differ."""
     known = {}

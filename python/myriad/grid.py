@@ -21,12 +21,12 @@ from .parse import sympy_name
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .hints import Array, Values
+    from .hints import Array, Component, Values
 
 __all__ = ["grid", "zip", "Sweep"]
 
 
-def _name(key, line):
+def _name(key: Component, line: tuple[str, int] | None) -> str:
     if isinstance(key, Node) and key.op == "symbol" and key.value[0] not in ("action", "event_count"):
         return key.value[1]
     if isinstance(key, str):
@@ -37,7 +37,7 @@ def _name(key, line):
 
 
 def as_numbers(values: Any) -> Array:
-    """What users give as numbers, as an array; also objects that are real numbers, as those of `fractions`."""
+    """What users give as numbers, as an array; also objects that are real numbers, as in `fractions`."""
     try:
         array = np.asarray(drawn(values))
     except ValueError as why:  # lists of different lengths
@@ -51,7 +51,7 @@ def as_numbers(values: Any) -> Array:
     return array
 
 
-def _numbers(name, values, line):
+def _numbers(name: str, values: Values, line: tuple[str, int] | None) -> Array | Axis:
     """Values as an array of whole numbers or of double precision, without NaN; axes of studies as they are."""
     values = drawn(values)
     if isinstance(values, Axis):
@@ -119,13 +119,6 @@ class Sweep:
                         "instances: give one")
         return values.reshape(self.shape + values.shape[1:])
 
-    def with_constants(self, constants: dict[str, float]) -> Sweep:
-        """The same with further values that are equal for all instances."""
-        twice = [n for n in constants if n in self.names]
-        if twice:
-            raise Error(f"'{twice[0]}' is given twice{at(users_line())}: give it one value")
-        return Sweep(self.axes, self.coordinates, {**self.constants, **constants})
-
     def __len__(self) -> int:
         return self.size
 
@@ -135,7 +128,8 @@ class Sweep:
         return f"<sweep of {self.size} instances: {along or 'one'}{', ' + fixed if fixed else ''}>"
 
 
-def _collect(mapping, named, line):
+def _collect(mapping: Mapping[Any, Any] | None, named: Mapping[str, Any],
+             line: tuple[str, int] | None) -> dict[str, Any]:
     given = {}
     for key, values in [*(mapping or {}).items(), *named.items()]:
         name = _name(key, line)
@@ -154,7 +148,8 @@ def grid(*parts: Sweep | Mapping[Any, Any], **axes: Values) -> Sweep:
     coordinates: dict[str, tuple[str, Any]] = {}
     constants: dict[str, Any] = {}
 
-    def add(new_axes, new_coordinates, new_constants):
+    def add(new_axes: list[tuple[str, Any]], new_coordinates: dict[str, tuple[str, Any]],
+            new_constants: dict[str, Any]) -> None:
         for name in [*new_coordinates, *new_constants, *(a for a, _ in new_axes if a not in new_coordinates)]:
             if name in coordinates or name in constants or name in [a for a, _ in made_axes]:
                 raise Error(f"'{name}' is on two axes of the grid{at(line)}: give it one set of values")
@@ -202,14 +197,3 @@ def zip(mapping: Mapping[Any, Any] | None = None, **arrays: Values) -> Sweep:
         return Sweep([(name, values)], {name: (name, values)}, constants)
     axis = "instance"
     return Sweep([(axis, np.arange(next(iter(lengths.values()))))], {n: (axis, v) for n, v in along.items()}, constants)
-
-
-def as_sweep(given: Any) -> Sweep:
-    """A sweep from what users give to `solve`: a sweep, or a dictionary {name or symbol: number or array}, whose arrays
-    are zipped."""
-    if isinstance(given, Sweep):
-        return given
-    if isinstance(given, dict):
-        return zip(given)
-    raise Error(f"{type(given).__name__} is no sweep{at(users_line())}: give a dictionary {{k: values}}, "
-                "myriad.grid or myriad.zip")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Union
 import numpy as np
 import numpy.typing as npt
 
-from .expression import Expression
+from .expression import Expression, Node
 
 if TYPE_CHECKING:
     from .cpp_model import CppModel
@@ -30,12 +30,14 @@ Written = Union[Expression, float, str, Any]
 Values = Union[npt.ArrayLike, Any]
 # Values by component.
 ByComponent = Mapping[Any, Any]
-# One for all states, one for each, or those of some states.
+# One for all states, one for each, or values by state.
 Tolerance = Union[float, Sequence[float], npt.NDArray[np.floating[Any]], Mapping[Any, float]]
 # True for a bar, or a function of the numbers of instances done and of all.
 Progress = Union[bool, Callable[[int, int], object], None]
 # Names, as "x v" or in a list, or symbols.
 Names = Union[str, Expression, Iterable[Any]]
+# What a hook or an event of a model sets: targets, and the values that they get.
+Assignments = list[tuple[Node, Node]]
 # A model of any kind.
 AnyModel = Union["Model", "CppModel", "WithTangents"]
 Path = Union[str, "os.PathLike[str]"]

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from .components import unknown
@@ -10,25 +13,31 @@ from .device import DeviceInput, is_on_gpu
 from .errors import Error, refuse_masked
 from .grid import as_numbers
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from .grid import Sweep
+    from .hints import Array, ByComponent
+
 
 class Along:
     """Values of a grid along one of its axes, as an array of one value per instance that is not made until needed."""
 
     ndim = 1
 
-    def __init__(self, sweep, name):
+    def __init__(self, sweep: Sweep, name: str) -> None:
         self._sweep, self._name = sweep, name
         self.values, self.repeat = sweep.along(name)
         self.dtype = self.values.dtype
 
-    def __len__(self):
+    def __len__(self) -> int:
         return self._sweep.size
 
-    def __array__(self, dtype=None, copy=None):
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> Array:
         return self._sweep.values(self._name).astype(dtype or self.dtype, copy=False)
 
 
-def numbers(value, name):
+def numbers(value: Any, name: str) -> Any:
     """A number, or an array of one dimension, of real numbers; arrays on a GPU stay there."""
     if isinstance(value, Along):
         return value
@@ -46,7 +55,7 @@ def numbers(value, name):
     return array
 
 
-def whole_numbers(array, name):
+def whole_numbers(array: Array, name: str) -> Array:
     """The values of an integer component: whole numbers of 32 bits."""
     least, largest = -(1 << 31), (1 << 31) - 1
     values = array.astype(float)
@@ -60,7 +69,7 @@ def whole_numbers(array, name):
 _largest = (1 << 31) - 1
 
 
-def whole(value, name, largest=_largest):
+def whole(value: Any, name: str, largest: int = _largest) -> int:
     try:
         is_whole = not isinstance(value, (bool, np.bool_, str)) and float(value).is_integer()
     except (TypeError, ValueError, OverflowError):
@@ -72,21 +81,21 @@ def whole(value, name, largest=_largest):
     return int(value)
 
 
-def real(value, name):
+def real(value: Any, name: str) -> float:
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError):
         raise Error(f"{name} is {value!r}: give a number") from None
 
 
-def by_name(value, name, example):
+def by_name(value: ByComponent | None, name: str, example: str) -> ByComponent:
     """The dict that an option is."""
     if value is not None and not hasattr(value, "items"):
         raise Error(f"{name} is {value!r}: give a dict by name, as in {example}")
     return value or {}
 
 
-def only(options, known, what):
+def only(options: Iterable[str], known: Collection[str], what: str) -> None:
     for name in options:
         if name not in known:
             raise unknown(name, list(known), f"choice of {what}")

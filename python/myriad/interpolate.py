@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from .expression import Expression
-    from .hints import Operand
+    from .hints import Array, Operand
 
 __all__ = ["interpolate"]
 
@@ -89,11 +89,11 @@ def interpolate(t: Operand, times: npt.ArrayLike, values: npt.ArrayLike, kind: L
     return result
 
 
-def _linear(times, values):
+def _linear(times: Array, values: Array) -> Array:
     return np.stack([np.diff(values) / np.diff(times), values[:-1]], axis=1)
 
 
-def _cubic(times, values, periodic):
+def _cubic(times: Array, values: Array, periodic: bool) -> Array:
     """The coefficients of each piece, the highest power first, from the slopes at the knots, which a system of three
     diagonals, and two corners for periodic data, determines (de Boor, A Practical Guide to Splines, chapter IV)."""
     h, slope, n = np.diff(times), np.diff(values) / np.diff(times), times.size
@@ -128,7 +128,7 @@ def _cubic(times, values, periodic):
     return np.stack([bend / h, (slope - slopes[:-1]) / h - bend, slopes[:-1], values[:-1]], axis=1)
 
 
-def _three_diagonals(lower, middle, upper, right):
+def _three_diagonals(lower: Array, middle: Array, upper: Array, right: Array) -> Array:
     """Thomas' algorithm."""
     middle, right = middle.copy(), right.copy()
     for i in range(1, len(middle)):

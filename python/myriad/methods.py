@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import difflib
-from typing import Literal, get_args
+from collections.abc import Sequence
+from typing import Any, Literal, get_args
 
 from .errors import Error
 
@@ -26,20 +27,20 @@ _elsewhere = {"rk45": "dormand_prince_5", "dopri5": "dormand_prince_5", "dp5": "
               "rosenbrock23": "rosenbrock_23", "rkck": "cash_karp"}
 
 
-def method_type(name, chosen=(), samples=False):
+def method_type(name: str, chosen: str | Sequence[str] = (), samples: bool = False) -> str:
     """The C++ type of a method with choices of its control, and with dense output if samples are wanted."""
     if name not in methods:
         near = _elsewhere.get(str(name).lower()) or next(iter(difflib.get_close_matches(str(name), methods, 1)), None)
         hint = f"use \"{near}\", or another" if near else "choose one"
         raise Error(f"there is no method {name!r}: {hint} of {', '.join(methods)}")
-    chosen = tuple(chosen) if isinstance(chosen, (list, tuple, set)) else (chosen,)
-    for choice in chosen:
+    choices: tuple[Any, ...] = tuple(chosen) if isinstance(chosen, (list, tuple, set)) else (chosen,)
+    for choice in choices:
         if choice not in controls:
             raise Error(f"there is no step-size control {choice!r}: choose of {', '.join(controls)}")
-    if chosen and name in fixed_step:
+    if choices and name in fixed_step:
         raise Error(f"{name} takes fixed steps and has no step-size control to choose: leave out control=, or take "
                     "an adaptive method")
     written = f"myriad::{name}"
-    if chosen:
-        written = f"myriad::controlled<{', '.join([written] + ['myriad::' + c for c in chosen])}>"
+    if choices:
+        written = f"myriad::controlled<{', '.join([written] + ['myriad::' + c for c in choices])}>"
     return f"myriad::dense<{written}>" if samples else written

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,7 +24,8 @@ from .whole_numbers import check_constants
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .hints import Array, ByComponent, Direction, Names, Written
+    from .expression import Expression
+    from .hints import Array, Assignments, ByComponent, Component, Direction, Names, Written
 
 __all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
            "integral"]
@@ -35,9 +36,9 @@ _directions = ("rising", "falling", "either", "none")
 class Summary:
     """What is computed from a quantity over a phase, along the solution and not only at the ends of steps."""
 
-    def __init__(self, kind, quantity):
+    def __init__(self, kind: str, quantity: Any) -> None:
         self.kind, self.quantity, self.line = kind, quantity, users_line()
-        self.observed = self.accessory = None  # names, known with the model
+        self.observed = self.accessory = ""  # names, known with the model
 
 
 def phase_maximum(quantity: Written) -> Summary:
@@ -107,7 +108,7 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
     """Records a model.
 
     `equations` is a dictionary {state: its derivative}; or a function f(t, y, ...) that returns the derivatives, as for
-    SciPy, with the names of its states in `states` and those of its further arguments that all instances share in
+    SciPy, with the names of its states in `states`, and the names of further arguments that all instances share in
     `shared`; or a string "x' = v; v' = -x" with all names in `parameters` and `shared`. In a dictionary keys and values
     may be strings or SymPy's symbols and expressions, named in the same way.
 
@@ -152,8 +153,8 @@ class Model(kinds.ComponentNames):
         self.name = self._default_name(equations) if name is None else sym.check_name(name, "a model")
         self._check()
 
-    def _default_name(self, equations):
-        """The name of the function, if it can be that of a struct, or "model"."""
+    def _default_name(self, equations: object) -> str:
+        """The name of the function, if a struct can have it, or "model"."""
         for name in (getattr(equations, "__name__", ""), "model"):
             try:
                 if name not in self.component_names:
@@ -164,8 +165,9 @@ class Model(kinds.ComponentNames):
 
     # What users may give
 
-    def _declare(self, states, parameters, shared, accessories):
-        declared = {}
+    def _declare(self, states: Names | None, parameters: Names, shared: Names,
+                 accessories: ByComponent | None) -> dict[str, Node]:
+        declared: dict[str, Node] = {}
         for kind, several in (("state", states or ()), ("parameter", parameters), ("shared", shared),
                               ("accessory", [a for a in accessories or {} if isinstance(a, str)])):
             for given in [several] if isinstance(several, Node) else sym.names(several):
@@ -178,7 +180,7 @@ class Model(kinds.ComponentNames):
         declared.setdefault("t", sym.time)
         return declared
 
-    def _value(self, value, what):
+    def _value(self, value: Any, what: str) -> Any:
         """An expression from what a user gave."""
         if isinstance(value, str):
             return parse(value, self._names, f"{what}{at(self.line)}")
@@ -186,7 +188,7 @@ class Model(kinds.ComponentNames):
             return from_sympy(value, self._names, f"{what}{at(self.line)}")
         return value
 
-    def _target(self, key, what):
+    def _target(self, key: Component, what: str) -> Node:
         if is_sympy(key):
             if what != "equations" and hasattr(key, "expr"):
                 raise Error(f"{what}{at(self.line)} assigns the derivative `{key}`: assign the state itself")
@@ -202,7 +204,7 @@ class Model(kinds.ComponentNames):
                         "myriad.states")
         return key
 
-    def _equations(self, equations, states):
+    def _equations(self, equations: Any, states: Names | None) -> tuple[list[Node], list[Expression]]:
         if isinstance(equations, str):
             equations = parse_equations(equations, self._declared, at(self.line))
         elif callable(equations) and not isinstance(equations, dict):
@@ -235,13 +237,13 @@ class Model(kinds.ComponentNames):
             targets, rhs = [t for t, _ in ranked], [e for _, e in ranked]
         return targets, rhs
 
-    def _real(self, value, what):
+    def _real(self, value: object, what: str) -> Expression:
         try:
             return as_number(value)
         except Error as error:
             raise Error(f"{what}: {error}") from None
 
-    def _call(self, function, states):
+    def _call(self, function: Callable[..., Any], states: Names | None) -> dict[Node, Any]:
         """The equations that a function f(t, y, ...) returns."""
         name = getattr(function, "__name__", "the function")
         if states is None:
@@ -288,7 +290,7 @@ class Model(kinds.ComponentNames):
                         f"({', '.join(s.value[1] for s in unknowns)})")
         return dict(zip(unknowns, returned))
 
-    def _events(self, events):
+    def _events(self, events: Event | Sequence[Event]) -> list[Event]:
         if isinstance(events, Event):
             events = [events]
         made = []
@@ -299,15 +301,13 @@ class Model(kinds.ComponentNames):
             made.append(Event(None, given.name or f"event_{i + 1}", given.direction, given.tolerance, given.stop_after,
                               None))
             made[-1].line = given.line
-            self._event_names = [e.name for e in made]
-        self._event_names = [e.name for e in made]
         for one, given in zip(made, events):
             what = f"event {one.name}"
             one.function = to_real(self._real(self._value(given.function, what), what))
             one.do = self._assignments(given.do, what, line=given.line)
         return made
 
-    def _accessories(self, accessories):
+    def _accessories(self, accessories: ByComponent | None) -> Assignments:
         self.summaries, self.observed, start = [], [], []
         quantities = {}
         self._accessory_targets = []
@@ -342,14 +342,16 @@ class Model(kinds.ComponentNames):
         return start
 
     @staticmethod
-    def _items(given, what, line):
+    def _items(given: ByComponent | None, what: str, line: tuple[str, int] | None) -> Iterable[tuple[Any, Any]]:
         if given is not None and not hasattr(given, "items"):
             raise Error(f"{what} is a {type(given).__name__}{at(line)}: give a dict, as in {{target: value}}")
         return (given or {}).items()
 
-    def _assignments(self, given, what, taken=(), line=None):
+    def _assignments(self, given: ByComponent | None, what: str, taken: Iterable[Node] = (),
+                     line: tuple[str, int] | None = None) -> Assignments:
         """[(target, value)] of a hook or action, checked."""
-        made, line = [], line or self.line
+        made: Assignments = []
+        line = line or self.line
         for key, value in self._items(given, what, line):
             target = self._target(key, what)
             kind, name = target.value
@@ -379,7 +381,7 @@ class Model(kinds.ComponentNames):
             made.append((target, value))
         return made
 
-    def _generate(self, given):
+    def _generate(self, given: ByComponent | None) -> Assignments:
         """The assignments of `generate`, checked. Texts may name the instance's number."""
         names = self._names
         self._names = {"instance": sym.instance, **names}
@@ -397,7 +399,7 @@ class Model(kinds.ComponentNames):
 
     # What follows from it
 
-    def _collect(self, targets):
+    def _collect(self, targets: list[Node]) -> None:
         """The components, in the order in which the equations, events, accessories and hooks first name them."""
         hooks = [("initialise", self.initialise), ("after_step", self.after_step), ("finalise", self.finalise)]
         hooks += [(f"event {e.name}", e.do) for e in self.events]
@@ -407,7 +409,7 @@ class Model(kinds.ComponentNames):
         for _, assignments in hooks:
             found += [t for t, _ in assignments] + symbols_of([e for _, e in assignments])
         found += [t for t, _ in self.generate] + symbols_of([e for _, e in self.generate])
-        components = {kind: [] for kind in kinds.valued}
+        components: dict[str, list[str]] = {kind: [] for kind in kinds.valued}
         declared = [s for s in self._declared.values() if s.value[0] in components]
         for symbol in dict.fromkeys(declared + found):
             if symbol.value[0] in components:
@@ -447,8 +449,8 @@ class Model(kinds.ComponentNames):
         """All names, in the order of `enumerations`."""
         return [n for _, names in self.enumerations() for n in names]
 
-    def _check(self):
-        kind_of = {}
+    def _check(self) -> None:
+        kind_of: dict[str, str] = {}
         for kind, names in self.enumerations():
             for name in names:
                 if name in kind_of:

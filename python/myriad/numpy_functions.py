@@ -1,31 +1,39 @@
 # SPDX-License-Identifier: MIT
 """NumPy's functions of expressions, and of arrays of them, as this package's."""
 
+from __future__ import annotations
+
 import functools
 import inspect
 import math
 import operator
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import expression as ex
 from .errors import Error, at, users_line
 
+if TYPE_CHECKING:
+    from .expression import Condition, Expression
+    from .hints import Operand
+
 _pi = math.pi
 
 
-def _sign(x):
+def _sign(x: Expression) -> Expression:
     return ex.where(x > 0, 1.0, ex.where(x < 0, -1.0, x))
 
 
-def _rounded(x, decimals=0, out=None):
+def _rounded(x: Operand, decimals: int = 0, out: None = None) -> Expression:
     if decimals != 0:
         raise Error(f"an expression is rounded to {decimals} decimals{at(users_line())}: there is rounding to whole "
                     "numbers alone, as in myriad.round(10 * x) / 10")
     return ex.round(x)
 
 
-def _select(conditions, choices, default=0):
+def _select(conditions: Sequence[Any], choices: Sequence[Any], default: Any = 0) -> Any:
     if len(conditions) != len(choices) or not len(conditions):
         raise Error(f"numpy.select has {len(conditions)} conditions and {len(choices)} choices{at(users_line())}: give "
                     "one choice for each condition")
@@ -35,8 +43,8 @@ def _select(conditions, choices, default=0):
     return chosen
 
 
-def _piecewise(x, conditions, functions, *arguments, **options):
-    conditions = list(conditions) if isinstance(conditions, (list, tuple)) or getattr(conditions, "ndim", 0) else [
+def _piecewise(x: Any, conditions: Any, functions: Iterable[Any], *arguments: Any, **options: Any) -> Any:
+    conditions = list(conditions) if isinstance(conditions, (list, tuple)) or np.ndim(conditions) else [
         conditions]
     values = [f(x, *arguments, **options) if callable(f) else f for f in functions]
     if len(values) not in (len(conditions), len(conditions) + 1):
@@ -49,27 +57,27 @@ def _piecewise(x, conditions, functions, *arguments, **options):
     return chosen
 
 
-def _polyval(coefficients, x):
+def _polyval(coefficients: Iterable[Any], x: Any) -> Any:
     chosen = 0.0
     for number, coefficient in enumerate(coefficients):  # Horner's rule
         chosen = coefficient if number == 0 else chosen * x + coefficient
     return chosen
 
 
-def _is_nan(x):
+def _is_nan(x: object) -> Condition:
     return ex.as_number(x) != x
 
 
-def _is_infinite(x):
+def _is_infinite(x: Operand) -> Condition:
     return ~(ex.is_finite(x) | _is_nan(x))
 
 
-def _of_nodes(operation):
+def _of_nodes(operation: Callable[[Any, Any], Any]) -> Callable[[object, object], Any]:
     """An operation whose first operand may be a number of NumPy's, which would call NumPy's function again."""
     return lambda a, b: operation(ex.as_node(a), b)
 
 
-def _table():
+def _table() -> dict[Any, Callable[..., Any]]:
     table = {getattr(np, name): getattr(ex, name) for name in (
         "sqrt", "cbrt", "floor", "ceil", "trunc", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "exp2", "expm1",
         "log", "log2", "log10", "log1p", "hypot", "copysign", "fmod", "reciprocal")}
@@ -98,25 +106,25 @@ def _table():
     return table
 
 
-def _inverse_sinh(x):
+def _inverse_sinh(x: Expression) -> Expression:
     size = abs(x)
     small = ex.log1p(size + size * size / (1 + ex.sqrt(1 + size * size)))
     return ex.copysign(ex.where(size > 1e150, ex.log(size) + 0.6931471805599453, small), x)  # where squares overflow
 
 
-def _clip(x, low=None, high=None, out=None, **by_name):
+def _clip(x: Any, low: Any = None, high: Any = None, out: None = None, **by_name: Any) -> Any:
     low = next((by_name[n] for n in ("a_min", "min") if n in by_name), low)
     high = next((by_name[n] for n in ("a_max", "max") if n in by_name), high)
     x = x if low is None else ex.elementwise(ex.maximum, x, low)
     return x if high is None else ex.elementwise(ex.minimum, x, high)
 
 
-def _where(condition, a, b):
+def _where(condition: Any, a: Any, b: Any) -> Any:
     return ex.elementwise(ex.where, condition, a, b)
 
 
 # Functions that NumPy hands over as they are called, with whole arrays.
-_array_functions = {
+_array_functions: dict[Callable[..., Any], Callable[..., Any]] = {
     np.where: _where, np.clip: _clip, np.select: _select, np.piecewise: _piecewise, np.polyval: _polyval,
     np.round: lambda x, decimals=0, out=None: ex.elementwise(lambda a: _rounded(a, decimals), x),
     np.fix: lambda x, out=None: ex.elementwise(ex.trunc, x),
@@ -126,18 +134,18 @@ _array_functions[np.around] = _array_functions[np.round]
 _of_numbers = _table()
 
 
-def of_numbers(ufunc):
+def of_numbers(ufunc: np.ufunc) -> Callable[..., Any] | None:
     """What stands for one of NumPy's functions of single numbers, or None."""
     return _of_numbers.get(ufunc)
 
 
-def of_arrays(function):
+def of_arrays(function: Callable[..., Any]) -> Callable[..., Any] | None:
     """What stands for one of NumPy's other functions, or None."""
     ours = _array_functions.get(function)
     return ours and functools.partial(_checked, function, ours)
 
 
-def _checked(function, ours, *arguments, **options):
+def _checked(function: Callable[..., Any], ours: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
     try:
         inspect.signature(ours).bind(*arguments, **options)
     except TypeError as why:
@@ -146,7 +154,7 @@ def _checked(function, ours, *arguments, **options):
     return ours(*arguments, **options)
 
 
-def _add_numpys_methods():
+def _add_numpys_methods() -> None:
     """NumPy's functions of an array of objects call a method of each: np.sin(array) calls array[0].sin()."""
     for function, ours in _of_numbers.items():
         if function.nin == 1 and function.__name__ not in ("absolute", "negative", "positive", "invert"):

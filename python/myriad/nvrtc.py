@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Compiles models to kernels for GPUs by NVRTC, of a wheel or of the system's CUDA, and keeps them in the cache."""
 
+from __future__ import annotations
+
 import ctypes
 import functools
 import importlib.util
@@ -10,6 +12,8 @@ import pathlib
 import re
 import sys
 import time
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from . import _core, cache
 from .compiler import Kernel, kernel_of
@@ -24,12 +28,12 @@ _standard = {name: "#include <myriad/python/standard_library.hpp>\n" for name in
     "string_view", "type_traits", "utility")}
 
 
-def _candidates():
+def _candidates() -> list[pathlib.Path]:
     """Where NVRTC may be: $MYRIAD_NVRTC, the wheels nvidia-cuda-nvrtc (-cu12), Conda's, Debian's and CUDA's own
     folders."""
     if chosen := os.environ.get("MYRIAD_NVRTC"):
         return [pathlib.Path(chosen)]
-    found = []
+    found: list[pathlib.Path] = []
     spec = importlib.util.find_spec("nvidia")
     for folder in (spec.submodule_search_locations or ()) if spec else ():
         found += pathlib.Path(folder).glob("*/lib/libnvrtc.so.[0-9]*")
@@ -41,15 +45,15 @@ def _candidates():
     return found
 
 
-def _major(path):
+def _major(path: pathlib.Path) -> int:
     number = re.search(r"\.so\.(\d+)", path.name)
     return int(number.group(1)) if number else 0
 
 
 @functools.lru_cache(maxsize=4)
-def _find(chosen, driver):
+def _find(chosen: str | None, driver: int) -> pathlib.Path | None:
     """The newest NVRTC that the driver can load kernels of; where there is none such, the oldest."""
-    found = sorted((p for p in _candidates() if p.is_file()), key=_major)  # of equals, that of a wheel comes first
+    found = sorted((p for p in _candidates() if p.is_file()), key=_major)  # of equal ones, a wheel's comes first
     fitting = [p for p in found if _major(p) <= driver]
     if fitting:
         newest = _major(fitting[-1])
@@ -57,13 +61,13 @@ def _find(chosen, driver):
     return found[0] if found else None
 
 
-def find():
+def find() -> pathlib.Path | None:
     """The path of NVRTC's library, or None if there is none."""
     return _find(os.environ.get("MYRIAD_NVRTC"), _core.driver_version() // 1000 or 1 << 30)
 
 
-def library():
-    """NVRTC's library. Raises `Error` if there is none."""
+def _found() -> pathlib.Path:
+    """The same. Raises `Error` if there is none."""
     path = find()
     if path is None:
         if chosen := os.environ.get("MYRIAD_NVRTC"):
@@ -71,11 +75,16 @@ def library():
                         "unset the variable")
         raise Error("there is no NVRTC to compile the model for the GPU with: `pip install 'myriad[cuda]'`, or "
                     "`pip install nvidia-cuda-nvrtc`, or name its library in the environment variable MYRIAD_NVRTC")
-    return _load(path)
+    return path
+
+
+def library() -> _Nvrtc:
+    """NVRTC's library. Raises `Error` if there is none."""
+    return _load(_found())
 
 
 @functools.lru_cache(maxsize=4)
-def _load(path):
+def _load(path: pathlib.Path) -> _Nvrtc:
     try:
         return _Nvrtc(ctypes.CDLL(str(path)))
     except (OSError, AttributeError) as why:
@@ -86,7 +95,7 @@ def _load(path):
 class _Nvrtc:
     """The functions of NVRTC that compile a program."""
 
-    def __init__(self, functions):
+    def __init__(self, functions: ctypes.CDLL) -> None:
         self._functions = functions
         count = ctypes.c_int()
         self._call("nvrtcGetNumSupportedArchs", ctypes.byref(count))
@@ -100,13 +109,13 @@ class _Nvrtc:
             raise Error(f"NVRTC {self.version} is too old: install {_oldest[0]}.{_oldest[1]} or newer, by `pip install "
                         "nvidia-cuda-nvrtc`, or `nvidia-cuda-nvrtc-cu12` for a driver of CUDA 12")
 
-    def _call(self, name, *arguments):
+    def _call(self, name: str, *arguments: Any) -> None:
         status = getattr(self._functions, name)(*arguments)
         if status != 0:
             self._functions.nvrtcGetErrorString.restype = ctypes.c_char_p
             raise Error(f"NVRTC failed ({name}: {self._functions.nvrtcGetErrorString(status).decode()})")
 
-    def _text(self, program, what):
+    def _text(self, program: ctypes.c_void_p, what: str) -> bytes:
         """A result of a program by the name of its functions, as bytes."""
         size = ctypes.c_size_t()
         self._call(f"nvrtcGet{what}Size", program, ctypes.byref(size))
@@ -114,7 +123,7 @@ class _Nvrtc:
         self._call(f"nvrtcGet{what}", program, text)
         return text.raw
 
-    def target(self, capability):
+    def target(self, capability: int) -> tuple[str, str]:
         """What to compile for a GPU: an option, and whether the result is machine code or PTX, which the driver of a
         GPU that is newer than NVRTC compiles."""
         same = [a for a in self.architectures if a <= capability and a // 10 == capability // 10]
@@ -127,7 +136,7 @@ class _Nvrtc:
                         "an older one, such as `pip install nvidia-cuda-nvrtc-cu12`")
         return f"-arch=compute_{older[-1]}", "PTX"
 
-    def compile(self, source, capability, options=()):
+    def compile(self, source: str, capability: int, options: Sequence[str] = ()) -> tuple[bytes, str]:
         """A program for GPUs of that compute capability, and what NVRTC says. Raises `Error` with its first message
         if it refuses the source."""
         architecture, kind = self.target(capability)
@@ -147,18 +156,18 @@ class _Nvrtc:
             self._call("nvrtcDestroyProgram", ctypes.byref(program))
 
 
-def _dotted(capability):
+def _dotted(capability: int) -> str:
     return f"{capability // 10}.{capability % 10}"
 
 
-def placement(model_shared_bytes, limit):
+def placement(model_shared_bytes: int, limit: int) -> str:
     """The place of so many bytes of shared parameters on a GPU whose blocks have up to `limit` of shared memory."""
     if model_shared_bytes <= 1024:
         return "constant_bank"
     return "shared_memory" if model_shared_bytes <= limit else "cache"
 
 
-def source_of(header, struct, method, real, place, generates=False):
+def source_of(header: str, struct: str, method: str, real: str, place: str, generates: bool = False) -> str:
     """The file that is compiled: the model's header and the request for its kernel, and for one that sets the instances
     of studies if the model `generates` them."""
     program = (f"#include <myriad/python/device_program.cuh>\n\n{header}\n"
@@ -168,14 +177,12 @@ def source_of(header, struct, method, real, place, generates=False):
     return program
 
 
-_loaded: dict = {}
+_loaded: dict[Any, _core.Library] = {}
 
 
-def _cached(source, capability, load):
+def _cached(source: str, capability: int, load: Callable[[bytes], object]) -> cache.Obtained:
     """Takes a program from the cache, or compiles it into the cache, and loads it: `load` gets its content."""
-    path = find()
-    if path is None:
-        library()  # says so
+    path = _found()
     driver = _core.driver_version() // 1000
     if _major(path) > driver:
         raise Error(f"NVRTC of CUDA {_major(path)} compiles for newer drivers than this one, of CUDA {driver}: update "
@@ -184,13 +191,14 @@ def _cached(source, capability, load):
     made_from = json.dumps([source, _core.version, _core.headers, _options[:-1], capability, path.name, facts.st_size,
                             facts.st_mtime_ns])
 
-    def make(folder):
+    def make(folder: str) -> None:
         pathlib.Path(folder, "model.so").write_bytes(library().compile(source, capability)[0])
 
     return cache.obtain(made_from.encode(), make, lambda made: load(pathlib.Path(made).read_bytes()))
 
 
-def kernel(header, struct, method, real, shared, device, generates=False, use=None):
+def kernel(header: str, struct: str, method: str, real: str, shared: tuple[int, ...], device: int,
+           generates: bool = False, use: Callable[[_core.Library], None] | None = None) -> Kernel:
     """The kernel of a model, which is C++ source with a struct of that name, for a method and a real type, both as C++
     types, and a GPU by its number; `shared`: the numbers of real and integer shared parameters; `generates`: whether
     the model sets the instances of studies; `use` is called with a library that was loaded. Raises `Error` if there is
@@ -210,7 +218,7 @@ def kernel(header, struct, method, real, shared, device, generates=False, use=No
 
 
 @functools.cache
-def load_study_kernels(device):
+def load_study_kernels(device: int) -> None:
     """Loads the kernels that set and reduce the instances of studies on a GPU by its number."""
     _, capability, _ = _core.gpu(device)
     _cached("#include <myriad/python/study_program.cuh>\n", capability,

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Expressions from text and from SymPy."""
 
+from __future__ import annotations
+
 import ast
 import functools
 import operator
 import re
+from collections.abc import Mapping
+from typing import Any, NoReturn
 
 from . import expression as ex
 from .errors import Error, at, users_line
@@ -18,12 +22,12 @@ functions = {name: getattr(ex, name) for name in ex.__all__ if name not in ("sin
 functions.update(min=ex.minimum, max=ex.maximum, ln=ex.log)
 
 
-def _shown(source):
+def _shown(source: str) -> str:
     """A text for messages, cut where it is long."""
     return source if len(source) <= 100 else f"{source[:97]}..."
 
 
-def parse(source, names, what):
+def parse(source: str, names: Mapping[str, Any], what: str) -> Any:
     """The expression that a text stands for; ^ is a power. `names` has the symbols, `what` says where it stands."""
     shown = _shown(source.strip())
     try:
@@ -39,13 +43,13 @@ def parse(source, names, what):
 
 
 class _Reader:
-    def __init__(self, names, what):
+    def __init__(self, names: Mapping[str, Any], what: str) -> None:
         self.names, self.what = names, what
 
-    def fail(self, tree, why):
+    def fail(self, tree: ast.AST, why: str) -> NoReturn:
         raise Error(f"{self.what}: `{ast.unparse(tree)}` {why}")
 
-    def read(self, tree):
+    def read(self, tree: ast.expr) -> Any:
         if isinstance(tree, ast.Constant) and isinstance(tree.value, (int, float, complex)):
             return ex.constant(tree.value)
         if isinstance(tree, ast.Name):
@@ -84,7 +88,7 @@ class _Reader:
                 self.fail(tree, f"has {len(tree.args)} arguments, another number than {tree.func.id} takes")
         self.fail(tree, "is not understood: use numbers, names, operators and functions of myriad")
 
-    def name(self, tree):
+    def name(self, tree: ast.Name) -> Any:
         if tree.id in self.names:
             return self.names[tree.id]
         if tree.id == "pi":
@@ -94,7 +98,7 @@ class _Reader:
         raise Error(f"{self.what}: '{tree.id}' is unknown: name it in parameters=\"...\" or shared=\"...\"")
 
 
-def parse_equations(source, names, where):
+def parse_equations(source: str, names: dict[str, Any], where: str) -> dict[Any, Any]:
     """{state: derivative} from lines or parts between semicolons: "x' = v" or "dx/dt = v", and "a = x + v" for what
     later lines use. States are those with an equation; the symbols are added to `names`."""
     from .symbols import symbol
@@ -135,7 +139,7 @@ def parse_equations(source, names, where):
 # ----------------------------------------------------------------------------------------------------------------------
 
 
-def sympy_name(key):
+def sympy_name(key: Any) -> str:
     """The name of a symbol, of a function of time such as x(t), or of what a first derivative is of."""
     import sympy
 
@@ -149,11 +153,11 @@ def sympy_name(key):
     return str(key.func if key.args else key)
 
 
-def from_sympy(value, names, what):
+def from_sympy(value: Any, names: Mapping[str, Any], what: str) -> Any:
     """The expression of a SymPy expression. Its symbols, and functions of time such as x(t), are found by name."""
     import sympy
 
-    def find(name):
+    def find(name: str) -> Any:
         if name not in names:
             raise Error(f"{what}: '{name}' of `{value}` is unknown: name it in parameters=\"...\" or shared=\"...\"")
         return names[name]
@@ -165,7 +169,7 @@ def from_sympy(value, names, what):
                  sympy.GreaterThan: operator.ge, sympy.Equality: operator.eq, sympy.Unequality: operator.ne}
 
     @functools.cache
-    def convert(e):
+    def convert(e: Any) -> Any:
         if isinstance(e, (sympy.Symbol, sympy.core.function.AppliedUndef)):
             return find(sympy_name(e))
         if isinstance(e, sympy.Derivative):

@@ -6,7 +6,7 @@ return the axes. `run.plot` draws the results of a run by name. The program `myr
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from .errors import Error
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
 
 # What is returned is any to type checkers: matplotlib says of axes that their figure may be one which cannot be saved.
 
@@ -23,7 +24,7 @@ _colours = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#
 _many_points = 300_000  # from which on a picture shows their density
 
 
-def _axes_of(axes, **figure):
+def _axes_of(axes: Axes | None, **figure: Any) -> Any:
     try:
         from matplotlib import pyplot
     except ImportError:
@@ -31,11 +32,11 @@ def _axes_of(axes, **figure):
     return pyplot.subplots(layout="constrained", **figure)[1] if axes is None else axes
 
 
-def _label(array, given):
+def _label(array: Any, given: str | None) -> str:
     return given if given is not None else str(getattr(array, "name", None) or "")
 
 
-def _numbers(array, what, dimensions):
+def _numbers(array: Any, what: str, dimensions: tuple[int, ...]) -> np.ndarray:
     numbers = np.asarray(array)
     if numbers.ndim not in dimensions:
         wanted = " or ".join(map(str, dimensions))
@@ -43,7 +44,7 @@ def _numbers(array, what, dimensions):
     return numbers
 
 
-def _is_geometric(values):
+def _is_geometric(values: np.ndarray) -> bool:
     """Whether values are spaced evenly on a logarithmic scale and not on a linear one."""
     if len(values) < 3 or values.min() <= 0:
         return False
@@ -51,7 +52,7 @@ def _is_geometric(values):
     return np.allclose(ratios, ratios[0], rtol=1e-6) and not np.allclose(steps, steps[0], rtol=1e-6)
 
 
-def _edges(values):
+def _edges(values: np.ndarray) -> np.ndarray:
     """Borders of the cells with these midpoints, halfway between neighbours as the axis shows them."""
     if _is_geometric(values):
         return np.exp(_edges(np.log(values)))
@@ -61,7 +62,7 @@ def _edges(values):
     return np.concatenate(([2 * values[0] - inner[0]], inner, [2 * values[-1] - inner[-1]]))
 
 
-def _logarithmic(axis, set_scale):
+def _logarithmic(axis: Axis, set_scale: Callable[[str], object]) -> None:
     """A logarithmic axis, with ticks at 1, 2 and 5 of each decade if it has less than two."""
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
@@ -76,7 +77,7 @@ def _logarithmic(axis, set_scale):
 def bifurcation(x: Any, y: Any, *, xlabel: str | None = None, ylabel: str | None = None, axes: Axes | None = None,
                 **style: Any) -> Any:
     """Points (x, y) of a bifurcation diagram: x has one value per instance, y a row of values, one for each phase.
-    Further arguments are those of matplotlib's `plot`. Many points are drawn as their density."""
+    Further arguments go to matplotlib's `plot`. Many points are drawn as their density."""
     xlabel, ylabel = _label(x, xlabel), _label(y, ylabel)
     x, y = _numbers(x, "x", (1,)), _numbers(y, "y", (1, 2))
     if len(x) != len(y):
@@ -112,7 +113,7 @@ def parameter_map(x: Any, y: Any, z: Any, *, xlabel: str | None = None, ylabel: 
                   zlabel: str | None = None, names: Sequence[str] | None = None, axes: Axes | None = None,
                   **style: Any) -> Any:
     """A quantity z over two parameters in colour: z has shape (len(x), len(y)). NaN is left grey. With `names`, z has
-    whole numbers that stand for these names. Further arguments are those of matplotlib's `pcolormesh`."""
+    whole numbers that stand for these names. Further arguments go to matplotlib's `pcolormesh`."""
     xlabel, ylabel, zlabel = _label(x, xlabel), _label(y, ylabel), _label(z, zlabel)
     x, y, z = _numbers(x, "x", (1,)), _numbers(y, "y", (1,)), _numbers(z, "z", (2,))
     if z.shape != (len(x), len(y)):
@@ -143,7 +144,7 @@ def parameter_map(x: Any, y: Any, z: Any, *, xlabel: str | None = None, ylabel: 
     return axes
 
 
-def _lines(x, y, labels, axes, style):
+def _lines(x: np.ndarray, y: np.ndarray, labels: Sequence[str] | None, axes: Axes, style: Mapping[str, Any]) -> None:
     """Each row of y over the same row of x, or over x."""
     y = np.atleast_2d(y)
     x = np.broadcast_to(x, y.shape)

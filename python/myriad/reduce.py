@@ -36,7 +36,7 @@ class Reduction:
         return f"{self.kind}({', '.join(map(repr, self.arguments))})"
 
 
-def _variable(name):
+def _variable(name: object) -> str:
     if not isinstance(name, str):
         raise Error(f"a reduction is asked for of {name!r}: give the name of a variable of the results, as \"x_end\"")
     return name
@@ -45,7 +45,7 @@ def _variable(name):
 class _Values(Axis):
     """Values as they are given."""
 
-    def core(self):
+    def core(self) -> _core.AxisValues:
         return _core.values(list(self.arguments))
 
 

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import numpy as np
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import xarray
 
     from .components import Components
+    from .expression import Node
     from .hints import Array, Component
 
 # What datasets and tables call what they have besides components, whose names there get a _ behind.
@@ -55,7 +56,7 @@ class Report:
             raise AttributeError(name)
         return getattr(self._report, name)
 
-    def __reduce__(self):
+    def __reduce__(self) -> NoReturn:
         raise Error("a report cannot be pickled or copied: keep str(report), or the numbers that you need")
 
     @property
@@ -76,9 +77,9 @@ class Report:
 
 
 class Run(Mapping):
-    """The results of one call of `solve`, a mapping from names to arrays. `run["x"]` is that of a sampled state, one
-    row per instance and one column per sample; of a recorded component, one column per phase; of others the
-    value at the end, or that of an input. Its length is the number of names; `size` is the number of instances.
+    """The results of one call of `solve`, a mapping from names to arrays. `run["x"]` has one row per instance: for a
+    sampled state one column per sample, for a recorded component one column per phase, and for others the value at the
+    end, or the value of an input. Its length is the number of names; `size` is the number of instances.
     Arrays are views of the core's memory, not copies. Results of a GPU are copied to the host when they are
     first asked for."""
 
@@ -98,7 +99,7 @@ class Run(Mapping):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The lengths of the sweep's axes; those of a sweep without axes are its size alone."""
+        """The lengths of the sweep's axes; a sweep without axes has its size alone."""
         return tuple(self.sweep.shape) if self.sweep is not None else (self.size,)
 
     @property
@@ -139,7 +140,7 @@ class Run(Mapping):
         self._require_samples()
         return self._ensemble.samples(-1)
 
-    def _require_samples(self):
+    def _require_samples(self) -> None:
         if not self._sampled:
             raise Error("no samples were taken: give samples= to solve")
 
@@ -152,7 +153,7 @@ class Run(Mapping):
             raise Error(f"there are no {kind!r} steps: choose one of {', '.join(names)}")
         return self._ensemble.array(names[kind])
 
-    def _last_values(self, some_kinds):
+    def _last_values(self, some_kinds: Iterable[str]) -> dict[str, Array]:
         """The components of some kinds by name."""
         return {name: self._ensemble.array(kind, c)
                 for kind in some_kinds for c, name in enumerate(self._components.names[kind])}
@@ -174,7 +175,7 @@ class Run(Mapping):
 
     @property
     def shared(self) -> dict[str, Any]:
-        """The shared values by name, without those of tables."""
+        """The shared values by name, without the tables'."""
         return {name: value for kind in kinds.shared
                 for name, value in zip(self._components.names[kind], self._ensemble.array(kind))
                 if name not in self._components.tables}
@@ -221,8 +222,8 @@ class Run(Mapping):
             return self._output(self._components.outputs[name])
         raise KeyError(f"there is no {name!r}: the model has {', '.join(self._components.place)}")
 
-    def _times(self):
-        """The recorded times, or those of the samples."""
+    def _times(self) -> Array:
+        """The recorded times, or the times of the samples."""
         for place in self._recorded.values():
             if place == ("time", 0):
                 return self._records.records(*place)
@@ -230,7 +231,7 @@ class Run(Mapping):
             return self.sample_times
         raise KeyError("the times were not recorded: give record=dict(..., time=True) or samples= to solve")
 
-    def _place_of(self, expression):
+    def _place_of(self, expression: Node) -> str | None:
         """Where the values of an expression are known: along "sample" or "phase", or None for the end alone."""
         symbols = symbols_of([expression])
         states = [s.value[1] for s in symbols if s.value[0] == "state"]
@@ -244,7 +245,7 @@ class Run(Mapping):
             return "phase"
         return None
 
-    def _output(self, expression):
+    def _output(self, expression: Node) -> Array:
         """The values of an expression: at the samples, or where records are, or at the end."""
         place = self._place_of(expression)
         times: Any
@@ -273,7 +274,7 @@ class Run(Mapping):
         result, = evaluate([expression], known)
         return np.array(np.broadcast_to(result, shape))
 
-    def _names(self):
+    def _names(self) -> list[str]:
         """The names of all components that have results, and of recorded times."""
         tables = self._components.tables
         return list(dict.fromkeys([*(n for n in self._components.place if n not in tables), *self._recorded,
@@ -292,33 +293,33 @@ class Run(Mapping):
             return False
         return True
 
-    def _ipython_key_completions_(self):
+    def _ipython_key_completions_(self) -> list[str]:
         return self._names()
 
     # two runs are equal if they are the same, as their arrays have no single truth value
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    def __reduce__(self):
+    def __reduce__(self) -> NoReturn:
         raise Error("the results of a run cannot be pickled or copied: pickle run.to_xarray(), or the arrays that you "
                     "need")
 
     @staticmethod
-    def _free(name, taken):
+    def _free(name: str, taken: Container[str]) -> str:
         while name in taken:
             name += "_"
         return name
 
-    def _column(self, name):
+    def _column(self, name: str) -> str:
         """The name of a component's result in a dataset or table, which have names of their own."""
         return self._free(f"{name}_", self._components.place) if name in _own_names else name
 
-    def _in_dataset(self, name):
-        """The name of an input in a dataset, where a state's own name is that of its result."""
+    def _in_dataset(self, name: str) -> str:
+        """The name of an input in a dataset, where a state's own name stands for its result."""
         if name in self._components.states:
             return self._free(f"{name}_start", self._components.place)
         return self._column(name) if name in self._components.place else name
 
-    def _axes(self):
+    def _axes(self) -> tuple[list[str], tuple[int, ...]]:
         """The dimensions of the instances and their lengths."""
         if self.sweep is None or not self.sweep.axes:
             return ["instance"], (self.size,)
@@ -334,10 +335,11 @@ class Run(Mapping):
             raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
         dims, lengths = self._axes()
 
-        def unstacked(array, *more):
+        def unstacked(array: Array, *more: str) -> tuple[tuple[str, ...], Array]:
             return (*dims, *more), array.reshape(*lengths, *array.shape[1:])
 
-        variables, coordinates = {}, {}
+        variables: dict[str, Any] = {}
+        coordinates: dict[str, Any] = {}
         for name, array in self.records.items():
             variables[self._column(name)] = unstacked(array, "phase")
         for name, array in self.samples.items():
@@ -405,7 +407,7 @@ class Run(Mapping):
         """Pictures by matplotlib: `bifurcation`, `map`, `time_series`, `phase_portrait` and `statuses`."""
         return Plots(self)
 
-    def _repr_html_(self):
+    def _repr_html_(self) -> str:
         return html(self)
 
     def __repr__(self) -> str:

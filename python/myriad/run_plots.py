@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
 
-    from .hints import Component
+    from .hints import Array, Component
+    from .run import Run
 
 
 class Plots:
@@ -25,7 +26,7 @@ class Plots:
     def __init__(self, run: Any) -> None:
         self._run = run
 
-    def _per_instance(self, name):
+    def _per_instance(self, name: str) -> Array:
         """A value for each instance: of the sweep, so that initial states are those given, else of the results."""
         run = self._run
         if run.sweep is not None and name in run.sweep.names:
@@ -61,7 +62,7 @@ class Plots:
         return plots.parameter_map(values_of[x], values_of[y], grid.reshape(grid.shape[:2]), xlabel=x, ylabel=y,
                                    zlabel=z, names=status_names if z == "status" else None, axes=axes, **style)
 
-    def _instances(self, instances):
+    def _instances(self, instances: npt.ArrayLike | None) -> tuple[Array, list[str]]:
         """Numbers of instances and what tells them apart."""
         run = self._run
         chosen = np.arange(min(run.size, 5)) if instances is None else np.atleast_1d(np.asarray(instances, int))
@@ -75,7 +76,7 @@ class Plots:
 
     def time_series(self, y: Component, *, instances: npt.ArrayLike | None = None, axes: Axes | None = None,
                     **style: Any) -> Any:
-        """The samples of a state over time, for the first five instances or those of the given numbers."""
+        """The samples of a state over time, for the first five instances or the given ones."""
         run, y = self._run, name_of(y)
         chosen, labels = self._instances(instances)
         if y not in run.samples:
@@ -85,8 +86,8 @@ class Plots:
 
     def phase_portrait(self, x: Component, y: Component, *, instances: npt.ArrayLike | None = None,
                        axes: Axes | None = None, **style: Any) -> Any:
-        """The samples of one state over those of another; without samples the points recorded at the ends of phases.
-        For the first five instances or those of the given numbers."""
+        """The samples of one state over another; without samples the points recorded at the ends of phases.
+        For the first five instances or the given ones."""
         run, x, y = self._run, name_of(x), name_of(y)
         chosen, labels = self._instances(instances)
         points = not (x in run.samples and y in run.samples)
@@ -101,11 +102,11 @@ class Plots:
         return plots.statuses(self._run.status, status_names, axes=axes)
 
 
-def html(run):
+def html(run: Run) -> str:
     """What a notebook shows of a run: its sweep, statuses, results by name and report."""
     from html import escape
 
-    def row(name, value):
+    def row(name: str, value: str) -> str:
         return f"<tr><th style=\"text-align:left\">{name}</th><td style=\"text-align:left\">{value}</td></tr>"
 
     kinds = (("recorded by phase", run.records), ("samples", run.samples), ("at the end", {**run.states,

@@ -259,7 +259,7 @@ class Events:
         return made
 
     def _stores(self, one: Occurrence, given: dict[str, Any]) -> dict[Any, Any]:
-        """The new values of what is stored, from those of ids."""
+        """The new values of what is stored, from the values of ids."""
         stored: dict[Any, Any] = {}
         quantities = self.semantics.quantities
         for name, value in given.items():

@@ -164,7 +164,9 @@ def power(base: Any, exponent: Any) -> Any:
 
 
 def _numpys(name: str) -> Callable[..., Any]:
-    return functools.partial(lambda function, x: of_numbers(function)(x), getattr(np, name))
+    found = of_numbers(getattr(np, name))
+    assert found is not None
+    return found
 
 
 def _of_reciprocal(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -367,11 +367,11 @@ class Semantics:
     def total_derivative(self, expression: Any, where: str) -> Any:
         """The derivative by time of an expression along the solution."""
         states = self.states()
-        by_symbol, = derivatives([expression], [sym.time, *(q.symbol for q in states)]) or [None]
-        if by_symbol is None:
+        found = derivatives([expression], [sym.time, *(q.symbol for q in states)])
+        if found is None:
             raise Refused(f"the rate of something that has no derivative, in {where}")
         rate = constant(0.0)
-        for i, partial in by_symbol.items():
+        for i, partial in found[0].items():
             slope = constant(1.0) if i == 0 else self.slope(states[i - 1])
             if not (is_constant(slope) and value_of(slope) == 0):
                 rate = add(rate, multiply(number(partial), slope))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Sequence
+from collections.abc import Container, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,16 +20,19 @@ from .grid import Sweep
 from .inputs import Along, by_name, numbers, whole, whole_numbers
 from .methods import default, fixed_step, method_type
 from .options import Options, SolveArguments
+from .progress import ProgressDisplay
 from .run import Interrupted, Run
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
     from typing_extensions import Unpack
 
+    from .compiler import Kernel
     from .hints import AnyModel, ByComponent, Precision, Progress, Values
     from .methods import Control, Method
 
 
-def _sweep_values(sweep):
+def _sweep_values(sweep: Sweep | ByComponent | None) -> dict[str, Any]:
     """The values of a sweep by name: of an object like `myriad.grid(...)`, or of a dict."""
     if sweep is None:
         return {}
@@ -41,7 +44,7 @@ def _sweep_values(sweep):
                 "myriad.grid(k=..., B=...)")
 
 
-def ends_of(time):
+def ends_of(time: tuple[Values, Values] | None) -> tuple[Values, Values]:
     """Begin and end of the time domain."""
     if time is None:
         raise Error("time is missing: give begin and end, as in time=(0, 10)")
@@ -52,7 +55,7 @@ def ends_of(time):
     return begin, end
 
 
-def refuse_missing(components, given):
+def refuse_missing(components: Components, given: Container[str]) -> None:
     """Refuses a call that leaves out what every instance needs."""
     for what, names, where in (
             ("initial value", components.states, "start="),
@@ -63,7 +66,8 @@ def refuse_missing(components, given):
             raise Error(f"the {what} of {', '.join(map(repr, missing))} is missing: give it in {where}{hint}")
 
 
-def _gather(components, sweep, start, time, size):
+def _gather(components: Components, sweep: Sweep | ByComponent | None, start: ByComponent | None,
+            time: tuple[Values, Values] | None, size: int | None) -> tuple[dict[str, Any], tuple[Any, Any], int]:
     """All inputs by name, and the number of instances."""
     given = {}
     initial = by_component(by_name(start, "start", "start={x: 1, v: 0}"), "start=")
@@ -96,7 +100,8 @@ def _gather(components, sweep, start, time, size):
     return given, domain, next(iter(lengths.values()), 1)
 
 
-def _fill(ensemble, components, given, domain, names, real):
+def _fill(ensemble: Any, components: Components, given: Mapping[str, Any], domain: tuple[Any, Any],
+          names: Mapping[str, Sequence[str]], real: npt.DTypeLike) -> None:
     for kind in kinds.of_instances:
         for number in range(len(components.names[kind]), len(names[kind])):  # which an interpreted model does not use
             ensemble.array(kind, number)[...] = 0
@@ -129,27 +134,7 @@ def _fill(ensemble, components, given, domain, names, real):
         ensemble.array("t_end")[...] = domain[1]
 
 
-def _progress_function(progress):
-    """The function to call with the numbers of instances done and of all, and what to do at the end."""
-    if not progress:
-        return None, lambda: None
-    if callable(progress):
-        return progress, lambda: None
-    try:
-        from tqdm.auto import tqdm
-    except ImportError:
-        raise Error("progress=True shows a bar of the package tqdm, which is missing: `pip install tqdm`, or give a "
-                    "function of two numbers, instances done and all") from None
-    bar = tqdm(unit="instance", unit_scale=True)
-
-    def show(done, total):
-        bar.total = total
-        bar.update(done - bar.n)
-
-    return show, bar.close
-
-
-def _device_name(device, interpreted):
+def _device_name(device: str, interpreted: bool | None) -> tuple[str, str | None]:
     """The name of a device as the core knows it, and why "auto" takes no GPU where there is one."""
     device = str(device)
     # first, as the driver finds no GPU in a fork
@@ -169,9 +154,9 @@ def _device_name(device, interpreted):
     return _core.check_device(device), None
 
 
-def device_names(device, interpreted):
+def device_names(device: str | Sequence[str], interpreted: bool | None) -> tuple[list[str], str | None]:
     """The names of one device or of several, each once, as the core knows them, and why "auto" takes no GPU."""
-    named = [device] if isinstance(device, str) else list(device) if isinstance(device, (list, tuple)) else [device]
+    named: Sequence[Any] = device if isinstance(device, (list, tuple)) else [device]
     for one in named:
         if not isinstance(one, str):
             raise Error(f"device {one!r} is unknown: use \"auto\", \"cpu\", \"cuda\", \"cuda:1\" for the second GPU, "
@@ -182,7 +167,8 @@ def device_names(device, interpreted):
     return list(dict.fromkeys(name for name, _ in found)), next((why for _, why in found if why), None)
 
 
-def kernel_for(device, model, components, method, control, sampled, precision, interpreted):
+def kernel_for(device: str, model: AnyModel, components: Components, method: str, control: str | Sequence[str],
+               sampled: bool, precision: str, interpreted: bool | None) -> tuple[Kernel, dict[str, list[str]]]:
     """The kernel of a model and a method for a device of the core, and the names of all components that it has."""
     if not device.startswith("cuda"):
         return choose_kernel(model, components, method, control, sampled, precision, interpreted)
@@ -195,7 +181,8 @@ def kernel_for(device, model, components, method, control, sampled, precision, i
                         lambda library: tape.give_model(library, model, components, method)), names
 
 
-def choose_kernel(model, components, method, control, sampled, precision, interpreted):
+def choose_kernel(model: AnyModel, components: Components, method: str, control: str | Sequence[str], sampled: bool,
+                  precision: str, interpreted: bool | None) -> tuple[Kernel, dict[str, list[str]]]:
     """The kernel for a model and a method, compiled or interpreted, and the names of all components that it has."""
     written = method_type(method, control, sampled)
     if interpreted or (interpreted is None and compiler.known_compiler() is None):
@@ -207,7 +194,7 @@ def choose_kernel(model, components, method, control, sampled, precision, interp
     return compiler.kernel(*model.source(), written, precision), components.names
 
 
-def _inputs(components, given):
+def _inputs(components: Components, given: Mapping[str, Any]) -> dict[str, Any]:
     """What results tell of the inputs."""
     return {name: array for name, array in given.items() if components.place[name][0] in (
         "state", "parameter", *kinds.shared)}
@@ -283,7 +270,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     kernel, names = kernels[0]
     finish_options(core_options, given_options, components, len(names["state"]), len(names["event"]))
     kind: Any = _core.Ensemble64 if precision == "double" else _core.Ensemble32
-    function, finish = _progress_function(progress)
+    display = ProgressDisplay(progress)
     try:
         ensemble = kind(kernel.library, names, count)
         _fill(ensemble, components, given, domain, names, np.dtype("f8" if precision == "double" else "f4"))
@@ -297,11 +284,11 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                 raise Error(f"'tolerance_scale' has {len(scale)} values for {count} instances: give one for each")
             ensemble.array("tolerance_scale")[...] = scale
         report, failure = _core.solve([(k.library, d) for (k, _), d in zip(kernels, devices)], ensemble,
-                                      core_options, function)
+                                      core_options, display if progress else None)
     except Error as error:
         raise with_event_names(error, components.event_names) from None
     finally:
-        finish()
+        display.close()
     run = Run(components, ensemble, report, kernel, sweep, _inputs(components, given), recorded, sampled,
               clock.perf_counter() - begin, core_options.record.from_phase, [no_gpu] if no_gpu else [])
     if failure is not None:

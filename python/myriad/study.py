@@ -11,7 +11,7 @@ import pickle
 import queue
 import threading
 import time as clock
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -27,6 +27,7 @@ from .inputs import by_name, numbers, only, whole
 from .kinds import recorded as recorded_kinds
 from .methods import default, fixed_step, method_type
 from .options import Options, StudyArguments
+from .progress import ProgressDisplay
 from .reduce import Reduction
 from .run import Interrupted
 from .solve import device_names, ends_of, kernel_for, refuse_missing
@@ -38,7 +39,8 @@ from .whole_numbers import check_whole_numbers
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from .hints import AnyModel, ByComponent, Path, Precision, Progress, SomeComponents
+    from .compiler import Kernel
+    from .hints import AnyModel, ByComponent, Component, Path, Precision, Progress, SomeComponents
     from .methods import Control, Method
 
 __all__ = ["Study", "study"]
@@ -46,7 +48,7 @@ __all__ = ["Study", "study"]
 _keep_choices = ("end", "records", "samples", "random", "status", "work")
 
 
-def _time_name(key):
+def _time_name(key: object) -> str | None:
     """The names of the ends of the time domain, or None."""
     return {t_begin: "t_begin", t_end: "t_end"}.get(key) if isinstance(key, Node) else None
 
@@ -58,44 +60,50 @@ class Study:
         self._given, self._has_store = (model, sweep, options), False
         self._build(model, sweep, **options)
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         return Study, self._given
 
     # -- What the study is --------------------------------------------------------------------------------------------
 
-    def _build(self, model, sweep, *, start, time, keep, reduce, draws, seed, title, units, notes, method, control,
-               options, precision, interpreted):
+    def _build(self, model: AnyModel, sweep: Sweep | ByComponent | None, *, start: ByComponent | None,
+               time: tuple[Any, Any] | None, keep: SomeComponents | Mapping[str, Any] | None,
+               reduce: Reduction | Sequence[Reduction], draws: int | None, seed: int, title: str,
+               units: Mapping[Any, str] | None, notes: Mapping[str, object] | None, method: Method | None,
+               control: Control | Sequence[Control], options: Options, precision: Precision,
+               interpreted: bool | None) -> None:
         if not hasattr(model, "source"):
             raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...)")
         if precision not in ("double", "float"):
             raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
-        method = default if method is None else method
-        if method in fixed_step and options.step is None:
-            raise Error(f"{method} takes fixed steps: give step=")
+        chosen = default if method is None else method
+        if chosen in fixed_step and options.step is None:
+            raise Error(f"{chosen} takes fixed steps: give step=")
         components = self._components = Components(model)
         samples = options.samples
-        if np.ndim(samples if not hasattr(samples, "items") else samples.get("times", ())) > 1:
+        times: Any = samples.get("times", ()) if isinstance(samples, Mapping) else samples
+        if np.ndim(times) > 1:
             raise Error("a study has no sample times for each instance: give the same times for all, or a number of "
                         "evenly spaced ones")
         core_options, recorded, sampled = make_options(components, 0, options)
         finish_options(core_options, options, components, len(components.states), len(components.events))
         core_options.invalid_instances = "mark"
-        self._interpreted, self._kernels = interpreted, {}
-        self._kernel_for = lambda device: kernel_for(device, model, components, method, control, samples is not None,
+        self._interpreted = interpreted
+        self._kernels: dict[str, Kernel] = {}
+        self._kernel_for = lambda device: kernel_for(device, model, components, chosen, control, samples is not None,
                                                      precision, self._interpreted)
         try:
             made = self._core = _core.Study(
                 components.names, list(components.tables.values()),
                 getattr(model, "generator", ""), "float64" if precision == "double" else "float32",
                 getattr(model, "name", None) or "model",
-                method_type(method, control, samples is not None).replace("myriad::", ""))
+                method_type(chosen, control, samples is not None).replace("myriad::", ""))
             made.options(core_options)
             self._set_instances(made, components, sweep, start, time, draws)
             self._looks_at_domains = bool(samples is not None or options.phase_length or options.carry_on)
             if draws is not None:
                 made.repeat(whole(draws, "draws", 1 << 62), "draw")
             made.seed(whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
-            check_whole_numbers(getattr(model, "generate", ()), made.size, self._shared_integers)
+            check_whole_numbers(getattr(model, "generate", []), made.size, self._shared_integers)
             self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
             for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
                 if not isinstance(reduction, Reduction):
@@ -113,7 +121,7 @@ class Study:
         except Error as error:
             raise with_event_names(error, components.event_names) from None
 
-    def _full_name(self, key):
+    def _full_name(self, key: Component) -> str:
         """The core's name of a component."""
         if (of_time := _time_name(key)) is not None:
             return of_time
@@ -125,7 +133,7 @@ class Study:
         known = [n for n in self._components.place if n not in self._components.tables]
         raise unknown(name, known, "component of the model")
 
-    def _refuse_twice(self, given, what):
+    def _refuse_twice(self, given: Iterable[Component], what: str) -> set[str]:
         """Refuses a component that is given by its symbol and by its name; returns the names of all."""
         names = [self._full_name(key) for key in given]
         for name in names:
@@ -133,7 +141,8 @@ class Study:
                 raise Error(f"'{name.partition('.')[2] or name}' is given twice in {what}: give it once")
         return set(names)
 
-    def _set_instances(self, made, components, sweep, start, time, draws):
+    def _set_instances(self, made: _core.Study, components: Components, sweep: Sweep | ByComponent | None,
+                       start: ByComponent | None, time: tuple[Any, Any] | None, draws: int | None) -> None:
         """Axes, random values and values for all instances."""
         begin, end = ends_of(time)
         given = dict(by_name(start, "start", "start={x: 1, v: 0}"))
@@ -141,11 +150,10 @@ class Study:
         for name, value in (("t_begin", begin), ("t_end", end)):
             if value is not None:
                 given[t_begin if name == "t_begin" else t_end] = value
-        on_grid = []
+        on_grid: list[list[tuple[Any, Any]]] = []
         constants = {}
         if isinstance(sweep, Sweep):
-            for axis, _ in sweep.axes:
-                on_grid.append([(n, v) for n, (a, v) in sweep.coordinates.items() if a == axis])
+            on_grid = [[(n, v) for n, (a, v) in sweep.coordinates.items() if a == name] for name, _ in sweep.axes]
             constants.update(sweep.constants)
         else:
             swept = by_name(sweep, "the sweep", "{k: myriad.linspace(0, 1, 100)}")
@@ -213,7 +221,8 @@ class Study:
                 made.set(self._full_name(key), float(value))
 
     @staticmethod
-    def _defaults(components, constants, varying):
+    def _defaults(components: Components, constants: Mapping[Any, Any],
+                  varying: Iterable[Component]) -> dict[str, float]:
         """The values of components that are not given, as numbers."""
         fixed = {components.component(k): v for k, v in constants.items()
                  if _time_name(k) is None and not isinstance(v, Random)}
@@ -228,7 +237,7 @@ class Study:
                             "sweep or in start=, or use myriad.solve")
         return {n: float(v) for n, v in found.items() if v is not None and n not in unknown}
 
-    def _set_kept(self, made, components, keep, anything_else):
+    def _set_kept(self, made: _core.Study, components: Components, keep: Any, anything_else: bool) -> None:
         if keep is None:
             keep = {} if anything_else else {
                 "end": components.of(recorded_kinds)}
@@ -253,7 +262,7 @@ class Study:
 
     # -- The run ------------------------------------------------------------------------------------------------------
 
-    def _use(self, devices, chunk):
+    def _use(self, devices: Sequence[str], chunk: int | None) -> None:
         """Sets the devices of the next run, and gets their kernels."""
         for device in devices:
             if device not in self._kernels:
@@ -277,9 +286,9 @@ class Study:
         store      a folder, in which the study goes on if it is run again, also by several processes at a time, each
                    with this call; it is a Zarr group (version 3). None: results are in memory
         device     a device or a list of devices, which are used at the same time: "cpu", "cpu:4", "cuda", "cuda:1", or
-                   "auto", which is as in `solve`; with an executor those of each worker, by default "cpu:1"
+                   "auto", which is as in `solve`; with an executor the devices of each worker, by default "cpu:1"
         chunk      instances that are computed and stored together; None: by memory and number. A store keeps its own
-        executor   any executor of `concurrent.futures`, as ProcessPoolExecutor or those of Dask, loky, mpi4py and
+        executor   any executor of `concurrent.futures`, as ProcessPoolExecutor or one of Dask, loky, mpi4py and
                    Parsl: its workers compute chunks, and send their values here, where they are kept
         check      what is looked at of a store that exists: "sizes" of files, or "checksums", for which all is read
         expiry     seconds after which chunks of a process on another machine that gives no sign of life are taken over
@@ -288,7 +297,7 @@ class Study:
         progress   True for a bar, or a function of the numbers of instances done and of all
 
         A GPU that fails is left out with a warning, and its chunks are done by the other devices. GPUs of one kind give
-        the same bits; those of a CPU differ by rounding errors.
+        the same bits; a CPU's results differ by rounding errors.
 
         Ctrl-C ends a run when the chunks under way are done, or after ten seconds, and raises `myriad.Interrupted`,
         whose `run` has what is done; so does the store, in which the next run goes on. Raises `myriad.Error` if the
@@ -302,7 +311,7 @@ class Study:
         if device == "auto" and executor is not None:
             device = "cpu:1"
         devices, no_gpu = device_names(device, self._interpreted)
-        show = _Progress(progress)
+        show = ProgressDisplay(progress)
         try:
             if not folder and self._has_store:  # from an earlier run
                 self._build(*self._given[:2], **self._given[2])
@@ -324,11 +333,11 @@ class Study:
         finally:
             show.close()
 
-    def _result(self, results, facts, folder):
+    def _result(self, results: _core.Results, facts: Mapping[str, Any], folder: str | None) -> StudyResult:
         origins = dict.fromkeys(kernel.origin for kernel in self._kernels.values())
         return StudyResult(results, folder, {**facts, "kernel": ", ".join(origins)})
 
-    def _payload(self):
+    def _payload(self) -> bytes:
         """This study as bytes, for other processes, which are to run the same kernel. By cloudpickle if it is there,
         which takes functions of scripts along."""
         try:
@@ -343,40 +352,12 @@ class Study:
                         f"{error}") from None
 
 
-class _Progress:
-    """A function of the numbers of instances done and of all, or a bar."""
-
-    def __init__(self, wanted):
-        self._function, self._bar = wanted if callable(wanted) else None, None
-        if wanted and not callable(wanted):
-            try:
-                from tqdm.auto import tqdm
-            except ImportError:
-                raise Error("progress=True shows a bar of the package tqdm, which is missing: `pip install tqdm`, or "
-                            "give a function of two numbers, instances done and all") from None
-            self._bar = tqdm(unit="instance", unit_scale=True)
-
-    def __call__(self, done, total, earlier=0, seconds=0.0, by_status=None):
-        if self._function is not None:
-            self._function(done, total)
-        if self._bar is not None:
-            self._bar.total, self._bar.n, self._bar.initial = total, done, earlier
-            failed = {n: c for n, c in (by_status or {}).items() if not n.startswith(("success", "stopped"))}
-            self._bar.set_postfix(failed, refresh=False)
-            self._bar.refresh()
-
-    def close(self):
-        """Ends the bar."""
-        if self._bar is not None:
-            self._bar.close()
-
-
 # -- Executors ---------------------------------------------------------------------------------------------------------
 
 _received = threading.local()  # the last study of each thread of a worker, and its devices and chunks
 
 
-def _compute(payload, chunk, chunk_size, devices):
+def _compute(payload: bytes, chunk: int, chunk_size: int, devices: Sequence[str]) -> Any:
     """A chunk of a study, in a worker."""
     if getattr(_received, "payload", None) != payload:
         _received.study, _received.payload, _received.use = Study(*pickle.loads(payload)), payload, None
@@ -395,7 +376,8 @@ class _ExecutedRun:
 
     _patience = 10.0  # seconds, with chunks under way when the run ends early
 
-    def __init__(self, study, executor, devices, chunk, folder, show):
+    def __init__(self, study: Study, executor: Any, devices: Sequence[str], chunk: int | None, folder: str | None,
+                 show: ProgressDisplay) -> None:
         self._study, self._executor, self._devices, self._folder, self._show = study, executor, devices, folder, show
         workers = getattr(executor, "_max_workers", None)
         workers = workers if isinstance(workers, int) and workers > 0 else 16
@@ -406,9 +388,10 @@ class _ExecutedRun:
         self._payload = study._payload()
         self._handed = study._core.hand_out()
         self._earlier, self._begin = self._handed.instances_done(), clock.perf_counter()
-        self._under_way, self._ended = {}, queue.SimpleQueue()
+        self._under_way: dict[concurrent.futures.Future[Any], int] = {}
+        self._ended: queue.SimpleQueue[concurrent.futures.Future[Any]] = queue.SimpleQueue()
 
-    def run(self):
+    def run(self) -> StudyResult:
         try:
             self._work()
         except KeyboardInterrupt:
@@ -416,11 +399,11 @@ class _ExecutedRun:
             raise Interrupted(self._result()) from None
         except BaseException as error:
             self._end()
-            error.result = self._result()
+            error.result = self._result()  # type: ignore[attr-defined]
             raise
         return self._result()
 
-    def _work(self):
+    def _work(self) -> None:
         handed = self._handed
         while True:
             while len(self._under_way) < self._most and (chunk := handed.claim_next()) is not None:
@@ -437,7 +420,7 @@ class _ExecutedRun:
             self._take(future)
             self._show(self._earlier + handed.committed, handed.instances)
 
-    def _submit(self, chunk):
+    def _submit(self, chunk: int) -> None:
         try:
             future = self._executor.submit(_compute, self._payload, chunk, self._handed.chunk, self._devices)
         except BaseException as error:
@@ -448,7 +431,7 @@ class _ExecutedRun:
         self._under_way[future] = chunk
         future.add_done_callback(self._ended.put)
 
-    def _take(self, future):
+    def _take(self, future: concurrent.futures.Future[Any]) -> None:
         chunk = self._under_way.pop(future)
         try:
             values = future.result()
@@ -459,12 +442,12 @@ class _ExecutedRun:
             raise
         self._handed.commit(chunk, values)
 
-    def _died(self, error):
+    def _died(self, error: BaseException) -> Error:
         kept = "what was done is kept: run the study again with the same store" if self._folder else \
             "give the study a store, in which it goes on when it is run again"
         return Error(f"a chunk was lost with its worker ({type(error).__name__}: {error}); {kept}")
 
-    def _end(self):
+    def _end(self) -> None:
         """Takes what is done, and gives the rest back."""
         for future in list(self._under_way):
             try:
@@ -479,7 +462,7 @@ class _ExecutedRun:
                 self._handed.release(chunk)
         self._under_way.clear()
 
-    def _result(self):
+    def _result(self) -> StudyResult:
         results, facts = self._study._core.finish(self._handed)
         return self._study._result(results, {**facts, "seconds": clock.perf_counter() - self._begin}, self._folder)
 
@@ -513,8 +496,8 @@ def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     units     {component: unit} for results; notes: {key: text}, anything that tells this study from others, such as the
               version of data: a store that was made with other notes is refused
 
-    method, control, precision, interpreted, options, record, samples, events, rtol and atol are those of `solve`.
-    Inputs that are not finite mark their instances as invalid_input. Names of results are those of the C++ library: "x"
+    method, control, precision, interpreted, options, record, samples, events, rtol and atol are as in `solve`.
+    Inputs that are not finite mark their instances as invalid_input. Results have the C++ library's names: "x"
     at recorded phases, "x_sample", "x_end", "t_last", "status"; of initial values of states "x_begin". Raises
     `myriad.Error`.
 

@@ -59,7 +59,7 @@ class StudyResult(Mapping):
 
     @property
     def done(self) -> int:
-        """The number of instances whose results are there, of whichever run."""
+        """The number of instances whose results are there, from this run or another."""
         return self._results.instances_done
 
     @property
@@ -87,7 +87,7 @@ class StudyResult(Mapping):
         """The devices that computed what is in the store."""
         return self._results.devices
 
-    def _name(self, key):
+    def _name(self, key: Component) -> str:
         if key is time:
             return next(n for n in ("t", "t_sample", "t_last") if n in self._variables or n == "t_last")
         name = name_of(key)
@@ -106,7 +106,7 @@ class StudyResult(Mapping):
         values = self._results.read(name, 0, self.size)
         return values.reshape((*self.shape, *(n for _, n in inner)))
 
-    def _coordinate(self, name):
+    def _coordinate(self, name: str) -> Array:
         along = self._coordinates[name][0]
         if not along:
             return self._results.coordinate(name, 1)[0]
@@ -124,7 +124,7 @@ class StudyResult(Mapping):
         except (KeyError, Error):
             return False
 
-    def _ipython_key_completions_(self):
+    def _ipython_key_completions_(self) -> list[str]:
         return self.names
 
     __eq__, __hash__ = object.__eq__, object.__hash__
@@ -143,7 +143,7 @@ class StudyResult(Mapping):
         lines += [f"note: {note}" for note in self.notes] + [f"warning: {warning}" for warning in self.warnings]
         return "\n".join(lines)
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         if self.folder is None:
             raise Error("results in memory cannot be pickled: pickle result.to_xarray(), or give the study a store")
         return open_study, (self.folder,)
@@ -153,17 +153,17 @@ class StudyResult(Mapping):
         check="checksums")` computes it again."""
         return verify(self.folder) if self.folder is not None else []
 
-    def _written(self):
-        """Variables, those of instances first, but for reductions that are not there before all is done."""
+    def _written(self) -> dict[str, Any]:
+        """Variables with a value per instance, and then reductions, which are not there before all is done."""
         there = [name for name, rest in self._variables.items() if rest[3] or self._results.written(name)]
         return {name: self._variables[name] for name in sorted(there, key=lambda name: not self._variables[name][3])}
 
-    def _fill(self, type_name):
+    def _fill(self, type_name: str) -> np.generic | None:
         """What stands for a value that was not computed, if there may be one."""
         return _fill_values[type_name] if type_name.startswith("float") or not self.complete else None
 
     def to_xarray(self) -> xarray.Dataset:
-        """The results as an `xarray.Dataset` along the axes of the study; those of a store are read when they are used,
+        """The results as an `xarray.Dataset` along the axes of the study. A store is read when its values are used,
         chunk by chunk. What is not done is NaN, or the attribute `_FillValue` of integers."""
         try:
             import xarray
@@ -203,7 +203,7 @@ class StudyResult(Mapping):
             if os.path.exists(temporary):
                 os.remove(temporary)
 
-    def _write(self, file, complevel):
+    def _write(self, file: Any, complevel: int) -> None:
         written = self._written()
         used = {d: n for rest in written.values() for d, n in rest[1]}
         for name, length in {**self._axes, **used}.items():
@@ -243,23 +243,23 @@ _fill_values = {"float64": np.float64(np.nan), "float32": np.float32(np.nan), "i
                 "int32": np.int32(-(1 << 31) + 1), "uint8": np.uint8(255)}
 
 
-def _set_attributes(variable, attributes, type_of_values):
+def _set_attributes(variable: Any, attributes: Mapping[str, Any], type_of_values: type[np.generic]) -> None:
     for name, value in attributes.items():
         if name.startswith("flag_") and isinstance(value, list):
             value = np.array(value, type_of_values)
         variable.setncattr(name, value)
 
 
-def _netcdf_package():
+def _netcdf_package() -> Any:
     try:
-        from netCDF4 import Dataset
-        return Dataset
+        import netCDF4
+        return netCDF4.Dataset
     except ImportError:
         pass
     try:
         import h5py  # noqa: F401, without which h5netcdf does not write
-        from h5netcdf.legacyapi import Dataset
-        return Dataset
+        from h5netcdf import legacyapi
+        return legacyapi.Dataset
     except ImportError:
         raise Error("to_netcdf needs the package netCDF4, or h5netcdf and h5py: `pip install netCDF4`; the "
                     "wheel is built without the library for netCDF itself") from None

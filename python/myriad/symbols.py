@@ -133,7 +133,7 @@ def _built_in(kind: str, type: str = real) -> Any:
     return make("symbol", value=("built-in", kind), type=type)
 
 
-time = _built_in("time")  #: the time; in an action that of the event
+time = _built_in("time")  #: the time; in an action the time of the event
 step = _built_in("step")  #: in hooks: the length of the step just taken, negative backwards
 next_step = _built_in("next_step")  #: in hooks: the length of the next trial step, which they may assign
 phase = _built_in("phase", integer)  #: in hooks: the number of the phase, from 0

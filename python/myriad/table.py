@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -15,6 +16,8 @@ from .symbols import check_name
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+
+    from .expression import Expression, Node
 
 __all__ = ["table"]
 
@@ -74,7 +77,7 @@ class Table:
             elements[i] = self._element(int(chosen[i]))
         return elements
 
-    def _element(self, number):
+    def _element(self, number: int) -> Expression:
         return make("element", value=(self, number))
 
     def __matmul__(self, vector: Any) -> Any:
@@ -101,11 +104,11 @@ class Table:
                     "the transposed array, and write table @ vector")
 
 
-def tables_of(nodes):
+def tables_of(nodes: Iterable[Node]) -> list[Table]:
     """The tables that these nodes refer to, each once."""
     return list(dict.fromkeys(n.value[0] for n in nodes if n.op in ("element", "dot", "lookup", "find_interval")))
 
 
-def element_name(table, number):
+def element_name(table: Table, number: int) -> str:
     """The name of an element, as in 'A[0,1]'."""
     return f"{table.name}[{','.join(str(i) for i in np.unravel_index(number, table.shape))}]"

@@ -46,7 +46,7 @@ class WithTangents(ComponentNames):
         self._set_names(names)
         self.events = model.events
         self.generated, self.generator = model.generated, model.generator
-        self.generate = getattr(model, "generate", ())  # not of a model in C++
+        self.generate = getattr(model, "generate", [])  # not of a model in C++
         every = [name for of_kind in names.values() for name in of_kind]
         twice = next((name for name in every if every.count(name) > 1), None)
         if twice is not None:

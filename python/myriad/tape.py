@@ -4,20 +4,27 @@
 from __future__ import annotations
 
 import weakref
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 from . import _core, kinds
 from .compiler import Kernel
 from .errors import Error
 from .expression import integer, is_long, walk
+from .model import Model
 from .table import element_name
+
+if TYPE_CHECKING:
+    from .components import Components
+    from .expression import Node
+    from .hints import AnyModel, Assignments
 
 methods = tuple(_core.interpreted_methods())
 _codes = {name: number for number, name in enumerate(_core.tape_operations())}
 _limits = _core.tape_limits  # the most components of each kind
 
 
-def _refuse(why):
+def _refuse(why: str) -> Error:
     return Error(f"the model cannot be interpreted, as {why}: install a C++ compiler (g++ 12 or clang++ 14 or newer), "
                  "or `pip install ziglang`")
 
@@ -26,26 +33,29 @@ _of_whole_numbers = {"add": "wrapping_add", "subtract": "wrapping_subtract", "mu
                      "quotient": "quotient", "remainder": "remainder"}
 
 
-def _plural(kind):
+def _plural(kind: str) -> str:
     return kinds.every[kind].plural.replace("_", " ")
 
 
 class Writer:
     """Writes the functions of one model, one after the other."""
 
-    def __init__(self, components):
+    def __init__(self, components: Components) -> None:
         self.place = components.place
         self.events = components.event_names
-        self.codes, self.values, self.registers, self.functions = [], [], [], []
+        self.codes: list[int] = []
+        self.values: list[float] = []
+        self.registers: list[tuple[int, int, int, int]] = []
+        self.functions: list[tuple[int, int]] = []
 
-    def _emit(self, code, to=0, a=0, b=0, c=0, value=0.0):
+    def _emit(self, code: str, to: int = 0, a: int = 0, b: int = 0, c: int = 0, value: float = 0.0) -> None:
         if code not in _codes:
             raise _refuse(f"it uses {code}")
         self.codes.append(_codes[code])
         self.values.append(value)
         self.registers.append((to, a, b, c))
 
-    def _symbol(self, node, to):
+    def _symbol(self, node: Node, to: int) -> None:
         kind, name = node.value
         if kind == "built-in":
             self._emit(f"load_{name}", to)
@@ -54,19 +64,19 @@ class Writer:
         else:
             self._emit(f"load_{kind}", to, self.place[name][1])
 
-    def function(self, roots, stores):
+    def function(self, roots: Sequence[Node], stores: Sequence[tuple[str, int]]) -> None:
         """One function: the values of `roots`, each stored by (code, number) in `stores`. Everything is computed before
         anything is stored."""
         begin = len(self.codes)
         order = walk(roots)
-        uses = {}
+        uses: dict[int, int] = {}
         for node in order:
             for argument in node.args:
                 uses[id(argument)] = uses.get(id(argument), 0) + 1
         for root in roots:
             uses[id(root)] = uses.get(id(root), 0) + 1
         free = list(range(_core.tape_registers))[::-1]
-        register = {}
+        register: dict[int, int] = {}
         for node in order:
             arguments = [register[id(a)] for a in node.args]
             for argument in node.args:
@@ -98,7 +108,8 @@ class Writer:
                 place = self.place[element_name(table, first)][1]
                 self._emit(node.op, to, rows, arguments[0], stride, float(place))
             elif node.type == integer and node.op in _of_whole_numbers:
-                self._emit(_of_whole_numbers[node.op], to, *arguments, int(is_long(node)))
+                first, second = arguments
+                self._emit(_of_whole_numbers[node.op], to, first, second, int(is_long(node)))
             elif node.op in ("constant", "truth"):
                 self._emit("constant", to, value=float(node.value))
             else:
@@ -109,7 +120,7 @@ class Writer:
             self._emit(code, register[id(root)], number)
         self.functions.append((begin, len(self.codes)))
 
-    def hook(self, assignments, what):
+    def hook(self, assignments: Assignments, what: str) -> None:
         """A hook, from its assignments [(target, value)]."""
         stores = []
         for target, _ in assignments:
@@ -127,10 +138,10 @@ class Writer:
         self.function([value for _, value in assignments], stores)
 
 
-def library(model, components, method):
+def library(model: AnyModel, components: Components, method: str) -> _core.Library:
     """The interpreter of the core with the tape of a traced model. Raises `Error` if the model or the method is beyond
     it."""
-    if not hasattr(model, "rhs"):
+    if not isinstance(model, Model):
         raise _refuse("it has tangents" if hasattr(model, "vectors") else "it is written in C++")
     if method not in methods:
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
@@ -148,18 +159,19 @@ def library(model, components, method):
     writer.hook(model.after_step, "after_step")
     writer.hook(model.finalise, "finalise")
     writer.hook(model.generate, "generate")
-    actions = [e.do for e in model.events] + [[]] * (_limits["event"] - len(model.events))
+    actions: list[Assignments] = [e.do for e in model.events] + [[]] * (_limits["event"] - len(model.events))
     for number, assignments in enumerate(actions):
         writer.hook(assignments, f"event {number}")
     may_stop = any(t.value[0] == "action" for a in (model.after_step, *actions) for t, _ in a)
     made = _core.Tape(writer.functions, writer.codes, writer.values, writer.registers)
-    return _core.Library(method, *(len(components.names[kind]) for kind in kinds.shared), may_stop, made)
+    shared, shared_integers = (len(components.names[kind]) for kind in kinds.shared)
+    return _core.Library(method, shared, shared_integers, may_stop, made)
 
 
-def give_model(library, model, components, method):
+def give_model(library: _core.Library, model: AnyModel, components: Components, method: str) -> None:
     """Gives checks and notes of a GPU's program the functions of a traced model, unless they are beyond the
     interpreter."""
-    if not hasattr(model, "rhs"):
+    if not isinstance(model, Model):
         return
     writer = Writer(components)
     try:
@@ -175,7 +187,7 @@ def give_model(library, model, components, method):
 _known: weakref.WeakKeyDictionary[Any, Any] = weakref.WeakKeyDictionary()
 
 
-def kernel(model, components, method, why):
+def kernel(model: AnyModel, components: Components, method: str, why: str) -> Kernel:
     """The interpreter with a model; `why` is told in the report."""
     of_model = _known.setdefault(model, {})
     if method not in of_model:
@@ -183,7 +195,7 @@ def kernel(model, components, method, why):
     return Kernel(of_model[method], f"interpreted, {why}", 0.0)
 
 
-def padded(components):
-    """The names of all components that the interpreter has: those of the model first."""
+def padded(components: Components) -> dict[str, list[str]]:
+    """The names of all components that the interpreter has, beginning with the model's."""
     return {kind: [*names, *(f"unused {_plural(kind)} {i}" for i in range(len(names), _limits.get(kind, 0)))]
             for kind, names in components.names.items()}

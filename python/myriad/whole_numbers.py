@@ -1,14 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""How large the whole numbers of `generate` become in a study, and the refusal of those that would be cut."""
+"""How large the whole numbers of `generate` become in a study, and the refusal of numbers that would be cut."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 from .errors import Error, at
 from .expression import integer, is_long, text, walk
+
+if TYPE_CHECKING:
+    from .expression import Node
+    from .hints import Assignments
 
 _most_32 = 2**31 - 1
 _most_exact = 2**53  # what double precision and numbers of 64 bits both hold
 
 
-def check_constants(nodes, assigned):
+def check_constants(nodes: Iterable[Node], assigned: Iterable[Node]) -> None:
     """Refuses whole constants that the whole numbers beside them, or what they are assigned to, cannot hold. Those
     beside real numbers are real already."""
     for constant, user in [(a, node) for node in nodes for a in node.args] + [(e, e) for e in assigned]:
@@ -22,11 +31,11 @@ def check_constants(nodes, assigned):
                         f"real number write {constant.value}.0, and use an accessory")
 
 
-def check_whole_numbers(assignments, instances, shared):
+def check_whole_numbers(assignments: Assignments, instances: int, shared: Mapping[str, int]) -> None:
     """Refuses whole numbers of `generate`, [(target, value)], that a study of so many instances makes too large.
     `shared` has the values of shared integers by name. Whole numbers computed from the instance's number have 64 bits,
     all others, and integer accessories, have 32."""
-    known = {}  # by node: the least and the largest value, and whether it has 64 bits
+    known: dict[int, tuple[int, int, bool]] = {}  # by node: the least and the largest value, and whether it has 64 bits
     for node in walk([value for _, value in assignments]):
         if node.type != integer:
             continue
@@ -43,7 +52,8 @@ def check_whole_numbers(assignments, instances, shared):
                         f"{instances} instances, and it has 32 bits: use an accessory")
 
 
-def _range(node, known, instances, shared):
+def _range(node: Node, known: Mapping[int, tuple[int, int, bool]], instances: int,
+           shared: Mapping[str, int]) -> tuple[int, int, bool]:
     if node.op == "constant":
         return node.value, node.value, abs(node.value) > _most_32
     if node.op == "symbol":

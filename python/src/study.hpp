@@ -6,7 +6,7 @@
 
 namespace myriad::python {
 
-/// Adds classes Study, HandedOut, Results and their functions to the module, after those of `Library` and `Options`.
+/// Adds classes Study, HandedOut, Results and their functions to the module, after `Library` and `Options`.
 void bind_study(nanobind::module_& m);
 
 }  // namespace myriad::python

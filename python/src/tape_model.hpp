@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The model that runs a tape; components beyond those of the tape are not used, and stay zero.
+// The model that runs a tape; components beyond the tape's are not used, and stay zero.
 #pragma once
 
 #include "myriad/python/kernel_library.hpp"

@@ -7,7 +7,7 @@
 namespace myriad::python {
 
 /// Runs all parts, part 0 in the calling thread, the others in threads that wait for work between calls. A second team
-/// at the same time, and one that needs more stack than those have, gets threads of its own. A forked child makes new
+/// at the same time, and one that needs more stack than these have, gets threads of its own. A forked child makes new
 /// ones.
 void start_team(openmp::team* all);
 

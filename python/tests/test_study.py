@@ -149,13 +149,6 @@ def test_random_values_in_a_grid_are_those_of_a_sweep():
         my.study(duffing(), {k: values, B: 0.3, x: my.uniform(0, k)}, start={v: 0}, time=(0, 1))
 
 
-def test_former_names_say_the_new_ones():
-    with pytest.raises(AttributeError, match="myriad.logspace is myriad.geomspace"):
-        my.logspace(1, 10, 3)
-    with pytest.raises(AttributeError, match="has no attribute 'logspaces'"):
-        my.logspaces(1, 10, 3)
-
-
 def test_reductions_are_numpys():
     edges = np.linspace(-1, 1, 9)
     several = [my.reduce.mean("x"), my.reduce.maximum("x_end"), my.reduce.minimum("v_end"),

@@ -27,8 +27,8 @@ struct compiler {
     std::vector<std::string> kernel_flags(openmp::instruction_set set) const;
 };
 
-/// The compiler to use: that of $MYRIAD_CXX or $CXX, g++ or clang++ on the PATH, or the one of the package ziglang,
-/// whose program is `zig`, if that is not empty.
+/// The compiler to use: what $MYRIAD_CXX or $CXX names, g++ or clang++ on the PATH, or the compiler of the package
+/// ziglang, whose program is `zig`, if that is not empty.
 std::optional<compiler> find_compiler(const std::string& zig = "");
 /// What is thrown where there is none; `also` is what else may be done, with a comma behind it.
 error no_compiler(std::string_view also = "");

@@ -192,7 +192,7 @@ std::vector<std::string> all_processes(MPI_Comm ranks, int size) {
     return names;
 }
 
-/// How many of the cores are this rank's, of those on its machine.
+/// How many of its machine's cores are this rank's.
 int share_of_cores(MPI_Comm here, int rank, int size) {
     cpu_set_t own;
     CPU_ZERO(&own);

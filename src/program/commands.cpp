@@ -442,9 +442,13 @@ std::string shape_text(const studies::layout& content, const studies::variable& 
     return text.empty() ? "one value" : text;
 }
 
-int info(const std::string& folder, bool verify) {
+int info(const std::string& folder, bool verify, bool as_json) {
     store there = open_store(folder);
     const studies::layout& content = there.content();
+    if (as_json) {
+        std::cout << studies::contents_json(content);
+        return 0;
+    }
     const studies::store_progress now = there.progress();
     std::cout << there.folder() << '\n'
               << message("done: ", now.chunks, " of ", now.all_chunks, " chunks, ", now.instances, " of ",
@@ -508,7 +512,7 @@ int parse_and_run(int argc, const char* const* argv) {
     run_request asked;
     std::vector<std::string> files;
     std::string target, variable;
-    bool verify = false, require_complete = false;
+    bool verify = false, as_json = false, require_complete = false;
     int status = 0;
 
     CLI::App* const list_command = app.add_subcommand("list", "Show models and their components");
@@ -553,8 +557,9 @@ int parse_and_run(int argc, const char* const* argv) {
 
     CLI::App* const info_command = app.add_subcommand("info", "Show what is in a folder of results");
     info_command->add_option("FOLDER", asked.folder, "Folder of the results")->required();
-    info_command->add_flag("--verify", verify, "Compare all checksums too");
-    info_command->callback([&] { status = info(asked.folder, verify); });
+    auto* const verify_flag = info_command->add_flag("--verify", verify, "Compare all checksums too");
+    info_command->add_flag("--json", as_json, "Show only the axes and arrays, for scripts")->excludes(verify_flag);
+    info_command->callback([&] { status = info(asked.folder, verify, as_json); });
 
     CLI::App* const export_command = app.add_subcommand("export", "Write results as one file");
     export_command->add_option("FOLDER", asked.folder, "Folder of the results")->required();

@@ -13,6 +13,7 @@ import site
 import subprocess
 import sys
 import tempfile
+from typing import Callable, NamedTuple
 
 # Run in isolation (python -I), without the modules of the current folder and of PYTHONPATH: those beside this file, and
 # what the user has installed.
@@ -25,78 +26,59 @@ import figure as figures  # noqa: E402  pylint: disable=wrong-import-position
 VALUES = ("last", "minimum", "maximum", "mean", "distinct")
 
 
-class Folder:
-    """Results in a folder. Values come from the program, which compares them with their checksums."""
+class Results(NamedTuple):
+    """What can be drawn: arrays by name, with the names of their dimensions and their attributes."""
 
-    def __init__(self, numpy, path, reader):
-        self.numpy, self.path, self.reader = numpy, path, reader
-        try:
-            with open(os.path.join(path, "zarr.json"), encoding="utf-8") as file:
-                group = json.load(file)
-            self.arrays = group["consolidated_metadata"]["metadata"]
-            description = group["attributes"]["myriad"]
-        except (OSError, KeyError, ValueError) as error:
-            raise figures.PlotError(f"{path} is no folder of a study: {getattr(error, 'strerror', None) or error}") \
-                from error
-        self.dimensions = dict(description["axes"])  # those of the grid, in place of the dimension "instance"
-        self.grid = list(self.dimensions)
-        self.aside = {v["name"] for v in description["variables"] if v["along"] == "chunks" or v["role"] != "data"}
+    grid: list      # the names of the axes
+    aside: set      # the names of arrays that are no results
+    dims: dict
+    attributes: dict
+    read: Callable  # returns the values of an array
 
-    def names(self):
-        return [name for name in self.arrays if "/" not in name and "shape" in self.arrays[name]]
 
-    def dims(self, name):
-        dims = list(self.arrays[name].get("dimension_names") or [])
-        return (list(self.dimensions) + dims[1:]) if dims[:1] == ["instance"] else dims
+def results_of_folder(numpy, path, program):
+    """Results in a folder. The program reads it, and compares the values with their checksums."""
+    def ask(*words):
+        done = subprocess.run([program, *words], check=False, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise figures.PlotError(done.stderr.strip())
+        return done.stdout
 
-    def attributes(self, name):
-        return self.arrays[name].get("attributes", {})
-
-    def read(self, name):
+    def read(name):
         with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "values.npy")
-            done = subprocess.run([self.reader, "export", self.path, path, "--variable", name], check=False,
-                                  capture_output=True, text=True)
-            if done.returncode != 0:
-                raise figures.PlotError(done.stderr.strip())
-            return self.numpy.load(path)
+            values = os.path.join(folder, "values.npy")
+            ask("export", path, values, "--variable", name)
+            return numpy.load(values)
+
+    content = json.loads(ask("info", path, "--json"))
+    arrays = content["arrays"]
+    return Results(content["axes"], {name for name, array in arrays.items() if array["role"] != "data"},
+                   {name: array["dimensions"] for name, array in arrays.items()},
+                   {name: array["attributes"] for name, array in arrays.items()}, read)
 
 
-class File:
+def results_of_file(path):
     """Results in a netCDF file."""
-
-    def __init__(self, _numpy, path, _reader):
-        self.data = figures.open_netcdf(path, "myriad export", [])
-        dimensions = json.loads(getattr(self.data, "axes_dimensions", "[]"))
-        self.grid = [dimension["name"] for dimension in dimensions]
-        self.aside = {place for variable in self.data.variables.values()
-                      for place in getattr(variable, "coordinates", "").split()}
-
-    def names(self):
-        return list(self.data.variables)
-
-    def dims(self, name):
-        return list(self.data.variables[name].dimensions)
-
-    def attributes(self, name):
-        variable = self.data.variables[name]
-        return {key: variable.getncattr(key) for key in variable.ncattrs()}
-
-    def read(self, name):
-        return self.data.variables[name][...]
+    data = figures.open_netcdf(path, "myriad export", [])
+    arrays = data.variables
+    return Results([dimension["name"] for dimension in json.loads(getattr(data, "axes_dimensions", "[]"))],
+                   {place for array in arrays.values() for place in getattr(array, "coordinates", "").split()},
+                   {name: list(array.dimensions) for name, array in arrays.items()},
+                   {name: {key: array.getncattr(key) for key in array.ncattrs()} for name, array in arrays.items()},
+                   lambda name: arrays[name][...])
 
 
 def choose_variable(data, wanted):
     """The variable to draw: the first result that has an axis of the grid, or the one that is named."""
-    coordinates = {name for name in data.names() if data.dims(name) == [name]}
-    usable = [name for name in data.names()
-              if name not in coordinates and any(axis in data.names() for axis in data.dims(name))]
+    coordinates = {name for name in data.dims if data.dims[name] == [name]}
+    usable = [name for name in data.dims
+              if name not in coordinates and any(axis in data.dims for axis in data.dims[name])]
     if wanted is not None:
-        if wanted not in data.names():
+        if wanted not in data.dims:
             raise figures.PlotError(f"there is no variable {wanted}: there are {', '.join(usable)}")
         return wanted
     results = [name for name in usable if name not in data.aside]
-    of_grid = [name for name in results if len(data.dims(name)) > 1 or data.dims(name)[0] in data.grid]
+    of_grid = [name for name in results if len(data.dims[name]) > 1 or data.dims[name][0] in data.grid]
     results.sort(key=lambda name: (name == "status", name not in of_grid))
     if not results:
         raise figures.PlotError("the results have no variable over an axis")
@@ -104,7 +86,7 @@ def choose_variable(data, wanted):
 
 
 def label_of(data, name):
-    unit = data.attributes(name).get("units") if name in data.names() else None
+    unit = data.attributes[name].get("units") if name in data.dims else None
     return f"{name} ({unit})" if unit else name
 
 
@@ -125,13 +107,13 @@ def fix_axes(numpy, data, values, dims, places):
 
 
 def axis_values(numpy, data, axis, length):
-    return data.read(axis) if axis in data.names() else numpy.arange(length, dtype=float)
+    return data.read(axis) if axis in data.dims else numpy.arange(length, dtype=float)
 
 
 def choose_axes(data, values, dims, wanted):
     """The axes to draw over: the named ones, or the longest ones that have coordinates, two if there are."""
     if wanted is None:
-        axes = [name for name in dims if name in data.names() and name not in ("phase", "sample")]
+        axes = [name for name in dims if name in data.dims and name not in ("phase", "sample")]
         axes.sort(key=lambda name: -values.shape[dims.index(name)])
         axes = [name for name in axes[:2] if values.shape[dims.index(name)] > 1] or axes[:1]
         return sorted(axes, key=dims.index)
@@ -177,11 +159,11 @@ def names_of(numpy, attributes, values):
 def draw(plots, numpy, data, asked):
     """The figure."""
     variable = choose_variable(data, asked.variable)
-    values, dims = fix_axes(numpy, data, numpy.asarray(data.read(variable)), data.dims(variable), asked.at)
+    values, dims = fix_axes(numpy, data, numpy.asarray(data.read(variable)), data.dims[variable], asked.at)
     if not dims:
         raise figures.PlotError(f"{variable} is one number: name a variable with an axis")
     over = choose_axes(data, values, dims, asked.over) or dims[:1]
-    attributes = data.attributes(variable)
+    attributes = data.attributes[variable]
     names = names_of(numpy, attributes, values)
     if names is None and values.dtype.kind in "iu":
         fill = attributes.get("_FillValue")
@@ -202,7 +184,7 @@ def draw(plots, numpy, data, asked):
 
 
 def libraries():
-    """The modules that draw, and numpy: those of the Python package, which are beside this file."""
+    """The modules that draw, and numpy. They are the Python package's, and lie beside this file."""
     _, numpy = figures.import_libraries()
     from pictures import errors, plots  # pylint: disable=import-outside-toplevel
     return plots, numpy, errors.Error
@@ -245,7 +227,7 @@ def main():
             path = path.rstrip("/") or "/"
             is_folder = os.path.isdir(path)  # whose name may have dots
             picture = asked.output or (path if is_folder else os.path.splitext(path)[0]) + ".png"
-            data = (Folder if is_folder else File)(numpy, path, asked.reader)
+            data = results_of_folder(numpy, path, asked.reader) if is_folder else results_of_file(path)
             figures.save(draw(plots, numpy, data, asked), picture, dpi=200)
             print(f"picture: {picture}")
     except (figures.PlotError, refused) as error:

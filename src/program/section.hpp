@@ -78,7 +78,7 @@ public:
     void read(std::string_view key, T& to, const std::array<host::choice<T>, n>& choices) {
         read_choice<T>(key, to, choices);
     }
-    /// A key's name in messages, with those of the tables that it is in.
+    /// A key's name in messages, with the names of the tables that it is in.
     std::string full(std::string_view key) const;
     const toml_value& whole() const { return table_; }
     /// Throws `input_error` for a key that was not asked for.

@@ -35,7 +35,7 @@ struct toml_value {
     };
 
     std::variant<table, array, std::string, std::int64_t, double, bool, other> value;
-    text_place place;  ///< of its key in a table, otherwise of the value; its file is that of the document
+    text_place place;  ///< of its key in a table, otherwise of the value; its file is the document's
 
     /// "a table", "an integer" and so on.
     std::string_view kind() const;

@@ -322,6 +322,26 @@ stored_group group_of(std::string_view text, const std::string& path) {
     return group;
 }
 
+std::string contents_json(const layout& content) {
+    json axes = json::array(), arrays = json::object();
+    for (const dimension& axis : content.axes) axes.push_back(axis.name);
+    const auto add = [&](const auto& array, role its_role) {
+        json names = json::array();
+        for (const dimension& d : shape_of(content, array).dimensions) {
+            if (d.name == "instance")
+                names.insert(names.end(), axes.begin(), axes.end());
+            else
+                names.push_back(d.name);
+        }
+        arrays[array.name] = {
+            {"dimensions", names}, {"role", name_in(its_role, role_names)}, {"attributes", as_json(array.attributes)}};
+    };
+    for (const coordinate& c : content.coordinates) add(c, role::coordinate);
+    for (const variable& v : content.variables)
+        if (v.extent != along::chunks) add(v, v.role);
+    return json{{"axes", axes}, {"arrays", arrays}}.dump(1) + '\n';
+}
+
 bool same_json(std::string_view a, std::string_view b) {
     const json read = json::parse(a, nullptr, false);
     return !read.is_discarded() && read == json::parse(b, nullptr, false);

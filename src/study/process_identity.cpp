@@ -59,7 +59,7 @@ std::string boot_id(file_system& files) {
     }
 }
 
-// Numbers of processes are those of a namespace, and the times of their starts too.
+// Numbers of processes, and the times of their starts, hold in one namespace.
 std::string process_space() {
     std::string spaces;
     for (const char* const path : {"/proc/self/ns/pid", "/proc/self/ns/time"}) {

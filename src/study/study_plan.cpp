@@ -85,7 +85,7 @@ json numbers(const per_component& all) {
     return numbers(list);
 }
 
-json describe(const axis_values& v) {
+json as_json(const axis_values& v) {
     if (v.which() == axis_values::kind::list) return numbers(v.listed());
     constexpr const char* names[] = {"linspace", "geomspace", "values", "uniform", "normal"};
     std::string text = names[static_cast<int>(v.which())];
@@ -94,18 +94,18 @@ json describe(const axis_values& v) {
     return text + ')';
 }
 
-json describe(const axes& all) {
+json as_json(const axes& all) {
     json made{{"dimensions", json::array()}, {"values", json::object()}, {"random", json::object()}};
     for (std::size_t d = 0; d < all.dimensions().size(); ++d) {
         json along{{"name", all.dimensions()[d].name}, {"length", all.dimensions()[d].length}};
         for (const axes::entry& e : all.entries())
-            if (e.dimension == static_cast<int>(d)) along["components"][e.what.full_name()] = describe(e.values);
+            if (e.dimension == static_cast<int>(d)) along["components"][e.what.full_name()] = as_json(e.values);
         made["dimensions"].push_back(along);
     }
     for (const axes::entry& e : all.entries()) {
         if (e.dimension) continue;
         if (e.values.random()) {
-            made["random"][e.what.full_name()] = describe(e.values);
+            made["random"][e.what.full_name()] = as_json(e.values);
         } else {
             made["values"][e.what.full_name()] = number_or_word(e.values[0]);
         }
@@ -115,7 +115,7 @@ json describe(const axes& all) {
 }
 
 template <class Group>
-json describe_options(const Group& o, const component_names& names);
+json options_as_json(const Group& o, const component_names& names);
 
 /// The value of an option.
 json value_of(std::int64_t value, const component_names&) { return value; }
@@ -124,7 +124,7 @@ json value_of(double value, const component_names&) { return number_or_word(valu
 json value_of(direction value, const component_names&) { return static_cast<int>(value); }
 json value_of(const std::vector<event_options>& all, const component_names& names) {
     json made = json::array();
-    for (const event_options& e : all) made.push_back(describe_options(e, names));
+    for (const event_options& e : all) made.push_back(options_as_json(e, names));
     return made;
 }
 template <class T>
@@ -134,7 +134,7 @@ json value_of(const T& value, const component_names& names) {
     } else if constexpr (std::is_same_v<T, std::vector<double>> || std::is_same_v<T, per_component>) {
         return numbers(value);
     } else if constexpr (requires { value.empty(); }) {
-        return value.empty() ? json() : describe_options(value, names);  // records and samples that nobody asked for
+        return value.empty() ? json() : options_as_json(value, names);  // records and samples that nobody asked for
     } else {
         return json();
     }
@@ -147,7 +147,7 @@ json names_of(const component_names& names, const char* kind, const component_li
 
 /// Those that have an effect on results.
 template <class Group>
-json describe_options(const Group& o, const component_names& names) {
+json options_as_json(const Group& o, const component_names& names) {
     json made = json::object();
     host::for_each_option<Group>([&](const auto& e) {
         if (e.effect != host::option_effect::results) return;
@@ -162,7 +162,7 @@ json describe_options(const Group& o, const component_names& names) {
     return made;
 }
 
-std::string describe(const study_request& asked, const study_plan& plan) {
+std::string description_of(const study_request& asked, const study_plan& plan) {
     const component_names& names = asked.axes.names();
     std::map<std::string, int> components;
     for (const component& c : names.all())
@@ -177,8 +177,8 @@ std::string describe(const study_request& asked, const study_plan& plan) {
               {"method", asked.method},
               {"real", name_of(asked.real)},
               {"version", MYRIAD_VERSION},
-              {"axes", describe(asked.axes)},
-              {"options", describe_options(asked.options, names)},
+              {"axes", as_json(asked.axes)},
+              {"options", options_as_json(asked.options, names)},
               {"kept", kept}};
     if (!asked.title.empty()) made["title"] = asked.title;
     if (!reductions.empty()) made["reductions"] = reductions;
@@ -455,7 +455,7 @@ private:
 study_plan plan_study(const study_request& asked) {
     study_plan plan{asked, {}, {}, {}};
     planner(plan).make();
-    plan.content.description = describe(plan.asked, plan);
+    plan.content.description = description_of(plan.asked, plan);
     return plan;
 }
 

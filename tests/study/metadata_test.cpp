@@ -93,6 +93,22 @@ TEST_CASE("numbers in a description are equal if they are the same number") {
     CHECK(differences(a, b).at(0).size() < 150);
 }
 
+TEST_CASE("the contents name axes in place of instances, and have no partial results") {
+    const std::string text = contents_json(tests::synthetic_layout());
+    CHECK(is_json_object(text));
+    std::string words;  // without white space
+    for (const char c : text)
+        if (c != ' ' && c != '\n') words += c;
+    CHECK_THAT(words, Contains(R"("axes":["a","b"])"));
+    CHECK_THAT(words, Contains(R"("y":{"dimensions":["a","b","phase"],"role":"data","attributes":{}})"));
+    CHECK_THAT(words, Contains(R"("noise":{"dimensions":["a","b"],"role":"coordinate")"));
+    CHECK_THAT(words,
+               Contains(R"("a":{"dimensions":["a"],"role":"coordinate","attributes":{"long_name":"firstaxis"}})"));
+    CHECK_THAT(words, Contains(R"("total":{"dimensions":["bin"])"));
+    CHECK_THAT(words, Contains(R"("t_end":{"dimensions":[])"));
+    CHECK_THAT(words, !Contains("partial"));
+}
+
 TEST_CASE("the entries of a description become attributes with dots in their names") {
     const auto attributes = attributes_of(
         R"({"model": "duffing", "options": {"tolerance": 1e-9, "steps": 5, "on": true, "none": null},

@@ -58,8 +58,8 @@ public:
     const std::string& model() const { return model_; }
     /// All of them, kind by kind.
     const std::vector<component>& all() const { return all_; }
-    /// The component called "k", "parameter.k" or "parameter.3", among those of the given kinds. Throws `error`, which
-    /// lists the names there are, for any other name, and for one that several components have.
+    /// The component called "k", "parameter.k" or "parameter.3", if it is of one of the given kinds. Throws `error`,
+    /// which lists the names there are, for any other name, and for one that several components have.
     const component& find(std::string_view name, std::initializer_list<component_kind> kinds) const;
     /// The name of a variable or an axis of results for this component: its own name if no other has it, otherwise with
     /// the kind, "state_x".

@@ -25,7 +25,7 @@ struct file_facts {
     std::int64_t number = 0;    ///< of the file or folder on its disk
 };
 
-/// Functions of the operating system: like those of POSIX of the same name, they return -1 and set errno if they fail.
+/// Functions of the operating system, by their names in POSIX: they return -1 and set errno if they fail.
 class file_system {
 public:
     virtual ~file_system() = default;

@@ -107,7 +107,7 @@ struct variable {
 
 /// Values along one dimension (an axis of the grid or an inner dimension of variables), or a single number.
 struct coordinate {
-    std::string name;       ///< that of its dimension, or another one's
+    std::string name;       ///< the name of its dimension, or another
     std::string dimension;  ///< its name; empty: a single number
     /// Writes the values of [first, first + size) to `values`. Called again when a study goes on, with equal results;
     /// possibly in parts, so that a long axis is never in memory as a whole.

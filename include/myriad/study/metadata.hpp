@@ -49,6 +49,9 @@ struct stored_group {
 };
 /// Throws `error` that begins with `path` if the text is none of `group_json`, or is damaged.
 stored_group group_of(std::string_view text, const std::string& path);
+/// For programs that read exported arrays: the names of the axes, and of each array its dimensions, which are the axes
+/// for what every instance has, its role and its attributes.
+std::string contents_json(const layout& content);
 /// Whether two texts are JSON, and equal.
 bool same_json(std::string_view a, std::string_view b);
 

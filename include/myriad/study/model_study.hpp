@@ -40,7 +40,7 @@ component_names names_of_components() {
     return {std::string(host::enumeration_name<Model>()), std::move(all)};
 }
 
-/// The compiler of a program, which is that of its models.
+/// The compiler of a program, which has compiled its models, too.
 #if defined(__clang__)
 inline constexpr const char* compiler_name = __VERSION__;
 #else

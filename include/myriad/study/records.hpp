@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The records of a store as JSON and back: of chunks, coordinates and final results, each with the checksums of its
-// files, one of itself, and that of the group it belongs to, so that no file can be taken for another.
+// files, one of itself, and the checksum of its group, so that no file can be taken for another.
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,7 @@
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
-/// All functions may be called by several threads; they do what those of `store` do.
+/// All functions may be called by several threads; they do what the functions of `store` do.
 class result_keeper {
 public:
     virtual ~result_keeper() = default;

@@ -185,7 +185,7 @@ public:
     /// What `create_or_resume` allowed, by the options, that may be wrong.
     std::vector<std::string> warnings() const;
 
-    /// See `studies::results`. Checksums are compared, with those of records.
+    /// See `studies::results`. Checksums are compared with the records.
     void read(std::string_view variable, std::int64_t first, std::int64_t count, void* values) const override;
     /// The values of items [first, first + count) of a variable of this type. Throws `error` if it has another one.
     template <class T>

@@ -44,7 +44,7 @@ public:
     /// Made by `any_study::run`.
     explicit study_result(std::shared_ptr<const studies::results> results) : results_(std::move(results)) {}
 
-    /// All values of a variable as doubles, the instance outermost: those of a chunk that was not computed are NaN. The
+    /// All values of a variable as doubles, the instance outermost. A chunk that was not computed has NaN. The
     /// last value for the grid is that of the last axis, then of the phase or sample. Of an axis, or another
     /// coordinate: its values. Throws `error` for an unknown name, and if there is not enough memory.
     std::vector<double> values(std::string_view variable) const;
@@ -116,7 +116,7 @@ public:
     // -- Integration and results --------------------------------------------------------------------------------------
 
     /// As for `solve`, but that instances whose inputs are not finite are always marked, and not refused, and that
-    /// `progress` is that of the study.
+    /// `progress` is the study's own.
     myriad::options options;
     kept_values keep;  ///< what is kept of every instance
     /// A reduction over all instances.

@@ -56,7 +56,7 @@ public:
     }
 
 private:
-    /// This thread submits chunks, and sums up the results of those that have been downloaded. The second one first
+    /// This thread submits chunks, and sums up the results that have been downloaded. The second one first
     /// checks the inputs.
     void run_chunks() {
         // All before the first result is written: if there is no memory for them, the ensemble is unchanged.
@@ -82,7 +82,7 @@ private:
                              sum_up_results();
                          });
     }
-    /// Whether no further chunk is to be begun. Tells the engines what is to become of those under way.
+    /// Whether no further chunk is to be begun. Tells the engines what is to become of chunks under way.
     bool ask_whether_to_stop() {
         if (!relay_.may_stop()) return false;
         const stop_request asked = progress_relay::ask(&relay_);

@@ -122,7 +122,7 @@ struct device_reduction {
 /// uploads of host memory that is not pinned, return before the work is done; work is done in the order of submission.
 /// Downloaded data are on the host after the next `wait`, not before. Only one thread at a time may use an engine, but
 /// another may call `idle`, `stop` and `affordable` meanwhile. Arguments are the host's, for the whole ensemble;
-/// `first` and `count` select the instances. Errors of the device, including those of earlier work, are thrown as
+/// `first` and `count` select the instances. Errors of the device, also from earlier work, are thrown as
 /// `error`.
 /// It can also set and reduce instances on the device, instead of an upload and a download: the host's arguments then
 /// have arrays of fewer instances, which only say which arrays there are; `first` is the number of the first instance
@@ -150,7 +150,7 @@ public:
     /// The result of a reduction.
     virtual std::vector<std::int64_t> reduce(const any_arguments<R>& host, const device_values& what,
                                              const device_reduction& how) = 0;
-    /// Copies all arrays of the first `count` instances of the chunk to those of the host.
+    /// Copies all arrays of the first `count` instances of the chunk to the host's arrays.
     virtual void fetch_first(const any_arguments<R>& host, std::int64_t count) = 0;
 };
 

@@ -31,7 +31,7 @@ struct run_options {
 
 /// How a run used its lanes.
 struct run_statistics {
-    std::int64_t lane_turns = 0;       ///< trial steps times lanes, those of idle lanes included; 0: not counted
+    std::int64_t lane_turns = 0;       ///< trial steps times lanes, idle lanes included; 0: not counted
     int lanes = 1;                     ///< instances side by side in one pack, or CUDA threads in a block
     int threads = 1;                   ///< that did some work
     const char* instruction_set = "";  ///< of the CPU's kernel

@@ -49,7 +49,7 @@ public:
     void run();
 
 private:
-    /// Whether values may be infinite: not those of states, nor a t_end that nothing else precedes, but all others.
+    /// Whether values may be infinite. All may, but for states, and for a t_end that nothing else precedes.
     enum class limit { finite, end, endless };
 
     void check_positive_scales();

@@ -13,7 +13,7 @@
 
 namespace myriad::host::inline MYRIAD_ABI {
 
-/// Whether instances can be asked: not those of models with `initialise`, before which `events` cannot be called.
+/// Whether instances can be asked. With `initialise` in the model they cannot, as `events` must not be called before.
 template <class Model>
 inline constexpr bool event_resolution_is_known = has_events<Model> && !has_initialise<Model>;
 

@@ -27,7 +27,7 @@ struct instance_functions {
     void (*generate)(const argument_head<R>&, std::uint64_t seed, std::int64_t begin, std::int64_t end) = nullptr;
 };
 
-/// The model's functions for the instances of those arguments.
+/// The model's functions for the instances of these arguments.
 template <class R>
 struct single_instances {
     const instance_functions<R>& call;

@@ -21,7 +21,7 @@
 namespace myriad::host::inline MYRIAD_ABI {
 
 /// One thread submits chunks, in the order of their instances. A second one downloads results: it submits the download
-/// of a chunk before it completes that of the previous one. When all chunks are submitted, the first one helps it.
+/// of a chunk before it completes the one before. When all chunks are submitted, the first one helps it.
 template <class R>
 class chunk_pipeline {
     using engine = cuda::engine<R>;

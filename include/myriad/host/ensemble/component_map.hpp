@@ -79,7 +79,7 @@ public:
     /// These change nothing, as the length stays what it is.
     void resize(Eigen::Index size) const { check(size, size); }
     void resize(Eigen::Index rows, Eigen::Index columns) const { check(rows * columns, columns == 1 ? rows : -1); }
-    /// Exchanges the values with those of another array of the same length; throws `error` for another length.
+    /// Exchanges the values with another array of the same length; throws `error` for another length.
     template <class Other>
     void swap(Other&& other) {
         check(other);

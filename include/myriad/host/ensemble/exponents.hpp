@@ -30,7 +30,7 @@ void initial_tangents(ensemble<with_tangents<Model, vectors>, R>& e) {
 }
 
 /// One row per instance, one column per tangent vector: the Lyapunov exponents over the phases summed, per unit of
-/// time, with the natural logarithm. NaN if there was no phase. For a backward solution they are those of the forward
+/// time, with the natural logarithm. NaN if there was no phase. A backward solution has the exponents of the forward
 /// flow, the smallest first.
 template <class Model, int vectors, class R>
 [[nodiscard]] Eigen::Array<R, Eigen::Dynamic, Eigen::Dynamic> exponents(

@@ -287,7 +287,7 @@ struct option_row {
     option_effect effect;              ///< what it has an effect on
     std::string meaning;               ///< a sentence without a full stop
 };
-/// All options, those of nested structs after the member that has them.
+/// All options. Nested structs' options follow the member that has them.
 std::vector<option_row> option_rows();
 
 }  // namespace myriad::host::inline MYRIAD_ABI

@@ -15,7 +15,7 @@ namespace myriad {
 
 /// How far a study has come.
 struct work_progress {
-    std::int64_t done = 0;     ///< instances that are finished, those of an earlier run included
+    std::int64_t done = 0;     ///< instances that are finished, also by an earlier run
     std::int64_t total = 0;    ///< all instances
     std::int64_t earlier = 0;  ///< instances that were finished before this run
     double seconds = 0;        ///< since this run began

@@ -127,12 +127,12 @@ public:
         results_ = held::on_host;
         report_ = {};
         has_records_ = false;
-        if (wanted < capacity()) records_.clear();  // a GPU writes only those of uploaded ones
+        if (wanted < capacity()) records_.clear();  // a GPU writes the records of uploaded instances only
         work_before_ = counted_work();
     }
 
     /// Integrates `phases` phases (0: as the options say). With records, the number must be that of the options;
-    /// records are those of the last call.
+    /// records come from the last call.
     void integrate(std::int64_t phases = 0) {
         const auto claim = take();
         require(uploaded_,

@@ -63,7 +63,7 @@ MYRIAD_FUNCTION double larger_magnitude(const double& a, const double& b) {
     // with a lower half that turns infinity into NaN
     return __hiloint2double(::max(__double2hiint(a) & 0x7fffffff, __double2hiint(b) & 0x7fffffff), 1);
 }
-/// As an unsigned integer, a NaN's bits are above those of infinity.
+/// As unsigned integers, the bits of a NaN are above the bits of infinity.
 MYRIAD_FUNCTION double larger_scale(const double& a, const double& b) {
     const unsigned upper = ::max(static_cast<unsigned>(__double2hiint(a)), static_cast<unsigned>(__double2hiint(b)));
     return __hiloint2double(static_cast<int>(upper), 0);

@@ -15,7 +15,8 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 template <class Model, class Method, class S>
-struct event_driver {
+class event_driver {
+public:
     using R = real_of<S>;
     using mask = mask_of<S>;
     static constexpr int m = n_event<Model>;
@@ -27,17 +28,16 @@ struct event_driver {
     using detector = event_detector<Model, Method, S>;
     using tracker = side_tracker<Model, Method, S>;
 
-    const kernel_arguments<Model, R>& args;
-    integration_state<Model, Method, S>& s;
-    event_memory<Model, R>* memory;  // of the lanes, outside the loop's own state, which is in registers
-    event_sides<Model, S> e;
-    fired_events<Model, S> fired;  // in this iteration of the loop
+    /// `memory` holds one entry per lane, outside the loop's own state, which is in registers.
+    MYRIAD_FUNCTION event_driver(const kernel_arguments<Model, R>& args, integration_state<Model, Method, S>& s,
+                                 event_memory<Model, R>* memory)
+        : args_(args), s_(s), memory_(memory), e_{}, fired_{} {}
 
     /// For lanes that are still empty.
     MYRIAD_FUNCTION void clear() {
         if constexpr (m > 0) {
-            fired.clear();
-            e.clear();
+            fired_.clear();
+            e_.clear();
         }
     }
 
@@ -70,27 +70,29 @@ struct event_driver {
     MYRIAD_FUNCTION detection detect(const values& g1) { return detector{sides()}.detect(g1); }
     /// Whether the location of an event begins with this trial, rather than goes on.
     MYRIAD_FUNCTION mask begins(const detection& detected) const {
-        return detected.to_locate & !e.flags[e.in_question];
+        return detected.to_locate & !e_.flags[e_.in_question];
     }
+    /// How many turns of the loop a thread has waited for events of its warp's other threads. The loop counts them.
+    MYRIAD_FUNCTION std::int32_t& turns_waited() { return memory_->waited; }
     /// The lanes in which all event functions are defined at both ends of the trial.
     MYRIAD_FUNCTION mask defined(const detection& detected) const {
-        mask lanes = !e.flags[e.undefined];
+        mask lanes = !e_.flags[e_.undefined];
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) lanes = lanes & (detected.g1[j] == detected.g1[j]);
         return lanes;
     }
 
     /// Locates events in accepted trials that end at t1. Lanes that crossed, or stopped short of their target, are set
-    /// up for a redone step and removed from `accepted`. `fired` then holds the events that fired: at the end of the
-    /// trial or, in lanes removed from `accepted`, at its start.
+    /// up for a redone step and removed from `accepted`. Events that fired did so at the end of the trial or, in lanes
+    /// removed from `accepted`, at its start.
     MYRIAD_FUNCTION void locate(const trial_type& trial, const S& t1, const detection& detected, mask& accepted) {
         if constexpr (is_pack<S>) {
-            fired.which.clear();  // a pack's values lie in memory
-            fired.changed = mask(false);
+            fired_.which.clear();  // a pack's values lie in memory
+            fired_.changed = mask(false);
         } else {
-            fired.clear();
+            fired_.clear();
         }
-        const mask candidates = s.running() & detected.to_locate;
+        const mask candidates = s_.running() & detected.to_locate;
         mask follow = accepted & !candidates;
         if (is_pack<S> || MYRIAD_UNLIKELY(any(candidates | detected.crossed.any_of()))) {
             if (MYRIAD_UNLIKELY(any(candidates))) {
@@ -98,11 +100,11 @@ struct event_driver {
                 if constexpr (is_pack<S>) {
                     // Copies, so that only these need an address and the caller's variables stay in registers.
                     mask still_accepted = accepted;
-                    locator{sides()}.locate_lanes(candidates, ends, detected, still_accepted, fired);
+                    locator{sides()}.locate_lanes(candidates, ends, detected, still_accepted, fired_);
                     accepted = still_accepted;
                 } else {
                     if (accepted) {
-                        const trial_outcome outcome = locator{sides()}.locate(0, ends, detected, fired);
+                        const trial_outcome outcome = locator{sides()}.locate(0, ends, detected, fired_);
                         accepted = outcome != trial_outcome::is_redone;
                         follow = outcome == trial_outcome::stands_before_sides;
                     } else {
@@ -110,43 +112,54 @@ struct event_driver {
                     }
                 }
             }
-            detector{sides()}.change_sides(follow, detected, fired.which);
+            detector{sides()}.change_sides(follow, detected, fired_.which);
         }
-        e.left = e.left | masks::all_in(follow);
+        e_.left = e_.left | masks::all_in(follow);
     }
-    /// The lanes in which an event fired.
+    /// The lanes in which an event fired in this turn of the loop.
     MYRIAD_FUNCTION mask fired_lanes() const {
         if constexpr (m > 0) {
-            return fired.which.any_of();
+            return fired_.which.any_of();
         } else {
             return mask(false);
         }
     }
+    /// Whether event j fired in lane i in this turn of the loop.
+    MYRIAD_FUNCTION bool has_fired(int j, int i) const { return fired_.which.get(j, i); }
 
     // Hooks
     /// Counts an action of event j in lane i; returns how many in a row have not moved its function off its surface.
     MYRIAD_FUNCTION std::int32_t count_action(int j, int i) {
         auto& lingered = sides().memory_of(i).lingered[j];
-        lingered = e.left.get(j, i) ? 1 : lingered + 1;
+        lingered = e_.left.get(j, i) ? 1 : lingered + 1;
         return lingered;
     }
     /// A hook has changed inputs of event functions, whose values were `before`.
     MYRIAD_FUNCTION void update_after_hook(const mask& lanes, const values& before) {
-        tracker{sides()}.update_after_hook(lanes, before, fired);
+        fired_.changed = fired_.changed | lanes;
+        tracker{sides()}.update_after_hook(lanes, before, fired_);
     }
+    /// The same of a hook that was called at events.
+    MYRIAD_FUNCTION void update_after_hook(const mask& lanes) { update_after_hook(lanes, fired_.value); }
     /// The actions of the events of lane i are done; `before` is the data before them.
     MYRIAD_FUNCTION void update_after_events(int i, const lane_data<Model, S>& before) {
-        tracker{sides()}.update_after_events(i, fired, before);
+        tracker{sides()}.update_after_events(i, fired_, before);
     }
 
 private:
-    MYRIAD_FUNCTION lane_sides<Model, Method, S> sides() { return {args, s, e, memory}; }
+    MYRIAD_FUNCTION lane_sides<Model, Method, S> sides() { return {args_, s_, e_, memory_}; }
 
     MYRIAD_FUNCTION trial_ends<Model, S> ends_of(const trial_type& trial, const S& t1, const values& g1) const {
         trial_ends<Model, S> ends{t1, trial.y, trial.k[0], {}, g1};
         if constexpr (Method::first_same_as_last) ends.slope_end = trial.slope_end();
         return ends;
     }
+
+    const kernel_arguments<Model, R>& args_;
+    integration_state<Model, Method, S>& s_;
+    event_memory<Model, R>* memory_;
+    event_sides<Model, S> e_;
+    fired_events<Model, S> fired_;
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

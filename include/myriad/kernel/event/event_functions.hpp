@@ -40,8 +40,8 @@ inline constexpr R rounding_weight = [] {
 /// How far rounding may put the event functions at (t, y) from their values, as far as that shows: nothing can be told
 /// from values closer to zero. A few roundings of t and of states of the given sizes, times the derivatives. One
 /// derivative does for all of them, with weights, so that x - y has a rounding error though its two terms cancel.
-/// States too small for normal numbers have that of the smallest. Zero where the functions have no finite derivative,
-/// or are constant but for jumps.
+/// States too small for normal numbers have the rounding error of the smallest. Zero where the functions have no finite
+/// derivative, or are constant but for jumps.
 template <class Model, class R>
 MYRIAD_RARE_FUNCTION vec<R, n_event<Model>> event_roundings(R t, vec<R, n_state<Model>> y, vec<R, n_state<Model>> size,
                                                             inputs<Model, R> p) {

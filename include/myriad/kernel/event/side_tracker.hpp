@@ -67,7 +67,7 @@ struct side_tracker {
     }
 
     /// Updates the sides after a hook changed inputs of event functions, whose values were `before`. A function that
-    /// the hook moved has the side on which it is now or, on the surface, that which the slope at the next step shows.
+    /// the hook moved is on the side where it is now or, on the surface, where the slope at the next step leads.
     /// One at a jump keeps the side beyond it, which its value here does not show, until `update_after_events`.
     MYRIAD_FUNCTION void update_after_hook(const mask& lanes, const values& before, const fired& events) const {
         auto& e = sides.e;

@@ -71,10 +71,9 @@ struct hook_driver {
             for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
             const mask changed = acting & differs(before, s.data);
             if (any(changed)) {
-                events.fired.changed = events.fired.changed | changed;
                 s.slopes.invalidate(changed);
                 check_finite(changed, before.y);
-                events.update_after_hook(changed, events.fired.value);
+                events.update_after_hook(changed);
             }
             for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { events.update_after_events(i, before); });
         } else {
@@ -109,7 +108,7 @@ private:
 
     MYRIAD_FUNCTION void act_on_lane(int i) {
         static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
-            if (!events.fired.which.get(j, i)) return;
+            if (!events.has_fired(j, i)) return;
             const auto detections = static_cast<std::int32_t>(get_lane(s.data.event_count[j], i)) + 1;
             set_lane(s.data.event_count[j], i, detections);
             if constexpr (has_after_event<Model>) {
@@ -173,7 +172,6 @@ private:
     MYRIAD_FUNCTION void follow_up(const mask& changed, const lane_data<Model, S>& before) {
         s.slopes.invalidate(changed);
         if constexpr (has_events<Model>) {
-            events.fired.changed = events.fired.changed | changed;
             const inputs<Model, S>& p = before;
             events.update_after_hook(changed, detail::evaluate_events<Model>(s.now(), before.y, p));
         }

@@ -42,7 +42,7 @@ struct integrator {
     template <class Source>
     MYRIAD_FUNCTION void run(Source& source, const shared_parameters<R>& shared) {
         clear(shared);
-        event_driver_type events{args, s, memory, {}, {}};
+        event_driver_type events(args, s, memory);
         events.clear();
         while (!(any(s.ended) || watchdog_type{args, s}.is_due()) || fill_lanes(source, events)) {
             MYRIAD_RECONVERGE;
@@ -136,7 +136,7 @@ struct integrator {
             constexpr auto interval = stepping_type::stagnation_interval;
             // The watchdog must not see an iteration twice.
             const bool checked = interval > 0 && s.iteration % (interval > 0 ? interval : 1) == 0;
-            return detail::waits_for_warp(events.begins(detected), checked, events.memory->waited);
+            return detail::waits_for_warp(events.begins(detected), checked, events.turns_waited());
         }
     }
 

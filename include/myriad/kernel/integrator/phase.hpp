@@ -61,7 +61,7 @@ struct phase_driver {
         }
     }
 
-    /// Ends the phase and the instance that `advance` left open, together with those of the warp's other threads.
+    /// Ends the phase and the instance that `advance` left open, together with the other threads of the warp.
     MYRIAD_FUNCTION void finish(int i) {
         if (s.instance[i] < 0) return;
         end_phase(i);

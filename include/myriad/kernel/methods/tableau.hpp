@@ -18,7 +18,7 @@ struct explicit_tableau {
     row c{};                                                ///< nodes, as fractions of the step
     std::array<row, static_cast<std::size_t>(stages)> a{};  ///< a[i][j]: weight of stage j in the argument of stage i
     row b{};                                                ///< weights of the solution
-    row e{};  ///< weights of the error estimate: b minus those of the embedded solution
+    row e{};  ///< weights of the error estimate: b minus the weights of the embedded solution
 
     /// Weight of stage j in the argument of stage `of` (1 <= of < stages), in the solution (of == stages) or in the
     /// error estimate (of == stages + 1).

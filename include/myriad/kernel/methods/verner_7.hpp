@@ -45,12 +45,12 @@ struct verner_7 {
     static constexpr int interpolant_degree = 7;
     /// Stages used only by the interpolant. Stage `stages` is the slope at the end of the step; these follow it.
     static constexpr int extra_stages = 5;
-    /// Node of stage i of those used only by the interpolant, as a fraction of the step.
+    /// Node of stage i of the interpolant's own stages, as a fraction of the step.
     static constexpr double extra_node(int i) {
         constexpr double nodes[extra_stages] = {0.29, 0.125, 0.25, 0.53, 0.79};
         return nodes[i];
     }
-    /// Weight of a stage in the argument of stage i of those used only by the interpolant.
+    /// Weight of a stage in the argument of stage i of the interpolant's own stages.
     static constexpr double extra_weight(int i, int stage) {
         constexpr double weights[extra_stages][stages + extra_stages] = {
             {0.0523222769159969, 0, 0, 0.22495861826705715, 0.017443709248776376, -0.007669379876829393,

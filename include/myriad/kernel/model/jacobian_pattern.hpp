@@ -115,7 +115,8 @@ constexpr slope_dependences<Model> trace_slopes() {
 }
 
 /// Whether a right-hand side can be evaluated without any values. One that branches on its state, as a model that is
-/// declared `scalar_only` does, might not even compile with dependences; tangents would need those of derivatives.
+/// declared `scalar_only` does, might not even compile with dependences; tangents would need the dependences of
+/// derivatives.
 template <class Model>
 constexpr bool is_traceable() {
     if constexpr (scalar_only<Model> || n_tangent<Model> != 0 || n_state < Model >> largest_traced_system) {

@@ -17,7 +17,7 @@ enum class over_phase : std::uint8_t {
     minimum,          ///< the smallest value, likewise
     time_of_maximum,  ///< the first of equal ones; the model must also have the quantity's `maximum`
     time_of_minimum,  ///< the same with the quantity's `minimum`
-    integral,         ///< over t: backwards in time, that of a positive quantity is negative
+    integral,         ///< over t: backwards in time, a positive quantity has a negative integral
 };
 
 }  // namespace myriad
@@ -75,7 +75,7 @@ template <class Model, int i>
 inline constexpr unmarked_summary summary_at = {Model::summaries[i].quantity, Model::summaries[i].kind,
                                                 Model::summaries[i].accessory};
 
-/// Whether a type tag is that of a number, or of the model's enumeration of such components.
+/// Whether a type tag stands for a number, or for the model's enumeration of such components.
 template <class Model>
 constexpr bool marks_observed(const char* mark) {
     bool own = mark == &type_mark<int> || mark == &type_mark<std::remove_cv_t<decltype(Model::n_observed)>>;

@@ -38,7 +38,7 @@ MYRIAD_FUNCTION vec<S, n> derivatives(const vec<dual<S>, n>& v) {
     return out;
 }
 
-/// The inputs of Model, taken from those of a model W that has additional accessories.
+/// The inputs of Model, taken from the inputs of a model W that has additional accessories.
 template <class Model, class W, class S>
 MYRIAD_FUNCTION inputs<Model, S> inputs_in(const lane<W, S>& l) {
     inputs<Model, S> p;
@@ -52,8 +52,8 @@ MYRIAD_FUNCTION inputs<Model, S> inputs_in(const lane<W, S>& l) {
     return p;
 }
 
-/// The lane of Model alone, in dual numbers: the derivative of its state is the given direction, that of its time is
-/// dt; everything else is constant.
+/// The lane of Model alone, in dual numbers: its state has the given direction as derivative, its time has dt, and
+/// everything else is constant.
 template <class Model, class W, class S>
 MYRIAD_FUNCTION lane_data<Model, dual<S>> moving_lane(const lane<W, S>& l, const vec<S, n_state<Model>>& direction,
                                                       const S& dt) {

@@ -73,7 +73,7 @@ public:
         }
     }
     /// The slope at the committed state of lane i, for inspection. It is not stored: a pack's functions may round
-    /// differently from those of one lane.
+    /// differently from the code for one lane.
     MYRIAD_FUNCTION vec<R, n> of_lane(int i, const S& t, const data& at, count& evaluations) const {
         if constexpr (keeps_start) {
             if (get_lane(start_known_, i)) return get_lanes<R>(start_, i);

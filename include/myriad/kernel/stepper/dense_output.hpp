@@ -11,7 +11,7 @@ inline constexpr bool has_own_interpolant = requires {
     Method::interpolant_degree;
 };
 
-/// Stages of the interpolant beyond those of the step and the slope at its end.
+/// Stages that the interpolant needs besides the stages of the step and the slope at its end.
 template <class Method>
 inline constexpr int extra_stages = [] {
     if constexpr (requires { Method::extra_stages; }) {

@@ -176,8 +176,8 @@ inline constexpr bool is_unseen_stage = [] {
         if (weight_in<Method>(row, stage) != 0) return false;
     return true;
 }();
-/// Makes a stage's slope NaN if that of an unseen stage before it is not finite. Its argument is NaN already, but a
-/// model may return a finite slope for it, as select(x > 1, NaN, 1) does. Others keep every bit: -0 adds nothing.
+/// Makes a stage's slope NaN if the slope of an unseen stage before it is not finite. Its argument is NaN already, but
+/// a model may return a finite slope for it, as select(x > 1, NaN, 1) does. Others keep every bit: -0 adds nothing.
 template <class Method, int stage, class S, int n>
 MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
     if constexpr (is_unseen_stage<Method, stage - 1>) {

@@ -81,7 +81,7 @@ struct lu_tables {
     int target[n_update + 1]{};       // the entry that each update changes
     int target_row[n_update + 1]{};   // its row if it is a pivot, else -1
     int position[n_given]{};          // of the entries that are given
-    int pivot_row[n_given]{};         // the row of those on the diagonal, else -1
+    int pivot_row[n_given]{};         // the row of a pivot on the diagonal, else -1
 
     template <class Entries>
     constexpr lu_tables(const symbolic_lu<n>& symbolic, const Entries& entries) {

@@ -29,7 +29,7 @@ struct axis_rule {
     const double* table = nullptr;  // where the one who computes can read it
 };
 
-/// Where hooks have the phase: random values of axes, and those of a model's `generate`, which are no hook's.
+/// In place of the phase that hooks have: random values of axes and of a model's `generate`, which are no hooks.
 inline constexpr std::int32_t phase_of_axes = -1, phase_of_generator = -2;
 
 }  // namespace myriad::detail
@@ -37,7 +37,7 @@ inline constexpr std::int32_t phase_of_axes = -1, phase_of_generator = -2;
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// e^x for x within +-745, in the last place or two. Its bits are the same on every target, as those of
-/// `normal_quantile`, which that of the C library and that of CUDA are not. The series is that of exponential.hpp.
+/// `normal_quantile`. The C library's and CUDA's exponentials differ in bits. The series is from exponential.hpp.
 MYRIAD_FUNCTION double exp_everywhere(double x) {
     constexpr double log2_e = 0x1.71547652b82fep+0, whole = 0x1.8p52;  // adding `whole` rounds to an integer
     constexpr double ln_2_head = 0x1.62e42fefa38p-1, ln_2_rest = 0x1.ef35793c7673p-45;
