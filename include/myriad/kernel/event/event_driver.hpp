@@ -50,7 +50,7 @@ public:
     }
     /// Stores the sides of lane i for its next phase.
     MYRIAD_FUNCTION void store(int i) {
-        if (e.flags.get(e.locating, i)) event_location<Model, Method, S>{sides()}.end(i);
+        if (e_.flags.get(e_.locating, i)) event_location<Model, Method, S>{sides()}.end(i);
         tracker{sides()}.store(i);
     }
     /// Makes the next phase of lane i begin with all sides unknown.
@@ -61,7 +61,7 @@ public:
     /// flight between events may be shorter than the resolution of t.
     MYRIAD_FUNCTION mask locating() const {
         if constexpr (m > 0) {
-            return e.flags[e.locating];
+            return e_.flags[e_.locating];
         } else {
             return mask(false);
         }
