@@ -95,7 +95,7 @@ private:
 class unfinished_file {
 public:
     explicit unfinished_file(const std::string& path) : path_(path), temporary_(message(path, ".part-", ::getpid())) {
-        ::unlink(temporary_.c_str());  // that of a process which was killed
+        ::unlink(temporary_.c_str());  // a killed process may have left it
     }
     unfinished_file(const unfinished_file&) = delete;
     unfinished_file& operator=(const unfinished_file&) = delete;
@@ -269,8 +269,7 @@ public:
             return content.coordinates[static_cast<std::size_t>(number)].values(first, values);
         }
         const variable& v = content.variables[static_cast<std::size_t>(number)];
-        const std::size_t item = static_cast<std::size_t>(v.values_per_item()) * size_of(v.type);
-        from.read(v.name, first, static_cast<std::int64_t>(to.size() / item), to.data());
+        from.read(v.name, first, static_cast<std::int64_t>(to.size()) / v.item_bytes(), to.data());
     }
 
 private:
@@ -408,7 +407,7 @@ private:
     // Items of a variable, into the buffer.
     void get(std::size_t number, std::int64_t first, std::int64_t count) {
         const variable& v = content_.variables[number];
-        buffer_.resize(static_cast<std::size_t>(count * v.values_per_item()) * size_of(v.type));
+        buffer_.resize(static_cast<std::size_t>(count * v.item_bytes()));
         (*ask_)({0, static_cast<std::int64_t>(number), first}, buffer_);
     }
 
@@ -418,7 +417,7 @@ private:
         std::vector<std::size_t> inner;
         for (const dimension& d : v.inner) inner.push_back(static_cast<std::size_t>(d.length));
         put_places(v.name, static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count), inner,
-                   static_cast<std::size_t>(v.values_per_item()) * size_of(v.type));
+                   static_cast<std::size_t>(v.item_bytes()));
     }
 
     void write_coordinate(std::size_t number) {

@@ -28,7 +28,7 @@ std::int64_t product(std::int64_t a, std::int64_t b, std::string_view of) {
     return result;
 }
 
-// Names are those of files, of Zarr's nodes and of netCDF's variables at once.
+// A name is a file's, a node's in Zarr and a variable's in netCDF at once.
 void check_name(std::string_view name, std::string_view what) {
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
     bool good = !name.empty() && name.size() <= 200 && letter(name.front()) && !name.starts_with("__");
@@ -106,6 +106,10 @@ std::int64_t variable::values_per_item() const {
     return values;
 }
 
+std::int64_t variable::item_bytes() const {
+    return product(values_per_item(), static_cast<std::int64_t>(studies::size_of(type)), "the size of " + name);
+}
+
 coordinate with_values(std::string name, std::string dimension, std::vector<double> values,
                        std::vector<attribute> attributes) {
     const auto shared = std::make_shared<const std::vector<double>>(std::move(values));
@@ -134,14 +138,14 @@ std::size_t layout::find(std::string_view name) const {
     host::refuse({"there is no variable ", name, " in the results, only ", names.empty() ? "none" : names});
 }
 
+std::int64_t layout::items(const variable& v) const {
+    return v.extent == along::instances ? instances() : v.extent == along::chunks ? chunks() : 1;
+}
+
 std::int64_t layout::bytes() const {
     std::int64_t sum = 0;
     for (const variable& v : variables) {
-        const std::int64_t items = v.extent == along::instances ? instances()
-                                   : v.extent == along::chunks  ? chunks()
-                                                                : 1;
-        const std::int64_t size = product(product(items, v.values_per_item(), "the size of " + v.name),
-                                          static_cast<std::int64_t>(size_of(v.type)), "the size of " + v.name);
+        const std::int64_t size = product(items(v), v.item_bytes(), "the size of " + v.name);
         require(!__builtin_add_overflow(sum, size, &sum), "the size of the results is more than 2^63 bytes");
     }
     return sum;
