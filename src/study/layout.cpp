@@ -16,11 +16,6 @@ namespace myriad::studies::inline MYRIAD_ABI {
 
 namespace {
 
-template <class T>
-void fill_with(T value, void* values, std::size_t count) {
-    std::fill_n(static_cast<T*>(values), count, value);
-}
-
 // The product, or an error that names what is too large.
 std::int64_t product(std::int64_t a, std::int64_t b, std::string_view of) {
     std::int64_t result = 0;
@@ -56,48 +51,23 @@ private:
 }  // namespace
 
 std::size_t size_of(element type) {
-    switch (type) {
-        case element::f64:
-        case element::i64:
-            return 8;
-        case element::f32:
-        case element::i32:
-            return 4;
-        case element::u8:
-            return 1;
-    }
-    return 0;
+    return with_type(type, [](auto value) { return sizeof value; });
 }
 
 std::string_view name_of(element type) {
-    switch (type) {
-        case element::f64:
-            return "float64";
-        case element::f32:
-            return "float32";
-        case element::i64:
-            return "int64";
-        case element::i32:
-            return "int32";
-        case element::u8:
-            return "uint8";
-    }
-    return "unknown";
+    constexpr std::string_view names[] = {"float64", "float32", "int64", "int32",
+                                          "uint8"};  // in the order of `element`
+    return names[static_cast<std::size_t>(type)];
 }
 
 void fill(element type, void* values, std::size_t count) {
-    switch (type) {
-        case element::f64:
-            return fill_with(std::numeric_limits<double>::quiet_NaN(), values, count);
-        case element::f32:
-            return fill_with(std::numeric_limits<float>::quiet_NaN(), values, count);
-        case element::i64:
-            return fill_with(std::numeric_limits<std::int64_t>::min() + 2, values, count);
-        case element::i32:
-            return fill_with(std::numeric_limits<std::int32_t>::min() + 1, values, count);
-        case element::u8:
-            return fill_with(std::uint8_t{255}, values, count);
-    }
+    with_type(type, [=]<class T>(T) {
+        using limits = std::numeric_limits<T>;
+        const T unset = std::is_floating_point_v<T> ? limits::quiet_NaN()
+                        : std::is_unsigned_v<T>     ? limits::max()
+                                                    : static_cast<T>(limits::min() + static_cast<T>(sizeof(T) / 4));
+        std::fill_n(static_cast<T*>(values), count, unset);
+    });
 }
 
 std::int64_t variable::values_per_item() const {
