@@ -422,7 +422,6 @@ NB_MODULE(_core, m) {
             if (host::cpu_has(set)) return std::string(host::name_of(set));
         return std::string("generic");
     });
-    m.def("usual_threads", &usual_threads);
     m.def("status_names", [] {
         std::vector<std::string> names;
         for (int s = 0; s < status_count; ++s) names.emplace_back(name_of(static_cast<status>(s)));
@@ -475,8 +474,6 @@ NB_MODULE(_core, m) {
         .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
         .def("__init__", [](library* self, const nb::bytes& image,
                             int device) { new (self) library(std::string(image.c_str(), image.size()), device); })
-        .def_prop_ro("samples_trajectory", [](const library& l) { return l.facts().call.samples_trajectory; })
-        .def_prop_ro("adaptive", [](const library& l) { return l.facts().call.adaptive(); })
         .def_prop_ro("instruction_set", [](const library& l) {
             return std::string(host::name_of(static_cast<openmp::instruction_set>(l.cpu().instruction_set)));
         });

@@ -21,7 +21,6 @@ void export_netcdf(const studies::results&, const std::string& path, const netcd
 #include <cerrno>
 #include <cstring>
 #include <ctime>
-#include <functional>
 #include <map>
 #include <mutex>
 #include <set>
@@ -49,19 +48,8 @@ constexpr std::int64_t chunk_values = std::int64_t{1} << 17;  // 1 MB of doubles
 constexpr std::int64_t coordinate_part = std::int64_t{1} << 20;
 
 int netcdf_type(element type) {
-    switch (type) {
-        case element::f64:
-            return NC_DOUBLE;
-        case element::f32:
-            return NC_FLOAT;
-        case element::i64:
-            return NC_INT64;
-        case element::i32:
-            return NC_INT;
-        case element::u8:
-            return NC_UBYTE;
-    }
-    return NC_DOUBLE;
+    constexpr int types[] = {NC_DOUBLE, NC_FLOAT, NC_INT64, NC_INT, NC_UBYTE};  // in the order of `element`
+    return types[static_cast<std::size_t>(type)];
 }
 
 // A file that is open for writing, in a process that ends if this fails: HDF5 may end its process by a segmentation
@@ -95,7 +83,7 @@ private:
 class unfinished_file {
 public:
     explicit unfinished_file(const std::string& path) : path_(path), temporary_(message(path, ".part-", ::getpid())) {
-        ::unlink(temporary_.c_str());  // that of a process which was killed
+        ::unlink(temporary_.c_str());  // a killed process may have left it
     }
     unfinished_file(const unfinished_file&) = delete;
     unfinished_file& operator=(const unfinished_file&) = delete;
@@ -181,43 +169,26 @@ std::string time_now() {
     return text;
 }
 
-// Calls f(start, count) for boxes that have the places [first, first + count) of a grid, in their order.
-void for_boxes(const std::vector<std::size_t>& lengths, std::size_t first, std::size_t count,
-               const std::function<void(const std::vector<std::size_t>&, const std::vector<std::size_t>&)>& f) {
-    std::vector<std::size_t> start(lengths.size(), 0);
-    const std::function<void(std::size_t, std::size_t, std::size_t)> divide = [&](std::size_t level, std::size_t begin,
-                                                                                  std::size_t left) {
-        std::size_t inner = 1;
-        for (std::size_t d = level + 1; d < lengths.size(); ++d) inner *= lengths[d];
-        const auto whole = [&](std::size_t at, std::size_t n) {
-            std::vector<std::size_t> box(lengths.size(), 1);
-            if (level < lengths.size()) {
-                start[level] = at;
-                box[level] = n;
-            }
-            for (std::size_t d = level + 1; d < lengths.size(); ++d) {
-                start[d] = 0;
-                box[d] = lengths[d];
-            }
-            f(start, box);
-        };
-        if (left == 0) return;
-        if (level >= lengths.size()) return whole(0, 1);
-        std::size_t at = begin / inner;
-        if (begin % inner != 0) {
-            const std::size_t part = std::min(left, inner - begin % inner);
-            start[level] = at++;
-            divide(level + 1, begin % inner, part);
-            left -= part;
+// Calls f(start, lengths) for boxes that have the places [first, first + count) of a grid, in their order: each is as
+// large as the place where it begins and the rest allow.
+template <class F>
+void for_boxes(const std::vector<std::size_t>& lengths, std::size_t first, std::size_t count, F f) {
+    while (count > 0) {
+        // A box has the dimensions from `whole` on as they are, and a part of the one before.
+        std::size_t whole = lengths.size(), inner = 1;
+        const auto fits = [&](std::size_t size) { return first % size == 0 && count >= size; };
+        while (whole > 0 && fits(inner * lengths[whole - 1])) inner *= lengths[--whole];
+        std::vector<std::size_t> start(lengths.size(), 0), box(lengths);
+        std::size_t place = first / inner, places = 1;
+        if (whole > 0) places = std::min(count / inner, lengths[whole - 1] - place % lengths[whole - 1]);
+        for (std::size_t d = whole; d-- > 0; place /= lengths[d]) {
+            start[d] = place % lengths[d];
+            box[d] = d + 1 == whole ? places : 1;
         }
-        if (left / inner > 0) whole(at, left / inner);
-        at += left / inner;
-        if (left % inner > 0) {
-            start[level] = at;
-            divide(level + 1, 0, left % inner);
-        }
-    };
-    divide(0, first, count);
+        f(start, box);
+        first += places * inner;
+        count -= places * inner;
+    }
 }
 
 // Writes a file, and asks for values as {is_coordinate, number, first item}.
@@ -269,8 +240,7 @@ public:
             return content.coordinates[static_cast<std::size_t>(number)].values(first, values);
         }
         const variable& v = content.variables[static_cast<std::size_t>(number)];
-        const std::size_t item = static_cast<std::size_t>(v.values_per_item()) * size_of(v.type);
-        from.read(v.name, first, static_cast<std::int64_t>(to.size() / item), to.data());
+        from.read(v.name, first, static_cast<std::int64_t>(to.size()) / v.item_bytes(), to.data());
     }
 
 private:
@@ -408,7 +378,7 @@ private:
     // Items of a variable, into the buffer.
     void get(std::size_t number, std::int64_t first, std::int64_t count) {
         const variable& v = content_.variables[number];
-        buffer_.resize(static_cast<std::size_t>(count * v.values_per_item()) * size_of(v.type));
+        buffer_.resize(static_cast<std::size_t>(count * v.item_bytes()));
         (*ask_)({0, static_cast<std::int64_t>(number), first}, buffer_);
     }
 
@@ -418,7 +388,7 @@ private:
         std::vector<std::size_t> inner;
         for (const dimension& d : v.inner) inner.push_back(static_cast<std::size_t>(d.length));
         put_places(v.name, static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count), inner,
-                   static_cast<std::size_t>(v.values_per_item()) * size_of(v.type));
+                   static_cast<std::size_t>(v.item_bytes()));
     }
 
     void write_coordinate(std::size_t number) {

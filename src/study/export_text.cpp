@@ -127,8 +127,7 @@ void write_csv(const results& from, new_file& file) {
         const chunk_range range = range_of(content, chunk);
         const bool done = from.done(chunk);
         for (std::size_t v = 0; v < variables.size() && done; ++v) {
-            values[v].resize(static_cast<std::size_t>(range.count * variables[v]->values_per_item()) *
-                             size_of(variables[v]->type));
+            values[v].resize(static_cast<std::size_t>(range.count * variables[v]->item_bytes()));
             from.read(variables[v]->name, range.first, range.count, values[v].data());
         }
         for (std::int64_t i = 0; i < range.count; ++i) {
@@ -167,25 +166,9 @@ void write_csv(const results& from, new_file& file) {
 std::string npy_header(element of, std::string_view name, const std::vector<dimension>& shape) {
     std::string lengths;
     for (const dimension& d : shape) lengths += message(d.length, ", ");
-    const char* type = "";
-    switch (of) {
-        case element::f64:
-            type = "<f8";
-            break;
-        case element::f32:
-            type = "<f4";
-            break;
-        case element::i64:
-            type = "<i8";
-            break;
-        case element::i32:
-            type = "<i4";
-            break;
-        case element::u8:
-            type = "|u1";
-            break;
-    }
-    std::string header = message("{'descr': '", type, "', 'fortran_order': False, 'shape': (", lengths, "), }");
+    // The name has the kind in front, as "float64"; a byte has no order.
+    std::string header = message("{'descr': '", of == element::u8 ? '|' : '<', name_of(of)[0], size_of(of),
+                                 "', 'fortran_order': False, 'shape': (", lengths, "), }");
     header.append(63 - (10 + header.size()) % 64, ' ');
     header += '\n';
     require(header.size() < 65536, "variable ", name, " has too many dimensions for an NPY file");
@@ -218,7 +201,7 @@ void write_npy(const results& from, std::string_view name, new_file& file) {
     file.write(npy_header(v.type, v.name, shape));
     std::vector<std::byte> values;
     const auto write = [&](std::int64_t first, std::int64_t count) {
-        values.resize(static_cast<std::size_t>(count * v.values_per_item()) * size_of(v.type));
+        values.resize(static_cast<std::size_t>(count * v.item_bytes()));
         from.read(v.name, first, count, values.data());
         file.write(values);
     };

@@ -20,7 +20,7 @@ void handed_out_run::commit(std::int64_t chunk, const computed_chunk& values) {
     for (const auto& [name, bytes] : values.columns) {
         const variable& v = l.variables[l.find(name)];
         const std::int64_t items = v.extent == along::instances ? range.count : 1;
-        const auto size = static_cast<std::size_t>(items * v.values_per_item()) * size_of(v.type);
+        const auto size = static_cast<std::size_t>(items * v.item_bytes());
         require(v.extent != along::nothing && bytes.size() == size, "the values of ", name, " in chunk ", chunk,
                 " take ", bytes.size(), " bytes, not ", size, ": they are of another study");
         columns.push_back({v.name, v.type, bytes});

@@ -16,11 +16,6 @@ namespace myriad::studies::inline MYRIAD_ABI {
 
 namespace {
 
-template <class T>
-void fill_with(T value, void* values, std::size_t count) {
-    std::fill_n(static_cast<T*>(values), count, value);
-}
-
 // The product, or an error that names what is too large.
 std::int64_t product(std::int64_t a, std::int64_t b, std::string_view of) {
     std::int64_t result = 0;
@@ -28,7 +23,7 @@ std::int64_t product(std::int64_t a, std::int64_t b, std::string_view of) {
     return result;
 }
 
-// Names are those of files, of Zarr's nodes and of netCDF's variables at once.
+// A name is a file's, a node's in Zarr and a variable's in netCDF at once.
 void check_name(std::string_view name, std::string_view what) {
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
     bool good = !name.empty() && name.size() <= 200 && letter(name.front()) && !name.starts_with("__");
@@ -56,54 +51,33 @@ private:
 }  // namespace
 
 std::size_t size_of(element type) {
-    switch (type) {
-        case element::f64:
-        case element::i64:
-            return 8;
-        case element::f32:
-        case element::i32:
-            return 4;
-        case element::u8:
-            return 1;
-    }
-    return 0;
+    return with_type(type, [](auto value) { return sizeof value; });
 }
 
 std::string_view name_of(element type) {
-    switch (type) {
-        case element::f64:
-            return "float64";
-        case element::f32:
-            return "float32";
-        case element::i64:
-            return "int64";
-        case element::i32:
-            return "int32";
-        case element::u8:
-            return "uint8";
-    }
-    return "unknown";
+    constexpr std::string_view names[] = {"float64", "float32", "int64", "int32",
+                                          "uint8"};  // in the order of `element`
+    return names[static_cast<std::size_t>(type)];
 }
 
 void fill(element type, void* values, std::size_t count) {
-    switch (type) {
-        case element::f64:
-            return fill_with(std::numeric_limits<double>::quiet_NaN(), values, count);
-        case element::f32:
-            return fill_with(std::numeric_limits<float>::quiet_NaN(), values, count);
-        case element::i64:
-            return fill_with(std::numeric_limits<std::int64_t>::min() + 2, values, count);
-        case element::i32:
-            return fill_with(std::numeric_limits<std::int32_t>::min() + 1, values, count);
-        case element::u8:
-            return fill_with(std::uint8_t{255}, values, count);
-    }
+    with_type(type, [=]<class T>(T) {
+        using limits = std::numeric_limits<T>;
+        const T unset = std::is_floating_point_v<T> ? limits::quiet_NaN()
+                        : std::is_unsigned_v<T>     ? limits::max()
+                                                    : static_cast<T>(limits::min() + static_cast<T>(sizeof(T) / 4));
+        std::fill_n(static_cast<T*>(values), count, unset);
+    });
 }
 
 std::int64_t variable::values_per_item() const {
     std::int64_t values = 1;
     for (const dimension& d : inner) values = product(values, d.length, "the size of " + name);
     return values;
+}
+
+std::int64_t variable::item_bytes() const {
+    return product(values_per_item(), static_cast<std::int64_t>(studies::size_of(type)), "the size of " + name);
 }
 
 coordinate with_values(std::string name, std::string dimension, std::vector<double> values,
@@ -134,14 +108,14 @@ std::size_t layout::find(std::string_view name) const {
     host::refuse({"there is no variable ", name, " in the results, only ", names.empty() ? "none" : names});
 }
 
+std::int64_t layout::items(const variable& v) const {
+    return v.extent == along::instances ? instances() : v.extent == along::chunks ? chunks() : 1;
+}
+
 std::int64_t layout::bytes() const {
     std::int64_t sum = 0;
     for (const variable& v : variables) {
-        const std::int64_t items = v.extent == along::instances ? instances()
-                                   : v.extent == along::chunks  ? chunks()
-                                                                : 1;
-        const std::int64_t size = product(product(items, v.values_per_item(), "the size of " + v.name),
-                                          static_cast<std::int64_t>(size_of(v.type)), "the size of " + v.name);
+        const std::int64_t size = product(items(v), v.item_bytes(), "the size of " + v.name);
         require(!__builtin_add_overflow(sum, size, &sum), "the size of the results is more than 2^63 bytes");
     }
     return sum;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Results in memory, and those of a store behind the same interface.
+// Results in memory, and a store's behind the same interface.
 #include "myriad/study/result_keeper.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ public:
         need.check(message("a study of ", content_.instances(), " instances"),
                    "give it a folder for its results, keep less, or reduce it");
         for (const variable& v : content_.variables) {
-            auto& bytes = values_.emplace_back(static_cast<std::size_t>(items(v)) * item_bytes(v));
+            auto& bytes = values_.emplace_back(static_cast<std::size_t>(content_.items(v) * v.item_bytes()));
             fill(v.type, bytes.data(), bytes.size() / size_of(v.type));
         }
         states_.resize(static_cast<std::size_t>(content_.chunks()));
@@ -43,10 +43,10 @@ public:
     void read(std::string_view name, std::int64_t first, std::int64_t count, void* to) const override {
         const std::size_t number = content_.find(name);
         const variable& v = content_.variables[number];
-        require(first >= 0 && count >= 0 && first <= items(v) && count <= items(v) - first, count, " items of ", name,
-                " from item ", first, " on are asked for: there are ", items(v));
+        require(first >= 0 && count >= 0 && first <= content_.items(v) && count <= content_.items(v) - first, count,
+                " items of ", name, " from item ", first, " on are asked for: there are ", content_.items(v));
         const std::lock_guard lock(mutex_);
-        const std::size_t size = item_bytes(v);
+        const auto size = static_cast<std::size_t>(v.item_bytes());
         const std::byte* const from = values_[number].data() + static_cast<std::size_t>(first) * size;
         std::copy_n(from, static_cast<std::size_t>(count) * size, static_cast<std::byte*>(to));
     }
@@ -72,7 +72,7 @@ public:
     /// Without the lock, since nobody reads a chunk that is not done, nor writes one that is.
     void put(const column& values, std::int64_t first) {
         const std::size_t number = content_.find(values.variable);
-        std::memcpy(&values_[number][static_cast<std::size_t>(first) * item_bytes(content_.variables[number])],
+        std::memcpy(&values_[number][static_cast<std::size_t>(first * content_.variables[number].item_bytes())],
                     values.bytes.data(), values.bytes.size());
     }
     void set_written(std::string_view variable) {
@@ -90,13 +90,6 @@ public:
 
 private:
     enum class state : std::uint8_t { open, claimed, done };
-
-    std::int64_t items(const variable& v) const {
-        return v.extent == along::instances ? content_.instances() : v.extent == along::chunks ? content_.chunks() : 1;
-    }
-    static std::size_t item_bytes(const variable& v) {
-        return static_cast<std::size_t>(v.values_per_item()) * size_of(v.type);
-    }
 
     layout content_;
     std::vector<std::vector<std::byte>> values_;

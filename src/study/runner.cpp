@@ -294,7 +294,8 @@ private:
                 // For no more than this part: a slow device may give the rest back.
                 for (std::size_t q = 0; q < wanted.size(); ++q)
                     if (wanted[q])
-                        made.values[q].resize(static_cast<std::size_t>(at + count) * bytes_of(plan_.quantities[q]));
+                        made.values[q].resize(
+                            static_cast<std::size_t>((at + count) * plan_.quantities[q].as.item_bytes()));
                 as_device(d, solver, [&] { solver.prepare(range.first + at, count); });
                 const auto progress = [&](std::int64_t done) {
                     mine.done = at + done;
@@ -324,7 +325,7 @@ private:
         for (std::size_t q = 0; q < wanted.size(); ++q)
             if (wanted[q])
                 solver.copy(plan_.quantities[q],
-                            &made.values[q][static_cast<std::size_t>(at) * bytes_of(plan_.quantities[q])]);
+                            &made.values[q][static_cast<std::size_t>(at * plan_.quantities[q].as.item_bytes())]);
         std::vector<std::vector<double>> parts(plan_.reductions.size());
         for (std::size_t r = 0; r < parts.size(); ++r) {
             const auto part = plan_.reductions[r].start();
@@ -374,9 +375,6 @@ private:
     static void add(solved& sum, const solved& more) {
         for (std::size_t s = 0; s < sum.by_status.size(); ++s) sum.by_status[s] += more.by_status[s];
         add_new(sum.notes, more.notes);
-    }
-    static std::size_t bytes_of(const quantity& q) {
-        return static_cast<std::size_t>(q.as.values_per_item()) * size_of(q.as.type);
     }
     void halve(std::int64_t& piece, std::int64_t count, chunk_solver& solver, const std::string& why) {
         solver.clear();

@@ -286,7 +286,7 @@ struct store::implementation : store_files {
         return std::nullopt;
     }
 
-    // Compares it with that of results, by the option.
+    // Compares it with the arithmetic of the results, by the option.
     void compare_arithmetic(const arithmetic& here) {
         if (here.instruction_set.empty() || !begun_with || begun_with->same_as(here)) return;
         const std::string differs = message("the study in ", folder, " was begun with ", begun_with->text(), " on ",
@@ -875,9 +875,7 @@ void store::read(std::string_view name, std::int64_t first, std::int64_t count, 
 std::size_t store::size_for(std::string_view name, element type, std::int64_t first, std::int64_t count) const {
     const variable& v = self_->content.variables[self_->content.find(name)];
     require(v.type == type, "variable ", name, " has values of type ", name_of(v.type), ", and not ", name_of(type));
-    const std::int64_t items = v.extent == along::nothing  ? 1
-                               : v.extent == along::chunks ? self_->content.chunks()
-                                                           : self_->content.instances();
+    const std::int64_t items = self_->content.items(v);
     require(first >= 0 && count >= 0 && first <= items - count, "variable ", name, " has ", items,
             " items, and not those from ", first, " to ", first + count);
     return bytes_of(count * v.values_per_item());

@@ -12,6 +12,7 @@
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/study/chunk_solver.hpp"
 #include "myriad/study/kinds.hpp"
+#include "myriad/study/metadata.hpp"
 #include "myriad/study/result_keeper.hpp"
 #include "myriad/study/runner.hpp"
 #include "myriad/study/stop_signals.hpp"
@@ -21,13 +22,6 @@ namespace myriad {
 namespace {
 
 using studies::element;
-
-/// Items of a variable.
-std::int64_t items_of(const studies::layout& content, const studies::variable& v) {
-    return v.extent == studies::along::instances ? content.instances()
-           : v.extent == studies::along::chunks  ? content.chunks()
-                                                 : 1;
-}
 
 /// Whether all devices set and reduce instances themselves.
 bool on_devices(const studies::any_model& model, const studies::study_plan& plan, const std::vector<device>& devices) {
@@ -78,13 +72,6 @@ void check_memory(double bytes_per_instance, const studies::layout& content, con
 
 }  // namespace
 
-std::int64_t study_result::failed() const {
-    std::int64_t sum = 0;
-    for (int s = 0; s < status_count; ++s)
-        if (is_failure(static_cast<status>(s))) sum += by_status[static_cast<std::size_t>(s)];
-    return sum;
-}
-
 std::ostream& operator<<(std::ostream& stream, const study_result& r) {
     const std::int64_t all = r.content().instances();
     std::string text = r.complete && r.instances == 0 ? message(all, " instances, all done before")
@@ -108,24 +95,17 @@ std::ostream& operator<<(std::ostream& stream, const study_result& r) {
 std::size_t study_result::size_of(std::string_view name, element type, std::int64_t first, std::int64_t count) const {
     const studies::variable& v = content().variables[content().find(name)];
     require(v.type == type, name, " has values of type ", studies::name_of(v.type), ", not ", studies::name_of(type));
-    const std::int64_t items = items_of(content(), v);
+    const std::int64_t items = content().items(v);
     require(first >= 0 && count >= 0 && first <= items && count <= items - first, count, " items of ", name,
             " from item ", first, " on are asked for: there are ", items);
     host::memory_need need;
-    need.add("values", static_cast<double>(count) * static_cast<double>(v.values_per_item()) *
-                           static_cast<double>(studies::size_of(type)));
+    need.add("values", static_cast<double>(count) * static_cast<double>(v.item_bytes()));
     need.check(message("reading ", count, " items of ", name), "read fewer at a time");
     return static_cast<std::size_t>(count * v.values_per_item());
 }
 
 std::vector<double> study_result::values_of_coordinate(const studies::coordinate& c) const {
-    std::int64_t length = 1;
-    const auto look_at = [&](const std::vector<studies::dimension>& all) {
-        for (const studies::dimension& d : all)
-            if (d.name == c.dimension) length = d.length;
-    };
-    look_at(content().axes);
-    for (const studies::variable& v : content().variables) look_at(v.inner);
+    const std::int64_t length = studies::shape_of(content(), c).items();
     host::memory_need need;
     need.add("values", static_cast<double>(length) * sizeof(double));
     need.check(message("reading all of ", c.name), "compute them by the function that made the axis");
@@ -138,7 +118,7 @@ std::vector<double> study_result::values(std::string_view name) const {
     for (const studies::coordinate& c : content().coordinates)
         if (c.name == name) return values_of_coordinate(c);
     const studies::variable& v = content().variables[content().find(name)];
-    const std::int64_t items = items_of(content(), v), inner = v.values_per_item();
+    const std::int64_t items = content().items(v), inner = v.values_per_item();
     host::memory_need need;
     need.add("values", static_cast<double>(items) * static_cast<double>(inner) * sizeof(double));
     need.check(message("reading all of ", name), "read parts of it by values_of");

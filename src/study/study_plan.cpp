@@ -24,8 +24,7 @@ std::string partial_name(const ensemble_reduction& r) { return r.definition().na
 
 std::int64_t study_plan::bytes_per_instance() const {
     std::int64_t bytes = 0;
-    for (const quantity& q : quantities)
-        bytes += q.as.values_per_item() * static_cast<std::int64_t>(size_of(q.as.type));
+    for (const quantity& q : quantities) bytes += q.as.item_bytes();
     return bytes;
 }
 
@@ -47,8 +46,7 @@ std::int64_t study_plan::bytes_needed_on_host() const {
     const std::vector<bool> needed = needed_on_host();
     std::int64_t bytes = 0;
     for (std::size_t q = 0; q < needed.size(); ++q)
-        if (needed[q])
-            bytes += quantities[q].as.values_per_item() * static_cast<std::int64_t>(size_of(quantities[q].as.type));
+        if (needed[q]) bytes += quantities[q].as.item_bytes();
     return bytes;
 }
 

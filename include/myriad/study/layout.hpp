@@ -103,6 +103,8 @@ struct variable {
 
     /// The number of values of one item.
     std::int64_t values_per_item() const;
+    /// The bytes of one item.
+    std::int64_t item_bytes() const;
 };
 
 /// Values along one dimension (an axis of the grid or an inner dimension of variables), or a single number.
@@ -136,6 +138,8 @@ struct layout {
     std::int64_t instances() const;
     /// The number of chunks.
     std::int64_t chunks() const;
+    /// The number of items of a variable.
+    std::int64_t items(const variable& v) const;
     /// The variable's place in `variables`. Throws `error` that lists the names if there is none.
     std::size_t find(std::string_view variable) const;
     /// The bytes of all variables together, as a store has them without file headers.

@@ -20,6 +20,7 @@
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/progress.hpp"
+#include "myriad/host/report/status_names.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/study/axes.hpp"
@@ -71,7 +72,7 @@ public:
     /// Number of instances of this run with that status.
     std::int64_t count(status s) const { return by_status[static_cast<std::size_t>(s)]; }
     /// Instances of this run with a failure status.
-    std::int64_t failed() const;
+    std::int64_t failed() const { return host::failed_in(by_status); }
 
 private:
     std::size_t size_of(std::string_view variable, studies::element type, std::int64_t first, std::int64_t count) const;

@@ -3,14 +3,42 @@
 #include "myriad/host/ensemble/component_array.hpp"
 
 #include <algorithm>
+#include <new>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 #include "myriad/host/core/error.hpp"
-#include "myriad/host/memory/huge_pages.hpp"
 #include "myriad/host/memory/memory_need.hpp"
 #include "myriad/host/memory/pinned.hpp"
 #include "myriad/host/threads/parallel.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
+
+namespace {
+
+/// Large arrays lie on their own pages, since memory is pinned by page, and on huge pages where they are large enough,
+/// for fewer page faults and TLB misses.
+constexpr std::size_t page_size(std::size_t bytes) {
+    constexpr std::size_t page = 4096, huge = std::size_t{2} << 20;
+    return bytes >= 2 * huge ? huge : page;
+}
+
+/// Null if there is too little memory.
+void* new_pages(std::size_t bytes) {
+    const std::size_t page = page_size(bytes);
+    void* const memory = ::operator new (bytes, std::align_val_t{page}, std::nothrow);
+#if defined(MADV_HUGEPAGE)
+    // A hint, which the system may ignore.
+    if (memory != nullptr && page > page_size(0)) madvise(memory, bytes / page * page, MADV_HUGEPAGE);
+#endif
+    return memory;
+}
+/// `bytes` must be as in `new_pages`.
+void delete_pages(void* memory, std::size_t bytes) { ::operator delete (memory, std::align_val_t{page_size(bytes)}); }
+
+}  // namespace
 
 template <class T>
 component_array<T>::component_array(int components, std::int64_t size, T value)

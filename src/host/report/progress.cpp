@@ -44,13 +44,6 @@ bool is_terminal() {
 
 }  // namespace
 
-std::int64_t work_progress::failed() const {
-    std::int64_t sum = 0;
-    for (int s = 0; s < status_count; ++s)
-        if (is_failure(static_cast<status>(s))) sum += by_status[static_cast<std::size_t>(s)];
-    return sum;
-}
-
 std::ostream& operator<<(std::ostream& stream, const work_progress& p) {
     const auto percent =
         p.total > 0 ? static_cast<std::int64_t>(100.0 * static_cast<double>(p.done) / static_cast<double>(p.total))

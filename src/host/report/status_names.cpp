@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Names of statuses.
+// Statuses by name and in numbers.
 #include "myriad/host/report/status_names.hpp"
 
 #include <iterator>
+#include <numeric>
 
 namespace myriad {
 
@@ -15,3 +16,11 @@ const char* name_of(status s) {
 }
 
 }  // namespace myriad
+
+namespace myriad::host::inline MYRIAD_ABI {
+
+std::int64_t failed_in(const std::array<std::int64_t, status_count>& by_status) {
+    return std::accumulate(by_status.begin() + static_cast<int>(status::max_steps), by_status.end(), std::int64_t{0});
+}
+
+}  // namespace myriad::host::inline MYRIAD_ABI

@@ -5,12 +5,38 @@
 
 #include <memory>
 
-#include "myriad/cuda/compiled_kernels.cuh"
+#include "myriad/cuda/cost_order_kernels.cuh"
 #include "myriad/cuda/devices.cuh"
+#include "myriad/cuda/generate_kernel.cuh"
+#include "myriad/cuda/kernel.cuh"
+#include "myriad/cuda/launch.cuh"
 #include "myriad/cuda/study_engine.cuh"
+#include "myriad/cuda/study_kernels.cuh"
 #include "myriad/host/backend/backend.hpp"
 
 namespace myriad::cuda {
+
+/// The kernels that nvcc compiled into the program, as launches see them.
+template <class Model, class Method, class R>
+model_kernels compiled_kernels() {
+    using place = shared_placement;
+    constexpr auto here = [](auto* kernel) { return reinterpret_cast<const void*>(kernel); };
+    constexpr kernel_traits traits = traits_of<Model, Method, R>;
+    model_kernels all{traits, nullptr, nullptr, {}, {}};
+    if constexpr (is_compiled(place::constant_bank, traits.shared_bytes)) {
+        all.integrate = here(&integrate_ensemble<Model, Method, R, place::constant_bank>);
+    } else {
+        all.integrate = here(&integrate_ensemble<Model, Method, R, place::cache>);
+        all.integrate_staged = here(&integrate_ensemble<Model, Method, R, place::shared_memory>);
+    }
+    all.sort = {here(&count_all_costs), here(&sum_costs), here(&place_by_cost)};
+    all.study = [here]() -> study_kernels {
+        const void* generate = nullptr;
+        if constexpr (generates<Model, R>) generate = here(&generate_instances<Model, R>);
+        return {here(&fill_components<>), here(&gather_values<>), here(&reduce_values<>), generate};
+    };
+    return all;
+}
 
 template <class Model, class Method, class R, class Counts>
 std::unique_ptr<engine<R>> make_engine(const engine_options& options) {

@@ -9,6 +9,7 @@
 #include <iosfwd>
 #include <memory>
 
+#include "myriad/host/report/status_names.hpp"
 #include "myriad/kernel/core/status.hpp"
 
 namespace myriad {
@@ -27,7 +28,7 @@ struct work_progress {
     /// The time that the rest takes at that rate; infinity if it is zero.
     double seconds_left() const { return static_cast<double>(total - done) / rate(); }
     /// Instances with a failure status.
-    std::int64_t failed() const;
+    std::int64_t failed() const { return host::failed_in(by_status); }
 };
 
 /// Prints "37 %, 17 152 of 46 080 instances, 1.2e+03/s, 24 s left", and failures by their status.

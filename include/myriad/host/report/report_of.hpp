@@ -60,12 +60,7 @@ struct report_of {
     /// Number of instances with that status.
     std::int64_t count(status s) const { return by_status[static_cast<std::size_t>(s)]; }
     /// Instances with a failure status.
-    std::int64_t failed() const {
-        std::int64_t sum = 0;
-        for (int s = 0; s < status_count; ++s)
-            if (is_failure(static_cast<status>(s))) sum += by_status[static_cast<std::size_t>(s)];
-        return sum;
-    }
+    std::int64_t failed() const { return host::failed_in(by_status); }
     /// Fraction of lane iterations in which the lane was idle, from 0 to 1; zero with `counting::off`. A fixed step
     /// that ends an instance because its result is not finite counts as idle.
     double idle_share() const {

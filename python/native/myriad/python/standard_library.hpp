@@ -466,45 +466,15 @@ constexpr To bit_cast(const From& from) noexcept {
     template <class A, class B>                                     \
     requires is_arithmetic_v<A> && is_arithmetic_v<B>               \
     inline double name(A x, B y) { return ::name(static_cast<double>(x), static_cast<double>(y)); }
-MYRIAD_FUNCTION_OF_ONE(acos)
-MYRIAD_FUNCTION_OF_ONE(acosh)
-MYRIAD_FUNCTION_OF_ONE(asin)
-MYRIAD_FUNCTION_OF_ONE(asinh)
-MYRIAD_FUNCTION_OF_ONE(atan)
-MYRIAD_FUNCTION_OF_ONE(atanh)
-MYRIAD_FUNCTION_OF_ONE(cbrt)
-MYRIAD_FUNCTION_OF_ONE(ceil)
-MYRIAD_FUNCTION_OF_ONE(cos)
-MYRIAD_FUNCTION_OF_ONE(cosh)
-MYRIAD_FUNCTION_OF_ONE(erf)
-MYRIAD_FUNCTION_OF_ONE(erfc)
-MYRIAD_FUNCTION_OF_ONE(exp)
-MYRIAD_FUNCTION_OF_ONE(exp2)
-MYRIAD_FUNCTION_OF_ONE(expm1)
-MYRIAD_FUNCTION_OF_ONE(fabs)
-MYRIAD_FUNCTION_OF_ONE(floor)
-MYRIAD_FUNCTION_OF_ONE(lgamma)
-MYRIAD_FUNCTION_OF_ONE(log)
-MYRIAD_FUNCTION_OF_ONE(log10)
-MYRIAD_FUNCTION_OF_ONE(log1p)
-MYRIAD_FUNCTION_OF_ONE(log2)
-MYRIAD_FUNCTION_OF_ONE(rint)
-MYRIAD_FUNCTION_OF_ONE(round)
-MYRIAD_FUNCTION_OF_ONE(sin)
-MYRIAD_FUNCTION_OF_ONE(sinh)
-MYRIAD_FUNCTION_OF_ONE(sqrt)
-MYRIAD_FUNCTION_OF_ONE(tan)
-MYRIAD_FUNCTION_OF_ONE(tanh)
-MYRIAD_FUNCTION_OF_ONE(tgamma)
-MYRIAD_FUNCTION_OF_ONE(trunc)
-MYRIAD_FUNCTION_OF_TWO(atan2)
-MYRIAD_FUNCTION_OF_TWO(copysign)
-MYRIAD_FUNCTION_OF_TWO(fdim)
-MYRIAD_FUNCTION_OF_TWO(fmax)
-MYRIAD_FUNCTION_OF_TWO(fmin)
-MYRIAD_FUNCTION_OF_TWO(fmod)
-MYRIAD_FUNCTION_OF_TWO(hypot)
-MYRIAD_FUNCTION_OF_TWO(pow)
+#define MYRIAD_FUNCTIONS_OF_ONE(of)                                                                              \
+    of(acos) of(acosh) of(asin) of(asinh) of(atan) of(atanh) of(cbrt) of(ceil) of(cos) of(cosh) of(erf) of(erfc) \
+        of(exp) of(exp2) of(expm1) of(fabs) of(floor) of(lgamma) of(log) of(log10) of(log1p) of(log2) of(rint)   \
+            of(round) of(sin) of(sinh) of(sqrt) of(tan) of(tanh) of(tgamma) of(trunc)
+#define MYRIAD_FUNCTIONS_OF_TWO(of) of(atan2) of(copysign) of(fdim) of(fmax) of(fmin) of(fmod) of(hypot) of(pow)
+MYRIAD_FUNCTIONS_OF_ONE(MYRIAD_FUNCTION_OF_ONE)
+MYRIAD_FUNCTIONS_OF_TWO(MYRIAD_FUNCTION_OF_TWO)
+#undef MYRIAD_FUNCTIONS_OF_ONE
+#undef MYRIAD_FUNCTIONS_OF_TWO
 #undef MYRIAD_FUNCTION_OF_ONE
 #undef MYRIAD_FUNCTION_OF_TWO
 inline double abs(double x) { return ::fabs(x); }
