@@ -69,9 +69,8 @@ bool resident<R>::fits(const ensemble<R>& instances) {
 template <class R>
 void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
     if (instances.on_device.empty()) return;
-    require(!mark_invalid,
-            "arrays on a GPU cannot be marked where they are not finite: copy them to the host, or give "
-            "invalid=\"refuse\"");
+    require(!mark_invalid, "arrays on a GPU cannot be marked where they are not finite", host::cure,
+            "copy them to the host, or give invalid=\"refuse\"");
     constexpr unsigned long long none = std::numeric_limits<unsigned long long>::max();
     const device_program::kernels& all = program_.on(number());
     const std::int64_t size = instances.data.size;

@@ -54,7 +54,7 @@ struct report_of {
     cuda::kernel_facts kernel;         ///< on a GPU: the kernel's registers, block size and shared parameters
     double kernel_seconds = 0;         ///< on a GPU: time of the kernels alone
     matrix_facts matrix;               ///< of a stiff method: entries of the Jacobian and of its factors
-    std::vector<std::string> notes;    ///< tolerances raised; from `solve` also that the equations are stiff, or
+    std::vector<statement> notes;      ///< tolerances raised; from `solve` also that the equations are stiff, or
                                        ///< phases too long for the smallest Lyapunov exponent
 
     /// Number of instances with that status.
@@ -144,7 +144,7 @@ struct stiffness {
 /// an explicit method.
 inline constexpr double worthwhile_stretch = 20;
 /// Adds a note if half of them or more are.
-void add_note(std::vector<std::string>& notes, const stiffness& found);
+void add_note(std::vector<statement>& notes, const stiffness& found);
 /// Adds a note if instances that have ended were given new inputs, which `invalid_instances::mark` allows.
 template <class R>
 void note_ended(report_of<R>& r, const ensemble_data<R>& e, std::int64_t count);
