@@ -166,13 +166,10 @@ void resident<R>::integrate(ensemble<R>& instances, const options& o, host::data
         all(data.t_end, data.t_end.components());
         host::summarise(data, result, data.size);
     }
-    host::note_failures(result, data, o, data.size);
     host::set_work(result, {}, work());
     result.kernel = engine_->facts();
     result.kernel_seconds = engine_->kernel_seconds();
-    result.seconds = std::chrono::duration<double>(clock::now() - begin).count();
-    result.device = device::cuda(number()).name();
-    if (failure) std::rethrow_exception(failure);
+    host::end_call(result, data, o, device::cuda(number()).name(), begin, failure);
 }
 
 template <class R>

@@ -179,7 +179,6 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
         }
     } catch (const interruption&) {
         result->interrupted = true;
-        result->device = names_of(on);
     }
     result->first_state.resize(std::min(result->first_state.size(), used(instances.shape->names.states)));
     result->first_parameter.resize(std::min(result->first_parameter.size(), used(instances.shape->names.parameters)));

@@ -143,9 +143,9 @@ void axes::zip(const std::vector<std::pair<std::string, axis_values>>& paired) {
         require(!all.random(), host::named_component(c.full_name()), " is random, and so cannot be paired", host::cure,
                 "give it by itself");
         const axis_values& first = paired.front().second;
-        require(all.size() == first.size(),
-                "paired axes have different lengths: ", host::named_component(c.full_name()), " has ", all.size(),
-                " values, ", made.empty() ? std::string() : made[0].what.full_name(), " has ", first.size());
+        const component& before = made.empty() ? c : made[0].what;  // c is the subject
+        require(all.size() == first.size(), "paired axes have different lengths: ", before.full_name(), " has ",
+                first.size(), " values, ", host::named_component(c.full_name()), " has ", all.size());
         for (const entry& e : made)
             require(!(e.what == c), host::named_component(c.full_name()), " is given twice", host::cure,
                     "give it one axis");

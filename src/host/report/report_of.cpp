@@ -248,6 +248,15 @@ void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o,
 }
 
 template <class R>
+void end_call(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::string device,
+              std::chrono::steady_clock::time_point begin, const std::exception_ptr& failure) {
+    note_failures(r, e, o, e.size);
+    r.device = std::move(device);
+    r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (failure) std::rethrow_exception(failure);
+}
+
+template <class R>
 void note_raised_tolerances(report_of<R>& r, const options& o) {
     for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
         if (static_cast<R>(o.relative_tolerance[c]) >= least_relative_tolerance<R>) continue;
@@ -273,12 +282,16 @@ template void add_summary(const ensemble_data<double>&, report_of<double>&, std:
 template void summarise(const ensemble_data<double>&, report_of<double>&, std::int64_t);
 template void note_ended(report_of<double>&, const ensemble_data<double>&, std::int64_t);
 template void note_failures(report_of<double>&, const ensemble_data<double>&, const options&, std::int64_t);
+template void end_call(report_of<double>&, const ensemble_data<double>&, const options&, std::string,
+                       std::chrono::steady_clock::time_point, const std::exception_ptr&);
 template void note_raised_tolerances(report_of<double>&, const options&);
 template work_count counted_work(const ensemble_data<float>&, std::int64_t, std::int64_t);
 template void add_summary(const ensemble_data<float>&, report_of<float>&, std::int64_t, std::int64_t);
 template void summarise(const ensemble_data<float>&, report_of<float>&, std::int64_t);
 template void note_ended(report_of<float>&, const ensemble_data<float>&, std::int64_t);
 template void note_failures(report_of<float>&, const ensemble_data<float>&, const options&, std::int64_t);
+template void end_call(report_of<float>&, const ensemble_data<float>&, const options&, std::string,
+                       std::chrono::steady_clock::time_point, const std::exception_ptr&);
 template void note_raised_tolerances(report_of<float>&, const options&);
 
 }  // namespace host::inline MYRIAD_ABI

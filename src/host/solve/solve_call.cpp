@@ -206,12 +206,9 @@ void solve_call<R>::integrate(report_of<R>& result) {
         solve_in_chunks(o, model_.on_gpu, arguments(), instances, check_, relay, result);
         if (relay.failure) before.leave_those_begun(instances);
     }
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     note_ended(result, instances, instances.size);
-    note_failures(result, instances, o, instances.size);
     instances.remember_ended();
-    if (relay.failure) std::rethrow_exception(relay.failure);
-    result.device = where.name();
+    end_call(result, instances, o, where.name(), begin, relay.failure);
 }
 
 template <class R>

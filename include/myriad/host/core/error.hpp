@@ -52,10 +52,8 @@ struct statement {
 
     /// Nothing.
     statement() = default;
-    /// These parts.
-    explicit statement(std::vector<statement_part> all) : parts(std::move(all)) {}
     /// A text without further parts.
-    statement(std::string text) { parts.push_back({.words = std::move(text), .key = {}}); }
+    explicit statement(std::string text) { parts.push_back({.words = std::move(text), .key = {}}); }
 
     /// The option, the component or the event that it names first; null if there is none.
     const statement_part* subject() const;
@@ -71,6 +69,7 @@ struct statement {
         for (const statement_part& p : parts) all += words_for(p);
         return all;
     }
+    /// The same.
     operator std::string() const { return text(); }
     /// Whether all parts are equal.
     bool operator==(const statement&) const = default;

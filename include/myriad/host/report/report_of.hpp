@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
+#include <exception>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -152,6 +154,11 @@ void note_ended(report_of<R>& r, const ensemble_data<R>& e, std::int64_t count);
 /// of time.
 template <class R>
 void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::int64_t count);
+/// What every call ends with: notes on instances that ended because of a limit, device and time; throws what a progress
+/// function has thrown.
+template <class R>
+void end_call(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::string device,
+              std::chrono::steady_clock::time_point begin, const std::exception_ptr& failure);
 /// Adds a note if a relative tolerance was below what the precision can reach.
 template <class R>
 void note_raised_tolerances(report_of<R>& r, const options& o);
