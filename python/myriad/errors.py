@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import difflib
 import os
-import re
 import sys
 import types
 from collections.abc import Collection, Iterable
 
 import numpy as np
+
+from . import option_names
 
 _here = os.path.dirname(os.path.abspath(__file__)) + os.sep
 
@@ -19,60 +20,59 @@ class Error(ValueError):
     """Something in a model, a sweep or the options of a call is wrong; the message says what and what to do."""
 
 
-# How the core's messages, which are the C++ library's, say things in Python: options, and phrases by their keys.
-_options = {
-    "relative_tolerance": "rtol", "absolute_tolerance": "atol", "options.relative_tolerance": "options.rtol",
-    "options.absolute_tolerance": "options.atol", "repeat": "draws="}
-_phrases = {
-    "ensemble": "the sweep", "mark_invalid": "give invalid=\"mark\"", "set_shared": "give it a value in the sweep",
-    "name_in_record": "name it in record=", "name_in_samples": "name it in samples=", "give_step": "give step=",
-    "use_doubles": "give precision=\"double\"", "smaller_parts": "integrate the sweep in smaller parts",
-    "fewer_instances": "integrate the sweep in smaller parts", "smaller_chunk": "make chunk= smaller",
-    "new_folder": "give another store= and a smaller chunk=",
-    "scale_tolerances": "give control=\"tolerance_per_instance\""}
+class CannotInterpret(Error):
+    """The interpreter, which runs models where there is no compiler, lacks what a model has."""
+
+
+# Statements of the core, its errors and notes, are lists of parts: what it is of these, what C++ says, a key, and a
+# number. What follows has Python's words for options, cures and events, by their keys.
+_text, _option, _component, _event, _separator, _cure = range(6)
+
+_options = {**option_names.names, "repeat": "draws=", "ensemble": "the sweep"}
+_cures = {
+    "mark_invalid": "give invalid=\"mark\"", "set_value": "give it in {where}", "name_in_record": "name it in record=",
+    "name_in_samples": "name it in samples=", "give_step": "give step=", "use_doubles": "give precision=\"double\"",
+    "scale_tolerances": "give control=\"tolerance_per_instance\"",
+    "smaller_parts": "integrate the sweep in smaller parts", "fewer_instances": "integrate the sweep in {parts}",
+    "smaller_chunk": "make chunk= smaller", "new_folder": "give another store= and a smaller chunk="}
 # Where values are given that the core calls by these names; others are in the sweep.
 _given_in = {"t_begin": "time=", "t_end": "time=", "state": "start=", "tolerance_scale": "tolerance_scale="}
 
 
-def _in_python(said, is_phrase, key, events):
-    what, _, number = key.partition(" ")
-    if not is_phrase:
-        return said.replace("samples.", "samples ") if key.startswith("samples.") else _options.get(key, said)
-    if what == "event" and int(number) < len(events):
-        return f"event {events[int(number)]!r}"
-    if what == "fewer_instances" and number:
-        return f"integrate the sweep in parts of at most {number} instances"
-    if what == "set" and number:
-        return f"give it in {_given_in.get(number, 'the sweep')}"
-    return _phrases.get(key, said)
+def in_words(parts, events=()):
+    """A statement of the core in Python's words. `events`: the names of the model's events."""
+    subject = next((key for kind, _, key, _ in parts if kind in (_option, _component, _event)), "")
+
+    def words(kind, said, key, number):
+        if kind == _option:
+            name = key.removeprefix("options.")
+            if name.startswith("samples.") and name == key:
+                return key.replace(".", " ")
+            return key[:len(key) - len(name)] + _options[name] if name in _options else said
+        if kind == _event and number < len(events):
+            return f"event {events[number]!r}"
+        if kind == _cure:
+            return _cures[key].format(where=_given_in.get(subject, "the sweep"),
+                                      parts=f"parts of at most {number} instances" if number > 0 else "smaller parts")
+        return said
+
+    return "".join(words(*part) for part in parts)
 
 
-def in_python(text, marks, events=()):
-    """An error of the core in Python's words. `marks` are the stretches of its text that have others here: where each
-    begins and how long it is, in bytes, whether it is a phrase or else a name, and its key, maybe with a number or a
-    name; `events`: the names of the model's events."""
-    written, made, at = text.encode(), b"", 0
-    for begin, size, is_phrase, key in marks:
-        said = written[begin:begin + size].decode()
-        made += written[at:begin] + _in_python(said, is_phrase, key, events).encode()
-        at = begin + size
-    error = Error((made + written[at:]).decode())
-    error.of_core = text, marks
+def in_python(parts, events=()):
+    """An error of the core in Python's words."""
+    error = Error(in_words(parts, events))
+    error.parts = parts
     return error
 
 
 def with_event_names(error, events):
     """The same error with the names of the model's events, where the core had their numbers."""
-    if not hasattr(error, "of_core"):
+    if not hasattr(error, "parts"):
         return error
-    named = in_python(*error.of_core, events)
+    named = in_python(error.parts, events)
     named.__dict__.update({**error.__dict__, **named.__dict__})
     return named
-
-
-def note_in_python(text):
-    """A note of the core with Python's names of options."""
-    return re.sub(r"\b(relative|absolute)_tolerance\b", lambda m: _options[m[0]], text)
 
 
 class UnknownOption(Error, TypeError):

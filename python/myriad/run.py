@@ -11,7 +11,7 @@ import numpy as np
 from . import _core, kinds
 from .components import name_of
 from .device import DeviceInput, DeviceResults
-from .errors import Error, note_in_python
+from .errors import Error, in_words
 from .expression import evaluate, symbols_of
 from .grid import Sweep
 from .run_plots import Plots, html
@@ -44,7 +44,7 @@ class Report:
 
     def __init__(self, report: Any, kernel: Any, seconds: float, notes: Sequence[str] = ()) -> None:
         self._report = report
-        self.notes = [*map(note_in_python, report.notes), *notes]  #: what else to know
+        self.notes = [*map(in_words, report.notes), *notes]  #: what else to know
         #: "compiled by g++", "cache" (on disk), "memory" (of this process), or "interpreted" and why;
         #: with a note if the cache cannot be used
         self.kernel = kernel.origin
@@ -65,9 +65,7 @@ class Report:
         return {name: count for name, count in zip(status_names, self._report.by_status) if count}
 
     def __str__(self) -> str:
-        told = str(self._report).rstrip("\n").splitlines()
-        text = "\n".join([*(line for line in told if not line.startswith("note: ")),
-                          *(f"note: {note}" for note in self.notes)])
+        text = "\n".join([str(self._report).rstrip("\n"), *(f"note: {note}" for note in self.notes)])
         origin = f"from {self.kernel}" if self.kernel in ("cache", "memory") else self.kernel
         if not self.kernel.startswith("interpreted"):
             origin += f" in {self.compile_seconds:.3g} s"

@@ -20,7 +20,7 @@ from . import _core, nvrtc
 from .axes import Axis, Random, drawn
 from .components import Components, name_of, unknown
 from .core_options import finish_options, make_options, options_of, takes_options
-from .errors import Error, note_in_python, with_event_names
+from .errors import Error, in_words, with_event_names
 from .expression import Node
 from .grid import Sweep
 from .inputs import by_name, numbers, only, whole
@@ -321,8 +321,7 @@ class Study:
                 return _ExecutedRun(self, executor, devices, chunk, folder or None, show).run()
             self._use(devices, chunk)
             (results, facts), failure = self._core.run(show)
-            facts["notes"] = [*map(note_in_python, facts["notes"]), *([no_gpu] if no_gpu else [])]
-            result = self._result(results, facts, folder or None)
+            result = self._result(results, facts, folder or None, [no_gpu] if no_gpu else [])
             if failure is not None:
                 if isinstance(failure, KeyboardInterrupt):
                     raise Interrupted(result) from None
@@ -333,9 +332,11 @@ class Study:
         finally:
             show.close()
 
-    def _result(self, results: _core.Results, facts: Mapping[str, Any], folder: str | None) -> StudyResult:
+    def _result(self, results: _core.Results, facts: Mapping[str, Any], folder: str | None,
+                notes: Iterable[str] = ()) -> StudyResult:
         origins = dict.fromkeys(kernel.origin for kernel in self._kernels.values())
-        return StudyResult(results, folder, {**facts, "kernel": ", ".join(origins)})
+        return StudyResult(results, folder, {**facts, "kernel": ", ".join(origins),
+                                              "notes": [*map(in_words, facts["notes"]), *notes]})
 
     def _payload(self) -> bytes:
         """This study as bytes, for other processes, which are to run the same kernel. By cloudpickle if it is there,

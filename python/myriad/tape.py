@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _core, kinds
 from .compiler import Kernel
-from .errors import Error
+from .errors import CannotInterpret, Error
 from .expression import integer, is_long, walk
 from .model import Model
 from .table import element_name
@@ -25,8 +25,8 @@ _limits = _core.tape_limits  # the most components of each kind
 
 
 def _refuse(why: str) -> Error:
-    return Error(f"the model cannot be interpreted, as {why}: install a C++ compiler (g++ 12 or clang++ 14 or newer), "
-                 "or `pip install ziglang`")
+    return CannotInterpret(f"the model cannot be interpreted, as {why}: install a C++ compiler (g++ 12 or clang++ 14 "
+                           "or newer), or `pip install ziglang`")
 
 
 _of_whole_numbers = {"add": "wrapping_add", "subtract": "wrapping_subtract", "multiply": "wrapping_multiply",
@@ -196,6 +196,5 @@ def kernel(model: AnyModel, components: Components, method: str, why: str) -> Ke
 
 
 def padded(components: Components) -> dict[str, list[str]]:
-    """The names of all components that the interpreter has, beginning with the model's."""
-    return {kind: [*names, *(f"unused {_plural(kind)} {i}" for i in range(len(names), _limits.get(kind, 0)))]
-            for kind, names in components.names.items()}
+    """The names of all components that the interpreter has: those of the model, and empty ones for the others."""
+    return {kind: names + [""] * (_limits.get(kind, 0) - len(names)) for kind, names in components.names.items()}

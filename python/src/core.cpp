@@ -32,6 +32,7 @@
 #include "myriad/version.hpp"
 #include "resident.hpp"
 #include "run.hpp"
+#include "statement_caster.hpp"
 #include "study.hpp"
 #include "threads.hpp"
 
@@ -305,8 +306,10 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
         .def_prop_ro("idle_share", [](const all& r) { return r.idle_share(); })
         .def("records", &recorded<R>, "kind"_a, "component"_a = 0, "on_device"_a = false)
         .def("__str__", [](const all& r) {
+            report_of<R> without_notes = r;  // which Python has in its own words
+            without_notes.notes.clear();
             std::ostringstream text;
-            text << static_cast<const report_of<R>&>(r);
+            text << without_notes;
             return text.str();
         });
     m.def("solve", &solve_from_python<R>, "kernels"_a, "ensemble"_a, "options"_a, "progress"_a.none() = nb::none());
@@ -408,10 +411,7 @@ NB_MODULE(_core, m) {
                 std::rethrow_exception(thrown);
             } catch (const error& e) {
                 const nb::object errors = nb::module_::import_("myriad.errors");
-                nb::list marks;
-                for (const mark& m : e.marks())
-                    marks.append(nb::make_tuple(m.begin, m.size, m.what == mark_role::phrase, m.key));
-                PyErr_SetObject(errors.attr("Error").ptr(), errors.attr("in_python")(e.what(), marks).ptr());
+                PyErr_SetObject(errors.attr("Error").ptr(), errors.attr("in_python")(e.said()).ptr());
             }
         },
         nullptr);
@@ -421,6 +421,11 @@ NB_MODULE(_core, m) {
         for (const auto set : host::all_instruction_sets)
             if (host::cpu_has(set)) return std::string(host::name_of(set));
         return std::string("generic");
+    });
+    m.def("cures", [] {
+        std::vector<std::string> names;
+        for (const host::known_cure& c : host::all_cures) names.emplace_back(c.name);
+        return names;
     });
     m.def("status_names", [] {
         std::vector<std::string> names;
@@ -461,7 +466,7 @@ NB_MODULE(_core, m) {
         for (std::size_t i = 0; i < codes.size(); ++i) {
             const auto narrow = [&](std::size_t k) {
                 require(registers[i][k] >= 0 && registers[i][k] <= 0xffff, "the interpreter has no component ",
-                        registers[i][k], ": install a C++ compiler");
+                        registers[i][k], host::cure, "install a C++ compiler");
                 return static_cast<std::uint16_t>(registers[i][k]);
             };
             steps.push_back({values[i], narrow(0), narrow(1), narrow(2), narrow(3), static_cast<tape_code>(codes[i])});

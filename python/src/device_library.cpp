@@ -30,8 +30,8 @@ void* loaded(const std::string& image) {
     const cudaError_t status = load_module(&module, image.c_str());
     require(status != cudaErrorUnsupportedPtxVersion && status != cudaErrorNoKernelImageForDevice,
             "the driver, of CUDA ", driver_version() / 1000, '.', driver_version() % 1000 / 10,
-            ", cannot load what a newer NVRTC compiled: update the driver, or install nvidia-cuda-nvrtc of the "
-            "driver's version");
+            ", cannot load what a newer NVRTC compiled", host::cure,
+            "update the driver, or install nvidia-cuda-nvrtc of the driver's version");
     cuda::check(status, "loading the model's kernel");
     return module;
 }

@@ -69,9 +69,8 @@ bool resident<R>::fits(const ensemble<R>& instances) {
 template <class R>
 void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
     if (instances.on_device.empty()) return;
-    require(!mark_invalid,
-            "arrays on a GPU cannot be marked where they are not finite: copy them to the host, or give "
-            "invalid=\"refuse\"");
+    require(!mark_invalid, "arrays on a GPU cannot be marked where they are not finite", host::cure,
+            "copy them to the host, or give invalid=\"refuse\"");
     constexpr unsigned long long none = std::numeric_limits<unsigned long long>::max();
     const device_program::kernels& all = program_.on(number());
     const std::int64_t size = instances.data.size;
@@ -167,13 +166,10 @@ void resident<R>::integrate(ensemble<R>& instances, const options& o, host::data
         all(data.t_end, data.t_end.components());
         host::summarise(data, result, data.size);
     }
-    host::note_failures(result, data, o, data.size);
     host::set_work(result, {}, work());
     result.kernel = engine_->facts();
     result.kernel_seconds = engine_->kernel_seconds();
-    result.seconds = std::chrono::duration<double>(clock::now() - begin).count();
-    result.device = device::cuda(number()).name();
-    if (failure) std::rethrow_exception(failure);
+    host::end_call(result, data, o, call_->arguments.max_steps, device::cuda(number()).name(), begin, failure);
 }
 
 template <class R>

@@ -38,7 +38,7 @@ library::library(const std::string& method, int shared, int shared_integers, boo
     cpu_.facts.call.hooks_may_stop = may_stop;
     const auto set = static_cast<openmp::instruction_set>(cpu_.instruction_set);
     require(host::cpu_has(set), "this CPU lacks the instructions of ", host::name_of(set),
-            ", for which models are interpreted: install a C++ compiler");
+            ", for which models are interpreted", host::cure, "install a C++ compiler");
 }
 
 library::library(std::string image, int device) {
@@ -99,10 +99,9 @@ named_shape::named_shape(const detail::model_numbers& of, component_names its_na
 
 namespace {
 
-/// The components of a kind that the model has; those that an interpreter has besides are called unused.
+/// The components of a kind that the model has; those that an interpreter has besides have no name.
 std::size_t used(const std::vector<std::string>& names) {
-    return static_cast<std::size_t>(std::count_if(
-        names.begin(), names.end(), [](const std::string& name) { return name.substr(0, 7) != "unused "; }));
+    return names.size() - static_cast<std::size_t>(std::count(names.begin(), names.end(), std::string()));
 }
 
 }  // namespace
@@ -155,10 +154,11 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
         require(k.where.which() == where.which(), "the devices are of different kinds");
     }
     require(on_gpu || on.size() == 1, "the CPU is named several times");
-    require(on_gpu || instances.on_device.empty(),
-            "the sweep has arrays on a GPU, and the device is the CPU: copy them, or give device=\"cuda\"");
+    require(on_gpu || instances.on_device.empty(), "the sweep has arrays on a GPU, and the device is the CPU",
+            host::cure, "copy them, or give device=\"cuda\"");
     require(on.size() == 1 || instances.on_device.empty(),
-            "the sweep has arrays on a GPU, and several devices are given: copy them to the host, or name one device");
+            "the sweep has arrays on a GPU, and several devices are given", host::cure,
+            "copy them to the host, or name one device");
     auto result = std::make_unique<report<R>>();
     auto& data = instances.data;
     host::solve_call<R> call(where, o, models.front(), data, instances.samples, result->records);
@@ -173,12 +173,12 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
         } else {
             require(instances.on_device.empty(),
                     "the sweep has arrays on the GPU, whose memory does not suffice to "
-                    "integrate all of it at once: divide it into smaller parts");
+                    "integrate all of it at once",
+                    host::cure, "divide it into smaller parts");
             call.integrate(*result);
         }
     } catch (const interruption&) {
         result->interrupted = true;
-        result->device = names_of(on);
     }
     result->first_state.resize(std::min(result->first_state.size(), used(instances.shape->names.states)));
     result->first_parameter.resize(std::min(result->first_parameter.size(), used(instances.shape->names.parameters)));

@@ -63,7 +63,7 @@ public:
             const auto meanwhile = [this]() -> cuda::engine<R>* {
                 pipeline_.stop(all_.asked);
                 const bool may_add = pipeline_.engine_count() < std::max(plan_.at_a_time(), std::int64_t{2});
-                return may_add ? &pipeline_.add_engine(all_.part) : nullptr;
+                return may_add ? pipeline_.further_engine(all_.part) : nullptr;
             };
             for (; first < all_.size && !all_.stopped; first = all_.next.fetch_add(all_.part)) {
                 cuda::engine<R>& engine = pipeline_.free_engine(meanwhile, back);
@@ -167,14 +167,11 @@ void integrate_on_several(const std::vector<placed_kernel>& on, const std::vecto
 
     host::summarise(data, result, data.size);
     host::set_work(result, before, host::counted_work(data, data.size));
-    host::note_ended(result, data, data.size);
-    host::note_failures(result, data, o, data.size);
-    data.remember_ended();
     result.kernel = all.facts;
     result.kernel_seconds = all.kernel_seconds;
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    result.device = names_of(on);
-    if (relay.failure) std::rethrow_exception(relay.failure);
+    host::note_ended(result, data, data.size);
+    data.remember_ended();
+    host::end_call(result, data, o, call.arguments().max_steps, names_of(on), begin, relay.failure);
 }
 template void integrate_on_several(const std::vector<placed_kernel>&, const std::vector<host::called_model<double>>&,
                                    const options&, host::ensemble_data<double>&, host::solve_call<double>&,

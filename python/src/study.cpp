@@ -36,6 +36,7 @@
 #include "myriad/study/store.hpp"
 #include "myriad/study/study.hpp"
 #include "run.hpp"
+#include "statement_caster.hpp"
 #include "studied.hpp"
 
 namespace nb = nanobind;
@@ -211,7 +212,7 @@ ensemble_reduction sum_by_python(const std::string& name, const std::vector<std:
             const auto values = nb::cast<std::vector<double>>(
                 numpy.attr("atleast_1d")(numpy.attr("asarray")(made, "dtype"_a = "float64")).attr("tolist")());
             require(values.size() == sums.size(), "the function of the sum ", name, " gives ", values.size(),
-                    " numbers, and ", sums.size(), " are expected: change its size");
+                    " numbers, and ", sums.size(), " are expected", host::cure, "change its size");
             for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += values[i];
         });
 }
@@ -291,7 +292,7 @@ struct python_study {
 };
 
 using sent_chunk = std::tuple<std::vector<std::pair<std::string, nb::bytes>>, std::string, double,
-                              std::vector<std::pair<std::string, std::int64_t>>, std::vector<std::string>,
+                              std::vector<std::pair<std::string, std::int64_t>>, std::vector<statement>,
                               std::tuple<std::string, std::string, std::string, std::string>>;
 
 void commit(studies::handed_out_run& run, std::int64_t chunk, const sent_chunk& sent) {

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """What bad calls of `solve` get."""
 
+import concurrent.futures
 import pickle
 
 import numpy as np
 import pytest
 
 import myriad as my
+from myriad import _core, errors
 
 CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
 
@@ -70,6 +72,50 @@ CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
 def test_message(oscillator, change, message):
     with pytest.raises(my.Error, match=message):
         my.solve(oscillator, **{**CALL, **change})
+
+
+def said_in_cpp(*parts):
+    """A statement of the core: (kind, key, number), or a text that is the same everywhere. C++ says "@"."""
+    return [(errors._text, p, "", -1) if isinstance(p, str) else (p[0], "@", *p[1:], *[-1] * (3 - len(p)))
+            for p in parts]
+
+
+@pytest.mark.parametrize("parts, message", [
+    ([(errors._option, "relative_tolerance"), " and ", (errors._option, "absolute_tolerance"), " are 0"],
+     "rtol and atol are 0"),
+    ([(errors._option, "options.relative_tolerance"), ": 1 here"], "options.rtol: 1 here"),
+    ([(errors._option, "samples.times"), " is 1"], "samples times is 1"),
+    ([(errors._option, "ensemble"), " has 0 instances"], "the sweep has 0 instances"),
+    (["of ", (errors._event, "", 1)], "of event 'bottom'"),
+    ([(errors._component, "state", 0), ": ", (errors._cure, "set_value")], "@: give it in start="),
+    ([(errors._component, "parameter", 0), ": ", (errors._cure, "set_value")], "@: give it in the sweep"),
+    ([(errors._cure, "fewer_instances", 30)], "integrate the sweep in parts of at most 30 instances"),
+    ([(errors._cure, "fewer_instances")], "integrate the sweep in smaller parts"),
+    ([(errors._cure, "use_doubles")], 'give precision="double"'),
+])
+def test_what_the_core_says_is_told_by_its_keys_and_not_by_its_words(parts, message):
+    assert errors.in_words(said_in_cpp(*parts), ["top", "bottom"]) == message
+
+
+def test_every_cure_of_the_core_has_words_in_python():
+    assert set(errors._cures) == set(_core.cures())
+    for name in errors._cures:
+        words = errors.in_words([(errors._cure, "@", name, -1)])
+        assert not any(piece in words for piece in ("@", "::", "{", "ensemble")), words
+
+
+def test_notes_of_reports_name_pythons_options(oscillator):
+    run = my.solve(oscillator, **CALL, rtol=1e-18)
+    assert any(note.startswith("rtol 1e-18 is below what the precision can reach") for note in run.report.notes)
+    assert str(run.report).count("note: rtol 1e-18 is below") == 1
+    assert "relative_tolerance" not in str(run.report)
+
+
+def test_notes_of_studies_name_pythons_options_also_where_an_executor_runs_them(oscillator, tmp_path):
+    study = my.study(oscillator, {"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1), keep=["x"], rtol=1e-18)
+    with concurrent.futures.ThreadPoolExecutor(1) as executor:
+        for result in (study.run(), study.run(executor=executor)):
+            assert [note.partition(" 1e-18")[0] for note in result.notes] == ["rtol"]
 
 
 def test_equations_are_no_model():

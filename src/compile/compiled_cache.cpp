@@ -36,8 +36,8 @@ std::uintmax_t size_limit() {
     const std::string asked = variable("MYRIAD_CACHE_SIZE");
     if (asked.empty()) return limit;
     const auto [end, failed] = std::from_chars(asked.data(), asked.data() + asked.size(), limit);
-    require(failed == std::errc() && end == asked.data() + asked.size(), "MYRIAD_CACHE_SIZE is '", asked,
-            "': give a number of bytes, such as ", limit);
+    require(failed == std::errc() && end == asked.data() + asked.size(), "MYRIAD_CACHE_SIZE is '", asked, "'",
+            host::cure, "give a number of bytes, such as ", limit);
     return limit;
 }
 
@@ -158,8 +158,8 @@ struct folder_of_process {
         std::error_code unknown;
         std::string name = (fs::temp_directory_path(unknown) / "myriad.XXXXXX").string();
         const bool is_made = ::mkdtemp(name.data()) != nullptr;
-        require(is_made,
-                "neither the cache nor a temporary folder can be written: set MYRIAD_CACHE_DIR to a folder that can");
+        require(is_made, "neither the cache nor a temporary folder can be written", host::cure,
+                "set MYRIAD_CACHE_DIR to a folder that can");
         path = name;
     }
     ~folder_of_process() {
@@ -269,7 +269,8 @@ public:
     /// Puts what it was made from and a checksum behind `model.so`, and returns it open.
     int seal(std::string_view made_from) const {
         const int file = open_own(cache_.made_in_folder_, made());
-        require(file >= 0, folder_.string(), "/model.so is missing, or somebody else's: compile the model again");
+        require(file >= 0, folder_.string(), "/model.so is missing, or somebody else's", host::cure,
+                "compile the model again");
         std::string added(made_from);
         const std::uint64_t size = made_from.size();
         added.append(reinterpret_cast<const char*>(&size), sizeof size);
@@ -319,8 +320,8 @@ bool compiled_cache::obtain(std::string_view made_from, const maker& make, const
         work.emplace(*this, key);
     } catch (const std::system_error& why) {  // as where the disk is full
         if (made_in_folder_ != folder_)
-            throw error(message("no folder can be made in ", made_in_.string(), " (", why.code().message(),
-                                "): free space, or set MYRIAD_CACHE_DIR to another folder"));
+            throw error(statement_of("no folder can be made in ", made_in_.string(), " (", why.code().message(), ")",
+                                     host::cure, "free space, or set MYRIAD_CACHE_DIR to another folder"));
         objection_ = message("compiled models are not kept in ", made_in_.string(), ", as it cannot be used (",
                              why.code().message(), "): free space, or set MYRIAD_CACHE_DIR to another folder");
         use_folder_of_process();

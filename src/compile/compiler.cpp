@@ -61,8 +61,8 @@ compiler named_compiler(const std::string& chosen, const char* name) {
         }
     }
     const std::string program = words.empty() ? "" : find_program(words[0]);
-    require(!program.empty(), name, " is '", chosen, "', and there is no such program: give a C++ compiler (g++ ",
-            MYRIAD_OLDEST_GNU, ", clang++ ", MYRIAD_OLDEST_CLANG,
+    require(!program.empty(), name, " is '", chosen, "', and there is no such program", host::cure,
+            "give a C++ compiler (g++ ", MYRIAD_OLDEST_GNU, ", clang++ ", MYRIAD_OLDEST_CLANG,
             " or newer) by its path, maybe with arguments, or unset the variable");
     std::string called = program, arguments;
     for (std::size_t i = words.size(); i-- > 1;) {
@@ -77,9 +77,9 @@ compiler named_compiler(const std::string& chosen, const char* name) {
 }  // namespace
 
 error no_compiler(std::string_view also) {
-    return error(message("there is no C++ compiler to compile the model with: install g++ ", MYRIAD_OLDEST_GNU,
-                         " or clang++ ", MYRIAD_OLDEST_CLANG, " or newer, ", also,
-                         "or name a compiler in the environment variable MYRIAD_CXX"));
+    return error(statement_of("there is no C++ compiler to compile the model with", host::cure, "install g++ ",
+                              MYRIAD_OLDEST_GNU, " or clang++ ", MYRIAD_OLDEST_CLANG, " or newer, ", also,
+                              "or name a compiler in the environment variable MYRIAD_CXX"));
 }
 
 std::optional<compiler> find_compiler(const std::string& zig) {
@@ -126,8 +126,8 @@ openmp::instruction_set wanted_instruction_set() {
         if (has && (asked.empty() || asked == host::name_of(set))) return set;
         if (has) names += message(names.empty() ? "" : ", ", host::name_of(set));
     }
-    throw error(message("MYRIAD_INSTRUCTION_SET is '", asked, "': this CPU has ", names,
-                        ": name one of them, or unset the variable"));
+    throw error(statement_of("MYRIAD_INSTRUCTION_SET is '", asked, "': this CPU has ", names, host::cure,
+                             "name one of them, or unset the variable"));
 }
 
 std::string made_from(const compiler& by, const std::vector<std::string>& flags, std::string_view headers,

@@ -227,9 +227,8 @@ mpi_ranks::mpi_ranks(MPI_Comm ranks) {
     } else {
         MPI_Query_thread(&level);
     }
-    require(level >= MPI_THREAD_SERIALIZED,
-            "MPI was initialised for one thread alone: call MPI_Init_thread with "
-            "MPI_THREAD_SERIALIZED, or leave it to myriad::mpi_ranks");
+    require(level >= MPI_THREAD_SERIALIZED, "MPI was initialised for one thread alone", host::cure,
+            "call MPI_Init_thread with MPI_THREAD_SERIALIZED, or leave it to myriad::mpi_ranks");
     check(MPI_Comm_dup(ranks, &ranks_), "the start");
     MPI_Comm_set_errhandler(ranks_, MPI_ERRORS_RETURN);
     MPI_Comm_rank(ranks_, &rank_);

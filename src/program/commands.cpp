@@ -309,7 +309,13 @@ int run_study(const run_request& asked, study_file& file, const std::string& tex
     keep_file(kept_study(folder), text);
     if (header) keep_file(kept_model(folder), header->text);
 
-    const study_result result = study.run();
+    const study_result result = [&] {
+        try {
+            return study.run();
+        } catch (const error& e) {
+            throw error(file.told(e));
+        }
+    }();
     std::cout << result << "results: " << folder << '\n';
     if (!result.complete) {
         const int signal = studies::stop_signals::last();
@@ -594,6 +600,8 @@ int run_program(int argc, const char* const* argv) {
     } catch (const input_error& e) {
         tell(e.what());
         status = 2;
+    } catch (const error& e) {
+        tell(in_words_of_files(e.said()));
     } catch (const std::exception& e) {
         tell(e.what());
     }

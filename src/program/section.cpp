@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace myriad::programs {
 
@@ -66,6 +67,13 @@ std::optional<double> multiple_of_pi(std::string_view text) {
 
 std::string quoted(std::string_view text) { return message('"', text, '"'); }
 
+using enum host::cures;
+/// What study files have other words for than C++.
+constexpr std::pair<host::cures, std::string_view> cures_in_files[] = {
+    {set_value, "give it a value under [set]"}, {give_step, "give step under [options]"},
+    {use_doubles, "write real = \"double\""},   {smaller_parts, "make chunk smaller"},
+    {fewer_instances, "make chunk smaller"},    {new_folder, "give another store and a smaller chunk"}};
+
 }  // namespace
 
 std::string nearest_of(std::string_view name, const std::vector<std::string>& choices) {
@@ -89,6 +97,17 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ch
     return ": there are " + all;
 }
 
+std::string in_words_of_files(const statement& said, const std::vector<std::string>& events) {
+    return said.text([&](const statement_part& p) {
+        if (p.kind == part_kind::event && std::cmp_less(p.number, events.size()))
+            return message("event ", quoted(events[static_cast<std::size_t>(p.number)]));
+        if (p.kind == part_kind::cure)
+            for (const auto& [known, words] : cures_in_files)
+                if (p.key == host::row_of(known).name) return std::string(words);
+        return p.words;
+    });
+}
+
 input_error wrong(const toml_value& v, std::string_view key, std::string_view text) {
     return input_error(message(position(v.place), key, key.empty() ? "" : ": ", text));
 }
@@ -99,7 +118,7 @@ void placed(const toml_value& v, std::string_view key, const std::function<void(
     } catch (const input_error&) {
         throw;
     } catch (const error& e) {
-        throw wrong(v, key, e.what());
+        throw wrong(v, key, in_words_of_files(e.said()));
     }
 }
 

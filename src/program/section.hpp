@@ -39,6 +39,8 @@ std::vector<double> numbers_in(const toml_value& v, std::string_view key);
 /// An array of strings, or a single one.
 std::vector<std::string> texts_in(const toml_value& v, std::string_view key);
 
+/// What an error says, in the words of study files. `events`: the names of the model's events.
+std::string in_words_of_files(const statement& said, const std::vector<std::string>& events = {});
 /// "file:line:column: key: " and the text, as an error.
 input_error wrong(const toml_value& v, std::string_view key, std::string_view text);
 /// Calls a function, and gives errors that it throws the place and the key.

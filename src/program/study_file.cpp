@@ -118,7 +118,7 @@ void with_component(const component_names& all, const std::string& name, const t
         try {
             function();
         } catch (const studies::unknown_component& e) {
-            throw error(message(e.what(), nearest_of(name, names_of(all, kinds))));
+            throw error(statement_of(e.said(), nearest_of(name, names_of(all, kinds))));
         }
     });
 }
@@ -184,6 +184,7 @@ void study_file::read_store() {
 
 void study_file::set_up(any_study& study, const program_model& model, const std::vector<device>& instead) {
     names_ = &model.names;
+    events_ = model.events;
     read_axes(study);
     read_values(study);
     read_options(study, model);
@@ -256,13 +257,10 @@ void study_file::read_dimension(any_study& study, const toml_value& table, const
     try {
         study.zip(paired);
     } catch (const error& e) {
-        std::size_t i = 0;  // the last one that the message names
-        for (const mark& m : e.marks())
-            if (m.what == mark_role::component)
-                i = static_cast<std::size_t>(std::find(full_names.begin(), full_names.end(), m.key) -
-                                             full_names.begin());
-        if (i == full_names.size()) i = 0;
-        throw wrong(*places[i].first, places[i].second, e.what());
+        const statement_part* const subject = e.said().subject();
+        const auto found = std::find(full_names.begin(), full_names.end(), subject != nullptr ? subject->key : "");
+        const std::size_t i = found != full_names.end() ? static_cast<std::size_t>(found - full_names.begin()) : 0;
+        throw wrong(*places[i].first, places[i].second, in_words_of_files(e.said()));
     }
 }
 
@@ -473,14 +471,14 @@ const toml_value* follow(const toml_value& from, std::string_view path) {
 input_error study_file::placed_error(const error& found) const {
     // The first option that the message names and the file gives.
     const toml_value* key = nullptr;
-    for (const mark& m : found.marks()) {
-        if (m.what != mark_role::option || key != nullptr) continue;
+    for (const statement_part& p : found.said().parts) {
+        if (p.kind != part_kind::option || key != nullptr) continue;
         for (const std::string_view table : {"options", "keep", ""}) {
             const toml_value* const from = table.empty() ? &document_ : entry_of(document_, table);
-            if (key == nullptr && from != nullptr) key = follow(*from, m.key);
+            if (key == nullptr && from != nullptr) key = follow(*from, p.key);
         }
     }
-    return input_error(position(key != nullptr ? key->place : text_place{path_, 0, 0}) + found.what());
+    return input_error(position(key != nullptr ? key->place : text_place{path_, 0, 0}) + told(found));
 }
 
 }  // namespace myriad::programs

@@ -42,6 +42,8 @@ public:
     void set_up(any_study& study, const program_model& model, const std::vector<device>& instead = {});
     /// An error that the study has found, with the place of the key that it is about, as far as that can be told.
     input_error placed_error(const error& found) const;
+    /// What an error of the study says, in the words of study files.
+    std::string told(const error& found) const { return in_words_of_files(found.said(), events_); }
 
 private:
     void read_model();
@@ -61,6 +63,7 @@ private:
     std::string folder_;
     studies::store_options store_options_;
     const studies::component_names* names_ = nullptr;
+    std::vector<std::string> events_;
 };
 
 }  // namespace myriad::programs

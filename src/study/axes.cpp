@@ -56,7 +56,7 @@ axis_values geomspace(double first, double last, std::int64_t size) {
     check_finite("geomspace", first);
     check_finite("geomspace", last);
     require(first != 0 && last != 0 && (first > 0) == (last > 0), "geomspace from ", first, " to ", last,
-            " passes zero: give two values of one sign (they are the ends, not exponents)");
+            " passes zero", host::cure, "give two values of one sign (they are the ends, not exponents)");
     check_size("geomspace", size);
     axis_values made(axis_values::kind::logarithmic, first, last, size);
     made.first_log_ = std::log(std::fabs(first));
@@ -88,7 +88,8 @@ namespace {
 /// Refuses what the component cannot have.
 void check_values(const component& c, const axis_values& all) {
     if (!is_integer(c.kind)) return;
-    require(!all.random(), c.full_name(), " is an integer, which random values are not: draw it in a hook");
+    require(!all.random(), c.full_name(), " is an integer, which random values are not", host::cure,
+            "draw it in a hook");
     const auto check = [&](double value) {
         constexpr double least = std::numeric_limits<std::int32_t>::min(),
                          most = std::numeric_limits<std::int32_t>::max();
@@ -103,9 +104,10 @@ void check_values(const component& c, const axis_values& all) {
 const component& axes::find_free(std::string_view name) const {
     const component& c = names_.find(name, studies::settable_kinds);
     for (const entry& e : entries_)
-        require(!(e.what == c), host::named_component(c.full_name()), " is given twice: give it one axis or one value");
-    require(!is_shared(c.kind), c.full_name(),
-            " is the same in all instances of a call, so it has no axis: make it a parameter of the model, or set it");
+        require(!(e.what == c), host::named_component(c.full_name()), " is given twice", host::cure,
+                "give it one axis or one value");
+    require(!is_shared(c.kind), c.full_name(), " is the same in all instances of a call, so it has no axis", host::cure,
+            "make it a parameter of the model, or set it");
     return c;
 }
 
@@ -114,7 +116,7 @@ void axes::add_dimension(std::string name, std::int64_t length) {
     require(length <= most / size_, "the axes have more than 2^53 instances: ", size_, " before \"", name,
             "\", which has ", length, " values");
     for (const axes::dimension& d : dimensions_)
-        require(d.name != name, "two axes are called \"", name, "\": give one of them another name");
+        require(d.name != name, "two axes are called \"", name, "\"", host::cure, "give one of them another name");
     for (axes::dimension& d : dimensions_) d.stride *= length;
     size_ *= length;
     dimensions_.push_back({std::move(name), length});
@@ -138,14 +140,15 @@ void axes::zip(const std::vector<std::pair<std::string, axis_values>>& paired) {
     for (const auto& [name, all] : paired) {
         const component& c = find_free(name);
         check_values(c, all);
-        require(!all.random(), host::named_component(c.full_name()),
-                " is random, and so cannot be paired: give it by itself");
+        require(!all.random(), host::named_component(c.full_name()), " is random, and so cannot be paired", host::cure,
+                "give it by itself");
         const axis_values& first = paired.front().second;
-        require(all.size() == first.size(), "paired axes have different lengths: ",
-                host::named_component(made.empty() ? c.full_name() : made[0].what.full_name()), " has ", first.size(),
-                " values, ", host::named_component(c.full_name()), " has ", all.size());
+        const component& before = made.empty() ? c : made[0].what;  // c is the subject
+        require(all.size() == first.size(), "paired axes have different lengths: ", before.full_name(), " has ",
+                first.size(), " values, ", host::named_component(c.full_name()), " has ", all.size());
         for (const entry& e : made)
-            require(!(e.what == c), host::named_component(c.full_name()), " is given twice: give it one axis");
+            require(!(e.what == c), host::named_component(c.full_name()), " is given twice", host::cure,
+                    "give it one axis");
         joined += message(joined.empty() ? "" : "_", names_.initial_variable(c));
         made.push_back({c, all, static_cast<int>(dimensions_.size())});
     }

@@ -69,7 +69,7 @@ const component& component_names::find(std::string_view name, std::initializer_l
     if (found.size() > 1) {
         std::string all;
         for (const component* c : found) all += message(all.empty() ? "" : " or ", c->full_name());
-        throw error(message('"', name, "\" names several components of ", model_, ": write ", all));
+        throw error(statement_of('"', name, "\" names several components of ", model_, host::cure, "write ", all));
     }
     return *found[0];
 }

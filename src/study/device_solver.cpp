@@ -62,7 +62,7 @@ void device_instances<R>::check(std::int64_t count) {
     model_.values_of(few_.data(), options_, count).run();
 }
 template <class R>
-std::vector<std::string> device_instances<R>::notes(std::int64_t count) {
+std::vector<statement> device_instances<R>::notes(std::int64_t count) {
     const detail::default_arithmetic here;
     report_of<R> found;
     if (model_.looks_at_results()) {

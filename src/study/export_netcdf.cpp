@@ -8,9 +8,9 @@
 namespace myriad {
 
 void export_netcdf(const studies::results&, const std::string& path, const netcdf_options&) {
-    throw error(message(path,
-                        " is not written, as the library was built without netCDF: install it (Debian package "
-                        "libnetcdf-dev) and build again, or use export_csv or export_npy"));
+    throw error(
+        statement_of(path, " is not written, as the library was built without netCDF", host::cure,
+                     "install it (Debian package libnetcdf-dev) and build again, or use export_csv or export_npy"));
 }
 
 }  // namespace myriad
@@ -439,8 +439,8 @@ void export_netcdf(const results& from, const std::string& path, const netcdf_op
         file.finish();
     } catch (const process_error& failure) {
         if (failure.code() != 0) throw file_error("writing", place, failure.code()).of_export();
-        host::refuse({"writing ", place, " failed: ", failure.what(),
-                      ": give a place that you may write to and that has space, and export again"});
+        host::refuse({"writing ", place, " failed: ", failure.what(), host::cure,
+                      "give a place that you may write to and that has space, and export again"});
     } catch (const file_error& failure) {
         throw failure.of_export();
     }

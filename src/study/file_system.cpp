@@ -328,11 +328,11 @@ std::string folder_of(const std::string& path) {
 void refuse_zero_byte(std::string_view path) {
     const std::size_t end = path.find('\0');
     require(end == std::string_view::npos, "the path ", path.substr(0, end),
-            " goes on after a zero byte, where the system would end it: give a path without one");
+            " goes on after a zero byte, where the system would end it", host::cure, "give a path without one");
 }
 
 std::string file_place(const std::string& path) {
-    require(!path.empty(), "the file has no name: give the path of a file");
+    require(!path.empty(), "the file has no name", host::cure, "give the path of a file");
     refuse_zero_byte(path);
     std::filesystem::path place = path;
     std::error_code unknown;  // what cannot be looked up shows when it is written
@@ -343,7 +343,7 @@ std::string file_place(const std::string& path) {
     const std::filesystem::file_status now = std::filesystem::status(place, unknown);
     require(!std::filesystem::exists(now) || std::filesystem::is_regular_file(now), path,
             std::filesystem::is_directory(now) ? " is a folder" : " is no regular file",
-            ", which an exported one cannot replace: give the path of a file");
+            ", which an exported one cannot replace", host::cure, "give the path of a file");
     return place.string();
 }
 

@@ -34,7 +34,7 @@ void handed_out_run::commit(std::int64_t chunk, const computed_chunk& values) {
         for (int s = 0; s < status_count; ++s)
             if (name == myriad::name_of(static_cast<status>(s))) by_status_[static_cast<std::size_t>(s)] += count;
     constexpr std::size_t most = 16;
-    for (const std::string& note : values.notes)
+    for (const statement& note : values.notes)
         if (notes_.size() < most && std::find(notes_.begin(), notes_.end(), note) == notes_.end())
             notes_.push_back(note);
 }

@@ -19,7 +19,7 @@ namespace {
 // The product, or an error that names what is too large.
 std::int64_t product(std::int64_t a, std::int64_t b, std::string_view of) {
     std::int64_t result = 0;
-    require(!__builtin_mul_overflow(a, b, &result), of, " is more than 2^63: make it smaller");
+    require(!__builtin_mul_overflow(a, b, &result), of, " is more than 2^63", host::cure, "make it smaller");
     return result;
 }
 
@@ -40,7 +40,7 @@ public:
                 " (must be positive)");
         const auto [known, is_new] = lengths_.emplace(added.name, added.length);
         require(is_new || known->second == added.length, "dimension ", added.name, " of ", where, " has length ",
-                added.length, ", and ", known->second, " elsewhere: give one of them another name");
+                added.length, ", and ", known->second, " elsewhere", host::cure, "give one of them another name");
     }
     bool has(const std::string& name) const { return lengths_.contains(name); }
 
@@ -132,7 +132,7 @@ void layout::check() const {
     require(chunk > 0 && chunk <= n, "a chunk has ", chunk, " instances (must be between 1 and their number, ", n, ')');
     lengths.add({"instance", n}, "the instances");
     lengths.add({"chunk", chunks()}, "the chunks");
-    require(!variables.empty(), "there is nothing to be kept: name a variable");
+    require(!variables.empty(), "there is nothing to be kept", host::cure, "name a variable");
     std::set<std::string> names{"myriad", "instance", "chunk"};
     const auto add_name = [&](const std::string& name, std::string_view what) {
         check_name(name, what);

@@ -138,7 +138,7 @@ bool all_objects(const json& list) {
 }
 
 // Adds what differs to a list, by the path of keys. The order of keys is no difference.
-void compare(const std::string& path, const json& stored, const json& here, std::vector<std::string>& found) {
+void compare(const std::string& path, const json& stored, const json& here, std::vector<statement>& found) {
     if (stored == here) return;
     if (stored.is_object() && here.is_object()) {
         const std::string prefix = path.empty() ? "" : path + '.';
@@ -158,7 +158,8 @@ void compare(const std::string& path, const json& stored, const json& here, std:
         if (text.size() > 100) text = text.substr(0, 97) + "...";
         return text;
     };
-    found.push_back(path + ": " + shown(stored) + " in the store, " + shown(here) + " here");
+    found.push_back(
+        statement_of(host::named_option(path), ": ", shown(stored), " in the store, ", shown(here), " here"));
 }
 
 // What must agree of a layout, by name and not by place.
@@ -285,14 +286,14 @@ stored_group group_of(std::string_view text, const std::string& path) {
     const json read = json::parse(text, nullptr, false);
     require(!read.is_discarded(), path, " is no JSON, so it is damaged: ", restore_advice);
     require(read.is_object() && read.contains("attributes") && read.at("attributes").contains("myriad"), path,
-            " is not from a study of Myriad: give another folder");
+            " is not from a study of Myriad", host::cure, "give another folder");
     stored_group group;
     layout& content = group.content;
     try {
         const json& own = read.at("attributes").at("myriad");
         require(own.at("format") == store_format || own.at("format") == 1, path, " has format ",
-                own.at("format").dump(), ", and this version of Myriad knows 1 and ", store_format,
-                ": use the version that wrote it, ", own.at("version").dump());
+                own.at("format").dump(), ", and this version of Myriad knows 1 and ", store_format, host::cure,
+                "use the version that wrote it, ", own.at("version").dump());
         const seal its = seal_of(text);
         require(its.stored.empty() || its.is_right(), path, " is damaged (its checksum is ", its.computed,
                 " and should be ", its.stored, "): ", restore_advice);
@@ -347,9 +348,9 @@ bool same_json(std::string_view a, std::string_view b) {
     return !read.is_discarded() && read == json::parse(b, nullptr, false);
 }
 
-std::vector<std::string> differences(const layout& stored, const layout& here) {
+std::vector<statement> differences(const layout& stored, const layout& here) {
     const json a = comparable(stored), b = comparable(here);
-    std::vector<std::string> found;
+    std::vector<statement> found;
     compare("", a.at("description"), b.at("description"), found);
     for (const char* const part : {"grid", "order of the grid", "variables", "coordinates"}) {
         // The order matters only if the rest of the grid agrees.

@@ -103,8 +103,8 @@ void say_crashed(int) {
 // ---------------------------------------------------------------------------------------------------------------------
 
 error no_process(int code) {
-    return error(message("no process can be started: ", std::generic_category().message(code),
-                         ": end other programs, or free memory, and try again"));
+    return error(statement_of("no process can be started: ", std::generic_category().message(code), host::cure,
+                              "end other programs, or free memory, and try again"));
 }
 
 /// A process that is ended if it has not ended by itself.

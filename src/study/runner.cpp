@@ -37,7 +37,7 @@ struct used_device {
     const std::size_t number;
     std::mutex turn;  // of the thread that integrates
     std::atomic<bool> failed{false};
-    marked_text why;                     // it failed
+    statement why;                       // it failed
     std::atomic<bool> exploring{false};  // a thread has its first chunk, which shows how fast it is
 };
 
@@ -173,7 +173,7 @@ private:
             } else if (std::all_of(devices_.begin(), devices_.end(),
                                    [](const used_device& u) { return u.failed.load(); })) {
                 fail(std::make_exception_ptr(
-                    error(marked_message("no device is left: the last one failed with: ", d.why))));
+                    error(statement_of("no device is left: the last one failed with: ", d.why))));
             }
         } catch (...) {
             fail(std::current_exception());
@@ -379,10 +379,9 @@ private:
     void halve(std::int64_t& piece, std::int64_t count, chunk_solver& solver, const std::string& why) {
         solver.clear();
         if (count == 1)
-            throw out_of_memory(marked_message("there is not enough memory for the values of chunks of ",
-                                               content().chunk,
-                                               " instances: ", host::phrase("smaller_chunk", "make chunk smaller"),
-                                               ", keep less, or use fewer devices (", why, ')'));
+            throw out_of_memory(statement_of("there is not enough memory for the values of chunks of ", content().chunk,
+                                             " instances", host::cure, host::cures::smaller_chunk,
+                                             ", keep less, or use fewer devices (", why, ')'));
         piece = (count + 1) / 2;
         warn(message("memory is short, so ", piece, " instances are integrated at a time: ", why));
     }
@@ -453,7 +452,7 @@ private:
     }
     void drop(used_device& d, const std::exception& why) {
         const auto* const known = dynamic_cast<const error*>(&why);
-        d.why = {why.what(), known != nullptr ? known->marks() : std::vector<mark>()};
+        d.why = known != nullptr ? known->said() : statement(why.what());
         d.failed = true;
         sharing_.drop(d.number);
         warn(message("device ", d.where.name(),
@@ -481,10 +480,10 @@ private:
         stopping_ = true;
         changed_.notify_all();
     }
-    static void add_new(std::vector<std::string>& to, const std::vector<std::string>& from) {
+    static void add_new(std::vector<statement>& to, const std::vector<statement>& from) {
         constexpr std::size_t most = 16;
-        for (const std::string& text : from)
-            if (to.size() < most && std::find(to.begin(), to.end(), text) == to.end()) to.push_back(text);
+        for (const statement& note : from)
+            if (to.size() < most && std::find(to.begin(), to.end(), note) == to.end()) to.push_back(note);
     }
 
     void finish_reductions() {

@@ -33,7 +33,8 @@ std::size_t bytes_of(std::int64_t count) { return static_cast<std::size_t>(count
 
 // Where it is also after the process has gone to another folder.
 std::string absolute(const std::string& folder) {
-    require(!folder.empty(), host::named_option("store", "the folder"), " of a study has no name: give one");
+    require(!folder.empty(), host::named_option("store", "the folder"), " of a study has no name", host::cure,
+            "give one");
     refuse_zero_byte(folder);
     std::error_code unknown;
     const std::filesystem::path path = std::filesystem::absolute(folder, unknown);
@@ -44,6 +45,7 @@ std::string absolute(const std::string& folder) {
 struct found_group {
     stored_group group;
     std::string text, damage;
+    statement advice = {};  // to those who only read, besides what `damage` says
 };
 
 std::string group_path(const std::string& folder) { return folder + "/zarr.json"; }
@@ -77,36 +79,35 @@ std::optional<found_group> find_group(file_system& files, const std::string& fol
             throw;
         }
     }
-    if (auto copy = copied_group(files, folder, path + " is missing")) return copy;
+    if (auto copy = copied_group(files, folder, path + " is missing")) {
+        copy->advice =
+            statement_of(host::cure, "start the study again, which restores it from its copy myriad/group.json");
+        return copy;
+    }
     // A start that was interrupted early leaves this.
     std::erase(names, "myriad");
     if (names.empty()) return std::nullopt;
     std::sort(names.begin(), names.end());
     host::refuse({host::named_option("store", "the folder"), " ", folder, " is not empty and holds no study (it has ",
-                  names.front(), names.size() > 1 ? " and others" : "", "): give a new folder"});
+                  names.front(), names.size() > 1 ? " and others" : "", ")", host::cure, "give a new folder"});
 }
 
 // For readers, who have nothing to restore it with.
 std::optional<found_group> whole_group(file_system& files, const std::string& folder) {
     std::optional<found_group> found = find_group(files, folder);
-    if (found && !found->damage.empty())
-        host::refuse({found->damage, found->damage.ends_with("missing")
-                                         ? ": start the study again, which restores it from its copy myriad/group.json"
-                                         : ""});
+    if (found && !found->damage.empty()) host::refuse({found->damage, found->advice});
     return found;
 }
 
 void refuse_other(const layout& stored, const layout& here, const std::string& folder) {
-    const std::vector<std::string> found = differences(stored, here);
+    const std::vector<statement> found = differences(stored, here);
     if (found.empty()) return;
-    // The first difference is the subject, in which a study's file or call is to be corrected.
-    const std::string key = found[0].substr(0, found[0].find(':'));
-    std::string others;
-    for (std::size_t i = 1; i < found.size() && i < 10; ++i) others += "\n  " + found[i];
-    if (found.size() > 10) others += message("\n  and ", found.size() - 10, " more");
-    host::refuse({"the folder ", folder, " holds the results of another study, which differs in\n  ",
-                  host::named_option(key), found[0].substr(key.size()), others, "\ngive another ",
-                  host::named_option("store", "folder"), ", or the same study"});
+    statement list;
+    for (std::size_t i = 0; i < found.size() && i < 10; ++i) list = statement_of(list, "\n  ", found[i]);
+    if (found.size() > 10) list = statement_of(list, "\n  and ", found.size() - 10, " more");
+    host::refuse({"the folder ", folder, " holds the results of another study, which differs in", list,
+                  host::cure_begins{"\n"}, "give another ", host::named_option("store", "folder"),
+                  ", or the same study"});
 }
 
 // Again if another process took this one for dead and removed its temporary files, as often as that happens; but not if
@@ -162,7 +163,8 @@ struct store::implementation : store_files {
         return finished[bytes_of(chunk)];
     }
     void require_writable() const {
-        require(self != nullptr, "the store ", folder, " was opened for reading: use store::create_or_resume");
+        require(self != nullptr, "the store ", folder, " was opened for reading", host::cure,
+                "use store::create_or_resume");
     }
 
     // -----------------------------------------------------------------------------------------------------------------
@@ -502,7 +504,7 @@ struct store::implementation : store_files {
         const auto [need, have] = host::bytes_texts(static_cast<double>(left), static_cast<double>(free));
         require(left <= free, "the ", missing, " chunks ", coordinates_left ? "and the coordinates " : "",
                 "that are left take ", need, ", and the disk of ", host::named_option("store", folder), " has ", have,
-                " free: free space, give a folder on a larger disk, or keep less");
+                " free", host::cure, "free space, give a folder on a larger disk, or keep less");
     }
 
     // -----------------------------------------------------------------------------------------------------------------
@@ -537,8 +539,8 @@ struct store::implementation : store_files {
         if (columns.size() != used) {
             for (const column& c : columns) {
                 const std::size_t v = content.find(c.variable);
-                require(content.variables[v].extent != along::nothing, "variable ", c.variable,
-                        " is not of a chunk: use store::write");
+                require(content.variables[v].extent != along::nothing, "variable ", c.variable, " is not of a chunk",
+                        host::cure, "use store::write");
             }
             host::refuse({"chunk ", chunk, " has ", columns.size(), " columns for ", used, " variables"});
         }
@@ -600,7 +602,7 @@ struct store::implementation : store_files {
         const std::optional<std::string> text = read_text(files, group_path(folder));
         if (!text) throw file_error("looking for", group_path(folder), ENOENT);
         require(*text == group_text, host::named_option("store", "the folder"), " ", folder,
-                " holds something else than when this study began: give each study a folder of its own");
+                " holds something else than when this study began", host::cure, "give each study a folder of its own");
     }
 
     // Of a study that runs.
@@ -625,8 +627,8 @@ store::~store() = default;
 store store::create_or_resume(const std::string& given, const layout& wanted, const store_options& options) {
     wanted.check();
     const std::string folder = absolute(given);
-    require(options.expiry.count() > 0, "the expiry of claims is ", options.expiry.count(),
-            " ms (must be positive): give seconds to minutes");
+    require(options.expiry.count() > 0, "the expiry of claims is ", options.expiry.count(), " ms (must be positive)",
+            host::cure, "give seconds to minutes");
     file_system& files = options.files ? *options.files : file_system::real();
     std::optional<found_group> there = find_group(files, folder);
     const bool is_new = !there;
@@ -700,10 +702,10 @@ store store::create_or_resume(const std::string& given, const layout& wanted, co
 store store::open(const std::string& given, file_system* used) {
     const std::string folder = absolute(given);
     file_system& files = used ? *used : file_system::real();
-    require(names_in(files, folder).has_value(), "there is no folder ", folder, ": give that of a study");
+    require(names_in(files, folder).has_value(), "there is no folder ", folder, host::cure, "give that of a study");
     const std::optional<found_group> there = whole_group(files, folder);
-    require(there.has_value(), host::named_option("store", "the folder"), " ", folder,
-            " is empty: give that of a study");
+    require(there.has_value(), host::named_option("store", "the folder"), " ", folder, " is empty", host::cure,
+            "give that of a study");
     auto made = std::make_unique<implementation>(files, folder, *there);
     made->refresh();
     return store(std::move(made));
@@ -727,8 +729,8 @@ bool store::done(std::int64_t chunk) const {
 
 bool store::written(std::string_view variable) const {
     const std::size_t v = self_->content.find(variable);
-    require(self_->content.variables[v].extent == along::nothing, "variable ", variable,
-            " is written chunk by chunk: ask whether its chunks are done");
+    require(self_->content.variables[v].extent == along::nothing, "variable ", variable, " is written chunk by chunk",
+            host::cure, "ask whether its chunks are done");
     return self_->has_result(v);
 }
 
@@ -826,8 +828,8 @@ void store::write(const column& values) {
     implementation& s = *self_;
     s.require_writable();
     const std::size_t v = s.content.find(values.variable);
-    require(s.content.variables[v].extent == along::nothing, "variable ", values.variable,
-            " is written chunk by chunk: use store::commit");
+    require(s.content.variables[v].extent == along::nothing, "variable ", values.variable, " is written chunk by chunk",
+            host::cure, "use store::commit");
     const std::span<const std::byte> bytes = s.bytes_for(v, std::span(&values, 1), s.variables[v].shape.items());
     s.with_writer([&] { s.write_result(v, bytes); });
 }

@@ -59,8 +59,6 @@ chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_p
 
 /// Refuses chunks whose values alone do not fit: they are in memory as a whole, however few instances are integrated at
 /// a time.
-const host::message_part smaller_chunk = host::phrase("smaller_chunk", "make chunk smaller");
-
 void check_memory(double bytes_per_instance, const studies::layout& content, const std::vector<device>& devices,
                   const host::message_part& advice) {
     host::memory_need need;
@@ -87,7 +85,7 @@ std::ostream& operator<<(std::ostream& stream, const study_result& r) {
     }
     text += message(first && r.instances > 0 ? "" : "; ", r.seconds, " s",
                     r.complete ? "" : "; stopped before all were done", '\n');
-    for (const std::string& note : r.notes) text += message("note: ", note, '\n');
+    for (const statement& note : r.notes) text += message("note: ", note, '\n');
     for (const std::string& warning : r.warnings) text += message("warning: ", warning, '\n');
     return stream << text;
 }
@@ -177,7 +175,7 @@ void any_study::store(std::string folder, const studies::store_options& how) {
 }
 
 studies::study_request any_study::request() const {
-    require(!options.progress, "options.progress is for solve: set the study's own progress instead");
+    require(!options.progress, "options.progress is for solve", host::cure, "set the study's own progress instead");
     require(chunk >= 0, host::named_option("chunk"), " is ", chunk, " (must be positive, or 0 for a choice by memory)");
     myriad::options how = options;
     how.invalid_instances = invalid_instances::mark;
@@ -204,7 +202,8 @@ struct any_study::planned_run {
 any_study::planned_run any_study::plan() const {
     studies::run_settings settings{.devices = devices, .progress = progress, .warning = warning};
     require(!chunk_counter || !folder_.empty(),
-            "a study that several processes run together needs a folder that they share: give it one by store");
+            "a study that several processes run together needs a folder that they share", host::cure,
+            "give it one by store");
     if (settings.devices.empty()) settings.devices.push_back(device::best());
     for (const device& d : settings.devices) model_->check(d, options);
     studies::study_plan made = studies::plan_study(request());
@@ -213,7 +212,7 @@ any_study::planned_run any_study::plan() const {
     settings.piece = sizes.piece;
     const auto bytes = static_cast<double>(on_devices(*model_, made, settings.devices) ? made.bytes_needed_on_host()
                                                                                        : made.bytes_per_instance());
-    check_memory(bytes, made.content, settings.devices, marked_message(smaller_chunk, ", or keep less"));
+    check_memory(bytes, made.content, settings.devices, statement_of(host::cures::smaller_chunk, ", or keep less"));
     return {std::move(settings), std::move(made), bytes};
 }
 
@@ -223,8 +222,7 @@ std::unique_ptr<studies::result_keeper> any_study::open_store(const planned_run&
         if (d.which() == device::kind::cpu) options.computed_by = model_->arithmetic_on(d);
     auto keeper = studies::keep_in_store(folder_, planned.plan.content, options, chunk_counter);
     check_memory(planned.host_bytes, keeper->content(), planned.settings.devices,
-                 marked_message("use fewer devices, or ",
-                                host::phrase("new_folder", "start the study in a new folder with a smaller chunk")));
+                 statement_of("use fewer devices, or ", host::cures::new_folder));
     return keeper;
 }
 
@@ -275,7 +273,8 @@ std::optional<studies::computed_chunk> any_study::compute(std::int64_t number, s
     plan.content.chunk = chunk_size;
     require(number >= 0 && number < plan.content.chunks(), "there is no chunk ", number, " in a study of ",
             plan.content.chunks());
-    check_memory(host_bytes, plan.content, settings.devices, marked_message("use fewer devices, or ", smaller_chunk));
+    check_memory(host_bytes, plan.content, settings.devices,
+                 statement_of("use fewer devices, or ", host::cures::smaller_chunk));
     studies::one_chunk_keeper keeper(plan.content, number);
     settings.stops = [&] { return stopped_ || keeper.done(); };
     studies::run_outcome outcome = studies::run_study(*model_, plan, keeper, settings);

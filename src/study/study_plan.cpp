@@ -263,7 +263,7 @@ private:
             try {
                 (void)json(text).dump();
             } catch (const json::exception&) {
-                throw error(message(what, " is no text in UTF-8: give it in that encoding"));
+                throw error(statement_of(what, " is no text in UTF-8", host::cure, "give it in that encoding"));
             }
         };
         check("the title", asked_.title);
@@ -281,17 +281,16 @@ private:
                 " has times for each instance of one call: a study has none, give times or "
                 "evenly");
         require(asked_.options.time_limit == 0, host::named_option("time_limit"),
-                " is given, but a study keeps what it has done and goes on where it was stopped: leave it "
-                "out, stop the run when it is time, or bound the steps of an instance by max_steps");
+                " is given, but a study keeps what it has done and goes on where it was stopped", host::cure,
+                "leave it out, stop the run when it is time, or bound the steps of an instance by max_steps");
         if (!asked_.generator.empty()) return;
         for (const component& c : names_.all()) {
             if (c.kind == accessory || is_integer(c.kind)) continue;
             const auto& entries = asked_.axes.entries();
             const bool is_set =
                 std::any_of(entries.begin(), entries.end(), [&](const axes::entry& e) { return e.what == c; });
-            require(is_set, host::named_component(c.full_name()),
-                    " has no value in any instance: give it an axis, a value by ", host::named_option("set"),
-                    ", or a generator of instances");
+            require(is_set, host::named_component(c.full_name()), " has no value in any instance", host::cure,
+                    "give it an axis, a value by ", host::named_option("set"), ", or a generator of instances");
         }
     }
 
@@ -307,7 +306,7 @@ private:
     quantity& add(origin from, std::string name, element type, bool stored, std::vector<dimension> inner = {},
                   std::vector<attribute> attributes = {}, const component& what = {}) {
         for (const quantity& q : plan_.quantities)
-            require(q.as.name != name, "two variables are called ", name, ": keep it once");
+            require(q.as.name != name, "two variables are called ", name, host::cure, "keep it once");
         attributes.insert(attributes.begin(), {"long_name", long_name(from, what)});
         plan_.quantities.push_back(
             {from, what, {std::move(name), type, std::move(inner), std::move(attributes)}, stored});

@@ -28,6 +28,36 @@ struct single {
 
 }  // namespace
 
+TEST_CASE("what the library says is said in the words of study files") {
+    using namespace myriad::host;
+    const single v("1");
+    CHECK_THROWS_WITH(placed(v.value(), "v",
+                             [] {
+                                 myriad::require(false, named_option("step"), " is not set", cure, cures::give_step,
+                                                 ", or ", cures::use_doubles);
+                             }),
+                      "a.toml:1:1: v: step is not set: give step under [options], or write real = \"double\"");
+    const auto said = myriad::statement_of("the tolerance of ",
+                                           message_part(myriad::part_kind::event, "event 1", {}, 1), " is too small");
+    CHECK(in_words_of_files(said, {"top", "bottom"}) == "the tolerance of event \"bottom\" is too small");
+    CHECK(in_words_of_files(said) == "the tolerance of event 1 is too small");
+}
+
+TEST_CASE("no message about a study advises in C++") {
+    using namespace myriad::host;
+    for (int c = 0; c < static_cast<int>(std::size(all_cures)); ++c) {
+        const auto known = static_cast<cures>(c);
+        // Studies mark such instances, have no other records and samples than they keep, and scale no tolerances.
+        if (known == cures::mark_invalid || known == cures::name_in_record || known == cures::name_in_samples ||
+            known == cures::scale_tolerances)
+            continue;
+        const std::string words = in_words_of_files(myriad::statement_of(known));
+        INFO(words);
+        CHECK(words.find("::") == std::string::npos);
+        CHECK(words.find("ensemble") == std::string::npos);
+    }
+}
+
 TEST_CASE("numbers are numbers, integers, or multiples of pi") {
     constexpr double pi = std::numbers::pi;
     CHECK(single("1.5").number() == 1.5);

@@ -85,12 +85,14 @@ TEST_CASE("numbers in a description are equal if they are the same number") {
     b.description = R"({"z": {"deep": {"deeper": null}}, "y": [1e-1, 2.0], "x": 1.0})";
     CHECK(differences(a, b).empty());
     b.description = R"({"z": {"deep": {"deeper": "0"}}, "y": [1e-1, 3], "x": 1.0000000000000002})";
-    CHECK(differences(a, b) == std::vector<std::string>{"x: 1 in the store, 1.0000000000000002 here",
-                                                        "y: [0.1,2] in the store, [0.1,3] here",
-                                                        "z.deep.deeper: nothing in the store, \"0\" here"});
+    const std::vector<myriad::statement> found = differences(a, b);
+    CHECK(std::vector<std::string>(found.begin(), found.end()) ==
+          std::vector<std::string>{"x: 1 in the store, 1.0000000000000002 here",
+                                   "y: [0.1,2] in the store, [0.1,3] here",
+                                   "z.deep.deeper: nothing in the store, \"0\" here"});
     a.description = R"({"x": ")" + std::string(500, 'a') + "\"}";
     b.description = R"({"x": "b"})";
-    CHECK(differences(a, b).at(0).size() < 150);
+    CHECK(differences(a, b).at(0).text().size() < 150);
 }
 
 TEST_CASE("the contents name axes in place of instances, and have no partial results") {

@@ -24,7 +24,7 @@ namespace myriad::studies::inline MYRIAD_ABI {
 /// How an integration went.
 struct solved {
     std::array<std::int64_t, status_count> by_status{};
-    std::vector<std::string> notes;
+    std::vector<statement> notes;
 };
 
 /// Instances of a study on one device, one part after the other. One thread uses it at a time.

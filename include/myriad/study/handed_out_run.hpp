@@ -25,7 +25,7 @@ namespace myriad::studies::inline MYRIAD_ABI {
 struct computed_chunk {
     std::vector<std::pair<std::string, std::vector<std::byte>>> columns;  ///< by variable, as a store takes them
     chunk_record record;
-    std::vector<std::string> notes;  ///< of the report of `solve`
+    std::vector<statement> notes;  ///< of the report of `solve`
 };
 
 /// Hands out chunks and keeps what comes back, by `any_study::hand_out`. One thread uses it at a time.
@@ -51,14 +51,14 @@ public:
     result_keeper& keeper() { return *keeper_; }
     std::int64_t instances() const { return instances_; }
     const std::array<std::int64_t, status_count>& by_status() const { return by_status_; }
-    const std::vector<std::string>& notes() const { return notes_; }
+    const std::vector<statement>& notes() const { return notes_; }
 
 private:
     std::unique_ptr<const study_plan> plan_;
     std::unique_ptr<result_keeper> keeper_;
     std::int64_t instances_ = 0;  // committed
     std::array<std::int64_t, status_count> by_status_{};
-    std::vector<std::string> notes_;
+    std::vector<statement> notes_;
 };
 
 /// Keeps the values of one chunk in memory, and hands out no other.

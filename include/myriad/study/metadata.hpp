@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "myriad/host/core/error.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/layout.hpp"
 
@@ -56,8 +57,8 @@ std::string contents_json(const layout& content);
 bool same_json(std::string_view a, std::string_view b);
 
 /// What differs between the layout in a store and another, as "options.relative_tolerance: 1e-09 in the store, 1e-08
-/// here". Chunk sizes and attributes may differ.
-std::vector<std::string> differences(const layout& stored, const layout& here);
+/// here", whose subject is the option. Chunk sizes and attributes may differ.
+std::vector<statement> differences(const layout& stored, const layout& here);
 
 /// The global attributes that an exported file gets: the entries of the description, with dots in their names.
 std::vector<attribute> attributes_of(std::string_view description);

@@ -36,7 +36,8 @@ struct run_outcome {
     std::int64_t instances = 0;
     double seconds = 0;
     std::array<std::int64_t, status_count> by_status{};
-    std::vector<std::string> notes, warnings;
+    std::vector<statement> notes;
+    std::vector<std::string> warnings;
 };
 
 /// Computes all chunks that are not done, and then the reductions. Callbacks are called in this thread. A GPU that

@@ -110,7 +110,7 @@ public:
     /// Throws what `solve` throws for the first `count` instances on the host.
     void check(std::int64_t count);
     /// Notes about the first `count` instances on the device, which replace those on the host.
-    std::vector<std::string> notes(std::int64_t count);
+    std::vector<statement> notes(std::int64_t count);
     /// Instances that half of the device's free memory has room for.
     std::int64_t affordable() const;
     /// See `cuda::engine`.

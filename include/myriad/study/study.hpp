@@ -66,7 +66,7 @@ public:
     double seconds = 0;          ///< that it took
     /// Instances of this run with each status.
     std::array<std::int64_t, status_count> by_status{};
-    std::vector<std::string> notes;     ///< of the reports of `solve`, each once
+    std::vector<statement> notes;       ///< of the reports of `solve`, each once
     std::vector<std::string> warnings;  ///< devices that failed, memory that was short
 
     /// Number of instances of this run with that status.

@@ -3,7 +3,8 @@
 // once, except for kernels, which run in a thread until their stream is used again, and programs are shared objects of
 // device.hpp, whose threads are run one block at a time, each with a stack of its own. MYRIAD_SIMULATED_GPUS says how
 // many devices there are, MYRIAD_SIMULATED_CAPABILITY which, MYRIAD_SIMULATED_MEGABYTES what memory each has, and
-// MYRIAD_SIMULATED_LAUNCHES how many kernels the last one runs before it fails.
+// MYRIAD_SIMULATED_LAUNCHES how many kernels the last one runs before it fails, and MYRIAD_SIMULATED_FULL_AFTER how
+// many before another program takes what is left of its memory.
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -36,7 +37,9 @@ int number_from(const char* variable, int otherwise) {
 const std::size_t memory_per_device = static_cast<std::size_t>(number_from("MYRIAD_SIMULATED_MEGABYTES", 1024)) << 20;
 int devices() { return number_from("MYRIAD_SIMULATED_GPUS", 1); }
 
-std::atomic<int> launches_left{number_from("MYRIAD_SIMULATED_LAUNCHES", 1 << 30)};  // of the last device
+// Of the last device.
+std::atomic<int> launches_left{number_from("MYRIAD_SIMULATED_LAUNCHES", 1 << 30)};
+std::atomic<int> launches_before_full{number_from("MYRIAD_SIMULATED_FULL_AFTER", 1 << 30)};
 
 thread_local int current = -1;  // device; contexts are its number plus one
 /// Whether the current device works.
@@ -241,7 +244,7 @@ DRIVER cuCtxGetDevice(int* device) {
 DRIVER cuCtxSynchronize() { return state(); }  // for work of other libraries, which there is none of
 DRIVER cuMemAlloc_v2(std::uintptr_t* memory, std::size_t bytes) {
     NEEDS_CONTEXT;
-    if (bytes > memory_per_device) return out_of_memory;
+    if (bytes > memory_per_device || (current == devices() - 1 && launches_before_full <= 0)) return out_of_memory;
     void* const p = std::aligned_alloc(512, (bytes + 511) / 512 * 512);
     std::memset(p, 0xa5, bytes);
     const std::lock_guard lock(mutex);
@@ -370,7 +373,10 @@ DRIVER cuOccupancyMaxActiveBlocksPerMultiprocessor(int* blocks, const void*, int
 DRIVER cuLaunchKernel(const void* function, unsigned blocks, unsigned rows, unsigned, unsigned threads, unsigned,
                       unsigned, unsigned, void* where, void** arguments, void**) {
     NEEDS_CONTEXT;
-    if (current == devices() - 1) --launches_left;
+    if (current == devices() - 1) {
+        --launches_left;
+        --launches_before_full;
+    }
     const kernel code = *static_cast<const kernel*>(function);
     const auto work = [=, copies = code.copy(arguments)] {
         static std::mutex one_at_a_time;

@@ -24,12 +24,11 @@ openmp::instruction_set choose_instruction_set(const compiled_sets& compiled) {
         if (cpu_has(set) && (wanted.empty() || wanted == name_of(set))) return set;
         names += (names.empty() ? "" : ", ") + std::string(name_of(set));
     }
-    require(wanted.empty(), "MYRIAD_INSTRUCTION_SET is \"", wanted, "\", but this model was compiled for ", names,
-            ": name one of these that the CPU has, or unset the variable");
-    throw error(
-        message("this model was compiled for ", names,
-                ", which this CPU lacks: build it with -DMYRIAD_ARCH=x86-64-v2, or for several instruction sets with "
-                "-DMYRIAD_ARCH=\"x86-64-v2;x86-64-v3;x86-64-v4\""));
+    require(wanted.empty(), "MYRIAD_INSTRUCTION_SET is \"", wanted, "\", but this model was compiled for ", names, cure,
+            "name one of these that the CPU has, or unset the variable");
+    throw error(statement_of("this model was compiled for ", names, ", which this CPU lacks", cure,
+                             "build it with -DMYRIAD_ARCH=x86-64-v2, or for several instruction sets with "
+                             "-DMYRIAD_ARCH=\"x86-64-v2;x86-64-v3;x86-64-v4\""));
 }
 
 namespace {
@@ -41,8 +40,7 @@ run_statistics run_by_cost(const cpu_kernel<R>& kernel, any_arguments<R> all, co
     memory_need need;
     need.add("costs", static_cast<double>(all.size + count) * sizeof(std::uint32_t));
     need.check(message("sorting ", count, " instances by cost"),
-               marked_message("take another schedule, or ",
-                              phrase("smaller_parts", "integrate the ensemble in smaller parts")));
+               statement_of("take another schedule, or ", cures::smaller_parts));
     std::vector<std::uint32_t> cost(static_cast<std::size_t>(all.size));
     run_options silent = options;  // no instance is done after its first phase
     silent.progress = nullptr;
@@ -74,8 +72,8 @@ run_statistics run_kernel(const cpu_kernel<R>& kernel, const any_arguments<R>& a
     run_statistics used = sorted ? run_by_cost(kernel, all, watched) : kernel.run(all, watched);
     require(used.computed_as_written, "the model's file ", not_as_written);
     require(used.least_stack >= used.stack, "a thread has ", used.least_stack,
-            " bytes of stack, and the kernel of this model and method takes about ", used.stack,
-            ": set OMP_STACKSIZE to more, such as 8M, or unset it; a thread of your own that solves needs as much");
+            " bytes of stack, and the kernel of this model and method takes about ", used.stack, cure,
+            "set OMP_STACKSIZE to more, such as 8M, or unset it; a thread of your own that solves needs as much");
     if (failure) std::rethrow_exception(failure);
     used.instruction_set = name_of(kernel.set);
     return used;

@@ -44,15 +44,16 @@ device device::parse(std::string_view name) {
     if (name == "cuda") return found_gpu(0, name);
     if (name.substr(0, 4) == "cpu:") {
         const int threads = number_after(name, 4);
-        require(threads > 0, "device \"", name, "\" has no valid number of threads: write cpu:4 for four");
+        require(threads > 0, "device \"", name, "\" has no valid number of threads", host::cure,
+                "write cpu:4 for four");
         return cpu(threads);
     }
     if (name.substr(0, 5) == "cuda:") {
         const int number = number_after(name, 5);
-        require(number >= 0, "device \"", name, "\" has no valid number: write cuda:0 for the first GPU");
+        require(number >= 0, "device \"", name, "\" has no valid number", host::cure, "write cuda:0 for the first GPU");
         return found_gpu(number, name);
     }
-    host::refuse({"device \"", name, "\" is unknown: use auto, cpu, cpu:THREADS, cuda or cuda:NUMBER"});
+    host::refuse({"device \"", name, "\" is unknown", host::cure, "use auto, cpu, cpu:THREADS, cuda or cuda:NUMBER"});
 }
 
 std::string device::name() const {

@@ -16,12 +16,6 @@
 
 namespace myriad::host::inline MYRIAD_ABI {
 
-namespace {
-
-const message_part mark_invalid = phrase("mark_invalid", "set invalid_instances = invalid_instances::mark");
-
-}  // namespace
-
 bool events_may_stop(const options& o) {
     return std::any_of(o.events.begin(), o.events.end(), [](const event_options& e) { return e.stop_after > 0; });
 }
@@ -80,8 +74,8 @@ phases_left find_phases_left(const ensemble_data<R>& e, const options& o, std::i
                 from, std::min(std::abs(static_cast<double>(t_end)), from + length * static_cast<double>(o.phases)));
             const double least = 64 * static_cast<double>(std::numeric_limits<R>::epsilon()) * far;
             require(length >= least, named_option("phase_length"), " is ", length,
-                    ", of which rounding leaves next to nothing in instance ", i, ", where |t| gets to ", far,
-                    ": give phases of ", least, " or more, or shift t");
+                    ", of which rounding leaves next to nothing in instance ", i, ", where |t| gets to ", far, cure,
+                    "give phases of ", least, " or more, or shift t");
         }
         if (!until_the_end) continue;
         const double fit = length == 0 ? 1 : intervals_left(length, t, t_begin, t_end);
@@ -183,8 +177,8 @@ void data_check<R>::run() {
     const model_shape& shape = *data_.shape;
     for (int c = 0; c < shape.n_shared; ++c)
         require(std::isfinite(data_.shared.data()[c]), shape.shared(shape, c), " is ", data_.shared.data()[c],
-                std::isnan(data_.shared.data()[c]) ? " (never set, or set to NaN)" : "", ": ",
-                phrase("set_shared", "set it with ensemble.shared(...) before solving"));
+                std::isnan(data_.shared.data()[c]) ? " (never set, or set to NaN)" : "", cure,
+                message_part(cures::set_value, "set it with ensemble.shared(...) before solving"));
     for (int c = 0; c < shape.n_state; ++c) check(shape.state(shape, c), data_.state.component(c));
     for (int c = 0; c < shape.n_parameter; ++c) check(shape.parameter(shape, c), data_.parameter.component(c));
     if (data_.scales_tolerances()) check_positive_scales();
@@ -205,8 +199,8 @@ void data_check<R>::check_positive_scales() {
     for (std::int64_t i = 0; i < count_; ++i) {
         if (data_.ended.data()[i] != 0 || data_.tolerance_scale.data()[i] > 0) continue;
         require(options_.invalid_instances == invalid_instances::mark, "tolerance_scale is ",
-                data_.tolerance_scale.data()[i], " in instance ", i,
-                " (must be positive): give 1 for the tolerances of the options");
+                data_.tolerance_scale.data()[i], " in instance ", i, " (must be positive)", cure,
+                "give 1 for the tolerances of the options");
         data_.mark_invalid(i);
     }
 }
@@ -231,17 +225,17 @@ void data_check<R>::check(const component_label& label, const R* values, limit m
                                                                  : std::string(label.enumerator);
         const std::string advice =
             message("set it with ensemble.", label.what, '(', component, ") = ... before solving");
-        refuse({label, " is NaN in all ", bad, " instances: it was never set, or set to NaN; ",
-                phrase(message("set ", label.what), advice)});
+        refuse({label, " is NaN in all ", bad, " instances: it was never set, or set to NaN", cure_begins{"; "},
+                message_part(cures::set_value, advice)});
     }
     const bool endless = std::isinf(values[first]) && most == limit::end;
-    const marked_text advice =
-        endless ? marked_message(
+    const statement advice =
+        endless ? statement_of(
                       "an infinite time needs a phase_length, an event with stop_after, or a hook that "
                       "returns whether to end the phase")
-                : marked_message("correct the inputs, or ", mark_invalid, " to run the others");
+                : statement_of("correct the inputs, or ", cures::mark_invalid, " to run the others");
     refuse({label, " is not finite in ", bad, " of ", count_, " instances, first in instance ", first, " (",
-            values[first], "): ", advice});
+            values[first], ')', cure, advice});
 }
 
 template <class R>
@@ -253,11 +247,11 @@ void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_
     const auto size = static_cast<std::size_t>(std::int64_t{e.size}), per_instance = own.size() / size;
     if (!own.empty()) {
         require(own.size() % size == 0, named_option("samples.times_of_instances"), " has ", own.size(), " times for ",
-                size, " instances: give as many for each, those of instance 0 first");
+                size, " instances", cure, "give as many for each, those of instance 0 first");
         require(samples.capacity >= static_cast<std::int64_t>(per_instance) * (o.phases - samples.from_phase),
                 named_option("samples.capacity"), " is ", samples.capacity, ", but the chosen times give ",
                 static_cast<std::int64_t>(per_instance) * (o.phases - samples.from_phase),
-                " samples per instance in this call: raise the capacity");
+                " samples per instance in this call", cure, "raise the capacity");
     }
     if (own.empty()) {
         const bool common = e.has_common_domain();
@@ -285,15 +279,15 @@ void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_
             const bool falling = times.front() > times.back();
             for (std::size_t k = 1; k < times.size(); ++k)
                 require(falling ? times[k] < times[k - 1] : times[k] > times[k - 1], "the sample times of instance ", i,
-                        " are not in order at number ", k, " (", times[k], " after ", times[k - 1],
-                        "): give each time once, in the order in which the integration reaches them");
+                        " are not in order at number ", k, " (", times[k], " after ", times[k - 1], ")", cure,
+                        "give each time once, in the order in which the integration reaches them");
         }
         const auto begin = static_cast<double>(e.t_begin_of(i)), end = static_cast<double>(e.t_end_of(i));
         if (e.ended.data()[i] != 0 || std::isnan(begin) || std::isnan(end)) continue;
         if (o.invalid_instances == invalid_instances::mark && !std::isfinite(end - begin)) continue;
         if (times.empty()) {
             require(std::isfinite(end - begin), named_option("samples.evenly"), " divides the domain, but instance ", i,
-                    " is integrated from ", begin, " to ", end, ": give ", named_option("samples.times"),
+                    " is integrated from ", begin, " to ", end, cure, "give ", named_option("samples.times"),
                     ", or a finite t_end");
             continue;
         }
@@ -301,8 +295,8 @@ void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_
         const bool inside =
             end >= begin ? begin <= from && from <= to && to <= end : begin >= from && from >= to && to >= end;
         require(inside, named_option(own.empty() ? "samples.times" : "samples.times_of_instances"), " go from ", from,
-                " to ", to, ", but instance ", i, " is integrated from ", begin, " to ", end,
-                ": give times within the domain, in the order in which the integration reaches them");
+                " to ", to, ", but instance ", i, " is integrated from ", begin, " to ", end, cure,
+                "give times within the domain, in the order in which the integration reaches them");
     }
 }
 
@@ -321,16 +315,15 @@ void check_ended(const ensemble_data<R>& instances, const options& o, std::int64
                 name_of(instances.status_of(e.index)),
                 ") and takes no further part, but its state or parameters were set anew since",
                 anew == 1 ? std::string() : message(", as were those of ", anew - 1, anew == 2 ? " other" : " others"),
-                ": call restart() to start all instances again, or ", mark_invalid,
+                cure, "call restart() to start all instances again, or ", cures::mark_invalid,
                 " to leave those that have ended as they are");
 }
 
 template <class R>
 void check_scales(const ensemble_data<R>& e, bool method_scales) {
     require(method_scales || !e.scales_tolerances(),
-            "tolerance_scale is set, but the method has the same tolerances for all instances: ",
-            phrase("scale_tolerances",
-                   "use controlled<Method, tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE"));
+            "tolerance_scale is set, but the method has the same tolerances for all instances", cure,
+            cures::scale_tolerances);
 }
 
 template class data_check<double>;

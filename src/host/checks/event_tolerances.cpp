@@ -43,13 +43,12 @@ void check_event_tolerances(const ensemble_data<R>& e, const options& o, std::in
     }
     for (std::size_t j = 0; j < events; ++j)
         require(2 * too_fine[j].instances <= looked_at, "the ", named_option("events.tolerance", "tolerance"), " of ",
-                phrase(message("event ", j), message("event ", j)), " is ", tolerance_of(j),
+                message_part(part_kind::event, message("event ", j), {}, j), " is ", tolerance_of(j),
                 ", but rounding changes its function by ", too_fine[j].least, " in instance ", too_fine[j].worst,
-                ", and by more than the tolerance in most instances: raise the tolerance, leave it out for as close as "
+                ", and by more than the tolerance in most instances", cure,
+                "raise the tolerance, leave it out for as close as "
                 "t and the state resolve, scale or shift the function or t",
-                std::numeric_limits<R>::digits < 53
-                    ? marked_message(", or ", phrase("use_doubles", "use an ensemble of doubles"))
-                    : marked_text());
+                std::numeric_limits<R>::digits < 53 ? statement_of(", or ", cures::use_doubles) : statement());
 }
 
 template void check_event_tolerances(const ensemble_data<double>&, const options&, std::int64_t,

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "myriad/host/chunks/chunk_pipeline.hpp"
-#include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/polling_backoff.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
@@ -102,12 +101,7 @@ private:
     engine* meanwhile() {
         ask_whether_to_stop();
         if (checked_ == size_ || !may_hold_more() || pipeline_.busy_engines() >= chunks_at_a_time) return nullptr;
-        try {
-            return &pipeline_.add_engine(plan_.largest());
-        } catch (const error&) {  // another program has taken the memory meanwhile
-            most_engines_ = pipeline_.engine_count();
-            return nullptr;
-        }
+        return pipeline_.further_engine(plan_.largest());
     }
     /// Whether there is memory for more than `chunks_at_a_time`, with half of the device's remaining memory left free.
     bool may_hold_more() {

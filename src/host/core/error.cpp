@@ -2,11 +2,36 @@
 // Joins the parts of messages.
 #include "myriad/host/core/error.hpp"
 
+#include <algorithm>
 #include <locale>
 #include <ostream>
 #include <sstream>
 
-namespace myriad::host::inline MYRIAD_ABI {
+namespace myriad {
+
+namespace {
+
+bool is_separator(const statement_part& p) { return p.kind == part_kind::separator; }
+
+}  // namespace
+
+const statement_part* statement::subject() const {
+    for (const statement_part& p : parts)
+        if (p.kind == part_kind::option || p.kind == part_kind::component || p.kind == part_kind::event) return &p;
+    return nullptr;
+}
+std::span<const statement_part> statement::problem() const {
+    const auto end = std::find_if(parts.begin(), parts.end(), is_separator);
+    return {parts.begin(), end};
+}
+std::span<const statement_part> statement::cure() const {
+    const auto begin = std::find_if(parts.begin(), parts.end(), is_separator);
+    return {begin == parts.end() ? begin : begin + 1, parts.end()};
+}
+
+std::ostream& operator<<(std::ostream& out, const statement& s) { return out << s.text(); }
+
+namespace host::inline MYRIAD_ABI {
 
 void message_part::print(std::ostream& out) const {
     switch (kind_) {
@@ -25,33 +50,39 @@ void message_part::print(std::ostream& out) const {
         case kind::text:
             out << std::string_view(value_.text.begin, value_.text.size);
             return;
-        case kind::marked:
-            out << value_.marked->text();
+        case kind::said:
+            out << *value_.said;
             return;
         case kind::other:
             value_.other.print(out, value_.other.value);
     }
 }
 
-marked_text join(std::initializer_list<message_part> parts) {
+statement join(std::initializer_list<message_part> parts) {
     std::ostringstream out;
     out.imbue(std::locale::classic());
     out.precision(9);
-    std::vector<mark> marks;
+    statement made;
     for (const message_part& part : parts) {
-        const auto begin = static_cast<std::size_t>(out.tellp());
+        if (part.kind_ == message_part::kind::said && part.is_ == part_kind::text) {
+            const auto& more = part.value_.said->parts;
+            made.parts.insert(made.parts.end(), more.begin(), more.end());
+            continue;
+        }
+        out.str({});
         part.print(out);
-        if (part.has_role_)
-            marks.push_back({begin, static_cast<std::size_t>(out.tellp()) - begin, part.role_, std::string(part.key_)});
-        if (part.kind_ != message_part::kind::marked) continue;
-        for (mark inner : part.value_.marked->marks()) {
-            inner.begin += begin;
-            marks.push_back(inner);
+        // Texts that follow each other are one part.
+        if (part.is_ == part_kind::text && !made.parts.empty() && made.parts.back().kind == part_kind::text) {
+            made.parts.back().words += out.str();
+        } else {
+            made.parts.push_back({part.is_, out.str(), std::string(part.key_), part.number_});
         }
     }
-    return {out.str(), std::move(marks)};
+    return made;
 }
 
 void refuse(std::initializer_list<message_part> parts) { throw error(join(parts)); }
 
-}  // namespace myriad::host::inline MYRIAD_ABI
+}  // namespace host::inline MYRIAD_ABI
+
+}  // namespace myriad

@@ -80,15 +80,14 @@ template <class T>
 typename component_array<T>::memory component_array<T>::allocate(std::size_t components, std::size_t size) {
     if (components == 0 || size == 0) return nullptr;
     const double wanted = static_cast<double>(components) * static_cast<double>(size) * sizeof(T);
-    const message_part advice = phrase("smaller_parts", "integrate the ensemble in smaller parts");
     memory_need need;
     need.add("values", wanted);
-    need.check(message(components, " components of ", size, " values"), advice);
+    need.check(message(components, " components of ", size, " values"), cures::smaller_parts);
     const std::size_t bytes = components * size * sizeof(T);
     void* const found = wanted > 9e18 ? nullptr : new_pages(bytes);
     if (found == nullptr)
-        throw out_of_memory(marked_message("out of memory: ", bytes_text(wanted), " are wanted for ", components,
-                                           " components of ", size, " values: ", advice));
+        throw out_of_memory(statement_of("out of memory: ", bytes_text(wanted), " are wanted for ", components,
+                                         " components of ", size, " values", cure, cures::smaller_parts));
     return memory(static_cast<T*>(found), release{bytes});
 }
 

@@ -32,7 +32,7 @@ std::mutex& made_by_readers() {
 
 template <class R>
 std::int64_t checked(const model_shape& shape, std::int64_t size) {
-    require(size > 0, phrase("ensemble", "the ensemble"), " has ", size,
+    require(size > 0, named_option("ensemble", "the ensemble"), " has ", size,
             " instances (must be positive): there is nothing to integrate");
     ensemble_data<R>::memory_of(shape, size)
         .check(message("an ensemble of ", size, " instances"), "integrate it in smaller parts, one after the other");
@@ -57,7 +57,7 @@ ensemble_data<R>::~ensemble_data() = default;
 
 template <class R>
 void ensemble_data<R>::require_present() const {
-    require(size > 0, "this ensemble was moved away: use the one that it was moved to");
+    require(size > 0, "this ensemble was moved away", cure, "use the one that it was moved to");
 }
 template <class R>
 occupancy::claim ensemble_data<R>::take() {
@@ -112,7 +112,7 @@ const component_array<R>& ensemble_data<R>::next_steps() const {
 }
 template <class R>
 const component_array<std::int64_t>& ensemble_data<R>::counter(component_array<std::int64_t> arrays::*which) const {
-    require(counts(), "no work was counted: integrate with counting = counting::on");
+    require(counts(), "no work was counted", cure, "integrate with counting = counting::on");
     const auto& counted = this->*which;
     return counted.components() > 0 ? counted : on_demand(nothing_counted, std::int64_t{0});
 }
@@ -164,7 +164,7 @@ void ensemble_data<R>::fill_domain(instance_arrays<array_pointer, R>& pointers) 
 template <class R>
 myriad::status ensemble_data<R>::status_of(std::int64_t i) const {
     require_present();
-    require(i >= 0 && i < size, "instance ", i, " does not exist: ", phrase("ensemble", "the ensemble"), " has ",
+    require(i >= 0 && i < size, "instance ", i, " does not exist: ", named_option("ensemble", "the ensemble"), " has ",
             std::int64_t{size}, " instances");
     return this->status.data()[i];
 }
@@ -227,7 +227,7 @@ void ensemble_data<R>::expect_phases(std::int64_t phases) {
     if (phases_asked + phases > most)  // those that have ended did fewer
         phases_asked = *std::max_element(this->phase.data(), this->phase.data() + size);
     require(phases_asked + phases <= most, phases, " phases are asked for after ", phases_asked,
-            ", and an instance can do ", most, ": call restart() to count from zero");
+            ", and an instance can do ", most, cure, "call restart() to count from zero");
     phases_asked += phases;
 }
 template <class R>

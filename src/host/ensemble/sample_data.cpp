@@ -15,7 +15,7 @@ sample_data<R>::sample_data(int n_state, const sample_options& o, std::int64_t o
     std::int16_t columns = 0;
     for (const int c : o.states) column[static_cast<std::size_t>(c)] = columns++;
     require(capacity <= std::numeric_limits<std::int64_t>::max() / size, named_option("samples.capacity"), " ",
-            o.capacity, " times ", of_instances, " instances exceeds any memory: take fewer samples");
+            o.capacity, " times ", of_instances, " instances exceeds any memory", cure, "take fewer samples");
     const std::int64_t cells = size * capacity;
     time = component_array<R>(1, cells, std::numeric_limits<R>::quiet_NaN());
     values = component_array<R>(columns, cells, std::numeric_limits<R>::quiet_NaN());
@@ -29,8 +29,7 @@ template <class R>
 const R* sample_data<R>::component(std::int64_t c) const {
     const bool exists = c >= 0 && c < static_cast<std::int64_t>(column.size());
     const int at = exists ? column[static_cast<std::size_t>(c)] : -1;
-    require(at >= 0, "state ", c,
-            " was not sampled: ", phrase("name_in_samples", "name it in options::samples.states"));
+    require(at >= 0, "state ", c, " was not sampled", cure, cures::name_in_samples);
     return values.component(at);
 }
 template <class R>

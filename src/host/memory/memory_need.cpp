@@ -126,9 +126,9 @@ void memory_need::check(const std::string& who, const message_part& advice, memo
     const auto [needed, there] = bytes_texts(bytes(), left.bytes);
     std::string parts;
     for (const auto& [part, size] : parts_) parts += message(parts.empty() ? "" : ", ", part, ' ', bytes_text(size));
-    throw out_of_memory(marked_message("out of memory: ", who, " would take ", needed,
-                                       parts_.size() > 1 ? " (" + parts + ')' : std::string(), ", and ", there, " of ",
-                                       left.of, " are left: ", advice));
+    throw out_of_memory(statement_of("out of memory: ", who, " would take ", needed,
+                                     parts_.size() > 1 ? " (" + parts + ')' : std::string(), ", and ", there, " of ",
+                                     left.of, " are left", cure, advice));
 }
 
 }  // namespace myriad::host::inline MYRIAD_ABI

@@ -21,7 +21,8 @@ std::int64_t most_steps(int digits) { return digits > 31 ? 2'000'000'000 : 16'00
 
 void check_tolerance_count(const char* name, const per_component& t, std::size_t components) {
     require(t.size() == 1 || t.size() == components, named_option(name), " has ", t.size(),
-            " values, but the model has ", components, " state components: give one value for all, or one for each");
+            " values, but the model has ", components, " state components", cure,
+            "give one value for all, or one for each");
 }
 /// "must be positive and finite": a range in words.
 std::string words_of(const number_range& r) {
@@ -55,14 +56,14 @@ void check_each(const option_limits& limits, const Group& given, const char* wha
         const auto name = [&] { return message(what, e.name); };
         if constexpr (std::is_enum_v<T>) {
             if (name_of_choice(value) != nullptr) return;
-            refuse({named_option(key(), name()), " is ", static_cast<int>(value), ", which is none: choose ",
+            refuse({named_option(key(), name()), " is ", static_cast<int>(value), ", which is none", cure, "choose ",
                     names_of_choices<T>()});
         } else if constexpr (std::is_same_v<T, std::int64_t> || std::is_same_v<T, double>) {
             const auto number = static_cast<double>(value);
             if (std::isnan(number) && std::isnan(static_cast<double>(initial.*e.member))) return;  // not given
             if (!e.range.contains(number))
                 refuse({named_option(key(), name()), " is ", value, " (", words_of(e.range), ")",
-                        e.cure != nullptr ? ": " : "", e.cure != nullptr ? e.cure : ""});
+                        e.cure != nullptr ? statement_of(cure, e.cure) : statement()});
             if (e.is_real()) limits.check_kept(key().c_str(), number, name().c_str());
         }
     });
@@ -70,8 +71,8 @@ void check_each(const option_limits& limits, const Group& given, const char* wha
 
 void check_samples(const sample_options& s, const options& o) {
     const int ways = (s.evenly != 0) + !s.times.empty() + !s.times_of_instances.empty() + (s.every != 0);
-    require(ways == 1, named_option("samples"), " names ", ways,
-            " of evenly, times, times_of_instances and every: choose exactly one");
+    require(ways == 1, named_option("samples"), " names ", ways, " of evenly, times, times_of_instances and every",
+            cure, "choose exactly one");
     require(s.from_phase < o.phases, named_option("samples.from_phase"), " is ", s.from_phase, ", but the call has ",
             o.phases, " phases (counted from 0): nothing would be sampled");
     if (s.every != 0) return;
@@ -84,8 +85,8 @@ void check_samples(const sample_options& s, const options& o) {
         rising = rising && s.times[k] > s.times[k - 1];
         falling = falling && s.times[k] < s.times[k - 1];
         require(rising || falling, named_option("samples.times"), " are not in order at number ", k, " (", s.times[k],
-                " after ", s.times[k - 1],
-                "): give each time once, in the order in which the integration reaches them");
+                " after ", s.times[k - 1], ")", cure,
+                "give each time once, in the order in which the integration reaches them");
     }
     if (!s.times_of_instances.empty()) return;  // checked where the ensemble's size is known
     const std::int64_t phases = o.phases - s.from_phase;
@@ -94,7 +95,7 @@ void check_samples(const sample_options& s, const options& o) {
                                     ? s.evenly * phases
                                     : static_cast<std::int64_t>(s.times.size()) * (o.phase_length > 0 ? 1 : phases);
     require(s.capacity >= wanted, named_option("samples.capacity"), " is ", s.capacity, ", but the chosen times give ",
-            wanted, " samples per instance in this call: raise the capacity");
+            wanted, " samples per instance in this call", cure, "raise the capacity");
 }
 
 /// Refuses sample options without states: they would be ignored.
@@ -110,14 +111,15 @@ void check_no_samples(const sample_options& s) {
     if (given == nullptr) return;
     const std::string key = message("samples.", given);
     refuse({named_option(key), " is given, but ", named_option("samples.states"),
-            " names no state, so that nothing would be sampled: name the states to sample, or leave out all of "
-            "samples"});
+            " names no state, so that nothing would be sampled", cure,
+            "name the states to sample, or leave out all of samples"});
 }
 
 /// The same for records.
 void check_no_records(const record_options& r) {
     require(r.from_phase == 0, named_option("record.from_phase"), " is ", r.from_phase,
-            ", but record names nothing to record: name states, accessories or the time, or leave out all of record");
+            ", but record names nothing to record", cure,
+            "name states, accessories or the time, or leave out all of record");
 }
 
 }  // namespace
@@ -135,12 +137,12 @@ void model_components::check(const char* what, const component_list& chosen, con
         const bool fits = of.empty() || of == kind.enumeration || (kind.enumeration.empty() && !of_another);
         require(fits, named_option(what), " names component ", c, " by an enumerator of ", of,
                 ", which numbers other components",
-                kind.enumeration.empty() ? std::string() : message(" than ", kind.enumeration),
-                ": give enumerators of the components that are meant, or numbers");
+                kind.enumeration.empty() ? std::string() : message(" than ", kind.enumeration), cure,
+                "give enumerators of the components that are meant, or numbers");
         require(c >= 0 && c < kind.count, named_option(what), " names component ", c, ", but the model has ",
-                kind.count, " (numbered from 0): use the model's enumerators");
-        require(!seen[static_cast<std::size_t>(c)], named_option(what), " names component ", c,
-                " twice: name each component once");
+                kind.count, " (numbered from 0)", cure, "use the model's enumerators");
+        require(!seen[static_cast<std::size_t>(c)], named_option(what), " names component ", c, " twice", cure,
+                "name each component once");
         seen[static_cast<std::size_t>(c)] = true;
     }
 }
@@ -148,11 +150,9 @@ void model_components::check(const char* what, const component_list& chosen, con
 void option_limits::check_kept(const char* key, double value, const char* name) const {
     if (name == nullptr) name = key;
     require(value == 0 || rounded(value) != 0, named_option(key, name), " is ", value,
-            ", which is zero in single precision: give a larger value or ",
-            phrase("use_doubles", "use an ensemble of doubles"));
+            ", which is zero in single precision", cure, "give a larger value or ", cures::use_doubles);
     require(std::isinf(value) || std::isfinite(rounded(value)), named_option(key, name), " is ", value,
-            ", which is infinite in single precision: give a smaller value or ",
-            phrase("use_doubles", "use an ensemble of doubles"));
+            ", which is infinite in single precision", cure, "give a smaller value or ", cures::use_doubles);
 }
 std::int64_t step_limit(const options& o, bool adaptive, int digits) {
     // One that a few instances of a large ensemble may reach without holding up the call for minutes.
@@ -169,29 +169,28 @@ void option_limits::check(const options& o) const {
     check_tolerance_count("absolute_tolerance", o.absolute_tolerance, n_state);
     bool controls = false;
     for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
-        require(
-            o.relative_tolerance[c] >= 0 && std::isfinite(o.relative_tolerance[c]), named_option("relative_tolerance"),
-            " is ", o.relative_tolerance[c],
-            " (must be at least 0, and finite): give the error you accept per step, such as 1e-9, or 0 for that of ",
-            named_option("absolute_tolerance"), " alone");
+        require(o.relative_tolerance[c] >= 0 && std::isfinite(o.relative_tolerance[c]),
+                named_option("relative_tolerance"), " is ", o.relative_tolerance[c],
+                " (must be at least 0, and finite)", cure,
+                "give the error you accept per step, such as 1e-9, or 0 for that of ",
+                named_option("absolute_tolerance"), " alone");
         controls = controls || o.relative_tolerance[c] < 1;
     }
     // Components may be left out of the error test, as by `without_tangents`, but not all of them.
     require(controls, named_option("relative_tolerance"), " is ", o.relative_tolerance[0],
-            " (must be less than 1, an error as large as the solution): give the error you accept per step, such as "
-            "1e-9, or a large ",
-            named_option("absolute_tolerance"));
+            " (must be less than 1, an error as large as the solution)", cure,
+            "give the error you accept per step, such as 1e-9, or a large ", named_option("absolute_tolerance"));
     for (std::size_t c = 0; c < o.absolute_tolerance.size(); ++c)
         require(o.absolute_tolerance[c] >= 0 && std::isfinite(o.absolute_tolerance[c]),
                 named_option("absolute_tolerance"), " is ", o.absolute_tolerance[c],
-                " (must not be negative, and finite): give the error you accept per step, such as "
-                "1e-9, or 0 for that of ",
+                " (must not be negative, and finite)", cure,
+                "give the error you accept per step, such as 1e-9, or 0 for that of ",
                 named_option("relative_tolerance"), " alone");
     for (std::size_t c = 0; c < n_state; ++c)
         require(o.relative_tolerance[c] > 0 || o.absolute_tolerance[c] > 0, named_option("relative_tolerance"), " and ",
-                named_option("absolute_tolerance"), " are 0: give the error you accept per step, such as 1e-9");
-    require(adaptive || !std::isnan(o.step), named_option("step"),
-            " is not set, but the method takes fixed steps: ", phrase("give_step", "give options::step"));
+                named_option("absolute_tolerance"), " are 0", cure, "give the error you accept per step, such as 1e-9");
+    require(adaptive || !std::isnan(o.step), named_option("step"), " is not set, but the method takes fixed steps",
+            cure, cures::give_step);
     // Fixed steps do not use tolerances.
     for (std::size_t c = 0; adaptive && c < o.relative_tolerance.size(); ++c)
         check_kept("relative_tolerance", o.relative_tolerance[c]);
@@ -200,35 +199,32 @@ void option_limits::check(const options& o) const {
         const double least = std::ldexp(1.0, digits > 24 ? -1022 : -126);
         require(o.absolute_tolerance[c] == 0 || rounded(o.absolute_tolerance[c]) >= least,
                 named_option("absolute_tolerance"), " is ", o.absolute_tolerance[c],
-                ", below the smallest normal number, ", least,
-                ", where a ratio of error to tolerance has no meaning: give at least that, or 0 for that of ",
-                named_option("relative_tolerance"), " alone");
+                ", below the smallest normal number, ", least, ", where a ratio of error to tolerance has no meaning",
+                cure, "give at least that, or 0 for that of ", named_option("relative_tolerance"), " alone");
     }
     require(o.minimum_step <= o.maximum_step, named_option("minimum_step"), " ", o.minimum_step, " is above ",
             named_option("maximum_step"), " ", o.maximum_step, ": no step size is left; exchange them");
     require(static_cast<float>(o.shrink_limit) < 1, named_option("shrink_limit"), " is ", o.shrink_limit,
-            ", which is 1 in single precision, that of step-size control: give a smaller value, such as 0.1");
+            ", which is 1 in single precision, that of step-size control", cure, "give a smaller value, such as 0.1");
     if (o.max_steps != 0) check_count("max_steps", o.max_steps, 1, most_steps(digits));
     require(o.events.empty() || o.events.size() == static_cast<std::size_t>(n_event), named_option("events"), " has ",
-            o.events.size(), " entries, but the model has ", n_event,
-            " event functions: give one entry for each, or none for defaults");
+            o.events.size(), " entries, but the model has ", n_event, " event functions", cure,
+            "give one entry for each, or none for defaults");
     require(o.phase_length == 0 || !writes_times, named_option("phase_length"), " is ", o.phase_length,
-            ", but the model declares writes_time_domain, so that its hooks say where phases end: leave "
-            "out phase_length, and set t_end in initialise");
+            ", but the model declares writes_time_domain, so that its hooks say where phases end", cure,
+            "leave out phase_length, and set t_end in initialise");
     require(o.block_size % 32 == 0, named_option("block_size"), " is ", o.block_size, " (must be a multiple of 32)");
     if (!o.samples.empty()) {
-        require(samples_trajectory, named_option("samples"),
-                " are requested, but the method has no dense output: use dense<Method>, in solve and in "
-                "MYRIAD_INSTANTIATE");
+        require(samples_trajectory, named_option("samples"), " are requested, but the method has no dense output", cure,
+                "use dense<Method>, in solve and in MYRIAD_INSTANTIATE");
         components.check("samples.states", o.samples.states, components.state);
         check_each(*this, o.samples, "samples.");
         check_samples(o.samples, o);
         const std::vector<double>& times = o.samples.times;
         for (std::size_t k = 1; k < times.size(); ++k)
             require(rounded(times[k]) != rounded(times[k - 1]), named_option("samples.times"), "[", k, "] is ",
-                    times[k],
-                    ", which is the same as the time before it in single precision: give times further apart or ",
-                    phrase("use_doubles", "use an ensemble of doubles"));
+                    times[k], ", which is the same as the time before it in single precision", cure,
+                    "give times further apart or ", cures::use_doubles);
     } else {
         check_no_samples(o.samples);
     }

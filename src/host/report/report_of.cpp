@@ -15,7 +15,6 @@
 
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/core/error.hpp"
-#include "myriad/host/options/option_checks.hpp"
 #include "myriad/host/threads/parallel.hpp"
 
 namespace myriad {
@@ -61,7 +60,7 @@ std::ostream& print(std::ostream& stream, const report_of<R>& r) {
         for (const R v : r.first_parameter) out << ' ' << v;
         out << '\n';
     }
-    for (const std::string& note : r.notes) out << "note: " << note << '\n';
+    for (const statement& note : r.notes) out << "note: " << note << '\n';
     return stream << out.str();
 }
 
@@ -103,9 +102,9 @@ double record_data<R>::bytes_for(const record_options& o, std::int64_t phases, s
 }
 template <class R>
 int record_data<R>::find(const std::vector<std::int16_t>& columns, std::int64_t c, const char* what) const {
-    require(size > 0 || !recorded, "these records were moved away: ask those that they were moved to");
+    require(size > 0 || !recorded, "these records were moved away", cure, "ask those that they were moved to");
     require(c >= 0 && c < static_cast<std::int64_t>(columns.size()) && columns[static_cast<std::size_t>(c)] >= 0, what,
-            " ", c, " was not recorded: ", phrase("name_in_record", "name it in options::record"));
+            " ", c, " was not recorded", cure, cures::name_in_record);
     return columns[static_cast<std::size_t>(c)];
 }
 template <class R>
@@ -212,22 +211,25 @@ template <class R>
 void note_ended(report_of<R>& r, const ensemble_data<R>& e, std::int64_t count) {
     const std::int64_t anew = count_given_anew(e, count);
     if (anew == 0) return;
-    r.notes.push_back(message(anew, anew == 1 ? " instance that" : " instances that",
-                              " ended in earlier calls took no part, though states or parameters were set anew since: "
-                              "restart() starts all instances again"));
+    r.notes.push_back(
+        statement_of(anew, anew == 1 ? " instance that" : " instances that",
+                     " ended in earlier calls took no part, though states or parameters were set anew since: "
+                     "restart() starts all instances again"));
 }
 
 // Without numbers of instances, which the report has, so that parts of a study say the same.
 template <class R>
-void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, const call_facts& facts,
+void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::int64_t max_steps,
                    std::int64_t count) {
     const auto any = [&](status s) { return r.by_status[static_cast<std::size_t>(s)] > 0; };
     if (any(status::max_steps))
-        r.notes.push_back(message("max_steps: ", step_limit(o, facts.adaptive(), std::numeric_limits<R>::digits),
-                                  " trial steps did not take an instance to the end of its phase: raise max_steps, or "
-                                  "look at why the steps are so short"));
+        r.notes.push_back(statement_of(named_option("max_steps"), ": ", max_steps,
+                                       " trial steps did not take an instance to the end of its phase", cure, "raise ",
+                                       named_option("max_steps"),
+                                       ", or look at why the steps are so short"));
     if (any(status::interrupted) && o.time_limit > 0)
-        r.notes.push_back(message("interrupted: time_limit = ", o.time_limit, " s was over"));
+        r.notes.push_back(
+            statement_of("interrupted: ", named_option("time_limit"), " = ", o.time_limit, " s was over"));
     if (!any(status::step_underflow)) return;
     // Steps end at the resolution of time, unless a longer smallest step was given.
     double coarsest = 0;
@@ -238,47 +240,58 @@ void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o,
     }
     constexpr bool single = std::is_same_v<R, float>;
     if (coarsest > 0)
-        r.notes.push_back(
-            message("step_underflow: time, which ", single ? "single" : "double", " precision resolves to ", coarsest,
-                    " there, is too coarse for the steps needed: ", single ? "use double precision, or let" : "let",
-                    " time begin near 0, or scale it; if that does not help, the right-hand side jumps or "
-                    "runs away there, or the tolerance is below its rounding"));
+        r.notes.push_back(statement_of(
+            "step_underflow: time, which ", single ? "single" : "double", " precision resolves to ", coarsest,
+            " there, is too coarse for the steps needed: ", single ? "use double precision, or let" : "let",
+            " time begin near 0, or scale it; if that does not help, the right-hand side jumps or "
+            "runs away there, or the tolerance is below its rounding"));
+}
+
+template <class R>
+void end_call(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::int64_t max_steps, std::string device,
+              std::chrono::steady_clock::time_point begin, const std::exception_ptr& failure) {
+    note_failures(r, e, o, max_steps, e.size);
+    r.device = std::move(device);
+    r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (failure) std::rethrow_exception(failure);
 }
 
 template <class R>
 void note_raised_tolerances(report_of<R>& r, const options& o) {
     for (std::size_t c = 0; c < o.relative_tolerance.size(); ++c) {
         if (static_cast<R>(o.relative_tolerance[c]) >= least_relative_tolerance<R>) continue;
-        r.notes.push_back(message("relative_tolerance ", o.relative_tolerance[c],
-                                  " is below what the precision can reach: ", least_relative_tolerance<R>,
-                                  " was used"));
+        r.notes.push_back(statement_of(named_option("relative_tolerance"), " ", o.relative_tolerance[c],
+                                       " is below what the precision can reach: ", least_relative_tolerance<R>,
+                                       " was used"));
         return;
     }
 }
 
-void add_note(std::vector<std::string>& notes, const stiffness& found) {
+void add_note(std::vector<statement>& notes, const stiffness& found) {
     if (2 * found.limited < found.looked_at || found.limited == 0) return;
-    notes.push_back(message("stability, not accuracy, limits the step in ", found.limited, " of ", found.looked_at,
-                            " instances looked at (step times fastest rate is up to ", found.share,
-                            " of the method's limit, and of rodas_5p, a method for stiff equations, one ",
-                            worthwhile_stretch,
-                            " times as long meets the tolerances): if the equations are stiff all "
-                            "along, rodas_5p takes far fewer steps"));
+    notes.push_back(statement_of("stability, not accuracy, limits the step in ", found.limited, " of ", found.looked_at,
+                                 " instances looked at (step times fastest rate is up to ", found.share,
+                                 " of the method's limit, and of rodas_5p, a method for stiff equations, one ",
+                                 worthwhile_stretch,
+                                 " times as long meets the tolerances): if the equations are stiff all "
+                                 "along, rodas_5p takes far fewer steps"));
 }
 
 template work_count counted_work(const ensemble_data<double>&, std::int64_t, std::int64_t);
 template void add_summary(const ensemble_data<double>&, report_of<double>&, std::int64_t, std::int64_t);
 template void summarise(const ensemble_data<double>&, report_of<double>&, std::int64_t);
 template void note_ended(report_of<double>&, const ensemble_data<double>&, std::int64_t);
-template void note_failures(report_of<double>&, const ensemble_data<double>&, const options&, const call_facts&,
-                            std::int64_t);
+template void note_failures(report_of<double>&, const ensemble_data<double>&, const options&, std::int64_t, std::int64_t);
+template void end_call(report_of<double>&, const ensemble_data<double>&, const options&, std::int64_t, std::string,
+                       std::chrono::steady_clock::time_point, const std::exception_ptr&);
 template void note_raised_tolerances(report_of<double>&, const options&);
 template work_count counted_work(const ensemble_data<float>&, std::int64_t, std::int64_t);
 template void add_summary(const ensemble_data<float>&, report_of<float>&, std::int64_t, std::int64_t);
 template void summarise(const ensemble_data<float>&, report_of<float>&, std::int64_t);
 template void note_ended(report_of<float>&, const ensemble_data<float>&, std::int64_t);
-template void note_failures(report_of<float>&, const ensemble_data<float>&, const options&, const call_facts&,
-                            std::int64_t);
+template void note_failures(report_of<float>&, const ensemble_data<float>&, const options&, std::int64_t, std::int64_t);
+template void end_call(report_of<float>&, const ensemble_data<float>&, const options&, std::int64_t, std::string,
+                       std::chrono::steady_clock::time_point, const std::exception_ptr&);
 template void note_raised_tolerances(report_of<float>&, const options&);
 
 }  // namespace host::inline MYRIAD_ABI

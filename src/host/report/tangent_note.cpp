@@ -61,10 +61,11 @@ void note_exponents(report_of<R>& r, const ensemble_data<R>& e, const options& o
         worst = std::max(worst, product);
     }
     if (doubtful == 0) return;
-    r.notes.push_back(message("phases may be too long for the smallest exponent in ", doubtful, " of ", looked_at,
-                              " instances looked at: the tangents grow apart so far in one that the error of a step, ",
-                              error, ", becomes up to ", worst, " of the slowest (should be below ", limit,
-                              "): take shorter phases or smaller tolerances, and see whether it changes"));
+    r.notes.push_back(
+        statement_of("phases may be too long for the smallest exponent in ", doubtful, " of ", looked_at,
+                     " instances looked at: the tangents grow apart so far in one that the error of a step, ", error,
+                     ", becomes up to ", worst, " of the slowest (should be below ", limit, ")", cure,
+                     "take shorter phases or smaller tolerances, and see whether it changes"));
 }
 
 template void note_exponents(report_of<double>&, const ensemble_data<double>&, const options&, const call_facts&);

@@ -22,8 +22,7 @@ const options& affordable(const ensemble_data<R>& data, const sample_data<R>& sa
     memory_need need;
     add_memory_of_call(need, *data.shape, data.size, &data, samples.capacity > 0, o, facts);
     need.check(message("this call for ", std::int64_t{data.size}, " instances"),
-               marked_message("ask for fewer phases, components or samples at a time, or ",
-                              phrase("smaller_parts", "integrate the ensemble in smaller parts")));
+               statement_of("ask for fewer phases, components or samples at a time, or ", cures::smaller_parts));
     return o;
 }
 
@@ -131,7 +130,7 @@ void prepared_call<R>::fill_samples(const sample_options& o, sample_data<R>& sam
     if (data_.pinned()) samples.pin(data_.pinned_for);
     require(o.capacity == samples.capacity && o.states == samples.chosen, named_option("samples"),
             " has other states or another capacity (", o.capacity, ") than the existing samples (",
-            std::int64_t{samples.capacity}, "): use the same in all calls, or a new ensemble");
+            std::int64_t{samples.capacity}, ")", cure, "use the same in all calls, or a new ensemble");
     put_columns(columns, samples.column, arguments.model->n_state);
     arguments.sample_columns = samples.values.components();
     auto& s = arguments.sample;

@@ -35,9 +35,9 @@ void called_model<R>::check_kernel(const device& where) const {
     const bool on_cpu = where.which() == device::kind::cpu;
     require(on_cpu ? this->on_cpu.run != nullptr : on_gpu.make != nullptr,
             "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
-            ", or with other numbers of components, or its source file was not linked: write MYRIAD_INSTANTIATE(model, "
-            "method) (MYRIAD_INSTANTIATE_FLOAT for float) in the model's source file, and name that file in "
-            "myriad_add_models for the program or an OBJECT library",
+            ", or with other numbers of components, or its source file was not linked", cure,
+            "write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for float) in the model's source "
+            "file, and name that file in myriad_add_models for the program or an OBJECT library",
             on_cpu ? "" : ", with MYRIAD_ENABLE_CUDA on");
     if (!on_cpu) check_may_use_gpus();
 }
@@ -206,17 +206,14 @@ void solve_call<R>::integrate(report_of<R>& result) {
         solve_in_chunks(o, model_.on_gpu, arguments(), instances, check_, relay, result);
         if (relay.failure) before.leave_those_begun(instances);
     }
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     note_ended(result, instances, instances.size);
-    note_failures(result, instances, o, model_.facts, instances.size);
     instances.remember_ended();
-    if (relay.failure) std::rethrow_exception(relay.failure);
-    result.device = where.name();
+    end_call(result, instances, o, arguments().max_steps, where.name(), begin, relay.failure);
 }
 
 template <class R>
 void solve_call<R>::add_notes(report_of<R>& result, bool cut_short) const {
-    if (!left_.note.empty()) result.notes.push_back(left_.note);
+    if (!left_.note.empty()) result.notes.emplace_back(left_.note);
     if (!cut_short) model_.add_notes(result, data_, options_, prepared_->arguments);
 }
 template class solve_call<double>;

@@ -406,7 +406,7 @@ TEST_CASE("a failed instance that is given new inputs does not stay failed in si
     CHECK(marked.first_state.empty());
     CHECK(marked.first_parameter.empty());
     REQUIRE(marked.notes.size() == 1);
-    CHECK(marked.notes[0].find("1 instance that ended in earlier calls took no part") == 0);
+    CHECK(marked.notes[0].text().find("1 instance that ended in earlier calls took no part") == 0);
     std::ostringstream text;
     text << marked;
     CHECK(text.str().find("instance 4 ended as not_finite") != std::string::npos);

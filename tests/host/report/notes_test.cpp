@@ -46,7 +46,7 @@ std::pair<int, std::int64_t> stiff_runs_of_roessler(double tolerance) {
     return {told, steps};
 }
 
-bool mentions(const std::vector<std::string>& notes, const char* what) {
+bool mentions(const std::vector<myriad::statement>& notes, const char* what) {
     for (const std::string& note : notes)
         if (note.find(what) != std::string::npos) return true;
     return false;

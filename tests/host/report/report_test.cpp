@@ -137,7 +137,7 @@ TEST_CASE("messages, reports and names of devices are the same whatever locale t
     CHECK(name == "cpu:2000");
     CHECK(threads == 2000);
     CHECK(printed.str() == expected.str());
-    CHECK(note == report.notes.at(0));
+    CHECK(note == report.notes.at(0).text());
 }
 
 TEST_CASE("a printed report without failures or counts has no line about them", "[report]") {

@@ -68,7 +68,7 @@ void check_limit(std::int64_t size, std::int64_t endless, const options& o) {
     CHECK(report.count(status::interrupted) + report.count(status::success) == size);
     CHECK(report.instances == size);
     CHECK(e.status(endless - 1) == status::interrupted);
-    CHECK(report.notes.back().find("interrupted: time_limit = ") == 0);
+    CHECK(report.notes.back().text().find("interrupted: time_limit = ") == 0);
     check_each(e, endless, static_cast<std::int32_t>(o.phases));
 }
 

@@ -47,7 +47,7 @@ double first_step(myriad::ensemble<line, R> e, options o = {}) {
     myriad::solve<Method>(test_device(), e, o);
     return static_cast<double>(e.t()[0]) - static_cast<double>(e.t_begin_of(0));
 }
-bool has_note(const std::vector<std::string>& notes, const std::string& text) {
+bool has_note(const std::vector<myriad::statement>& notes, const std::string& text) {
     for (const std::string& note : notes)
         if (note.find(text) != std::string::npos) return true;
     return false;

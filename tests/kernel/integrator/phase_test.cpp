@@ -241,7 +241,7 @@ TEST_CASE("time that is carried on to a finite t_end leaves no phases without le
     CHECK(solve<cash_karp>(tests::test_device(1), stopped, o).notes.empty());
     const auto r = solve<cash_karp>(tests::test_device(1), stopped, o);
     REQUIRE(r.notes.size() == 1);
-    CHECK_THAT(r.notes[0], Contains("t had reached t_end in all instances"));
+    CHECK_THAT(r.notes[0].text(), Contains("t had reached t_end in all instances"));
 }
 
 // Phases of a length

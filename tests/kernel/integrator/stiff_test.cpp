@@ -234,7 +234,7 @@ void check_pattern() {
     CHECK(sparse_report.matrix.jacobian_entries == 5 * n / 2);
     CHECK(sparse_report.matrix.factor_entries < n * n);
     REQUIRE(dense_report.notes.size() == 1);
-    CHECK(dense_report.notes[0].find("rhs looks at values") != std::string::npos);
+    CHECK(dense_report.notes[0].text().find("rhs looks at values") != std::string::npos);
     CHECK(dense_report.matrix.factor_entries == n * n);
     for (std::int64_t i = 0; i < size; ++i) {
         CAPTURE(i);

@@ -18,9 +18,7 @@ inline host::message_part advice_for(cudaError_t status) {
         case cudaErrorInitializationError:
             return "check the driver with nvidia-smi, or use the device \"cpu\"";
         case cudaErrorMemoryAllocation:
-            return host::phrase(
-                "fewer_instances",
-                "integrate fewer instances at a time: a smaller options::chunk_size or solver capacity");
+            return host::cures::fewer_instances;
         case cudaErrorNoKernelImageForDevice:
         case cudaErrorInvalidDeviceFunction:
         case cudaErrorUnsupportedPtxVersion:
@@ -44,8 +42,8 @@ inline host::message_part advice_for(cudaError_t status) {
 inline void check(cudaError_t status, const char* call) {
     if (status == cudaSuccess) return;
     cudaGetLastError();  // so that the next call does not report this error, if non-sticky, again
-    const marked_text text = marked_message(call, " failed: ", cudaGetErrorString(status), " (",
-                                            cudaGetErrorName(status), "): ", advice_for(status));
+    const statement text = statement_of(call, " failed: ", cudaGetErrorString(status), " (", cudaGetErrorName(status),
+                                        ')', host::cure, advice_for(status));
     if (status == cudaErrorMemoryAllocation) throw out_of_memory(text);
     throw error(text);
 }

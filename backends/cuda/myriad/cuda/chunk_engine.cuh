@@ -110,7 +110,7 @@ public:
     }
 
     void integrate(const arguments& host) override {
-        require(count_ > 0, "nothing was uploaded yet: call upload before integrate");
+        require(count_ > 0, "nothing was uploaded yet", host::cure, "call upload before integrate");
         const current_device here(device_);
         if (fetching_ && !(*fetching_)->asked_for_all()) finish_download();
         arguments now = host;
@@ -130,7 +130,7 @@ public:
     }
 
     void download(const arguments& host, bool (*wanted)(void*, array_kind, std::int64_t), void* context) override {
-        require(count_ > 0, "nothing was uploaded yet: call upload before download");
+        require(count_ > 0, "nothing was uploaded yet", host::cure, "call upload before download");
         const current_device here(device_);
         row_list list;
         const auto add = [&](auto* target, auto* source, std::int64_t components, array_kind kind) {

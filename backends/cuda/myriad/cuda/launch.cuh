@@ -45,8 +45,8 @@ public:
                                       : fits                                   ? place::shared_memory
                                                                                : place::cache;
         require(facts_.shared_placement != place::shared_memory || fits, "the model's shared parameters take ", bytes,
-                " bytes, but a block of this GPU has at most ", limit,
-                " of shared memory: set shared_placement to automatic or cache");
+                " bytes, but a block of this GPU has at most ", limit, " of shared memory", host::cure,
+                "set shared_placement to automatic or cache");
         require(is_compiled(facts_.shared_placement, bytes), "shared_placement is ", name_of(facts_.shared_placement),
                 ", but the model's shared parameters take ", bytes,
                 " bytes: up to 1024 they are kept in the constant bank, more in "
@@ -114,7 +114,7 @@ private:
         }
         const int most = attributes.maxThreadsPerBlock;
         require(wanted <= most, "block_size is ", wanted, ", but a block of this kernel has at most ", most,
-                " threads (", attributes.numRegs, " registers each): give a smaller block_size",
+                " threads (", attributes.numRegs, " registers each)", host::cure, "give a smaller block_size",
                 wanted <= 1024 && traits().max_block_size < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");

@@ -44,18 +44,18 @@ public:
             cudaGetLastError();
             std::size_t free = 0, total = 0;
             MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
-            marked_text advice;
+            statement advice;
             if (per_instance > 0) {
                 const auto fits = static_cast<std::int64_t>(0.9 * static_cast<double>(free + held) /
                                                             static_cast<double>(per_instance));
                 const std::string words = message(
                     "integrate fewer instances at a time, with a solver's capacity of at most ", fits,
                     " or, as solve works on three chunks at a time, an options::chunk_size of at most ", fits / 3);
-                advice = marked_message(": ", host::phrase(message("fewer_instances ", fits / 3), words));
+                advice = statement_of(host::cure, host::message_part(host::cures::fewer_instances, words, fits / 3));
             }
-            throw out_of_memory(marked_message("out of device memory: ", static_cast<double>(bytes) / 1e9,
-                                               " GB are wanted and ", static_cast<double>(free) / 1e9, " of ",
-                                               static_cast<double>(total) / 1e9, " GB are free", advice));
+            throw out_of_memory(statement_of("out of device memory: ", static_cast<double>(bytes) / 1e9,
+                                             " GB are wanted and ", static_cast<double>(free) / 1e9, " of ",
+                                             static_cast<double>(total) / 1e9, " GB are free", advice));
         }
         check(status, "cudaMalloc");
         bytes_ = bytes;

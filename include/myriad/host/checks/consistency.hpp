@@ -79,8 +79,8 @@ void check_consistency(const argument_head<R>& a, const double* relative_toleran
                 }
                 require(std::abs(residual) <= allowed, "the initial values of instance ", i,
                         " do not satisfy the algebraic equation ", equations.text(k), ", whose right-hand side is ",
-                        residual, " at them and may be ", allowed,
-                        " by the tolerances: set values that do, or call myriad::make_consistent(ensemble)");
+                        residual, " at them and may be ", allowed, " by the tolerances", cure,
+                        "set values that do, or call myriad::make_consistent(ensemble)");
             }
             require(equations.solve(change), "at the initial values of instance ", i, ' ', higher_index);
         }
@@ -126,7 +126,7 @@ void make_consistent(ensemble<Model, R>& e) {
             }
         }
         require(done, "no values near the initial ones of instance ", i,
-                " were found that satisfy the algebraic equations: give values closer to them");
+                " were found that satisfy the algebraic equations", host::cure, "give values closer to them");
     }
 }
 

@@ -72,7 +72,7 @@ void check_jacobian_pattern(const argument_head<R>& a, std::int64_t count) {
                         require(declared[row][j] || dual[row][j] == 0 || !std::isfinite(dual[row][j]),
                                 "jacobian_pattern has no entry {", row, ", ", j, "}, but the derivative of component ",
                                 row, " by state ", j, beside ? " beside" : " at", " the start of instance ", i, " is ",
-                                dual[row][j], ": add the entry, or leave out jacobian_pattern");
+                                dual[row][j], cure, "add the entry, or leave out jacobian_pattern");
                     }
                 }
             }

@@ -14,6 +14,7 @@
 
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
+#include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/polling_backoff.hpp"
 #include "myriad/host/threads/worker_thread.hpp"
 #include "myriad/kernel/core/abi.hpp"
@@ -44,6 +45,17 @@ public:
         another->reserve(arguments_, largest);
         engines_.push_back(std::move(another));
         return *engines_.back();
+    }
+    /// The same while chunks are under way, which go on without it: null if there is no memory for it, and from then
+    /// on.
+    engine* further_engine(std::int64_t largest) {
+        if (is_full_) return nullptr;
+        try {
+            return &add_engine(largest);
+        } catch (const error&) {  // another program has taken the memory meanwhile
+            is_full_ = true;
+            return nullptr;
+        }
     }
     /// Has the second thread do something before the downloads.
     template <class Work>
@@ -158,6 +170,7 @@ private:
     std::vector<std::unique_ptr<engine>> engines_;
     std::deque<part> under_way_;
     stop_request told_ = stop_request::none;  // to the engines
+    bool is_full_ = false;                    // there is no memory for further engines
     void* clock_ = nullptr;
     double kernel_seconds_ = 0, kernels_until_ = 0;
     pooled_worker background_;  // destroyed first: it uses all of the above

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The host side's exception. A message names the problem, why it is one, and what to do, and marks what it is about, so
-// that a front end finds its subject and uses its own words. Parts of messages are joined in the library, since
-// formatting each combination of types took a fifth of a program's compile time.
+// The host side's exception. A message names the problem, why it is one, and what to do. It is kept in parts, so that
+// front ends find its subject and say it in their own words. Parts are joined in the library, since formatting each
+// combination of types took a fifth of a program's compile time.
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <iosfwd>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,60 +18,79 @@
 #include <utility>
 #include <vector>
 
+#include "myriad/host/core/cures.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/ieee.hpp"
 
 namespace myriad {
 
-/// What a stretch of a message is. The first option or component that a message names is its subject.
-enum class mark_role {
+/// What a part of a statement is. Front ends have their own words for options, components, events and cures.
+enum class part_kind {
+    text,       ///< words that are the same everywhere
     option,     ///< the name of an option
-    component,  ///< the name of a component of the model
-    phrase      ///< words that suit C++ alone: other front ends have their own under the same key
+    component,  ///< a component of the model
+    event,      ///< an event of the model
+    separator,  ///< what is between the problem and the cure
+    cure        ///< what to do, by the name that it has in the table of cures
 };
 
-/// A stretch of a message that has a role.
-struct mark {
-    std::size_t begin;  ///< where it begins in the text, in bytes
-    std::size_t size;   ///< how long it is, in bytes
-    mark_role what;     ///< what it is
-    std::string key;    ///< of an option its full name, as in samples.capacity
+/// A part of a statement.
+struct statement_part {
+    part_kind kind = part_kind::text;  ///< what it is
+    std::string words;                 ///< in C++
+    std::string key;  ///< of an option its full name, as samples.capacity; of a component its kind, or kind and name,
+                      ///< as parameter.k; of a cure its name
+    std::int64_t number = -1;  ///< of a component of a kind, of an event, or of a cure that needs one
+
+    /// Whether all of them are equal.
+    bool operator==(const statement_part&) const = default;
 };
 
-/// A text with its marks.
-class marked_text {
-public:
-    /// An empty text.
-    marked_text() = default;
-    /// A text, whose marks are in its order.
-    marked_text(std::string text, std::vector<mark> marks = {}) : text_(std::move(text)), marks_(std::move(marks)) {}
+/// What an error or a note of a report says: the problem, and then, after a separator, what to do.
+struct statement {
+    std::vector<statement_part> parts;  ///< in their order
 
-    /// The text alone.
-    const std::string& text() const { return text_; }
-    /// Its stretches with a role.
-    const std::vector<mark>& marks() const { return marks_; }
+    /// Nothing.
+    statement() = default;
+    /// A text without further parts.
+    explicit statement(std::string text) { parts.push_back({.words = std::move(text), .key = {}}); }
 
-private:
-    std::string text_;
-    std::vector<mark> marks_;
+    /// The option, the component or the event that it names first; null if there is none.
+    const statement_part* subject() const;
+    /// What is wrong.
+    std::span<const statement_part> problem() const;
+    /// What to do; empty if it does not say so.
+    std::span<const statement_part> cure() const;
+
+    /// In the words that a function has for each part; by default those of C++.
+    template <class Words = const std::string& (*)(const statement_part&)>
+    std::string text(Words&& words_for = [](const statement_part& p) -> const std::string& { return p.words; }) const {
+        std::string all;
+        for (const statement_part& p : parts) all += words_for(p);
+        return all;
+    }
+    /// The same.
+    operator std::string() const { return text(); }
+    /// Whether all parts are equal.
+    bool operator==(const statement&) const = default;
+    /// Prints it in C++'s words.
+    friend std::ostream& operator<<(std::ostream& out, const statement& s);
 };
 
 /// Thrown by every check on the host before any work is done.
 class error : public std::runtime_error {
 public:
-    using std::runtime_error::runtime_error;
-    /// With the marks of its text.
-    explicit error(const marked_text& text)
-        : std::runtime_error(text.text()), marks_(std::make_shared<std::vector<mark>>(text.marks())) {}
+    /// `what()` has C++'s words.
+    explicit error(statement said)
+        : std::runtime_error(said.text()), said_(std::make_shared<const statement>(std::move(said))) {}
+    /// Of text alone.
+    explicit error(std::string text) : error(statement(std::move(text))) {}
 
-    /// The marks of `what()`, in its order.
-    const std::vector<mark>& marks() const {
-        static const std::vector<mark> none;
-        return marks_ ? *marks_ : none;
-    }
+    /// What it says, in parts.
+    const statement& said() const { return *said_; }
 
 private:
-    std::shared_ptr<const std::vector<mark>> marks_;  // shared, as copies of exceptions must not throw
+    std::shared_ptr<const statement> said_;  // shared, as copies of exceptions must not throw
 };
 
 /// Thrown where there is too little memory, on the host or on a GPU: fewer instances at a time may fit.
@@ -79,6 +100,12 @@ public:
 };
 
 namespace host::inline MYRIAD_ABI {
+
+/// Begins the cure in a message.
+struct cure_begins {
+    std::string_view separator = ": ";
+};
+inline constexpr cure_begins cure;
 
 /// A part of a message: a number, text, or what else a stream prints. It refers to the value.
 class message_part {
@@ -104,24 +131,35 @@ public:
         message_part(const T& printed)
         : kind_(kind::other) {
         value_.other = {&printed, [](std::ostream& out, const void* value) { out << *static_cast<const T*>(value); }};
+        if constexpr (requires { T::part; }) {
+            is_ = T::part;
+            key_ = printed.what;
+            number_ = printed.number;
+        }
     }
-    /// It keeps its marks.
-    message_part(const marked_text& text) : kind_(kind::marked) { value_.marked = &text; }
-    /// A part with a role, under a key.
-    message_part(const message_part& part, mark_role what, std::string_view key) : message_part(part) {
-        has_role_ = true;
-        role_ = what;
+    /// All its parts.
+    message_part(const statement& said) : kind_(kind::said) { value_.said = &said; }
+    message_part(const cure_begins& begins) : message_part(part_kind::separator, begins.separator, {}) {}
+    /// In the words of the table of cures.
+    message_part(cures known) : message_part(known, row_of(known).words) {}
+    /// In words of its own, maybe with a number for other front ends.
+    message_part(cures known, const message_part& words, std::int64_t number = -1)
+        : message_part(part_kind::cure, words, row_of(known).name, number) {}
+    message_part(part_kind is, const message_part& words, std::string_view key, std::int64_t number = -1)
+        : message_part(words) {
+        is_ = is;
         key_ = key;
+        number_ = number;
     }
 
 private:
-    friend marked_text join(std::initializer_list<message_part> parts);
+    friend statement join(std::initializer_list<message_part> parts);
     void print(std::ostream& out) const;
 
-    enum class kind { character, integer, natural, real, text, marked, other } kind_;
-    bool has_role_ = false;
-    mark_role role_{};
+    enum class kind { character, integer, natural, real, text, other, said } kind_;
+    part_kind is_ = part_kind::text;
     std::string_view key_;
+    std::int64_t number_ = -1;
     union {
         char character;
         std::int64_t integer;
@@ -131,7 +169,7 @@ private:
             const char* begin;
             std::size_t size;
         } text;
-        const marked_text* marked;
+        const statement* said;
         struct {
             const void* value;
             void (*print)(std::ostream&, const void*);
@@ -139,18 +177,19 @@ private:
     } value_;
 };
 
-marked_text join(std::initializer_list<message_part> parts);
+statement join(std::initializer_list<message_part> parts);
 [[noreturn, gnu::cold]] void refuse(std::initializer_list<message_part> parts);
 
 /// The name of an option, which messages may call otherwise than its key.
 inline message_part named_option(std::string_view key, const message_part& name) {
-    return {name, mark_role::option, key};
+    return {part_kind::option, name, key};
 }
 inline message_part named_option(std::string_view key) { return named_option(key, key); }
-/// The name of a component.
-inline message_part named_component(std::string_view name) { return {name, mark_role::component, name}; }
-/// Words for which other front ends have their own.
-inline message_part phrase(std::string_view key, const message_part& words) { return {words, mark_role::phrase, key}; }
+/// A component, by its kind and name as in parameter.k, which messages may call otherwise.
+inline message_part named_component(std::string_view key, const message_part& name) {
+    return {part_kind::component, name, key};
+}
+inline message_part named_component(std::string_view key) { return named_component(key, key); }
 
 }  // namespace host::inline MYRIAD_ABI
 
@@ -159,9 +198,9 @@ template <class... Parts>
 std::string message(const Parts&... parts) {
     return host::join({host::message_part(parts)...}).text();
 }
-/// The same with the marks of its parts, for another message or an error.
+/// The same in parts, for another message, an error or a note.
 template <class... Parts>
-marked_text marked_message(const Parts&... parts) {
+statement statement_of(const Parts&... parts) {
     return host::join({host::message_part(parts)...});
 }
 

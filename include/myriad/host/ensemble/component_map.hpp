@@ -124,8 +124,8 @@ private:
     /// `column`: the length, if they are one column.
     void check(Eigen::Index given, Eigen::Index column) const {
         require(column == this->size(), label_, " has ", this->size(), " values, one for each instance, but is given ",
-                given, column < 0 ? " that are not one column" : "",
-                ": give as many, or a single number for all instances");
+                given, column < 0 ? " that are not one column" : "", host::cure,
+                "give as many, or a single number for all instances");
     }
 
     host::component_label label_;

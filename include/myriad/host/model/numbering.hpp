@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "myriad/host/core/error.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 
@@ -17,6 +18,7 @@ namespace myriad::host::inline MYRIAD_ABI {
 
 /// A component's name in messages: "state 1 (v)", or "t_end", which has no number.
 struct component_label {
+    static constexpr part_kind part = part_kind::component;
     std::string_view what;
     int number = -1;
     std::string_view enumerator = {};  ///< empty if the model has none

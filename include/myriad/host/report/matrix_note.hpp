@@ -19,7 +19,7 @@ void note_matrix(report<Model, R>& r) {
         constexpr bool known = detail::origin_of_pattern<Model>() != detail::pattern_origin::none;
         r.matrix = {n, known ? detail::n_jacobian_entry<Model> : n * n, detail::n_factor_entry<Model>};
         if constexpr (!known && n > detail::largest_matrix_in_registers<R>)
-            r.notes.push_back(
+            r.notes.emplace_back(
                 "rhs looks at values, of a state, a parameter or a shared integer, so that the compiler cannot find "
                 "which entries of the Jacobian are zero, and the method works with all of them: use myriad::select "
                 "instead of branches, or declare jacobian_pattern");

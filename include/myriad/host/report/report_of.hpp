@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
+#include <exception>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -54,7 +56,7 @@ struct report_of {
     cuda::kernel_facts kernel;         ///< on a GPU: the kernel's registers, block size and shared parameters
     double kernel_seconds = 0;         ///< on a GPU: time of the kernels alone
     matrix_facts matrix;               ///< of a stiff method: entries of the Jacobian and of its factors
-    std::vector<std::string> notes;    ///< tolerances raised; from `solve` also that the equations are stiff, or
+    std::vector<statement> notes;      ///< tolerances raised; from `solve` also that the equations are stiff, or
                                        ///< phases too long for the smallest Lyapunov exponent
 
     /// Number of instances with that status.
@@ -139,15 +141,20 @@ struct stiffness {
 /// an explicit method.
 inline constexpr double worthwhile_stretch = 20;
 /// Adds a note if half of them or more are.
-void add_note(std::vector<std::string>& notes, const stiffness& found);
+void add_note(std::vector<statement>& notes, const stiffness& found);
 /// Adds a note if instances that have ended were given new inputs, which `invalid_instances::mark` allows.
 template <class R>
 void note_ended(report_of<R>& r, const ensemble_data<R>& e, std::int64_t count);
 /// Adds notes on instances that ended because of a limit, with what to do: `max_steps`, `time_limit`, or the resolution
 /// of time.
 template <class R>
-void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, const call_facts& facts,
+void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::int64_t max_steps,
                    std::int64_t count);
+/// What every call ends with: notes on instances that ended because of a limit, device and time; throws what a progress
+/// function has thrown.
+template <class R>
+void end_call(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::int64_t max_steps, std::string device,
+              std::chrono::steady_clock::time_point begin, const std::exception_ptr& failure);
 /// Adds a note if a relative tolerance was below what the precision can reach.
 template <class R>
 void note_raised_tolerances(report_of<R>& r, const options& o);

@@ -136,11 +136,11 @@ public:
     void integrate(std::int64_t phases = 0) {
         const auto claim = take();
         require(uploaded_,
-                "integrate has no instances to work on, or instances() may have changed them since the upload: call "
-                "upload first, and read with results()");
+                "integrate has no instances to work on, or instances() may have changed them since the upload",
+                host::cure, "call upload first, and read with results()");
         require(phases == 0 || phases == options_.phases || (options_.record.empty() && options_.samples.empty()),
                 "integrate asks for ", phases, " phases, but records and samples were laid out for ", options_.phases,
-                ": give that number in the options");
+                host::cure, "give that number in the options");
         if (phases != 0) host::check_count("phases", phases, 1, 1'000'000'000);
         if (phases == 0) phases = options_.phases;
         phases_left_.require_for(phases_asked_, phases);
@@ -178,7 +178,7 @@ public:
     void download() {
         const auto claim = take();
         require_memory();
-        require(downloadable_, "download has no instances to copy: call upload first");
+        require(downloadable_, "download has no instances to copy", host::cure, "call upload first");
         if (engine_) engine_->download(prepared_.arguments);
         results_ = held::on_host;
     }
@@ -187,7 +187,7 @@ public:
     void download(const components& chosen) {
         const auto claim = take();
         require_memory();
-        require(downloadable_, "download has no instances to copy: call upload first");
+        require(downloadable_, "download has no instances to copy", host::cure, "call upload first");
         constexpr const host::model_components& named = host::components_of<Model>;
 #define MYRIAD_CHECK_KIND(kind, plural, ...) named.check("components." #plural, chosen.plural, named.kind);
         MYRIAD_RECORDED_KINDS(MYRIAD_CHECK_KIND)
@@ -229,7 +229,7 @@ public:
         host::summarise(data(), report_, count_);
         report_.notes.clear();
         host::note_ended(report_, data(), count_);
-        host::note_failures(report_, data(), options_, model_.facts, count_);
+        host::note_failures(report_, data(), options_, prepared_.arguments.max_steps, count_);
         if (model_.facts.adaptive()) host::note_raised_tolerances<R>(report_, options_);
         host::note_matrix<Method>(report_);
         report_.device = where_.name();
@@ -264,14 +264,13 @@ private:
     }
     /// The kernel's arguments point to the memory of the original ensemble.
     void require_memory() const {
-        require(
-            host::ensemble_access::data(instances_).identity == identity_,
-            "the solver's ensemble was replaced by another or moved away, and its memory with it: set the values of "
-            "instances() instead");
+        require(host::ensemble_access::data(instances_).identity == identity_,
+                "the solver's ensemble was replaced by another or moved away, and its memory with it", host::cure,
+                "set the values of instances() instead");
     }
     void require_results(const char* what) const {
-        require(results_ != held::on_device, what,
-                " needs the results of integrate on the host: call download first (download({}) copies no component)");
+        require(results_ != held::on_device, what, " needs the results of integrate on the host", host::cure,
+                "call download first (download({}) copies no component)");
     }
 
     host::ensemble_data<R>& data() { return host::ensemble_access::data(instances_); }
@@ -279,14 +278,13 @@ private:
     /// The capacity, if the options fit it.
     std::int64_t checked(std::int64_t capacity) const {
         const options& o = options_;
-        require(capacity > 0, "the solver's capacity is ", capacity,
-                " (must be positive): give the number of instances it holds");
-        require(!o.progress,
-                "progress is given, but a solver is asynchronous and cannot report it: leave it out, "
-                "and call idle()");
+        require(capacity > 0, "the solver's capacity is ", capacity, " (must be positive)", host::cure,
+                "give the number of instances it holds");
+        require(!o.progress, "progress is given, but a solver is asynchronous and cannot report it", host::cure,
+                "leave it out, and call idle()");
         require(o.time_limit == 0, host::named_option("time_limit"),
-                " is given, but a solver is asynchronous, and nobody would watch the clock: leave it out, and "
-                "bound the steps of an instance by max_steps");
+                " is given, but a solver is asynchronous, and nobody would watch the clock", host::cure,
+                "leave it out, and bound the steps of an instance by max_steps");
         model_.check_options(o);
         host::memory_need need = host::ensemble_data<R>::memory_of(*model_.shape, capacity);
         host::add_memory_of_call<R>(need, *model_.shape, capacity, nullptr, false, o, model_.facts);

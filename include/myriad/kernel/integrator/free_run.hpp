@@ -45,7 +45,8 @@ struct free_run {
         iteration_number taken = 0, block = longest_block;
         while (taken < run) {
             if constexpr (!is_pack<S>) {  // which has no other check before the end
-                if (MYRIAD_UNLIKELY(taken % asks_every == 0) && gives_up(source, taken)) {
+                if (MYRIAD_UNLIKELY(taken % asks_every == 0) &&
+                    phase_watchdog<Model, Method, S>{args, s}.gives_up(source, taken)) {
                     s.end_lane(0, status::interrupted);
                     break;
                 }
@@ -72,19 +73,6 @@ struct free_run {
         s.data.y = y;
         fixed_stepping<Model, Method, S>{args, s}.count_steps(done - s.steps.done);
         s.iteration += taken;
-    }
-
-private:
-    /// Whether the host asks for the instance to end, after so many steps more than those counted.
-    template <class Source>
-    MYRIAD_FUNCTION bool gives_up(Source& source, iteration_number taken) {
-        if constexpr (requires { source.gives_up(std::int64_t{}); }) {
-            return source.gives_up(s.all_iterations_of(args) + taken);
-        } else if constexpr (requires { source.gives_up(); }) {
-            return source.gives_up();
-        } else {
-            return false;
-        }
     }
 };
 

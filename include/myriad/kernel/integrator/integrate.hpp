@@ -96,7 +96,7 @@ struct integrator {
         watchdog_type watchdog{args, s};
         if (is_pack<S> || !any(s.ended)) {
             watchdog.check();
-            if (gives_up(source)) watchdog.interrupt();
+            if (watchdog.gives_up(source)) watchdog.interrupt();
         }
         if (!any(s.ended)) {
             watchdog.schedule();
@@ -170,18 +170,6 @@ struct integrator {
     }
 
 private:
-    /// Whether the host asks for all instances to end as they are.
-    template <class Source>
-    MYRIAD_FUNCTION bool gives_up(Source& source) {
-        if constexpr (requires { source.gives_up(std::int64_t{}); }) {
-            return source.gives_up(s.all_iterations_of(args));
-        } else if constexpr (requires { source.gives_up(); }) {
-            return source.gives_up();
-        } else {
-            return false;
-        }
-    }
-
     /// Only hooks see the step just taken.
     static constexpr bool shows_step = has_after_step<Model> || has_after_event<Model> || has_finalise<Model>;
     /// Time at the end of the trial.

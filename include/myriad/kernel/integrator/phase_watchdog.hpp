@@ -44,6 +44,17 @@ struct phase_watchdog {
             }
         });
     }
+    /// Whether the host asks for all instances to end as they are, after so many iterations more than those counted.
+    template <class Source>
+    MYRIAD_FUNCTION bool gives_up(Source& source, iteration_number taken = 0) const {
+        if constexpr (requires { source.gives_up(std::int64_t{}); }) {
+            return source.gives_up(s.all_iterations_of(args) + taken);
+        } else if constexpr (requires { source.gives_up(); }) {
+            return source.gives_up();
+        } else {
+            return false;
+        }
+    }
     /// Ends all phases, and with them the instances.
     MYRIAD_FUNCTION void interrupt() {
         for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, status::interrupted); });
