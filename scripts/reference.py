@@ -42,7 +42,7 @@ PAGES = {
                ["host/report/", "kernel/core/status.hpp", "host/backend/facts.hpp"]),
     "model": ("In a model", "`<myriad/model.hpp>`: what the functions of a model are called with, and what they use.",
               ["host/model/", "kernel/core/", "kernel/model/lane.hpp", "kernel/model/jacobian_pattern.hpp",
-               "kernel/model/mass_matrix.hpp", "kernel/model/summaries.hpp",
+               "kernel/model/mass_matrix.hpp", "kernel/model/recurring.hpp", "kernel/model/summaries.hpp",
                "kernel/model/tables.hpp", "kernel/scalar/"]),
     "random": ("Random numbers", "`<myriad/random.hpp>`.", ["kernel/model/random.hpp"]),
     "tangent": ("Tangents and Lyapunov exponents", "`<myriad/tangent.hpp>`.",

@@ -123,6 +123,26 @@ struct continuation {
 };
 // end of snippet
 
+// snippet: doses
+/// A drug that is absorbed from the gut and eliminated from the blood; a dose goes into the gut every `interval`.
+struct dosing {
+    enum state { gut, blood, n_state };
+    enum parameter { ka, ke, dose, interval, n_parameter };
+    enum shared_integer { doses, n_shared_integer };
+    enum stop { intake, n_stop };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {-p[ka] * y[gut], p[ka] * y[gut] - p[ke] * y[blood]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int number, const auto& p) {
+        return myriad::recurring(number, R(0), p[interval], p.shared_integer[doses]);
+    }
+    MYRIAD_FUNCTION static void after_stop(int, int, auto& lane) { lane.y[gut] += lane.parameter[dose]; }
+};
+// end of snippet
+
 // snippet: select
 /// A mass on a spring with a stop at x = gap: x'' = -x - K max(x - gap, 0).
 struct stop_by_select {

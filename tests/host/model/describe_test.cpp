@@ -49,6 +49,14 @@ struct with_summaries : bare {
         return myriad::vec<R, n_observed>{y[x]};
     }
 };
+struct with_stops : bare {
+    enum stop { dose, n_stop };
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int number, const auto&) {
+        return static_cast<R>(number);
+    }
+    MYRIAD_FUNCTION static void after_stop(int, int, auto&) {}
+};
 struct with_declarations : bare {
     static constexpr bool writes_parameters = true;
     static constexpr bool writes_time_domain = true;
@@ -133,6 +141,10 @@ TEST_CASE("what stiff methods make of a model is described", "[describe]") {
 
 TEST_CASE("a model with events alone is described with them", "[describe]") {
     CHECK(has(describe<watched>(), "1 event\nhooks: rhs, events\n"));
+}
+
+TEST_CASE("a model with stop times is described with them", "[describe]") {
+    CHECK(has(describe<with_stops>(), "hooks: rhs, stop_time, after_stop\n"));
 }
 
 TEST_CASE("a misspelt hook does not show", "[describe]") {

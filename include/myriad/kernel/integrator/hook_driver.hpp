@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Calls hooks within a phase: after_step in the accepted lanes, after_event in lanes whose events fired; and handles
-// the changes they make.
+// Calls hooks within a phase: after_step in the accepted lanes, after_event in lanes whose events fired, after_stop in
+// those that have reached a stop time; and handles the changes they make.
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/event_driver.hpp"
+#include "myriad/kernel/event/stop_driver.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -40,6 +41,7 @@ struct hook_driver {
             if constexpr (writes_time_domain<Model>) {
                 for_each_lane(accepted & (before.t_end != s.data.t_end), [&](int i) MYRIAD_LAMBDA { retarget(i); });
             }
+            if constexpr (has_stops<Model>) for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA { update_stops(i); });
         } else {
             for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA {
                 run_hook(i, [](auto& lane) MYRIAD_LAMBDA { return Model::after_step(lane); });
@@ -82,6 +84,27 @@ struct hook_driver {
                 act_on_lane(i);
                 events.update_after_events(i, s.data);
             });
+        }
+    }
+
+    /// Calls after_stop in the lanes that have reached a stop time, after the events there.
+    MYRIAD_FUNCTION void act_on_stops() {
+        const stop_driver<Model, Method, S> stops{args, s};
+        const mask due = stops.due();
+        if (!MYRIAD_UNLIKELY(any(due))) return;
+        const lane_data<Model, S> before = s.data;
+        for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
+            stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
+                if constexpr (has_after_stop<Model>)
+                    run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_stop(j, number, lane); });
+            });
+            lay_steps(i);
+        });
+        const mask changed = due & differs(before, s.data);
+        if (any(changed)) {
+            check_finite(changed, before.y);
+            if constexpr (has_events<Model>) events.fired.clear();  // their actions are done
+            follow_up(changed, before);
         }
     }
 
@@ -130,6 +153,7 @@ private:
         if constexpr (writes_time_domain<Model>) {
             if (get_lane(s.data.t_end, i) != t_end) retarget(i);
         }
+        if constexpr (has_stops<Model>) update_stops(i);
         if (wanted == action::proceed) return;
         s.end_lane(i, status::stopped_by_user);
         if (wanted == action::end_instance) s.instance_over[i] = true;
@@ -142,8 +166,19 @@ private:
         if (t_end != t_end) return s.end_lane(i, status::not_finite);
         const bool there = t == t_end;
         if (s.ending[i] == status::success) set_lane(s.ended, i, there);  // other endings stand
+        if constexpr (has_stops<Model>) stop_driver<Model, Method, S>{args, s}.update(i);
         if (there) return;
         stepping<Model, Method, S>{args, s}.move(i, t);
+    }
+
+    /// A hook may have moved the stop times of lane i.
+    MYRIAD_FUNCTION void update_stops(int i) {
+        if (stop_driver<Model, Method, S>{args, s}.update(i)) lay_steps(i);
+    }
+    /// The steps of lane i end elsewhere than before.
+    MYRIAD_FUNCTION void lay_steps(int i) {
+        const R t = get_lane(s.data.t, i);
+        if (t != get_lane(s.data.t_end, i)) stepping<Model, Method, S>{args, s}.move(i, t);
     }
 
     /// Adopts the changes that a generic hook made to `before`, in the given lanes.

@@ -75,6 +75,7 @@ struct integrator {
             if constexpr (sees_summaries<Model>) hooks.follow_summaries(summarised);
             if constexpr (has_after_step<Model>) hooks.after_step(accepted);
             if constexpr (has_events<Model>) hooks.act_on_events();
+            if constexpr (has_stops<Model>) hooks.act_on_stops();
         }
         if constexpr (requires { source.gives_only_one(); })
             phase_driver<Model, Method, S>{args, s, events, o}.finish(0);
@@ -193,7 +194,8 @@ private:
     }
 
     /// Only hooks see the step just taken.
-    static constexpr bool shows_step = has_after_step<Model> || has_after_event<Model> || has_finalise<Model>;
+    static constexpr bool shows_step =
+        has_after_step<Model> || has_after_event<Model> || has_after_stop<Model> || has_finalise<Model>;
     /// Time at the end of the trial.
     MYRIAD_FUNCTION S end_time() { return stepping_type{args, s}.end_time(); }
 };

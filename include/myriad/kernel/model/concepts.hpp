@@ -134,11 +134,17 @@ MYRIAD_HOOK_NAME(observe)
 MYRIAD_HOOK_NAME(initialise)
 MYRIAD_HOOK_NAME(after_step)
 MYRIAD_HOOK_NAME(after_event)
+MYRIAD_HOOK_NAME(stop_time)
+MYRIAD_HOOK_NAME(after_stop)
 MYRIAD_HOOK_NAME(finalise)
 #define MYRIAD_NAME_OF_COUNT(kind, ...) MYRIAD_HOOK_NAME(n_##kind)
 MYRIAD_ENUMERATED_KINDS(MYRIAD_NAME_OF_COUNT)
 #undef MYRIAD_NAME_OF_COUNT
 #undef MYRIAD_HOOK_NAME
+
+/// Whether steps have to end at times that the model gives.
+template <class Model>
+inline constexpr bool has_stops = has_stop_time<Model>;
 
 /// Whether other files can name a type: in an anonymous namespace, each file has a type of its own. Recognised by the
 /// compiler's spelling of the name.
@@ -191,6 +197,10 @@ constexpr bool check_model() {
                   "a model with events has both `enum event { ..., n_event };` and a function `events`");
     static_assert(!has_after_event<Model> || has_events<Model>,
                   "the model has after_event but no events: give it `enum event { ..., n_event };` and `events`");
+    static_assert(has_stops<Model> == (n_stop<Model> > 0),
+                  "a model with stop times has both `enum stop { ..., n_stop };` and a function `stop_time`");
+    static_assert(!has_after_stop<Model> || has_stops<Model>,
+                  "the model has after_stop but no stop times: give it `enum stop { ..., n_stop };` and `stop_time`");
     return true;
 }
 
