@@ -25,6 +25,7 @@ using myriad::ensemble;
 using myriad::options;
 using myriad::solve;
 using myriad::status;
+using stops::alone;
 using stops::delayed;
 using stops::dosed;
 using stops::infused;
@@ -36,8 +37,9 @@ using stops::squared;
 constexpr double beyond = 1e6 - 1;  // of any domain here
 
 /// One instance that gets `doses` doses of 1, the first at `first`, then one every `interval`.
-ensemble<dosed> treated(double first, double interval, int doses, double t_end, std::int64_t size = 1) {
-    ensemble<dosed> e(size);
+template <class Model = dosed>
+ensemble<Model> treated(double first, double interval, int doses, double t_end, std::int64_t size = 1) {
+    ensemble<Model> e(size);
     for (int c = 0; c < dosed::n_state; ++c) e.state(c) = 0.0;
     e.parameter(dosed::ka) = 1.5;
     e.parameter(dosed::ke) = 0.25;
@@ -303,10 +305,10 @@ TEST_CASE("a sample at a stop time shows the state before the action") {
     check.operator()<myriad::tsitouras_5>();
 }
 TEST_CASE("an event sets a stop time, and the action follows it by the delay") {
-    each_method([]<class Method> {
+    const auto check = []<class Model, class Method>() {
         for (const double delay : {0.0, 0.5, 1.25}) {
             CAPTURE(delay);
-            ensemble<delayed> e(1);
+            ensemble<Model> e(1);
             e.state(0) = 0.0;
             e.parameter(delayed::level) = 1.0;
             e.parameter(delayed::delay) = delay;
@@ -319,12 +321,16 @@ TEST_CASE("an event sets a stop time, and the action follows it by the delay") {
             CHECK(e.accessory(delayed::t_action)[0] == e.accessory(delayed::t_event)[0] + delay);
             CHECK(std::abs(e.state(0)[0] - (5 - 10)) < 1e-8);
         }
+    };
+    each_method([&]<class Method> {
+        check.template operator()<delayed, Method>();
+        check.template operator()<alone<delayed>, Method>();
     });
 }
 TEST_CASE("at a stop time events come first, and an action moves their functions without firing them") {
-    each_method([]<class Method> {
+    const auto check = []<class Model, class Method>() {
         const auto run = [](double level, double time, double kick) {
-            ensemble<kicked> e(1);
+            ensemble<Model> e(1);
             e.state(0) = 0.0;
             e.parameter(kicked::level) = level;
             e.parameter(kicked::time) = time;
@@ -342,6 +348,10 @@ TEST_CASE("at a stop time events come first, and an action moves their functions
         CHECK(run(2, 2, 0) == 12);      // at once
         CHECK(run(2, 2, 0.5) == 12);
         CHECK(run(2, 2, -1) == 121);
+    };
+    each_method([&]<class Method> {
+        check.template operator()<kicked, Method>();
+        check.template operator()<alone<kicked>, Method>();
     });
 }
 TEST_CASE("an action moves the end of its phase") {
@@ -390,14 +400,17 @@ TEST_CASE("instances with different stop times have the same bits alone and in a
         o.phases = 4;
         solve<Method>(tests::test_device(), e, o);
         for (std::int64_t i = 0; i < size; ++i) {
-            auto alone = treated(0, 0.5, 8, 5);
-            for (int c = 0; c < dosed::n_parameter; ++c) alone.parameter(c) = e.parameter(c)[i];
-            solve<Method>(tests::test_device(), alone, o);
+            auto single = treated(0, 0.5, 8, 5);
+            auto scalar = treated<alone<dosed>>(0, 0.5, 8, 5);
+            for (int c = 0; c < dosed::n_parameter; ++c) scalar.parameter(c) = single.parameter(c) = e.parameter(c)[i];
+            solve<Method>(tests::test_device(), single, o);
+            solve<Method>(tests::test_device(), scalar, o);
+            CHECK(single.integer_accessory(dosed::given)[0] == e.integer_accessory(dosed::given)[i]);
+            CHECK(scalar.integer_accessory(dosed::given)[0] == e.integer_accessory(dosed::given)[i]);
 #if defined(MYRIAD_STRICT)
-            CHECK(compare::difference(e, i, alone, 0) == "");
-#else
-            CHECK(alone.integer_accessory(dosed::given)[0] == e.integer_accessory(dosed::given)[i]);
-            CHECK(alone.accepted_steps()[0] == e.accepted_steps()[i]);
+            CHECK(compare::difference(e, i, single, 0) == "");
+            for (int c = 0; c < dosed::n_state; ++c) CHECK(compare::same_bits(scalar.state(c)[0], single.state(c)[0]));
+            CHECK(scalar.accepted_steps()[0] == single.accepted_steps()[0]);
 #endif
         }
     });

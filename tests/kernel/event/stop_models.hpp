@@ -188,4 +188,10 @@ struct squared {
     MYRIAD_FUNCTION static void after_stop(int, int, auto& lane) { lane.y[x] = lane.y[x] * lane.y[x]; }
 };
 
+/// The same one instance at a time, as in a GPU's thread.
+template <class Model>
+struct alone : Model {
+    static constexpr bool scalar_only = true;
+};
+
 }  // namespace stops
