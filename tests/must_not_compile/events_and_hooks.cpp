@@ -20,6 +20,12 @@
 // expect: after_stop has a wrong signature: it must be
 // case: after_stop_without_stop_time
 // expect: the model has after_stop but no stop times: give it
+// case: trigger_without_after_trigger
+// expect: a model with triggers has `enum trigger
+// case: condition_with_a_wrong_signature
+// expect: condition has a wrong signature: it must be
+// case: after_trigger_without_triggers
+// expect: the model has after_trigger but no triggers: give it
 // case: initialise_with_a_wrong_signature
 // expect: initialise has a wrong signature: it must be
 // case: finalise_with_a_wrong_signature
@@ -102,6 +108,19 @@ struct decay {
 #endif
 #ifdef CASE_after_stop_with_a_wrong_signature  // the number is missing
     MYRIAD_FUNCTION static void after_stop(int, auto&) {}
+#endif
+#if defined CASE_trigger_without_after_trigger || defined CASE_condition_with_a_wrong_signature
+    enum trigger { warm, n_trigger };
+#endif
+#ifdef CASE_trigger_without_after_trigger
+    MYRIAD_FUNCTION static bool condition(int, const auto& positive) { return positive[0]; }
+#endif
+#ifdef CASE_condition_with_a_wrong_signature  // the functions' sides are missing
+    MYRIAD_FUNCTION static bool condition(int) { return true; }
+    MYRIAD_FUNCTION static void after_trigger(int, auto&) {}
+#endif
+#ifdef CASE_after_trigger_without_triggers
+    MYRIAD_FUNCTION static void after_trigger(int, auto&) {}
 #endif
 #ifdef CASE_after_stop_without_stop_time
     MYRIAD_FUNCTION static void after_stop(int, int, auto&) {}

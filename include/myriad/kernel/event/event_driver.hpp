@@ -10,6 +10,7 @@
 #include "myriad/kernel/event/fired_events.hpp"
 #include "myriad/kernel/event/locator.hpp"
 #include "myriad/kernel/event/side_tracker.hpp"
+#include "myriad/kernel/event/trigger_state.hpp"
 #include "myriad/kernel/stepper/step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -32,6 +33,7 @@ struct event_driver {
     event_memory<Model, R>* memory;  // of the lanes, outside the loop's own state, which is in registers
     event_sides<Model, S> e;
     fired_events<Model, S> fired;  // in this iteration of the loop
+    [[no_unique_address]] trigger_state<Model, S> triggers;
 
     /// For lanes that are still empty.
     MYRIAD_FUNCTION void clear() {
@@ -130,6 +132,9 @@ struct event_driver {
     MYRIAD_FUNCTION void update_after_events(int i, const lane_data<Model, S>& before) {
         tracker{sides()}.update_after_events(i, fired, before);
     }
+
+    /// The conditions of the model's triggers.
+    MYRIAD_FUNCTION trigger_conditions<Model, Method, S> conditions() { return {sides(), triggers}; }
 
 private:
     MYRIAD_FUNCTION lane_sides<Model, Method, S> sides() { return {args, s, e, memory}; }

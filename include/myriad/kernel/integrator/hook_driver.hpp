@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Calls hooks within a phase: after_step in the accepted lanes, after_event in lanes whose events fired, after_stop in
-// those that have reached a stop time; and handles the changes they make.
+// those that have reached a stop time, after_trigger where a condition has come to hold; and handles the changes they
+// make.
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
@@ -87,6 +88,30 @@ struct hook_driver {
         }
     }
 
+    /// Calls after_trigger for the conditions that count as false before the start, in lanes whose phase begins.
+    MYRIAD_FUNCTION void begin_triggers(const mask& begun) {
+        for_each_lane(begun, [&](int i) MYRIAD_LAMBDA {
+            events.conditions().begin(i);
+            act_on_triggers_of(i);
+        });
+        act_on_conditions();
+    }
+    /// Calls the actions of stop times and triggers at this instant, and those that follow from them.
+    MYRIAD_FUNCTION void act_on_conditions() {
+        for (std::int32_t rounds = 0;; ++rounds) {
+            if constexpr (has_stops<Model>) act_on_stops();
+            const mask turned = events.conditions().turned();
+            if (!MYRIAD_UNLIKELY(any(turned))) return;
+            mask acted = mask(false);
+            for_each_lane(turned, [&](int i) MYRIAD_LAMBDA {
+                events.conditions().update(i);
+                set_lane(acted, i, act_on_triggers_of(i));
+            });
+            if (!has_stops<Model> || !any(acted)) return;
+            if (rounds >= args.accumulation_limit) return s.end_lanes(acted, status::event_accumulation);
+        }
+    }
+
     /// Calls after_stop in the lanes that have reached a stop time, after the events there.
     MYRIAD_FUNCTION void act_on_stops() {
         const stop_driver<Model, Method, S> stops{args, s};
@@ -100,12 +125,7 @@ struct hook_driver {
             });
             lay_steps(i);
         });
-        const mask changed = due & differs(before, s.data);
-        if (any(changed)) {
-            check_finite(changed, before.y);
-            if constexpr (has_events<Model>) events.fired.clear();  // their actions are done
-            follow_up(changed, before);
-        }
+        follow_action(due & differs(before, s.data), before);
     }
 
 private:
@@ -128,6 +148,39 @@ private:
         MYRIAD_UNROLL
         for (int c = 0; c < size; ++c) different = different | differs_in_bits(now[c], before[c]);
         return different;
+    }
+
+    /// Calls after_trigger for the pending triggers of lane i, in order of their index, and for those that their
+    /// actions bring about. Returns whether there were any.
+    MYRIAD_FUNCTION bool act_on_triggers_of(int i) {
+        constexpr int triggers = n_trigger<Model>;
+        auto& pending = events.triggers.pending[i];
+        bool acted = false;
+        for (std::int32_t actions = 0; pending.any_of(); ++actions) {
+            if (actions >= args.accumulation_limit) {
+                s.end_lane(i, status::event_accumulation);
+                pending.clear();
+                break;
+            }
+            int next = triggers - 1;
+            for (int j = triggers - 2; j >= 0; --j) next = pending[j] ? j : next;
+            pending.set(next, false);
+            const lane_data<Model, S> before = s.data;
+            run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_trigger(next, lane); });
+            mask one = mask(false);
+            set_lane(one, i, true);
+            follow_action(one & differs(before, s.data), before);
+            events.conditions().update(i);
+            acted = true;
+        }
+        return acted;
+    }
+    /// After an action beside those of events changed lanes that were as in `before`.
+    MYRIAD_FUNCTION void follow_action(const mask& changed, const lane_data<Model, S>& before) {
+        if (!any(changed)) return;
+        check_finite(changed, before.y);
+        if constexpr (has_events<Model>) events.fired.clear();  // their actions are done
+        follow_up(changed, before);
     }
 
     MYRIAD_FUNCTION void act_on_lane(int i) {

@@ -150,6 +150,8 @@ namespace myriad {
 template <class Model, int vectors = 1>
 struct with_tangents : detail::tangent_layers::after_stop_layer<Model, vectors> {
     static_assert(detail::check_model<Model>());
+    static_assert(!detail::has_triggers<Model>,
+                  "with_tangents has no triggers: tangents pass the surface of one event");
     static_assert(vectors >= 1 && vectors <= detail::n_state<Model>,
                   "a model of n components has from 1 to n independent tangent vectors");
 
