@@ -46,6 +46,7 @@ PAGES = {
                "kernel/model/mass_matrix.hpp", "kernel/model/recurring.hpp", "kernel/model/summaries.hpp",
                "kernel/model/tables.hpp", "kernel/scalar/"]),
     "random": ("Random numbers", "`<myriad/random.hpp>`.", ["kernel/model/random.hpp"]),
+    "queue": ("Delayed actions", "`<myriad/action_queue.hpp>`.", ["kernel/model/action_queue.hpp"]),
     "tangent": ("Tangents and Lyapunov exponents", "`<myriad/tangent.hpp>`.",
                 ["kernel/model/tangent.hpp", "host/ensemble/exponents.hpp"]),
     "study": ("Studies", "`<myriad/study.hpp>`, target `myriad::study`. Axes, what is kept, the run, results on disk.",

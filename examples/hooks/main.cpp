@@ -177,6 +177,17 @@ void take_doses() {
     compare("content of the blood before the next dose", patients.state(dosing::blood)[0], before, 1e-5);
 }
 
+// x rises to 1 + lag, and sinks.
+void close_slowly() {
+    myriad::ensemble<slow_valve> tanks(5);
+    tanks.parameter(slow_valve::lag).setLinSpaced(0.1, 0.5);
+    tanks.state(slow_valve::x) = 0;
+    tanks.time_domain(0, 1.6);
+    myriad::solve<myriad::tsitouras_5>(myriad::device::best(), tanks,
+                                       {.events = {{.direction = myriad::direction::rising}}});
+    compare("level after a valve that closed 0.5 too late", tanks.state(slow_valve::x)[4], 1.4, 1e-9);
+}
+
 // The exact solution is 2 cos t as long as the mass does not reach the stop.
 void sample() {
     myriad::ensemble<stop_by_select> masses(3);
@@ -254,6 +265,7 @@ int main() {
     settle<myriad::runge_kutta_4, float>({.step = 0.01}, 1e-4);
     follow();
     take_doses();
+    close_slowly();
     sample();
     swing_down();
     // A last bit may decide whether a step over the kink is accepted, so the results agree to its error only.

@@ -208,6 +208,9 @@ private:
         }
         if constexpr (has_stops<Model>) update_stops(i);
         if (wanted == action::proceed) return;
+        if constexpr (has_stops<Model>) {
+            if (wanted == action::overflow) return s.end_lane(i, status::queue_overflow);
+        }
         s.end_lane(i, status::stopped_by_user);
         if (wanted == action::end_instance) s.instance_over[i] = true;
     }

@@ -225,7 +225,8 @@ private:
             if constexpr (has_after_stop<Model>) {
                 const action wanted =
                     place(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_stop(j, number, lane); });
-                if (wanted != action::proceed) s.end_lane(i, status::stopped_by_user);
+                if (wanted != action::proceed)
+                    s.end_lane(i, wanted == action::overflow ? status::queue_overflow : status::stopped_by_user);
                 if (wanted == action::end_instance) s.instance_over[i] = true;
                 stops.update(i);
             }
