@@ -57,6 +57,10 @@ struct with_stops : bare {
     }
     MYRIAD_FUNCTION static void after_stop(int, int, auto&) {}
 };
+/// A parameter that has the name of a hook.
+struct with_a_parameter_stop_time : bare {
+    enum parameter { stop_time, condition, n_parameter };
+};
 struct with_triggers : bare {
     enum event { warm, n_event };
     enum trigger { too_warm, n_trigger };
@@ -155,6 +159,7 @@ TEST_CASE("a model with events alone is described with them", "[describe]") {
 
 TEST_CASE("a model with stop times or triggers is described with them", "[describe]") {
     CHECK(has(describe<with_stops>(), "hooks: rhs, stop_time, after_stop\n"));
+    CHECK(has(describe<with_a_parameter_stop_time>(), "hooks: rhs\n"));
     CHECK(has(describe<with_triggers>(), "hooks: rhs, events, condition, after_trigger\n"));
 }
 

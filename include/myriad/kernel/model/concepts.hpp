@@ -146,7 +146,12 @@ MYRIAD_ENUMERATED_KINDS(MYRIAD_NAME_OF_COUNT)
 
 /// Whether steps have to end at times that the model gives.
 template <class Model>
-inline constexpr bool has_stops = has_stop_time<Model>;
+inline constexpr bool has_stops = n_stop<Model> > 0;
+/// Whether a model has a component or constant `stop_time`, which is no hook.
+template <class Model>
+inline constexpr bool stop_time_is_a_value = requires {
+    sizeof(decltype(Model::stop_time));
+};
 /// Whether actions follow conditions of several event functions. A `condition` alone may be a function of the model's.
 template <class Model>
 inline constexpr bool has_triggers = n_trigger<Model> > 0;
@@ -207,7 +212,8 @@ constexpr bool check_model() {
         "a model with triggers has `enum trigger { ..., n_trigger };`, `condition`, `after_trigger` and events");
     static_assert(!has_after_trigger<Model> || has_triggers<Model>,
                   "the model has after_trigger but no triggers: give it `enum trigger { ..., n_trigger };`");
-    static_assert(has_stops<Model> == (n_stop<Model> > 0),
+    static_assert(has_stops<Model> ? has_stop_time<Model> && !stop_time_is_a_value<Model>
+                                   : !has_stop_time<Model> || stop_time_is_a_value<Model>,
                   "a model with stop times has both `enum stop { ..., n_stop };` and a function `stop_time`");
     static_assert(!has_after_stop<Model> || has_stops<Model>,
                   "the model has after_stop but no stop times: give it `enum stop { ..., n_stop };` and `stop_time`");
