@@ -157,6 +157,37 @@ void follow() {
     compare("equilibrium", paths.state(continuation::x)[1], std::cbrt(1.9), 1e-6);
 }
 
+// After many doses every interval is like the one before.
+void take_doses() {
+    myriad::ensemble<dosing> patients(10);
+    patients.parameter(dosing::ka) = 1.2;
+    patients.parameter(dosing::ke).setLinSpaced(0.1, 0.4);
+    patients.parameter(dosing::dose) = 100;
+    patients.parameter(dosing::interval) = 0.7;
+    patients.shared_integer(dosing::doses) = 1000;
+    patients.state(dosing::gut) = 0;
+    patients.state(dosing::blood) = 0;
+    patients.time_domain(0, 700);
+    myriad::solve<myriad::tsitouras_5>(myriad::device::best(), patients, {.relative_tolerance = 1e-10});
+    const double left = std::exp(-1.2 * 0.7);
+    compare("content of the gut before the next dose", patients.state(dosing::gut)[0], 100 * left / (1 - left), 1e-6);
+    // the sum of all doses' Bateman functions, a geometric series
+    const double ke = 0.1, gone = std::exp(-ke * 0.7);
+    const double before = 100 * 1.2 / (1.2 - ke) * (gone / (1 - gone) - left / (1 - left));
+    compare("content of the blood before the next dose", patients.state(dosing::blood)[0], before, 1e-5);
+}
+
+// x rises to 1 + lag, and sinks.
+void close_slowly() {
+    myriad::ensemble<slow_valve> tanks(5);
+    tanks.parameter(slow_valve::lag).setLinSpaced(0.1, 0.5);
+    tanks.state(slow_valve::x) = 0;
+    tanks.time_domain(0, 1.6);
+    myriad::solve<myriad::tsitouras_5>(myriad::device::best(), tanks,
+                                       {.events = {{.direction = myriad::direction::rising}}});
+    compare("level after a valve that closed 0.5 too late", tanks.state(slow_valve::x)[4], 1.4, 1e-9);
+}
+
 // The exact solution is 2 cos t as long as the mass does not reach the stop.
 void sample() {
     myriad::ensemble<stop_by_select> masses(3);
@@ -233,6 +264,8 @@ int main() {
     settle<myriad::tsitouras_5, double>({.maximum_step = 0.01}, 1e-4);
     settle<myriad::runge_kutta_4, float>({.step = 0.01}, 1e-4);
     follow();
+    take_doses();
+    close_slowly();
     sample();
     swing_down();
     // A last bit may decide whether a step over the kink is accepted, so the results agree to its error only.

@@ -2,6 +2,7 @@
 // Small models, one for each thing a model can do beside its right-hand side; docs/hooks_and_events.md shows most.
 #pragma once
 
+#include <myriad/action_queue.hpp>
 #include <myriad/model.hpp>
 
 // snippet: impact
@@ -119,6 +120,60 @@ struct continuation {
     MYRIAD_FUNCTION static void finalise(auto& lane) {
         lane.parameter[mu] += lane.shared[increment];
         lane.t_end += 1;  // of the next phase
+    }
+};
+// end of snippet
+
+// snippet: doses
+/// A drug that is absorbed from the gut and eliminated from the blood; a dose goes into the gut every `interval`.
+struct dosing {
+    enum state { gut, blood, n_state };
+    enum parameter { ka, ke, dose, interval, n_parameter };
+    enum shared_integer { doses, n_shared_integer };
+    enum stop { intake, n_stop };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {-p[ka] * y[gut], p[ka] * y[gut] - p[ke] * y[blood]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int number, const auto& p) {
+        return myriad::recurring(number, R(0), p[interval], p.shared_integer[doses]);
+    }
+    MYRIAD_FUNCTION static void after_stop(int, int, auto& lane) { lane.y[gut] += lane.parameter[dose]; }
+};
+// end of snippet
+
+// snippet: delayed
+/// A tank that is filled until x rises through 1. The valve takes `lag` to close, and then x sinks.
+struct slow_valve {
+    using queue = myriad::action_queue<0, 1, 2>;  // up to two actions, from accessory 0 and integer accessory 1 on
+    enum state { x, n_state };
+    enum parameter { lag, n_parameter };
+    enum accessory { n_accessory = queue::n_accessory };
+    enum integer_accessory { closed, n_integer_accessory = 1 + queue::n_integer_accessory };
+    enum event { full, n_event };
+    enum stop { due, n_stop };
+    enum delayed { close };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto& p) {
+        return myriad::vec<R, n_state>{myriad::select(p.integer_accessory[closed] != 0, R(-1), R(1))};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_event>{y[x] - R(1)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int, const auto& p) {
+        return queue::next_time(p);
+    }
+    MYRIAD_FUNCTION static myriad::action after_event(int, auto& lane) {
+        const bool fits = queue::put(lane, close, lane.t + lane.parameter[lag]);
+        return fits ? myriad::action::proceed : myriad::action::overflow;
+    }
+    MYRIAD_FUNCTION static void after_stop(int, int, auto& lane) {
+        if (queue::take(lane).action == close) lane.integer_accessory[closed] = 1;
     }
 };
 // end of snippet

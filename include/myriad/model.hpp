@@ -8,6 +8,7 @@
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/mass_matrix.hpp"
+#include "myriad/kernel/model/recurring.hpp"
 #include "myriad/kernel/model/summaries.hpp"
 #include "myriad/kernel/model/tables.hpp"
 #include "myriad/kernel/scalar/floored_division.hpp"

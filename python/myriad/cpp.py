@@ -16,7 +16,7 @@ from .expression import (as_number, condition, draws, infix, integer, is_long, n
 if TYPE_CHECKING:
     from .expression import Node
     from .hints import Assignments
-    from .model import Model
+    from .model import Event, Model, Stop
 
 _columns = 116  # inside the struct
 _deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
@@ -88,6 +88,7 @@ class Names:
         self.t = self._free("t", "time", "t_")
         self.R = self._free("R", "S", "Real", "R_")
         self.lane = self._free("lane", "instance", "lane_")
+        self.number = self._free("number", "k_", "number_")
         self.of_lane = f"std::remove_cvref_t<decltype({self.lane}.t)>"  # the type of its numbers
         self.real_of_lane = f"myriad::real_of<{self.of_lane}>"
 
@@ -112,7 +113,7 @@ class Body:
         self.lines: list[str] = []
         self.named: dict[int, str] = {}
         self.numbers: dict[str, int] = {}
-        self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, "event"}
+        self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, names.number, "event", "stop"}
         uses: dict[int, int] = {}
         order = walk(roots)
         computed = {(node.op.partition(".")[0], *map(id, node.args)) if node.op in _shared_work else node: node
@@ -337,7 +338,11 @@ class Writer:
         if model.after_step:
             blocks.append(self.after_step())
         if any(e.do for e in model.events):
-            blocks.append(self.after_event())
+            blocks.append(self.action("event", model.events))
+        if model.stops:
+            blocks.append(self.stop_time())
+            if any(s.do for s in model.stops):
+                blocks.append(self.action("stop", model.stops, ", int"))
         if model.finalise:
             blocks.append(self.hook("finalise", model.finalise))
         if model.generate:
@@ -418,6 +423,27 @@ class Writer:
                 lines += _wrap(value + ",", 8)
             lines[-1] = lines[-1].rstrip(",") + "};"
         return lines + ["}"]
+
+    def stop_time(self):
+        """The function with the times of all stops, of which each has a number."""
+        n, stops = self.names, self.model.stops
+        body = Body([value for s in stops for value in s.values], n, self.in_function, scalar=True)
+        lines = []
+        for i, one in enumerate(stops):
+            if one.every is not None:
+                first, every, count = (f"{n.R}({body.text(value)})" for value in one.values)
+                value = f"myriad::recurring({n.number}, {first}, {every}, {count})"
+            else:
+                value = f"myriad::infinity_of<{n.R}>"
+                for number, time in reversed(list(enumerate(one.times))):
+                    value = f"{n.number} == {number} ? {n.R}({body.text(time)}) : {value}"
+            lines.append((f"if (stop == {one.name}) " if i + 1 < len(stops) else "") + f"return {value};")
+        used = [node for s in stops for node in walk(s.values) if node.op in ("symbol", "element", "lookup",
+                                                                              "find_interval", "dot")]
+        which = "int stop" if len(stops) > 1 else "int"
+        arguments = f"{which}, int {n.number}, const auto&" + (f" {n.p}" if used else "")
+        return [f"template <class {n.R}>", f"MYRIAD_FUNCTION static {n.R} stop_time({arguments}) {{",
+                *(wrapped for line in body.lines + lines for wrapped in _wrap(line, 4)), "}"]
 
     # Hooks
 
@@ -515,27 +541,28 @@ class Writer:
         return [f"template <class {n.R}>", f"MYRIAD_FUNCTION static {result} after_step(auto& {n.lane}) {{",
                 *(wrapped for line in lines for wrapped in _wrap(line, 4)), "}"]
 
-    def after_event(self) -> list[str]:
-        n, events = self.names, self.model.events
-        acting = [e for e in events if e.do]
+    def action(self, what: str, which: Sequence[Event] | Sequence[Stop], further: str = "") -> list[str]:
+        """The hook after an event or a stop."""
+        n = self.names
+        acting = [e for e in which if e.do]
         ends = any(t.value[0] == "action" for e in acting for t, _ in e.do)
         lines = []
-        for i, event in enumerate(acting):
-            statements, conditions = self.statements(event.do, scalar=True)
+        for i, one in enumerate(acting):
+            statements, conditions = self.statements(one.do, scalar=True)
             if conditions:
                 statements += self.returned(conditions)
-            if len(events) == 1:
+            if len(which) == 1:
                 lines += statements
-            elif i == len(events) - 1:
+            elif i == len(which) - 1:
                 lines += ["} else {", *("    " + s for s in statements)]
             else:
-                start = f"if (event == {event.name}) {{"
+                start = f"if ({what} == {one.name}) {{"
                 lines += ["} else " + start if i else start, *("    " + s for s in statements)]
-        if len(events) > 1:
+        if len(which) > 1:
             lines.append("}")
-        if ends and not (len(events) == 1 and lines[-1].startswith("return")):
+        if ends and not (len(which) == 1 and lines[-1].startswith("return")):
             lines.append("return myriad::action::proceed;")
-        number = "int event" if len(events) > 1 else "int"
+        number = f"int {what}" if len(which) > 1 else "int"
         result = "myriad::action" if ends else "void"
-        return [f"MYRIAD_FUNCTION static {result} after_event({number}, auto& {n.lane}) {{",
+        return [f"MYRIAD_FUNCTION static {result} after_{what}({number}{further}, auto& {n.lane}) {{",
                 *self.block(lines), "}"]

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from .expression import Expression
     from .hints import Array, Assignments, ByComponent, Component, Direction, Names, Written
 
-__all__ = ["model", "event", "Model", "Event", "phase_maximum", "phase_minimum", "time_of_maximum", "time_of_minimum",
-           "integral"]
+__all__ = ["model", "event", "stop", "Model", "Event", "Stop", "phase_maximum", "phase_minimum", "time_of_maximum",
+           "time_of_minimum", "integral"]
 
 _directions = ("rising", "falling", "either", "none")
 
@@ -100,11 +100,40 @@ def event(function: Written, *, name: str | None = None, direction: Direction = 
     return Event(function, name, direction, tolerance, int(stop_after), {} if do is None else do)
 
 
+class Stop:
+    """Times at which steps end, one after the other; `do` is what happens there."""
+
+    def __init__(self, times: list[Any], every: Any, count: Any, name: str | None, do: Any) -> None:
+        self.times, self.every, self.count, self.name, self.do = times, every, count, name, do
+        self.line = users_line()
+
+    @property
+    def values(self) -> list[Any]:
+        """All expressions that the times are computed from."""
+        return [*self.times, *(e for e in (self.every, self.count) if e is not None)]
+
+
+def stop(time: Written | Sequence[Written], *, every: Written | None = None, count: Written | None = None,
+         name: str | None = None, do: ByComponent | None = None) -> Stop:
+    """Exact times of a model: steps end there, no root is sought, and `do` are the assignments made. `time` is one
+    time, or several that do not decrease; with `every` the first of `count` times at equal intervals (default: without
+    an end), as in stop(0, every=24, count=doses, do={gut: gut + dose}). Times are numbers or expressions of parameters,
+    shared values and accessories. They act at both ends of a phase too, but once where one phase goes on from another.
+    """
+    several = list(time) if isinstance(time, (list, tuple, np.ndarray)) else [time]
+    if not several or every is not None and len(several) > 1 or every is None and count is not None:
+        raise Error(f"the times of a stop are {time!r}, every={every!r}, count={count!r}{at(users_line())}: give one "
+                    "time or a list of times, or the first one with every= and maybe count=")
+    if name is not None:
+        sym.check_name(name, "a stop")
+    return Stop(several, every, count, name, {} if do is None else do)
+
+
 def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | Sequence[Event] = (),
-          accessories: ByComponent | None = None, initialise: ByComponent | None = None,
-          after_step: ByComponent | None = None, finalise: ByComponent | None = None,
-          generate: ByComponent | None = None, states: Names | None = None, parameters: Names = (), shared: Names = (),
-          name: str | None = None) -> Model:
+          stops: Stop | Sequence[Stop] = (), accessories: ByComponent | None = None,
+          initialise: ByComponent | None = None, after_step: ByComponent | None = None,
+          finalise: ByComponent | None = None, generate: ByComponent | None = None, states: Names | None = None,
+          parameters: Names = (), shared: Names = (), name: str | None = None) -> Model:
     """Records a model.
 
     `equations` is a dictionary {state: its derivative}; or a function f(t, y, ...) that returns the derivatives, as for
@@ -114,8 +143,8 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
 
     `accessories` {a: value} are set to the value at the start of every phase, or get a summary over the phase, as in
     {peak: myriad.phase_maximum(x)}. `initialise`, `after_step` and `finalise` are assignments {target: value} at the
-    start of a phase, after every step and at the end of a phase. Assignments of one hook or event take effect together:
-    every value is computed from what was there before.
+    start of a phase, after every step and at the end of a phase. Assignments of one hook, event or stop take effect
+    together: every value is computed from what was there before.
 
     `generate` {target: value} sets states, parameters and accessories of the instances of a study, where they are
     integrated, after its axes: from the instance's number `myriad.instance`, from what axes and the study have set, and
@@ -123,7 +152,7 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
     seed and the instance's number alone. `solve` has no use for it.
     """
     return Model(equations, events, accessories, initialise, after_step, finalise, generate, states, parameters, shared,
-                 name)
+                 name, stops)
 
 
 class Model(kinds.ComponentNames):
@@ -134,7 +163,7 @@ class Model(kinds.ComponentNames):
     def __init__(self, equations: ByComponent | Callable[..., Any] | str, events: Event | Sequence[Event],
                  accessories: ByComponent | None, initialise: ByComponent | None, after_step: ByComponent | None,
                  finalise: ByComponent | None, generate: ByComponent | None, states: Names | None, parameters: Names,
-                 shared: Names, name: str | None) -> None:
+                 shared: Names, name: str | None, stops: Stop | Sequence[Stop] = ()) -> None:
         self.line = users_line()
         self._source: str | None = None
         self._declared = self._declare(states, parameters, shared, accessories)
@@ -144,6 +173,7 @@ class Model(kinds.ComponentNames):
         others = [a for a in accessories or {} if isinstance(a, Node) and a.op == "symbol"]
         self._names = {**{s.value[1]: s for s in targets + symbols_of(self.rhs) + others}, **self._declared}
         self.events = self._events(events)
+        self.stops = self._stops(stops)
         start = self._accessories(accessories)
         self.initialise = start + self._assignments(initialise, "initialise", {t for t, _ in start})
         self.after_step = self._assignments(after_step, "after_step")
@@ -307,7 +337,32 @@ class Model(kinds.ComponentNames):
             one.do = self._assignments(given.do, what, line=given.line)
         return made
 
-    def _accessories(self, accessories: ByComponent | None) -> Assignments:
+    def _stops(self, stops: Stop | Sequence[Stop]) -> list[Stop]:
+        made = []
+        for i, given in enumerate([stops] if isinstance(stops, Stop) else stops):
+            if not isinstance(given, Stop):
+                raise Error(f"stops[{i}] is {type(given).__name__}{at(self.line)}: make it by myriad.stop(time, "
+                            "do=...)")
+            one = Stop([], None, None, given.name or f"stop_{i + 1}", None)
+            one.line, what = given.line, f"stop {one.name}"
+
+            def real_of(value, what=what):
+                return None if value is None else to_real(self._real(self._value(value, what), what))
+
+            one.times = [real_of(t) for t in given.times]
+            one.every, one.count = real_of(given.every), real_of(given.count)
+            if one.every is not None and one.count is None:
+                one.count = real_of(float("inf"))
+            for symbol in symbols_of(one.values):
+                kind, name = symbol.value
+                if kind == "state" or kind not in kinds.valued:
+                    raise Error(f"{name} stands in the time of {what}{at(given.line)}: times are made of parameters, "
+                                "shared values and accessories; make an event where a state decides")
+            one.do = self._assignments(given.do, what, line=given.line)
+            made.append(one)
+        return made
+
+        def _accessories(self, accessories: ByComponent | None) -> Assignments:
         self.summaries, self.observed, start = [], [], []
         quantities = {}
         self._accessory_targets = []
@@ -402,10 +457,11 @@ class Model(kinds.ComponentNames):
     def _collect(self, targets: list[Node]) -> None:
         """The components, in the order in which the equations, events, accessories and hooks first name them."""
         hooks = [("initialise", self.initialise), ("after_step", self.after_step), ("finalise", self.finalise)]
-        hooks += [(f"event {e.name}", e.do) for e in self.events]
+        hooks += [(f"event {e.name}", e.do) for e in self.events] + [(f"stop {s.name}", s.do) for s in self.stops]
+        times = [value for one in self.stops for value in one.values]
         self._functions = self.rhs + [e.function for e in self.events] + [q for _, q in self.observed]
         self._in_functions = symbols_of(self._functions)
-        found = targets + self._in_functions + self._accessory_targets
+        found = targets + self._in_functions + symbols_of(times) + self._accessory_targets
         for _, assignments in hooks:
             found += [t for t, _ in assignments] + symbols_of([e for _, e in assignments])
         found += [t for t, _ in self.generate] + symbols_of([e for _, e in self.generate])
@@ -419,7 +475,7 @@ class Model(kinds.ComponentNames):
             symbol = next(s for s in found + declared if s.value == ("state", missing[0]))
             raise Error(f"the state {missing[0]}{at(symbol.line)} has no equation{at(self.line)}: add its derivative, "
                         f"or make it a parameter if it is constant")
-        everything = walk(self._functions + [e for _, assignments in hooks for _, e in assignments])
+        everything = walk(self._functions + times + [e for _, assignments in hooks for _, e in assignments])
         drawn = next((n for n in everything if n.op in draws), None)
         if drawn is not None:
             raise Error(f"`{text(drawn)}`{at(drawn.line)} is drawn in an equation, event or hook{at(self.line)}: "
@@ -434,7 +490,7 @@ class Model(kinds.ComponentNames):
         assigned = {t.value for _, assignments in hooks for t, _ in assignments}
         self.writes_parameters = any(kind == "parameter" for kind, _ in assigned)
         self.writes_time_domain = bool(assigned & {("built-in", "t_begin"), ("built-in", "t_end")})
-        read = {s.value[0] for s in self._in_functions}
+        read = {s.value[0] for s in self._in_functions + symbols_of(times)}
         self.accessories_are_outputs = any(components[kind] for kind in kinds.accessories) and not read & {
             *kinds.accessories}
         self._hooks = hooks
@@ -442,7 +498,8 @@ class Model(kinds.ComponentNames):
     def enumerations(self) -> list[tuple[str, list[str]]]:
         """(kind, names) of everything that has an enumeration in C++."""
         shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
-        return [*{**kinds.names_of(self), "shared": shared}.items(), ("observed", [n for n, _ in self.observed])]
+        return [*{**kinds.names_of(self), "shared": shared}.items(), ("observed", [n for n, _ in self.observed]),
+                ("stop", [s.name for s in self.stops])]
 
     @property
     def component_names(self) -> list[str]:
@@ -480,6 +537,10 @@ class Model(kinds.ComponentNames):
                     if kind == "event_count" and name not in [e.name for e in self.events]:
                         raise Error(f"event_count('{name}') in {what}{at(self.line)} names no event: there are "
                                     f"{', '.join(e.name for e in self.events) or 'none'}")
+        clash = next((n for n in ("stop", "stop_time", "after_stop") if self.stops and n in kind_of), None)
+        if clash is not None:
+            raise Error(f"'{clash}' names {sym.a(kind_of[clash])}{at(self.line)}, and has a meaning of its own in a "
+                        f"model with stops: call it '{clash}_'")
         if self.name in kind_of:
             raise Error(f"the model has the name of its {kind_of[self.name]} '{self.name}'{at(self.line)}: give "
                         "it another one, name='...'")

@@ -145,6 +145,8 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
         raise _refuse("it has tangents" if hasattr(model, "vectors") else "it is written in C++")
     if method not in methods:
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
+    if model.stops:
+        raise _refuse("it has stop times")
     if model.summaries:
         raise _refuse("it has extrema or integrals over a phase")
     for kind, most in _limits.items():

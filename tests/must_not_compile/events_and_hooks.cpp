@@ -10,6 +10,22 @@
 // expect: after_event has a wrong signature: it must be
 // case: after_event_without_events
 // expect: the model has after_event but no events: give it
+// case: stop_enumeration_without_stop_time
+// expect: a model with stop times has both `enum stop
+// case: stop_time_without_a_stop_enumeration
+// expect: a model with stop times has both `enum stop
+// case: stop_time_with_a_wrong_signature
+// expect: stop_time has a wrong signature: it must be
+// case: after_stop_with_a_wrong_signature
+// expect: after_stop has a wrong signature: it must be
+// case: after_stop_without_stop_time
+// expect: the model has after_stop but no stop times: give it
+// case: trigger_without_after_trigger
+// expect: a model with triggers has `enum trigger
+// case: condition_with_a_wrong_signature
+// expect: condition has a wrong signature: it must be
+// case: after_trigger_without_triggers
+// expect: the model has after_trigger but no triggers: give it
 // case: initialise_with_a_wrong_signature
 // expect: initialise has a wrong signature: it must be
 // case: finalise_with_a_wrong_signature
@@ -73,6 +89,41 @@ struct decay {
 #endif
 #ifdef CASE_initialise_with_a_wrong_signature  // a phase cannot end in initialise
     MYRIAD_FUNCTION static myriad::action initialise(auto&) { return myriad::action::end_phase; }
+#endif
+#if defined CASE_stop_enumeration_without_stop_time || defined CASE_stop_time_with_a_wrong_signature || \
+    defined CASE_after_stop_with_a_wrong_signature
+    enum stop { dose, n_stop };
+#endif
+#ifdef CASE_stop_time_with_a_wrong_signature  // the number is missing
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, const auto& p) {
+        return p[k];
+    }
+#endif
+#if defined CASE_stop_time_without_a_stop_enumeration || defined CASE_after_stop_with_a_wrong_signature
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int, const auto& p) {
+        return p[k];
+    }
+#endif
+#ifdef CASE_after_stop_with_a_wrong_signature  // the number is missing
+    MYRIAD_FUNCTION static void after_stop(int, auto&) {}
+#endif
+#if defined CASE_trigger_without_after_trigger || defined CASE_condition_with_a_wrong_signature
+    enum trigger { warm, n_trigger };
+#endif
+#ifdef CASE_trigger_without_after_trigger
+    MYRIAD_FUNCTION static bool condition(int, const auto& positive) { return positive[0]; }
+#endif
+#ifdef CASE_condition_with_a_wrong_signature  // the functions' sides are missing
+    MYRIAD_FUNCTION static bool condition(int) { return true; }
+    MYRIAD_FUNCTION static void after_trigger(int, auto&) {}
+#endif
+#ifdef CASE_after_trigger_without_triggers
+    MYRIAD_FUNCTION static void after_trigger(int, auto&) {}
+#endif
+#ifdef CASE_after_stop_without_stop_time
+    MYRIAD_FUNCTION static void after_stop(int, int, auto&) {}
 #endif
 #ifdef CASE_finalise_with_a_wrong_signature
     MYRIAD_FUNCTION static void finalise(double, auto&) {}

@@ -49,6 +49,28 @@ struct with_summaries : bare {
         return myriad::vec<R, n_observed>{y[x]};
     }
 };
+struct with_stops : bare {
+    enum stop { dose, n_stop };
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int number, const auto&) {
+        return static_cast<R>(number);
+    }
+    MYRIAD_FUNCTION static void after_stop(int, int, auto&) {}
+};
+/// A parameter that has the name of a hook.
+struct with_a_parameter_stop_time : bare {
+    enum parameter { stop_time, condition, n_parameter };
+};
+struct with_triggers : bare {
+    enum event { warm, n_event };
+    enum trigger { too_warm, n_trigger };
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_event>{y[x]};
+    }
+    MYRIAD_FUNCTION static bool condition(int, const auto& positive) { return positive[warm]; }
+    MYRIAD_FUNCTION static void after_trigger(int, auto&) {}
+};
 struct with_declarations : bare {
     static constexpr bool writes_parameters = true;
     static constexpr bool writes_time_domain = true;
@@ -133,6 +155,12 @@ TEST_CASE("what stiff methods make of a model is described", "[describe]") {
 
 TEST_CASE("a model with events alone is described with them", "[describe]") {
     CHECK(has(describe<watched>(), "1 event\nhooks: rhs, events\n"));
+}
+
+TEST_CASE("a model with stop times or triggers is described with them", "[describe]") {
+    CHECK(has(describe<with_stops>(), "hooks: rhs, stop_time, after_stop\n"));
+    CHECK(has(describe<with_a_parameter_stop_time>(), "hooks: rhs\n"));
+    CHECK(has(describe<with_triggers>(), "hooks: rhs, events, condition, after_trigger\n"));
 }
 
 TEST_CASE("a misspelt hook does not show", "[describe]") {

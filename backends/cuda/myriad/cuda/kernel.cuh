@@ -15,7 +15,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// Whether instances may differ in cost: if steps are adaptive, or events or hooks can end phases. Other kernels take
 /// them in order.
 template <class Model, class Method>
-inline constexpr bool costs_differ = is_adaptive<Method> || has_events<Model> || has_after_step<Model>;
+inline constexpr bool costs_differ =
+    is_adaptive<Method> || has_events<Model> || has_after_step<Model> || has_stops<Model>;
 
 /// What the host asks of a kernel that is running: a `stop_request` in device memory, or null. It is read out of line
 /// in kernels with adaptive steps or events: nvcc takes a loop whose end depends on a value in memory for one that

@@ -48,6 +48,9 @@ template <class Model>
     add(hooks, detail::has_after_step<Model>,
         detail::has_generic_after_step<Model> ? "after_step (generic)" : "after_step (scalar)");
     add(hooks, detail::has_after_event<Model>, "after_event");
+    add(hooks, detail::has_triggers<Model>, "condition, after_trigger");
+    add(hooks, detail::has_stops<Model>, "stop_time");
+    add(hooks, detail::has_after_stop<Model>, "after_stop");
     add(hooks, detail::has_finalise<Model>, "finalise");
     add(declares, detail::writes_parameters<Model>, "writes_parameters");
     add(declares, detail::writes_time_domain<Model>, "writes_time_domain");

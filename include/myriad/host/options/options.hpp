@@ -146,7 +146,8 @@ struct options {
     std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all
     std::int64_t sub_samples = 1;  ///< points per step at which event functions are evaluated (the last is the end)
     std::int64_t accumulation_limit = 50;  ///< actions of one event, without its function leaving the surface in
-                                           ///< between, that end the instance as `event_accumulation`
+                                           ///< between, or of one kind of stop at one time, that end the instance
+                                           ///< as `event_accumulation`
 
     record_options record = {};                        ///< what to keep at the end of every phase
     sample_options samples = {};                       ///< dense output

@@ -57,12 +57,12 @@ struct adaptive_stepping {
     MYRIAD_FUNCTION void resume(int i, R h) { set_lane(s.data.h_next, i, h); }
     MYRIAD_FUNCTION R time(int i) const { return get_lane(s.data.t, i); }
 
-    /// The next step of every lane: the proposed one, or the rest of the domain; the former in lanes that are
-    /// `locating` an event before that. A step that falls short of t_end by less than 1/1024 of itself is stretched, so
-    /// that no sliver remains; its error is tested as usual. The state advances by exactly the same step as t;
-    /// otherwise the difference would accumulate.
+    /// The next step of every lane: the proposed one, or the rest of the way to the next stop; the former in lanes that
+    /// are `locating` an event before that. A step that falls short of the stop by less than 1/1024 of itself is
+    /// stretched, so that no sliver remains; its error is tested as usual. The state advances by exactly the same step as
+    /// t; otherwise the difference would accumulate.
     MYRIAD_FUNCTION void propose(const mask& locating) {
-        S remaining = s.data.t_end - s.data.t;
+        S remaining = s.t_stop() - s.data.t;
         if constexpr (keeps_low) remaining = remaining - s.steps.time_low;
         s.final_step = (abs(remaining) <= abs(s.data.h_next) * S(R(1 + 1.0 / 1024))) & !locating;
         S h = copysign(s.data.h_next, remaining);
@@ -72,7 +72,7 @@ struct adaptive_stepping {
 
     MYRIAD_FUNCTION S end_time() const {
         const S t1 = keeps_low ? s.data.t + (s.h + s.steps.time_low) : s.data.t + s.h;
-        return select(s.final_step, s.data.t_end, t1);
+        return select(s.final_step, s.t_stop(), t1);
     }
 
     /// Accepts or rejects the trial of every lane and chooses the next step, by the elementary (I) controller of the
@@ -113,12 +113,12 @@ struct adaptive_stepping {
         }
         S next = s.h * S(factor);
         const S minimum = S(args.minimum_step), maximum = S(args.maximum_step);
-        const mask ends = accepted & (t1 == s.data.t_end);
+        const mask ends = accepted & (t1 == s.t_stop());
         const mask still = s.running() & (t1 == s.data.t);
         // One branch for all that is rare.
         if (MYRIAD_UNLIKELY(any(ends | still | stuck | (s.running() & !clearly_between(minimum, next, maximum))))) {
             S size = limited(abs(next), minimum, maximum);
-            // A step cut short by the end of the domain says little about the step size to continue with.
+            // A step cut short by a stop says little about the step size to continue with.
             size = select(ends, larger(size, abs(s.data.h_next)), size);
             next = copysign(size, s.h);
             accepted = accepted & !end_stuck(stuck, still);

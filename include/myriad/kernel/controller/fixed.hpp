@@ -55,18 +55,18 @@ struct fixed_stepping {
     /// Time of lane i's committed state, exactly t_end after the last step. For rare use: it reads the ensemble's
     /// array, so that models whose right-hand side does not depend on time keep no time in registers.
     MYRIAD_FUNCTION R time(int i) const {
-        if (get_lane(s.steps.left, i) == 0) return domain_end(i);
+        if (get_lane(s.steps.left, i) == 0) return stop_of(i);
         return fma(static_cast<R>(get_lane(s.steps.done, i)), get_lane(s.steps.step, i), args.t[s.instance[i]]);
     }
 
-    /// The next step of every lane: the fixed one, or the rest of the domain; that of event location in lanes that are
-    /// `locating`.
+    /// The next step of every lane: the fixed one, or the rest of the way to the next stop; that of event location in lanes
+    /// that are `locating`.
     MYRIAD_FUNCTION void propose(const mask& locating) {
         s.final_step = (s.steps.left <= count(1)) & !locating;
         s.h = has_events<Model> ? select(locating, s.data.h_next, s.steps.step) : s.steps.step;
         if (MYRIAD_UNLIKELY(any(s.final_step))) {
             for_each_lane(s.running() & s.final_step, [&](int i) MYRIAD_LAMBDA {
-                R beyond = detail::elapsed_beyond(args.t[s.instance[i]], domain_end(i),
+                R beyond = detail::elapsed_beyond(args.t[s.instance[i]], stop_of(i),
                                                   static_cast<R>(get_lane(s.steps.done, i)), get_lane(s.steps.step, i));
                 if constexpr (keeps_low) beyond += get_lane(s.steps.time_low, i);
                 set_lane(s.h, i, -beyond);
@@ -81,7 +81,7 @@ struct fixed_stepping {
             const S redone = s.now() + (s.h + s.steps.time_low);  // a step redone to an event
             t1 = select(s.h == s.steps.step, t1, redone);
         }
-        return select(s.final_step, s.data.t_end, t1);
+        return select(s.final_step, s.t_stop(), t1);
     }
 
     template <class EndStuck>
@@ -107,9 +107,13 @@ struct fixed_stepping {
         }
         if constexpr (shows_time) {
             s.data.t = s.now();
-            for_each_lane(accepted & s.final_step, [&](int i) MYRIAD_LAMBDA { set_lane(s.data.t, i, domain_end(i)); });
+            for_each_lane(accepted & s.final_step, [&](int i) MYRIAD_LAMBDA { set_lane(s.data.t, i, stop_of(i)); });
         }
-        s.ended = s.ended | (accepted & s.final_step);
+        if constexpr (has_stops<Model>) {
+            s.ended = s.ended | (accepted & s.final_step & (s.data.t == s.data.t_end));
+        } else {
+            s.ended = s.ended | (accepted & s.final_step);
+        }
         if constexpr (has_events<Model>) s.ended = s.ended | (accepted & at_event & (s.data.t == s.data.t_end));
     }
 
@@ -123,16 +127,16 @@ struct fixed_stepping {
 
 private:
     /// The number of steps gives the time; it is only stored if something reads it.
-    static constexpr bool shows_time = has_after_step<Model> || has_events<Model>;
+    static constexpr bool shows_time = has_after_step<Model> || has_events<Model> || has_stops<Model>;
 
-    /// Divides the domain of lane i, from t to t_end, into steps, the last ending exactly at t_end. A domain that is a
+    /// Divides the way of lane i from t to the next stop into steps, the last ending exactly there. A way that is a
     /// whole number of steps up to rounding gets that number, without a sliver at the end.
     MYRIAD_FUNCTION void lay(int i, R t) {
         // Beyond this, counts are inexact; options::max_steps, which is checked to be smaller, ends the phase before.
         constexpr R most = std::numeric_limits<R>::digits > 31 ? R(2147483647) : R(16777216);
-        const R t_end = get_lane(s.data.t_end, i);
-        const R signed_step = copysign(args.step, t_end - t);
-        const R ratio = abs(t_end - t) / args.step;
+        const R t_stop = get_lane(s.t_stop(), i);
+        const R signed_step = copysign(args.step, t_stop - t);
+        const R ratio = abs(t_stop - t) / args.step;
         constexpr R sliver = R(1e-6);  // of a step: added to the last one
         const R steps = -floor(sliver - ratio * (R(1) - R(4) * epsilon_of<R>));
         const R bounded = min(max(steps, R(1)), most);
@@ -143,11 +147,11 @@ private:
         set_count(s.steps.left, i, bounded);
     }
 
-    /// The end of lane i's phase, for rare use: read from the ensemble, so that it need not stay in a register. With
-    /// events, which compare it with t at every step, it stays there.
-    MYRIAD_FUNCTION R domain_end(int i) const {
-        if constexpr (writes_time_domain<Model> || has_events<Model>) {
-            return get_lane(s.data.t_end, i);
+    /// The time at which lane i's steps end, for rare use: without stop times it is read from the ensemble, so that it
+    /// need not stay in a register. With events, which compare it with t at every step, it stays there.
+    MYRIAD_FUNCTION R stop_of(int i) const {
+        if constexpr (writes_time_domain<Model> || has_events<Model> || has_stops<Model>) {
+            return get_lane(s.t_stop(), i);
         } else {
             const bool own = args.t_end != nullptr;
             const auto t_end = own ? args.t_end[s.instance[i]] : args.common_t_end;

@@ -18,14 +18,16 @@ enum class status : std::uint8_t {
     max_steps,           ///< more trial steps in one phase than `options::max_steps`
     step_underflow,      ///< the error test failed at the minimum step, or the step became negligible against t
     not_finite,          ///< the right-hand side, an event function or a hook gave a non-finite value
-    event_accumulation,  ///< actions of one event accumulated on its surface (Zeno); t is when the last one was
-                         ///< counted: a bouncing ball comes to rest 2 v / (g (1 - e)) later (docs/numerics.md)
+    event_accumulation,  ///< actions of one event accumulated on its surface (Zeno), or stops at one time; t is when the
+                         ///< last one was counted: a bouncing ball comes to rest 2 v / (g (1 - e)) later
+                         ///< (docs/numerics.md)
     singular_jacobian,   ///< a linear solve of an implicit method failed
+    queue_overflow,      ///< a hook returned `action::overflow`: no room for an action that is to run later
     invalid_input,       ///< a state, parameter or time was not finite at the start
     interrupted,         ///< the call ended before: by its time limit, or by the progress function, half a second ago
 };
 /// The number of statuses.
-inline constexpr int status_count = 11;
+inline constexpr int status_count = 12;
 
 /// True for the statuses that end an instance for good.
 MYRIAD_FUNCTION bool is_failure(status s) { return s >= status::max_steps; }
@@ -35,6 +37,7 @@ enum class action : std::uint8_t {
     proceed,       ///< continue
     end_phase,     ///< end this integration phase here
     end_instance,  ///< end the instance: no further phases
+    overflow,      ///< end the instance as `queue_overflow`, in models with stop times; elsewhere as `end_phase`
 };
 
 }  // namespace myriad

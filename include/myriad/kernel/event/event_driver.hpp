@@ -10,6 +10,7 @@
 #include "myriad/kernel/event/fired_events.hpp"
 #include "myriad/kernel/event/locator.hpp"
 #include "myriad/kernel/event/side_tracker.hpp"
+#include "myriad/kernel/event/trigger_state.hpp"
 #include "myriad/kernel/stepper/step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -31,7 +32,7 @@ public:
     /// `memory` holds one entry per lane, outside the loop's own state, which is in registers.
     MYRIAD_FUNCTION event_driver(const kernel_arguments<Model, R>& args, integration_state<Model, Method, S>& s,
                                  event_memory<Model, R>* memory)
-        : args_(args), s_(s), memory_(memory), e_{}, fired_{} {}
+        : args_(args), s_(s), memory_(memory), e_{}, fired_{}, triggers_{} {}
 
     /// For lanes that are still empty.
     MYRIAD_FUNCTION void clear() {
@@ -146,6 +147,14 @@ public:
         tracker{sides()}.update_after_events(i, fired_, before);
     }
 
+    /// The actions of the events that fired are done.
+    MYRIAD_FUNCTION void forget_fired() { fired_.clear(); }
+
+    /// The triggers of lane i whose actions are to run.
+    MYRIAD_FUNCTION auto& pending_triggers(int i) { return triggers_.pending[i]; }
+    /// The conditions of the model's triggers.
+    MYRIAD_FUNCTION trigger_conditions<Model, Method, S> conditions() { return {sides(), triggers_}; }
+
 private:
     MYRIAD_FUNCTION lane_sides<Model, Method, S> sides() { return {args_, s_, e_, memory_}; }
 
@@ -160,6 +169,7 @@ private:
     event_memory<Model, R>* memory_;
     event_sides<Model, S> e_;
     fired_events<Model, S> fired_;
+    [[no_unique_address]] trigger_state<Model, S> triggers_;
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -46,11 +46,7 @@ struct lane_sides {
     /// The inputs of lane i's event functions beside t and y.
     MYRIAD_FUNCTION decltype(auto) inputs_of(int i) const { return inputs_of(i, s.data); }
     MYRIAD_FUNCTION decltype(auto) inputs_of(int i, const lane_data<Model, S>& at) const {
-        if constexpr (is_pack<S>) {
-            return detail::extract_lane(at, i);
-        } else {
-            return static_cast<const inputs<Model, S>&>(at);
-        }
+        return detail::inputs_of_lane(at, i);
     }
 
     /// +1, -1, or 0 if the side is not yet known.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Calls hooks within a phase: after_step in the accepted lanes, after_event in lanes whose events fired; and handles
-// the changes they make.
+// Calls hooks within a phase: after_step in the accepted lanes, after_event in lanes whose events fired, after_stop in
+// those that have reached a stop time, after_trigger where a condition has come to hold; and handles the changes they
+// make.
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/event_driver.hpp"
+#include "myriad/kernel/event/stop_driver.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -40,6 +42,7 @@ struct hook_driver {
             if constexpr (writes_time_domain<Model>) {
                 for_each_lane(accepted & (before.t_end != s.data.t_end), [&](int i) MYRIAD_LAMBDA { retarget(i); });
             }
+            if constexpr (has_stops<Model>) for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA { update_stops(i); });
         } else {
             for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA {
                 run_hook(i, [](auto& lane) MYRIAD_LAMBDA { return Model::after_step(lane); });
@@ -84,6 +87,46 @@ struct hook_driver {
         }
     }
 
+    /// Calls after_trigger for the conditions that count as false before the start, in lanes whose phase begins.
+    MYRIAD_FUNCTION void begin_triggers(const mask& begun) {
+        for_each_lane(begun, [&](int i) MYRIAD_LAMBDA {
+            events.conditions().begin(i);
+            act_on_triggers_of(i);
+        });
+        act_on_conditions();
+    }
+    /// Calls the actions of stop times and triggers at this instant, and those that follow from them.
+    MYRIAD_FUNCTION void act_on_conditions() {
+        for (std::int32_t rounds = 0;; ++rounds) {
+            if constexpr (has_stops<Model>) act_on_stops();
+            const mask turned = events.conditions().turned();
+            if (!MYRIAD_UNLIKELY(any(turned))) return;
+            mask acted = mask(false);
+            for_each_lane(turned, [&](int i) MYRIAD_LAMBDA {
+                events.conditions().update(i);
+                set_lane(acted, i, act_on_triggers_of(i));
+            });
+            if (!has_stops<Model> || !any(acted)) return;
+            if (rounds >= args.accumulation_limit) return s.end_lanes(acted, status::event_accumulation);
+        }
+    }
+
+    /// Calls after_stop in the lanes that have reached a stop time, after the events there.
+    MYRIAD_FUNCTION void act_on_stops() {
+        const stop_driver<Model, Method, S> stops{args, s};
+        const mask due = stops.due();
+        if (!MYRIAD_UNLIKELY(any(due))) return;
+        const lane_data<Model, S> before = s.data;
+        for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
+            stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
+                if constexpr (has_after_stop<Model>)
+                    run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_stop(j, number, lane); });
+            });
+            lay_steps(i);
+        });
+        follow_action(due & differs(before, s.data), before);
+    }
+
 private:
     /// The new value in these lanes, the old one elsewhere.
     template <class T>
@@ -104,6 +147,39 @@ private:
         MYRIAD_UNROLL
         for (int c = 0; c < size; ++c) different = different | differs_in_bits(now[c], before[c]);
         return different;
+    }
+
+    /// Calls after_trigger for the pending triggers of lane i, in order of their index, and for those that their
+    /// actions bring about. Returns whether there were any.
+    MYRIAD_FUNCTION bool act_on_triggers_of(int i) {
+        constexpr int triggers = n_trigger<Model>;
+        auto& pending = events.pending_triggers(i);
+        bool acted = false;
+        for (std::int32_t actions = 0; pending.any_of(); ++actions) {
+            if (actions >= args.accumulation_limit) {
+                s.end_lane(i, status::event_accumulation);
+                pending.clear();
+                break;
+            }
+            int next = triggers - 1;
+            for (int j = triggers - 2; j >= 0; --j) next = pending[j] ? j : next;
+            pending.set(next, false);
+            const lane_data<Model, S> before = s.data;
+            run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_trigger(next, lane); });
+            mask one = mask(false);
+            set_lane(one, i, true);
+            follow_action(one & differs(before, s.data), before);
+            events.conditions().update(i);
+            acted = true;
+        }
+        return acted;
+    }
+    /// After an action beside those of events changed lanes that were as in `before`.
+    MYRIAD_FUNCTION void follow_action(const mask& changed, const lane_data<Model, S>& before) {
+        if (!any(changed)) return;
+        check_finite(changed, before.y);
+        if constexpr (has_events<Model>) events.forget_fired();  // their actions are done
+        follow_up(changed, before);
     }
 
     MYRIAD_FUNCTION void act_on_lane(int i) {
@@ -129,7 +205,11 @@ private:
         if constexpr (writes_time_domain<Model>) {
             if (get_lane(s.data.t_end, i) != t_end) retarget(i);
         }
+        if constexpr (has_stops<Model>) update_stops(i);
         if (wanted == action::proceed) return;
+        if constexpr (has_stops<Model>) {
+            if (wanted == action::overflow) return s.end_lane(i, status::queue_overflow);
+        }
         s.end_lane(i, status::stopped_by_user);
         if (wanted == action::end_instance) s.instance_over[i] = true;
     }
@@ -141,8 +221,19 @@ private:
         if (t_end != t_end) return s.end_lane(i, status::not_finite);
         const bool there = t == t_end;
         if (s.ending[i] == status::success) set_lane(s.ended, i, there);  // other endings stand
+        if constexpr (has_stops<Model>) stop_driver<Model, Method, S>{args, s}.update(i);
         if (there) return;
         stepping<Model, Method, S>{args, s}.move(i, t);
+    }
+
+    /// A hook may have moved the stop times of lane i.
+    MYRIAD_FUNCTION void update_stops(int i) {
+        if (stop_driver<Model, Method, S>{args, s}.update(i)) lay_steps(i);
+    }
+    /// The steps of lane i end elsewhere than before.
+    MYRIAD_FUNCTION void lay_steps(int i) {
+        const R t = get_lane(s.data.t, i);
+        if (t != get_lane(s.data.t_end, i)) stepping<Model, Method, S>{args, s}.move(i, t);
     }
 
     /// Adopts the changes that a generic hook made to `before`, in the given lanes.

@@ -46,6 +46,9 @@ struct integrator {
         events.clear();
         while (!(any(s.ended) || watchdog_type{args, s}.is_due()) || fill_lanes(source, events)) {
             MYRIAD_RECONVERGE;
+            if constexpr (has_triggers<Model>) {
+                if (any(s.ended)) continue;  // by an action before the first step
+            }
             if constexpr (runs_freely<Model, Method>) free_run<Model, Method, S>{args, s}.take_steps(source);
             trial_type trial;
             propose_step(events);
@@ -74,6 +77,11 @@ struct integrator {
             if constexpr (sees_summaries<Model>) hooks.follow_summaries(summarised);
             if constexpr (has_after_step<Model>) hooks.after_step(accepted);
             if constexpr (has_events<Model>) hooks.act_on_events();
+            if constexpr (has_triggers<Model>) {
+                hooks.act_on_conditions();
+            } else if constexpr (has_stops<Model>) {
+                hooks.act_on_stops();
+            }
         }
         if constexpr (requires { source.gives_only_one(); })
             phase_driver<Model, Method, S>{args, s, events, o}.finish(0);
@@ -107,13 +115,17 @@ struct integrator {
             set_lane(begun, i, phase_driver<Model, Method, S>{args, s, events, o}.advance(i, source));
         });
         s.ended = mask(false);
+        if constexpr (has_triggers<Model>) {
+            events.begin(begun);
+            hook_driver<Model, Method, S>{args, s, events}.begin_triggers(begun);
+        }
         watchdog.schedule();
         if constexpr (is_adaptive<Method>) {
             const mask open = begun & (s.data.h_next == S(R(0)));
             if (any(open)) detail::choose_first_step(args, s, open);
         }
         s.slopes.begin(begun, s.now(), s.data, s.extra_evaluations);
-        if constexpr (has_events<Model>) events.begin(begun);
+        if constexpr (has_events<Model> && !has_triggers<Model>) events.begin(begun);
         return any(s.active);
     }
 
@@ -171,7 +183,8 @@ struct integrator {
 
 private:
     /// Only hooks see the step just taken.
-    static constexpr bool shows_step = has_after_step<Model> || has_after_event<Model> || has_finalise<Model>;
+    static constexpr bool shows_step = has_after_step<Model> || has_after_event<Model> || has_after_stop<Model> ||
+                                       has_triggers<Model> || has_finalise<Model>;
     /// Time at the end of the trial.
     MYRIAD_FUNCTION S end_time() { return stepping_type{args, s}.end_time(); }
 };

@@ -6,6 +6,7 @@
 
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/event_driver.hpp"
+#include "myriad/kernel/event/stop_driver.hpp"
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
@@ -194,6 +195,7 @@ private:
         const R t = get_lane(s.data.t, i);
         args.t[index] = t;
         if constexpr (has_summaries<Model>) summariser<Model, Method, S>{s}.begin(i);
+        if constexpr (has_stops<Model>) stop_driver<Model, Method, S>{args, s}.begin(i, carry_on);
         steps.begin(i, t);
         if constexpr (m > 0) {
             if (phase == 0) events.reset(i);
@@ -207,16 +209,39 @@ private:
         set_count(s.located, i, 0);
         set_count(s.extra_evaluations, i, 0);
         s.begin_iterations(args, i);
+        if constexpr (has_stops<Model>) {
+            if (s.ending[i] == status::success) act_on_stops(i);
+        }
         return s.ending[i] == status::success && t != get_lane(s.data.t_end, i);
     }
 
-    /// Runs `initialise` or `finalise`. A state or step that is not finite is refused. A state that the hook changed
-    /// was set, not integrated: functions then within their tolerance have no side.
+    /// Calls after_stop where a phase begins at a stop time, after its first sample.
+    MYRIAD_FUNCTION void act_on_stops(int i) {
+        const stop_driver<Model, Method, S> stops{args, s};
+        const R t = get_lane(s.data.t, i);
+        bool acted = false;
+        stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
+            acted = true;
+            if constexpr (has_after_stop<Model>) {
+                const action wanted =
+                    place(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_stop(j, number, lane); });
+                if (wanted != action::proceed)
+                    s.end_lane(i, wanted == action::overflow ? status::queue_overflow : status::stopped_by_user);
+                if (wanted == action::end_instance) s.instance_over[i] = true;
+                stops.update(i);
+            }
+        });
+        if (acted) stepping_type{args, s}.begin(i, t);
+    }
+
+    /// Runs `initialise`, `finalise` or an action before the first step, and returns what it requests. A state or step
+    /// that is not finite is refused. A state that the hook changed was set, not integrated: functions then within
+    /// their tolerance have no side.
     template <class Hook>
-    MYRIAD_FUNCTION void place(int i, Hook&& hook) {
+    MYRIAD_FUNCTION action place(int i, Hook&& hook) {
         const auto before = get_lanes<R>(s.data.y, i);
         const R h_next = get_lane(s.data.h_next, i);
-        detail::run_on_lane(s.data, i, hook);
+        const action wanted = detail::run_on_lane(s.data, i, hook);
         const auto after = get_lanes<R>(s.data.y, i);
         bool finite = all_finite(after) && get_lane(s.data.h_next, i) == get_lane(s.data.h_next, i);
         if constexpr (writes_time_domain<Model>)
@@ -229,6 +254,7 @@ private:
         } else if (!same_values(before, after, n - n_tangent<Model>)) {
             if constexpr (m > 0) events.reset(i);
         }
+        return wanted;
     }
 
     /// Ends the phase of lane i: `finalise`, record, count; if it failed, ends the instance.

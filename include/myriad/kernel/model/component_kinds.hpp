@@ -27,4 +27,7 @@
 /// Those that users name.
 #define MYRIAD_COMPONENT_KINDS(row) MYRIAD_VALUE_KINDS(row) row(event, events, "event", void)
 /// All that a model enumerates.
-#define MYRIAD_ENUMERATED_KINDS(row) MYRIAD_COMPONENT_KINDS(row) row(observed, observed, "observed quantity", void)
+#define MYRIAD_ENUMERATED_KINDS(row)                                                  \
+    MYRIAD_COMPONENT_KINDS(row)                                                       \
+    row(observed, observed, "observed quantity", void) row(stop, stops, "stop", void) \
+        row(trigger, triggers, "trigger", void)

@@ -134,11 +134,27 @@ MYRIAD_HOOK_NAME(observe)
 MYRIAD_HOOK_NAME(initialise)
 MYRIAD_HOOK_NAME(after_step)
 MYRIAD_HOOK_NAME(after_event)
+MYRIAD_HOOK_NAME(stop_time)
+MYRIAD_HOOK_NAME(after_stop)
+MYRIAD_HOOK_NAME(condition)
+MYRIAD_HOOK_NAME(after_trigger)
 MYRIAD_HOOK_NAME(finalise)
 #define MYRIAD_NAME_OF_COUNT(kind, ...) MYRIAD_HOOK_NAME(n_##kind)
 MYRIAD_ENUMERATED_KINDS(MYRIAD_NAME_OF_COUNT)
 #undef MYRIAD_NAME_OF_COUNT
 #undef MYRIAD_HOOK_NAME
+
+/// Whether steps have to end at times that the model gives.
+template <class Model>
+inline constexpr bool has_stops = n_stop<Model> > 0;
+/// Whether a model has a component or constant `stop_time`, which is no hook.
+template <class Model>
+inline constexpr bool stop_time_is_a_value = requires {
+    sizeof(decltype(Model::stop_time));
+};
+/// Whether actions follow conditions of several event functions. A `condition` alone may be a function of the model's.
+template <class Model>
+inline constexpr bool has_triggers = n_trigger<Model> > 0;
 
 /// Whether other files can name a type: in an anonymous namespace, each file has a type of its own. Recognised by the
 /// compiler's spelling of the name.
@@ -191,6 +207,16 @@ constexpr bool check_model() {
                   "a model with events has both `enum event { ..., n_event };` and a function `events`");
     static_assert(!has_after_event<Model> || has_events<Model>,
                   "the model has after_event but no events: give it `enum event { ..., n_event };` and `events`");
+    static_assert(
+        !has_triggers<Model> || (has_condition<Model> && has_after_trigger<Model> && has_events<Model>),
+        "a model with triggers has `enum trigger { ..., n_trigger };`, `condition`, `after_trigger` and events");
+    static_assert(!has_after_trigger<Model> || has_triggers<Model>,
+                  "the model has after_trigger but no triggers: give it `enum trigger { ..., n_trigger };`");
+    static_assert(has_stops<Model> ? has_stop_time<Model> && !stop_time_is_a_value<Model>
+                                   : !has_stop_time<Model> || stop_time_is_a_value<Model>,
+                  "a model with stop times has both `enum stop { ..., n_stop };` and a function `stop_time`");
+    static_assert(!has_after_stop<Model> || has_stops<Model>,
+                  "the model has after_stop but no stop times: give it `enum stop { ..., n_stop };` and `stop_time`");
     return true;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "myriad/kernel/core/status.hpp"
+#include "myriad/kernel/model/event_signs.hpp"
 #include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/model/summaries.hpp"
@@ -107,6 +108,26 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
             "after_event has a wrong signature: it must be `MYRIAD_FUNCTION static myriad::action after_event(int "
             "event, auto& lane)`, and public; it may return void")
     }
+    if constexpr (has_triggers<Model>) {
+        MYRIAD_CHECK_CALL((Model::condition(int{}, *static_cast<const event_signs<n_event<Model>>*>(nullptr))),
+                          std::same_as<bool>,
+                          "condition has a wrong signature: it must be `MYRIAD_FUNCTION static bool condition(int "
+                          "trigger, const auto& positive)`, and public")
+        MYRIAD_CHECK_CALL((Model::after_trigger(int{}, *l)), hook_result,
+                          "after_trigger has a wrong signature: it must be `MYRIAD_FUNCTION static myriad::action "
+                          "after_trigger(int trigger, auto& lane)`, and public; it may return void")
+    }
+    if constexpr (has_stops<Model> && n_stop<Model> != 0) {
+        MYRIAD_CHECK_CALL((Model::template stop_time<R>(int{}, int{}, *p)), std::same_as<R>,
+                          "stop_time has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static R "
+                          "stop_time(int stop, int number, const auto& p)`, the time of the stop of that number, and "
+                          "public")
+    }
+    if constexpr (has_after_stop<Model>) {
+        MYRIAD_CHECK_CALL((Model::after_stop(int{}, int{}, *l)), hook_result,
+                          "after_stop has a wrong signature: it must be `MYRIAD_FUNCTION static myriad::action "
+                          "after_stop(int stop, int number, auto& lane)`, and public; it may return void")
+    }
     if constexpr (has_finalise<Model>) {
         MYRIAD_CHECK_CALL(
             (Model::finalise(*l)), std::same_as<void>,
@@ -130,6 +151,12 @@ constexpr bool hooks_may_stop() {
     }
     if constexpr (has_after_event<Model>) {
         if (!std::is_void_v<decltype(Model::after_event(0, std::declval<one_lane&>()))>) return true;
+    }
+    if constexpr (has_triggers<Model>) {
+        if (!std::is_void_v<decltype(Model::after_trigger(0, std::declval<one_lane&>()))>) return true;
+    }
+    if constexpr (has_after_stop<Model>) {
+        if (!std::is_void_v<decltype(Model::after_stop(0, 0, std::declval<one_lane&>()))>) return true;
     }
     return false;
 }

@@ -227,6 +227,16 @@ MYRIAD_FUNCTION lane_data<Model, real_of<S>> extract_lane(const lane_data<Model,
     return one;
 }
 
+/// The inputs of lane i for functions of one instance: a copy of a pack's, the data themselves of one instance.
+template <class Model, class S>
+MYRIAD_FUNCTION decltype(auto) inputs_of_lane(const lane_data<Model, S>& d, int i) {
+    if constexpr (lanes_of < S >> 1) {
+        return detail::extract_lane(d, i);
+    } else {
+        return static_cast<const inputs<Model, S>&>(d);
+    }
+}
+
 /// Writes back the members that a hook may have changed.
 template <class Model, class S>
 MYRIAD_FUNCTION void insert_lane(lane_data<Model, S>& d, int i, const lane_data<Model, real_of<S>>& one) {

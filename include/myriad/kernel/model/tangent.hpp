@@ -116,6 +116,21 @@ private:
     }
 };
 
+/// Stop times are given, and the same for a neighbouring solution.
+template <class Model, int vectors>
+struct after_stop_layer : after_event_layer<Model, vectors> {};
+template <class Model, int vectors>
+requires has_after_stop<Model>
+struct after_stop_layer<Model, vectors> : after_event_layer<Model, vectors> {
+    MYRIAD_FUNCTION static action after_stop(int stop, int number, auto& wrapped) {
+        action wanted = action::proceed;
+        detail::move_tangents<Model, vectors>(wrapped, [&](auto& own) MYRIAD_LAMBDA {
+            wanted = detail::action_of([&]() MYRIAD_LAMBDA { return Model::after_stop(stop, number, own); });
+        });
+        return wanted;
+    }
+};
+
 }  // namespace tangent_layers
 }  // namespace myriad::detail
 
@@ -133,8 +148,10 @@ namespace myriad {
 /// they call those of `myriad`. Values that a hook writes outside the state, and `rhs` reads, must not depend on the
 /// state, and `rhs` may jump only at an event with `after_event`.
 template <class Model, int vectors = 1>
-struct with_tangents : detail::tangent_layers::after_event_layer<Model, vectors> {
+struct with_tangents : detail::tangent_layers::after_stop_layer<Model, vectors> {
     static_assert(detail::check_model<Model>());
+    static_assert(!detail::has_triggers<Model>,
+                  "with_tangents has no triggers: tangents pass the surface of one event");
     static_assert(vectors >= 1 && vectors <= detail::n_state<Model>,
                   "a model of n components has from 1 to n independent tangent vectors");
 

@@ -12,6 +12,7 @@
 #include "myriad/kernel/state/kernel_arguments.hpp"
 #include "myriad/kernel/state/slope_cache.hpp"
 #include "myriad/kernel/state/stepping_state.hpp"
+#include "myriad/kernel/state/stop_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -19,7 +20,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// the resolution of t, as in single precision and to events. Other steps are rounded to that resolution.
 template <class Model, class Method, class R>
 inline constexpr bool keeps_time_low = has_events<Model> ||
-                                       (is_adaptive<Method> ? std::is_same_v<R, float> : writes_time_domain<Model>);
+                                       (is_adaptive<Method> ? std::is_same_v<R, float>
+                                                            : writes_time_domain<Model> || has_stops<Model>);
 
 /// A step of so many times |t| at least is one that t resolves, however it is rounded and shortened a little.
 template <class R>
@@ -42,9 +44,10 @@ struct integration_state {
 
     // the trial step
     S h;              // its length, signed
-    mask final_step;  // it ends at t_end
+    mask final_step;  // it ends at t_stop()
 
-    stepping_state<Method, S> steps;  // of the method's `stepping`, which owns it
+    stepping_state<Method, S> steps;                   // of the method's `stepping`, which owns it
+    [[no_unique_address]] stop_state<Model, S> stops;  // of `stop_driver`, which owns them
 
     // lanes whose phase ends in this iteration of the loop, and how
     mask ended;
@@ -74,6 +77,15 @@ struct integration_state {
             return data.t;
         } else {
             return steps.time();
+        }
+    }
+
+    /// The time that no step passes: the next stop time, or t_end.
+    MYRIAD_FUNCTION const S& t_stop() const {
+        if constexpr (has_stops<Model>) {
+            return stops.next;
+        } else {
+            return data.t_end;
         }
     }
 

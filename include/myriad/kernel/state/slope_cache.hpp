@@ -136,8 +136,8 @@ private:
     }
 
     /// Within a phase too, the slope at the start may have to be evaluated again.
-    static constexpr bool loses_start =
-        !Method::first_same_as_last || has_after_step<Model> || has_events<Model> || sees_summaries<Model>;
+    static constexpr bool loses_start = !Method::first_same_as_last || has_after_step<Model> || has_events<Model> ||
+                                        has_stops<Model> || sees_summaries<Model>;
 
     state start_, end_;
     mask start_known_, end_known_;

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// The stop times of a model: finds the next, which no step passes, and calls actions there. No root is sought: a step
+// that comes near ends at the very time, as at t_end. It works on one lane at a time, at the start of phases, at stops
+// and after hooks.
+#pragma once
+
+#include <limits>
+
+#include "myriad/kernel/core/static_for.hpp"
+#include "myriad/kernel/model/hooks.hpp"
+#include "myriad/kernel/state/integration_state.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+template <class Model, class Method, class S>
+struct stop_driver {
+    using R = real_of<S>;
+    using mask = mask_of<S>;
+    static constexpr int kinds = n_stop<Model>;
+
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
+
+    /// Starts a phase of lane i at its time: finds the first stop of each kind from there on, or after it if the phase
+    /// `continues` the last one, which has called the actions at its end.
+    MYRIAD_FUNCTION void begin(int i, bool continues) const {
+        const R t = get_lane(s.data.t, i);
+        const bool backwards = get_lane(s.data.t_end, i) < t;
+        const auto passed = [&](R time)
+                                MYRIAD_LAMBDA { return (backwards ? time > t : time < t) || (continues && time == t); };
+        MYRIAD_UNROLL
+        for (int j = 0; j < kinds; ++j) s.stops.number[i][j] = 0;
+        find_next(i, passed);
+    }
+    /// Finds the next stops of lane i again, after a hook. Returns whether steps now have to end elsewhere.
+    MYRIAD_FUNCTION bool update(int i) const {
+        const R t = get_lane(s.data.t, i), t_end = get_lane(s.data.t_end, i), before = get_lane(s.stops.next, i);
+        const auto passed = [&](R time) MYRIAD_LAMBDA { return t < t_end ? time < t : t > t_end && time > t; };
+        find_next(i, passed);
+        return get_lane(s.stops.next, i) != before;
+    }
+
+    /// The lanes that may have reached a stop.
+    MYRIAD_FUNCTION mask due() const { return s.running() & (s.data.t == s.stops.next); }
+
+    /// Calls `action(kind, number)` for each stop of lane i at its time: the next of each kind in order of the kinds,
+    /// again if more are due, as far as `options::accumulation_limit`.
+    template <class Action>
+    MYRIAD_FUNCTION void act(int i, Action&& action) const {
+        const R t = get_lane(s.data.t, i);
+        for (std::int32_t rounds = 0;; ++rounds) {
+            bool acted = false;
+            static_for<0, kinds>([&](auto j) MYRIAD_LAMBDA {
+                std::int32_t& next = s.stops.number[i][j];
+                const std::int32_t number = next;
+                if (time_of(detail::inputs_of_lane(s.data, i), j, number) != t) return;
+                if (rounds >= args.accumulation_limit) return s.end_lane(i, status::event_accumulation);
+                next = number < most ? number + 1 : most;
+                action(j, number);
+                acted = true;
+            });
+            update(i);
+            if (!acted) return;
+        }
+    }
+
+private:
+    static constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
+
+    static MYRIAD_FUNCTION R time_of(const inputs<Model, R>& p, int j, std::int32_t number) {
+        return Model::template stop_time<R>(j, number, p);
+    }
+
+    /// Passes over stops that have `passed`, and sets the nearest of the others, up to t_end. A time that is not finite
+    /// is the end of a kind's stops.
+    template <class Passed>
+    MYRIAD_FUNCTION void find_next(int i, const Passed& passed) const {
+        const R t = get_lane(s.data.t, i), t_end = get_lane(s.data.t_end, i);
+        const auto& p = detail::inputs_of_lane(s.data, i);
+        R nearest = t_end;
+        MYRIAD_UNROLL
+        for (int j = 0; j < kinds; ++j) {
+            std::int32_t& number = s.stops.number[i][j];
+            number = first_not_passed(p, j, number, passed);
+            const R time = time_of(p, j, number);
+            const bool nearer = t <= t_end ? time >= t && time < nearest : time <= t && time > nearest;
+            if (is_finite(time) && !passed(time) && nearer) nearest = time;
+        }
+        set_lane(s.stops.next, i, nearest);
+    }
+    /// The number of the first stop of kind j, from `number` on, that has not passed. Times do not decrease in the
+    /// direction of the integration: strides that double, then bisection.
+    template <class Passed>
+    static MYRIAD_FUNCTION std::int32_t first_not_passed(const inputs<Model, R>& p, int j, std::int32_t number,
+                                                         const Passed& passed) {
+        const auto is_over = [&](std::int32_t k) MYRIAD_LAMBDA {
+            const R time = time_of(p, j, k);
+            return is_finite(time) && passed(time);
+        };
+        if (!MYRIAD_UNLIKELY(is_over(number))) return number;
+        std::int32_t low = number, high = most;
+        for (std::int32_t stride = 1; stride < most - low; stride += stride) {
+            if (!is_over(low + stride)) {
+                high = low + stride;
+                break;
+            }
+            low += stride;
+            if (stride > most / 2) break;
+        }
+        while (high - low > 1) {
+            const std::int32_t middle = low + (high - low) / 2;
+            (is_over(middle) ? low : high) = middle;
+        }
+        return high;
+    }
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

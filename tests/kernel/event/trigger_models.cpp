@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// Compiles the kernels of the models with triggers.
+#include "trigger_models.hpp"
+
+#include <myriad/instantiate.hpp>
+
+MYRIAD_INSTANTIATE(triggers::logic, myriad::runge_kutta_4, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(triggers::alone<triggers::logic>, myriad::runge_kutta_4, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(triggers::chain, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(triggers::alone<triggers::chain>, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(triggers::thermostat, myriad::tsitouras_5)
