@@ -131,7 +131,8 @@ def choose(condition: Any, a: Any, b: Any) -> Any:
     if a.type == b.type == ex.condition:
         return either(both(condition, a), both(opposite(condition), b))
     a, b = number(a), number(b)
-    return a if a is b else ex.make("select", (condition, a, b))
+    kind = ex.integer if a.type == b.type == ex.integer else ex.real
+    return a if a is b else ex.make("select", (condition, a, b), type=kind)
 
 
 def compare(op: str, a: Any, b: Any) -> Any:

@@ -123,6 +123,37 @@ def test_an_instance_ends_where_the_order_of_events_is_open_and_matters():
     assert run["x"][[0, 2]].tolist() == [2, 3] and run["y"][[0, 2]].tolist() == [3, 2]
 
 
+def test_events_of_equal_priority_are_executed_in_a_random_order():
+    parts = [variable("x", 1), variable("y", 1), event("time > 1", {"x": "y + 1"}, priority="3"),
+             event("time > 1", {"y": "x + 1"}, priority="3", at_trigger=False)]
+    model = my.read_sbml(sbml_models.document(parts))
+    runs = [my.solve(model, time=(0, 2), size=4000, interpreted=True) for _ in range(2)]
+    assert not runs[0].failed.any()
+    second = runs[0]["y"] == 3  # of two, the other order gives y = 2
+    assert set(runs[0]["y"].tolist()) == {2, 3} and runs[0]["x"].tolist() == [2 if s else 3 for s in second] or (
+        set(runs[0]["x"].tolist()) == {2})
+    assert abs(second.mean() - 0.5) < 5 * 0.5 / np.sqrt(4000)
+    np.testing.assert_array_equal(runs[0]["y"], runs[1]["y"])  # from a stream of each instance
+
+
+def test_every_order_of_three_events_comes_as_often():
+    parts = [variable("order", 0), *(event("time > 1", {"order": f"10 * order + {i}"}, at_trigger=False)
+                                     for i in (1, 2, 3))]
+    run = my.solve(my.read_sbml(sbml_models.document(parts)), time=(0, 2), size=6000, interpreted=True)
+    orders, counts = np.unique(run["order"], return_counts=True)
+    assert orders.tolist() == [123, 132, 213, 231, 312, 321]
+    assert np.abs(counts - 1000).max() < 5 * np.sqrt(1000 * 5 / 6)
+
+
+def test_events_of_a_model_with_short_times_are_not_at_one_instant():
+    parts = [variable("x", 1), variable("y", 1), parameter("p", 1.5), event("time > 1e-11", {"x": "y + 1"}),
+             event("time > p", {"y": "x + 1"})]
+    run = my.solve(my.read_sbml(sbml_models.document(parts)), {"p": [1.5e-11, 1e-11, 0.5e-11]}, time=(0, 2e-11),
+                   interpreted=True)
+    assert [my.status_names[s] for s in run.status] == ["success", "stopped_by_user", "success"]
+    assert run["x"][[0, 2]].tolist() == [2, 3] and run["y"][[0, 2]].tolist() == [3, 2]
+
+
 def test_an_instance_does_not_start_where_it_is_open_whether_a_trigger_holds():
     """x > 1 does not hold where x is 1, but right afterwards: no crossing shows it."""
     parts = [variable("x", 1), variable("y", 1), rate("x", "1"), event("x > 1", {"y": "2"})]
