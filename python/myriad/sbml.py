@@ -11,10 +11,11 @@ from . import symbols as sym
 from .components import Components, name_of, unknown
 from .errors import Error, users_line
 from .expression import Node, symbols_of
+from .folding import constant, is_constant, value_of
 from .model import Model
 from .sbml_document import library, read
 from .sbml_events import Events
-from .sbml_math import Refused, constant, is_constant, value_of
+from .sbml_math import Refused
 from .sbml_semantics import Semantics
 
 if TYPE_CHECKING:

@@ -10,10 +10,11 @@ from typing import Any
 
 from . import expression as ex
 from .expression import walk
-from .sbml_math import (Refused, both, choose, compare, constant, either, folded, is_constant, opposite, subtract,
-                        value_of)
+from .folding import both, choose, compare, constant, either, folded, is_constant, opposite, subtract, value_of
+from .sbml_math import Refused
 
 true, false = ex.constant(True), ex.constant(False)
+
 
 def substituted(roots: Iterable[Any], values: dict[Any, Any]) -> list[Any]:
     """Expressions with other expressions in the place of symbols."""

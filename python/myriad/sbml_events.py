@@ -16,13 +16,14 @@ from typing import Any
 
 from . import expression as ex, symbols as sym
 from .expression import symbols_of
+from .folding import (add, both, choose, compare, constant, divide, either, is_constant, multiply, number, opposite,
+                      subtract, truth, value_of)
 from .model import Event, event
 from .sbml_conditions import any_of, comparisons_alone, comparisons_of, false, function_of, never, true, with_values
 from .sbml_document import named
 from .sbml_instant import (Instant, Occurrence, Pending, Slot, at_once, interfere, margin, mark, never_due,
                            next_random)
-from .sbml_math import (Refused, add, both, choose, compare, constant, divide, either, is_constant, multiply, number,
-                        opposite, subtract, truth, value_of)
+from .sbml_math import Refused
 from .sbml_semantics import Quantity, Semantics
 
 _slots = 2  #: of each delayed event

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from . import expression as ex, symbols as sym
 from .expression import symbols_of
+from .folding import add, both, choose, compare, constant, either, is_constant, opposite, value_of
 from .sbml_conditions import all_of, any_of, comparisons_of, false, function_of, never, substituted, with_values
-from .sbml_math import (Refused, add, both, choose, compare, constant, either, is_constant, opposite, value_of)
 
 if TYPE_CHECKING:
     from .sbml_events import Events
+from .sbml_math import Refused
 
 _together = 16  #: whose order matters, unless all about them is known beforehand
 _consequences = 4  #: of them, at the same instant, likewise
