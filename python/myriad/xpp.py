@@ -350,11 +350,12 @@ class XppModel(Model):
         self.line = users_line()
         self.defaults: dict[str, Any] = {**self.shared_values}
         for n, symbol in states.items():
-            line, text = parts.initial.pop(n, (None, "0"))
-            value = constant(0.0) if line is None else _in_line(line, text, names)
-            if any(s in states.values() for s in symbols_of([value])):
-                line.refuse("an initial value depends on a state") if line else None
-            self.defaults[symbol.value[1]] = value
+            self.defaults[symbol.value[1]] = constant(0.0)
+            if n in parts.initial:
+                line, text = parts.initial.pop(n)
+                value = self.defaults[symbol.value[1]] = _in_line(line, text, names)
+                if any(s in states.values() for s in symbols_of([value])):
+                    line.refuse("an initial value depends on a state")
         for line, _ in parts.initial.values():
             line.refuse("it gives an initial value to what has no equation")
         for n, symbol in parameters.items():
