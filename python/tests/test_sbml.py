@@ -202,6 +202,46 @@ def test_tangents_keep_the_outputs_of_a_model():
     np.testing.assert_allclose(run["total"], run["A"] + run["B"])
 
 
+def _with_units(level3_units):
+    """A model in millimoles, millilitres and minutes."""
+    def unit(id, *factors):
+        return sbml_models.element("unitDefinition", sbml_models.several("listOfUnits", [
+            sbml_models.element("unit", kind=kind, exponent=exponent, scale=scale, multiplier=multiplier)
+            for kind, exponent, scale, multiplier in factors]), id=id)
+
+    definitions = sbml_models.several("listOfUnitDefinitions", [
+        unit("mmol", ("mole", 1, -3, 1)), unit("ml", ("litre", 1, -3, 1)), unit("min", ("second", 1, 0, 60)),
+        unit("per_min", ("second", -1, 0, 60))])
+    text = sbml_models.document([
+        compartment("c", 2), species("A", concentration=3), species("B", amount=1, only_amounts=True),
+        sbml_models.Part("Parameters", sbml_models.element("parameter", id="k", value=0.5, constant=True,
+                                                           units="per_min")),
+        parameter("plain", 1), reaction("R", "A -> B", "c * k * A")], **level3_units)
+    return text.replace("<listOfCompartments>", definitions + "<listOfCompartments>")
+
+
+def test_units_of_the_file_are_in_the_labels_of_results():
+    plt = pytest.importorskip("matplotlib.pyplot")
+    text = _with_units(dict(substanceUnits="mmol", volumeUnits="ml", timeUnits="min", extentUnits="mmol"))
+    model = my.read_sbml(text)
+    assert model.time_unit == "min"
+    assert model.units == {"c": "ml", "A": "mmol/ml", "A_amount": "mmol", "A_concentration": "mmol/ml", "B": "mmol",
+                           "B_amount": "mmol", "B_concentration": "mmol/ml", "k": "1/min", "R": "mmol/min"}
+    run = my.solve(model, {"k": [0.5, 1.0]}, time=(0, 1), samples=5, interpreted=True)
+    axes = run.plot.time_series("A")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("t (min)", "A (mmol/ml)")
+    plt.close("all")
+    table = run.to_xarray()
+    assert table["A"].attrs["units"] == "mmol/ml" and table["R"].attrs["units"] == "mmol/min"
+    assert table["time"].attrs["units"] == "min" and table["k"].attrs["units"] == "1/min"
+    assert "units" not in table["status"].attrs and "units" not in table["plain"].attrs
+
+
+def test_models_without_units_have_none():
+    model = my.read_sbml(_decay)
+    assert model.units == {} and model.time_unit == ""
+
+
 def test_without_libsbml_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "libsbml", None)
     with pytest.raises(my.Error, match="pip install python-libsbml"):
