@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from . import expression as ex
+from . import expression as ex, symbols as sym
 from .expression import walk
 from .folding import both, choose, compare, constant, either, folded, is_constant, opposite, subtract, value_of
 from .sbml_math import Refused
@@ -29,6 +29,8 @@ def substituted(roots: Iterable[Any], values: dict[Any, Any]) -> list[Any]:
                 made[id(node)] = (both if node.op == "and" else either)(*arguments)
             elif node.op == "not":
                 made[id(node)] = opposite(*arguments)
+            elif node.op == "subtract" and arguments[0] is arguments[1] is sym.time:
+                made[id(node)] = constant(0.0)
             elif node.op == "select":
                 made[id(node)] = choose(*arguments)
             else:

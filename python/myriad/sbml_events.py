@@ -26,7 +26,7 @@ from .sbml_instant import (Instant, Occurrence, Pending, Slot, at_once, interfer
 from .sbml_math import Refused
 from .sbml_semantics import Quantity, Semantics
 
-_slots = 2  #: of each delayed event
+_slots = 2, 4, 12  #: for each delayed event: at least, at most, and for all together where these leave the choice
 _near = 1e-10  #: relative difference of the sides of a comparison that may change at the same instant
 
 
@@ -46,11 +46,14 @@ class Events:
         if not self.all:
             return
         written = {s for one in self.all for s in one.writes}
+        least, most, together = _slots
+        delayed = sum(one.delay is not None for one in self.all)
+        slots = max(least, min(most, together // max(delayed, 1)))
         for one in self.all:
             if any(o is not one and interfere(one, o) for o in self.all):
                 one.last = self._accessory(f"{one.id}_time")
             if one.delay is not None:
-                one.slots = [self._slot(one, i, written) for i in range(_slots)]
+                one.slots = [self._slot(one, i, written) for i in range(slots)]
             one.is_repeatable = not one.writes & one.reads
         self._now = {s: s for s in written} | {a: a for one in self.all for a in self._accessories_of(one)}
         groups: dict[Any, list[tuple[Occurrence, Any]]] = {}
@@ -78,6 +81,13 @@ class Events:
         """Whether an expression changes at events alone."""
         return all(s in self._set_by_events or s is not sym.time and s.value[0] == "parameter"
                    for s in symbols_of([expression]))
+
+    def rate_of(self, expression: Any, where: str) -> Any:
+        """The rate by time of an expression, or None where it has none."""
+        try:
+            return self.semantics.total_derivative(expression, where)
+        except Refused:
+            return None
 
     def random_numbers(self) -> tuple[Any, Any]:
         """The accessory with the latest random number of an instance, and its value at the start, which follows from
@@ -188,7 +198,7 @@ class Events:
                                    opposite(with_values(one.trigger, {**after, other: false})))
                     instant.is_open = either(instant.is_open, both(is_near, matters))
         instant.truth = {one: with_values(one.trigger, after) for one in self.all}
-        instant.happen([(one, condition) for one, condition in happening if not never(condition)])
+        instant.happen(happening)
         names = [e.name for e in self.events]
         name = group[0][0].id
         if name in names:
@@ -235,9 +245,8 @@ class Events:
                 start |= {a: constant(0.0) for a in slot.values.values()}
         instant = Instant(self, start, at_start=True)
         instant.truth = {one: one.trigger for one in self.all}
-        for one in self.all:
-            instant.notice(one, one.trigger)
-        instant.happen([(one, one.trigger) for one in self.all if not one.starts and not never(one.trigger)])
+        instant.happen([(one, either(false if one.starts else one.trigger, instant.about_to_hold(one, one.trigger)))
+                        for one in self.all])
         if self._random is not None:
             instant.values.setdefault(*self._random)
         begins = ex.make("equal", (sym.phase, ex.constant(0)), type=ex.condition)

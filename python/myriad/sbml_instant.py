@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 from . import expression as ex, symbols as sym
 from .expression import symbols_of
 from .folding import add, both, choose, compare, constant, either, is_constant, opposite, value_of
-from .sbml_conditions import all_of, any_of, comparisons_of, false, function_of, never, substituted, with_values
+from .sbml_conditions import all_of, any_of, comparisons_of, false, function_of, never, substituted, true, with_values
 
 if TYPE_CHECKING:
     from .sbml_events import Events
 from .sbml_math import Refused
 
-_together = 16  #: whose order matters, unless all about them is known beforehand
+_together = 16, 64  #: whose order matters: where it is not known beforehand, and in any case
 _consequences = 4  #: of them, at the same instant, likewise
 _rounds = 1000  #: in any case
 never_due = 1e300  #: the time of a slot that is free
@@ -101,6 +101,13 @@ def next_random(number: Any) -> Any:
     return number * 1664525 + 1013904223
 
 
+def _may_tie(a: Any, b: Any) -> bool:
+    """Whether two priorities may be equal."""
+    if a is None or b is None:
+        return a is b
+    return not (is_constant(a) and is_constant(b)) or value_of(a) == value_of(b)
+
+
 class Instant:
     """What happens at one instant. `values` are those of all that is stored, `truth` says which triggers hold, and
     `is_open` where SBML leaves open what happens."""
@@ -122,24 +129,35 @@ class Instant:
         """Whether a trigger holds now."""
         begun = {}
         for comparison in self.located:
-            inputs = set(symbols_of([comparison]))
-            touched = any_of(happens for other, happens in self.executed if other.writes & inputs)
-            begun[comparison] = either(opposite(touched), self._at(comparison))
+            now = self._at(comparison)
+            changed = any_of(compare("not_equal", self.values[s], s) for s in symbols_of([comparison])
+                             if self.values.get(s, s) is not s)
+            begun[comparison] = now if is_constant(now) else either(opposite(changed), now)
         return with_values(one.trigger, {c: begun.get(c, self._at(c)) for c in comparisons_of(one.trigger)})
 
     def _open(self, condition: Any) -> None:
         self.is_open = either(self.is_open, condition)
 
-    def notice(self, one: Occurrence, holds: Any) -> None:
-        """Looks for a trigger that does not hold, but may right afterwards, as x > 0 where x is zero: no crossing shows
-        it."""
-        if any(c.op in ("less", "greater") and not self.events.is_still(c) for c in comparisons_of(one.trigger)):
-            on_surface = compare("equal", self._at(function_of(one.trigger)), constant(0.0))
-            self._open(both(opposite(holds), on_surface))
+    def about_to_hold(self, one: Occurrence, holds: Any) -> Any:
+        """Whether a trigger does not hold, but does right afterwards, as x > 0 where x is zero and rises: no crossing
+        shows it. It is open where the rate is zero too."""
+        if not any(c.op in ("less", "greater") and not self.events.is_still(c) for c in comparisons_of(one.trigger)):
+            return false
+        function = function_of(one.trigger)
+        on_surface = both(opposite(holds), compare("equal", self._at(function), constant(0.0)))
+        if never(on_surface):
+            return false
+        rate = self.events.rate_of(function, one.where)
+        if rate is None:
+            self._open(on_surface)
+            return false
+        rate = self._at(rate)
+        self._open(both(on_surface, opposite(compare("not_equal", rate, constant(0.0)))))
+        return both(on_surface, compare("greater", rate, constant(0.0)))
 
     def happen(self, first: list[tuple[Occurrence, Any]]) -> None:
         """Triggers some events, and does what follows."""
-        self._triggered(first)
+        self._triggered([(one, condition) for one, condition in first if not never(condition)])
         self.run()
 
     def _triggered(self, which: list[tuple[Occurrence, Any]]) -> None:
@@ -210,14 +228,18 @@ class Instant:
             first = self._certainly_first()
             if first:
                 self.pending = [p for p in self.pending if p not in first]
+                again = any(p.what is one for p in first for one, _ in self.executed)
+                uncertain += again and not all(is_constant(p.condition) for p in first)
                 self._execute([(p, p.condition) for p in first])
             else:
-                if sum(not is_constant(p.condition) for p in self.pending) > _together:
+                if len(self._of_uncertain_order()) > _together[0] or len(self.pending) > _together[1]:
                     break
+                one_is_certain = any(is_constant(p.condition) for p in self.pending) and all(
+                    a is None or is_constant(a) for a in map(self._priority, self.pending))
                 chosen = self._chosen()
                 for p, selected in chosen:
                     p.condition = false if selected is p.condition else both(p.condition, opposite(selected))
-                self._execute(chosen)
+                self._execute(chosen, one_is_certain)
                 uncertain += not all(is_constant(selected) for _, selected in chosen)
             self.pending = [p for p in self.pending if not never(p.condition)]
             if not self.pending:
@@ -226,11 +248,12 @@ class Instant:
                 break
         if not self.executed:
             raise Refused(f"{self.pending[0].what.where} and {len(self.pending) - 1} others may be executed at one "
-                          f"instant in an order that matters: up to {_together} can be")
+                          f"instant in an order that matters: up to {_together[0]} can be")
         self._open(any_of(p.condition for p in self.pending))
 
     def _certainly_first(self) -> list[Pending]:
-        """Those that make nothing else happen, and come before all others whose order to them matters: in one round."""
+        """Those that make nothing else happen, and come before all others whose order to them matters, in one round;
+        else one that comes before all others."""
         priorities = [self._priority(p) for p in self.pending]
 
         def before(i: int, j: int) -> bool:
@@ -238,8 +261,17 @@ class Instant:
             return a is not None and is_constant(a) and (
                 b is None or is_constant(b) and value_of(a) > value_of(b))
 
-        return [p for i, p in enumerate(self.pending) if len(self._reach(p.what)) == 1 and all(
+        first = [p for i, p in enumerate(self.pending) if len(self._reach(p.what)) == 1 and all(
             i == j or before(i, j) or not self._excludes(p, o) for j, o in enumerate(self.pending))]
+        return first or [p for i, p in enumerate(self.pending) if all(
+            i == j or before(i, j) for j in range(len(self.pending)))]
+
+    def _of_uncertain_order(self) -> list[Pending]:
+        """Those whose order to another matters, and is not known beforehand."""
+        priorities = [self._priority(p) for p in self.pending]
+        return [p for i, p in enumerate(self.pending) if not is_constant(p.condition) and any(
+            i != j and _may_tie(priorities[i], priorities[j]) and self._conflict(p, other)
+            for j, other in enumerate(self.pending))]
 
     def _priority(self, p: Pending) -> Any:
         return None if p.what.priority is None else self._at(p.what.priority)
@@ -257,13 +289,8 @@ class Instant:
         pending = self.pending
         priorities = [self._priority(p) for p in pending]
 
-        def may_tie(a: Any, b: Any) -> bool:
-            if a is None or b is None:
-                return a is b
-            return not (is_constant(a) and is_constant(b)) or value_of(a) == value_of(b)
-
         pairs = [(i, j) for i in range(len(pending)) for j in range(i)]
-        is_random = any(may_tie(priorities[i], priorities[j]) and self._conflict(pending[i], pending[j])
+        is_random = any(_may_tie(priorities[i], priorities[j]) and self._conflict(pending[i], pending[j])
                         for i, j in pairs)
         keys = [self._key(p) if is_random else None for p in pending]
 
@@ -280,9 +307,12 @@ class Instant:
                                            for j, other in enumerate(pending) if j != i)]))
                 for i, p in enumerate(pending)]
 
-    def _execute(self, which: list[tuple[Pending, Any]]) -> None:
-        """Executes what is selected, and looks at the triggers afterwards."""
+    def _execute(self, which: list[tuple[Pending, Any]], one_is_certain: bool = False) -> None:
+        """Executes what is selected, and looks at the triggers afterwards; `one_is_certain` if it is known that one of
+        them is."""
         before = dict(self.values)
+        writers = [p.what.writes for p, selected in which if not never(selected)]
+        certain = set.intersection(*writers) if one_is_certain and writers else set()
         changed: set[Any] = set()
         for p, selected in which:
             if never(selected):
@@ -295,7 +325,8 @@ class Instant:
             known = {marks[n]: v for n, v in values.items()}
             stored = self.events._stores(one, marks)
             for symbol, value in zip(stored, substituted(stored.values(), {**before, **known})):
-                self.values[symbol] = choose(selected, value, self.values[symbol])
+                self.values[symbol] = choose(true if symbol in certain else selected, value, self.values[symbol])
+                certain.discard(symbol)
             self.executed.append((one, selected))
             changed |= one.writes
         newly = []
@@ -303,9 +334,13 @@ class Instant:
             if not one.inputs & changed:
                 continue
             holds = self._holds(one)
-            newly.append((one, both(opposite(self.truth[one]), holds)))
+            begins, is_about_to = both(opposite(self.truth[one]), holds), self.about_to_hold(one, holds)
             self.truth[one] = holds
-            self.notice(one, holds)
+            if any(other is one for other, _ in self.executed):  # again and again, perhaps
+                self._open(is_about_to)
+            else:
+                begins = either(begins, is_about_to)
+            newly.append((one, begins))
             if not one.persistent:
                 for p in self.pending:
                     if p.what is one:

@@ -402,10 +402,20 @@ cases = [
         event("m > 1", {"z": "z + 3"}, priority="1", persistent=False, at_trigger=False)],
         {"x": lambda t: _step(t, 0.65, 0.0, 5.0), "y": lambda t: _step(t, 0.65, 0.0, 1.0),
          "z": lambda t: _step(t, 0.65, 0.0, 3.0)}),
+    Case("an event that sets what its trigger reads to what it was", [
+        variable("k", 1.5), variable("n", 0), event("time > k", {"k": "2", "n": "n + 1"})],
+        {"n": lambda t: np.where(t > 2.01, 2.0, np.where(t > 1.5, 1.0, 0.0))}, end=4.1),
+    Case("an event that waits three times", [
+        variable("n", 0), variable("x"), always("x", "piecewise(sin(10 * time), time < 2, 1)"),
+        event("x < 0", {"n": "n + 1"}, delay="2", at_trigger=False)],
+        {"n": lambda t: np.floor(np.clip(t - 2, 0, 2) * 10 / (2 * np.pi) + 0.5)}, end=4.1),
+    Case("a trigger that holds right after the start", [
+        variable("x", 1), variable("y", 1), variable("n", 0), rate("x", "1"), rate("y", "2"),
+        event("y > x", {"n": "n + 1"}, delay="0.5")], {"n": lambda t: _step(t, 0.5 + 1e-9, 0.0, 1.0)}, end=2.1),
     Case("thirty events with one trigger and delays of their own", [
         *(variable(f"x{i}", 0) for i in range(30)),
-        *(event("time >= 0.15", {f"x{i}": "1"}, delay=f"{0.03 * i + 0.01}") for i in range(30))],
-        {f"x{i}": lambda t, i=i: _step(t, 0.16 + 0.03 * i, 0.0, 1.0) for i in range(30)}),
+        *(event("time >= 0.15", {f"x{i}": "1"}, delay=f"{0.03 * i + 0.013}") for i in range(30))],
+        {f"x{i}": lambda t, i=i: _step(t, 0.163 + 0.03 * i, 0.0, 1.0) for i in range(30)}),
     Case("forty events at times of their own", [
         *(variable(f"x{i}", 0) for i in range(40)),
         *(event(f"time > {0.047 * i + 0.02}", {f"x{i}": "1"}) for i in range(40))],
