@@ -103,7 +103,25 @@ def _connective(op: str, a: Any, b: Any, neutral: bool) -> Any:
     for one, other in ((a, b), (b, a)):
         if one.op == "truth":
             return other if one.value is neutral else one
+    parts = [*_parts(op, a), *_parts(op, b)]
+    known = {id(part) for part in parts}
+    if any(part.op == "not" and id(part.args[0]) in known for part in parts):
+        return constant(not neutral)  # c and not c, c or not c
+    if id(b) in {id(part) for part in _parts(op, a)}:
+        return a
     return ex.make(op, (a, b), type=ex.condition)
+
+
+def _parts(op: str, condition: Any) -> list[Any]:
+    """Some of the conditions that `and` or `or` connects."""
+    found, waiting = [], [condition]
+    while waiting and len(found) < 32:
+        part = waiting.pop()
+        if part.op == op:
+            waiting += part.args
+        else:
+            found.append(part)
+    return found
 
 
 def opposite(a: Any) -> Any:

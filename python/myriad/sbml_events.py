@@ -54,7 +54,6 @@ class Events:
                 one.last = self._accessory(f"{one.id}_time")
             if one.delay is not None:
                 one.slots = [self._slot(one, i, written) for i in range(slots)]
-            one.is_repeatable = not one.writes & one.reads
         self._now = {s: s for s in written} | {a: a for one in self.all for a in self._accessories_of(one)}
         groups: dict[Any, list[tuple[Occurrence, Any]]] = {}
         for one in self.all:

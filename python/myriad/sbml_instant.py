@@ -51,7 +51,6 @@ class Occurrence:
     reads: set[Any] = field(default_factory=set)
     late: set[Any] = field(default_factory=set)  #: those of them that are read at the execution in any case
     writes: set[Any] = field(default_factory=set)
-    is_repeatable: bool = False  #: whether executing it twice is as executing it once
     last: Any = None  #: the accessory with the time at which it was last executed
     slots: list[Slot] = field(default_factory=list)
 
@@ -119,6 +118,7 @@ class Instant:
         self.pending: list[Pending] = []
         self.executed: list[tuple[Occurrence, Any]] = []
         self.is_open: Any = false
+        self.given: Any = true  #: in which case what is worked out happens
         self.at_start = at_start
 
     def _at(self, expression: Any) -> Any:
@@ -136,7 +136,7 @@ class Instant:
         return with_values(one.trigger, {c: begun.get(c, self._at(c)) for c in comparisons_of(one.trigger)})
 
     def _open(self, condition: Any) -> None:
-        self.is_open = either(self.is_open, condition)
+        self.is_open = either(self.is_open, both(self.given, condition))
 
     def about_to_hold(self, one: Occurrence, holds: Any) -> Any:
         """Whether a trigger does not hold, but does right afterwards, as x > 0 where x is zero and rises: no crossing
@@ -218,7 +218,9 @@ class Instant:
     def _excludes(self, p: Pending, other: Pending) -> bool:
         """Whether two executions cannot be worked out in one round."""
         if p.what is other.what:
-            return not (p.what.is_repeatable and p.is_as(other))
+            one = p.what  # executing it twice is as executing it once, if what it gives does not follow from that
+            read = one.reads if p.values is None else one.late
+            return bool(one.writes & read) or not p.is_as(other)
         return self._order_matters(p.what, other.what)
 
     def run(self) -> None:
@@ -310,13 +312,14 @@ class Instant:
     def _execute(self, which: list[tuple[Pending, Any]], one_is_certain: bool = False) -> None:
         """Executes what is selected, and looks at the triggers afterwards; `one_is_certain` if it is known that one of
         them is."""
+        which = [(p, selected) for p, selected in which if not never(selected)]
         before = dict(self.values)
-        writers = [p.what.writes for p, selected in which if not never(selected)]
+        writers = [p.what.writes for p, _ in which]
         certain = set.intersection(*writers) if one_is_certain and writers else set()
+        if len(which) == 1:  # all that follows is worked out for the case that it is executed
+            certain, self.given = set(writers[0]), which[0][1]
         changed: set[Any] = set()
         for p, selected in which:
-            if never(selected):
-                continue
             one = p.what
             values = p.values
             if values is None:
@@ -335,19 +338,21 @@ class Instant:
                 continue
             holds = self._holds(one)
             begins, is_about_to = both(opposite(self.truth[one]), holds), self.about_to_hold(one, holds)
-            self.truth[one] = holds
+            self.truth[one] = choose(self.given, holds, self.truth[one])
             if any(other is one for other, _ in self.executed):  # again and again, perhaps
                 self._open(is_about_to)
             else:
                 begins = either(begins, is_about_to)
-            newly.append((one, begins))
+            newly.append((one, both(self.given, begins)))
             if not one.persistent:
                 for p in self.pending:
                     if p.what is one:
-                        p.condition = both(p.condition, holds)
+                        p.condition = both(p.condition, either(opposite(self.given), holds))
                 for slot in one.slots:
                     self.values[slot.due] = choose(holds, self.values[slot.due], constant(never_due))
         self._triggered([(one, condition) for one, condition in newly if not never(condition)])
+        self.values = {s: choose(self.given, value, before.get(s, s)) for s, value in self.values.items()}
+        self.given = true
 
     def assignments(self, group: list[Occurrence]) -> dict[Any, Any]:
         """What the action of an event of the model assigns."""
