@@ -26,12 +26,14 @@ from .study_result import Damage as Damage, StudyResult as StudyResult, open_stu
 from .symbols import *  # noqa: F403
 from .table import *  # noqa: F403
 from .tangents import *  # noqa: F403
+from .xpp import XppModel as XppModel, read_xpp as read_xpp
 
 __version__ = _core.version
 
 _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options", "RecordChoice", "Run",
-           "SampleChoice", "SbmlModel", "Study", "StudyResult", "cache", "controls", "methods", "open_study", "plots",
-           "read_antimony", "read_sbml", "reduce", "solve", "status_names", "study", "verify",
+           "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "methods",
+           "open_study", "plots", "read_antimony", "read_sbml", "read_xpp", "reduce", "solve", "status_names", "study",
+           "verify",
            *(name for part in ("axes", "expression", "grid", "interpolate", "model", "symbols", "table", "tangents")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad import *` brings: nothing that has the name of a function of Python's, such as abs.

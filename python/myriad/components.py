@@ -58,10 +58,16 @@ class Components:
         self.defaults = getattr(model, "defaults", self.tables)  # of components that need not be given
         self.aliases = getattr(model, "aliases", {})  # components by other names
         self.outputs = getattr(model, "outputs", {})  # what a run computes from its results, as expressions
+        self.units = getattr(model, "units", {})  # texts by component or output
+        self.time_unit = getattr(model, "time_unit", "")
         self.constants = getattr(model, "constants", {})  # values of symbols in outputs that are no components
         self.generated = list(getattr(model, "generated", ()))  # components that the model sets in a study
         self.events = list(model.events)
         self.place = {name: (kind, number) for kind in kinds.valued for number, name in enumerate(self.names[kind])}
+
+    def label(self, name: str) -> str:
+        """A name with its unit, for axes of pictures."""
+        return f"{name} ({self.units[name]})" if name in self.units else name
 
     def component(self, key: Component) -> str:
         """The name of a component that is given by its symbol, its name, or another name of it."""

@@ -157,8 +157,8 @@ def _lines(x: np.ndarray, y: np.ndarray, labels: Sequence[str] | None, axes: Axe
         axes.legend(frameon=False)
 
 
-def time_series(t: Any, y: Any, *, labels: Sequence[str] | None = None, ylabel: str | None = None,
-                axes: Axes | None = None, **style: Any) -> Any:
+def time_series(t: Any, y: Any, *, labels: Sequence[str] | None = None, xlabel: str | None = None,
+                ylabel: str | None = None, axes: Axes | None = None, **style: Any) -> Any:
     """Each row of y over time: t has a row for each, or is the same for all."""
     ylabel = _label(y, ylabel)
     t, y = _numbers(t, "t", (1, 2)), _numbers(y, "y", (1, 2))
@@ -166,7 +166,7 @@ def time_series(t: Any, y: Any, *, labels: Sequence[str] | None = None, ylabel: 
         raise Error(f"t has shape {t.shape} and y {y.shape}: give a time for each value, or one row of times for all")
     axes = _axes_of(axes, figsize=(7, 3.6))
     _lines(t, y, labels, axes, style)
-    axes.set_xlabel("t")
+    axes.set_xlabel("t" if xlabel is None else xlabel)
     axes.set_ylabel(ylabel)
     axes.margins(x=0)
     return axes

@@ -333,39 +333,46 @@ class Run(Mapping):
             raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
         dims, lengths = self._axes()
 
-        def unstacked(array: Array, *more: str) -> tuple[tuple[str, ...], Array]:
-            return (*dims, *more), array.reshape(*lengths, *array.shape[1:])
+        units = self._components.units
+
+        def unstacked(array: Array, *more: str, of: str | None = None
+                      ) -> tuple[tuple[str, ...], Array, dict[str, str]]:
+            return (*dims, *more), array.reshape(*lengths, *array.shape[1:]), (
+                {"units": units[of]} if of in units else {})
 
         variables: dict[str, Any] = {}
         coordinates: dict[str, Any] = {}
         for name, array in self.records.items():
-            variables[self._column(name)] = unstacked(array, "phase")
+            variables[self._column(name)] = unstacked(array, "phase", of=name)
         for name, array in self.samples.items():
             other = self._free(f"{name}_samples", self._components.place)
-            variables[other if name in self._recorded else self._column(name)] = unstacked(array, "sample")
+            variables[other if name in self._recorded else self._column(name)] = unstacked(array, "sample", of=name)
         if self._sampled:
-            coordinates["time"] = unstacked(self.sample_times, "sample")
+            dimensions, times = unstacked(self.sample_times, "sample")[:2]
+            coordinates["time"] = dimensions, times, (
+                {"units": self._components.time_unit} if self._components.time_unit else {})
         for name, array in {**self.states, **self.accessories}.items():
-            variables.setdefault(self._column(name), unstacked(array))
+            variables.setdefault(self._column(name), unstacked(array, of=name))
         for name, expression in self._components.outputs.items():
             place = self._place_of(expression)
-            variables.setdefault(self._column(name), unstacked(self[name], *([place] if place else [])))
-        variables["t_last"] = (*unstacked(self.t), {"long_name": "time at which the last phase ended"})
-        variables["status"] = (*unstacked(self.status), {
+            variables.setdefault(self._column(name), unstacked(self[name], *([place] if place else []), of=name))
+        variables["t_last"] = (*unstacked(self.t)[:2], {"long_name": "time at which the last phase ended"})
+        variables["status"] = (*unstacked(self.status)[:2], {
             "flag_values": np.arange(len(status_names), dtype=np.uint8), "flag_meanings": " ".join(status_names)})
         if self._recorded:
             phases = next(iter(self.records.values())).shape[1]
             coordinates["phase"] = np.arange(self.from_phase, self.from_phase + phases)
         along = {} if self.sweep is None else self.sweep.coordinates
         for name, (axis, values) in along.items():
-            coordinates[self._in_dataset(name)] = (self._in_dataset(axis), np.asarray(values))
+            coordinates[self._in_dataset(name)] = (self._in_dataset(axis), np.asarray(values),
+                                                   {"units": units[name]} if name in units else {})
         for name, array in self.parameters.items():
             if name not in along:
-                coordinates[self._column(name)] = unstacked(array)
+                coordinates[self._column(name)] = unstacked(array, of=name)
         coordinates.update((self._column(name), value) for name, value in self.shared.items())
         for name, value in self.start.items():
             if name not in along and not isinstance(value, DeviceInput) and np.ndim(value) == 1:
-                coordinates[self._in_dataset(name)] = unstacked(value)
+                coordinates[self._in_dataset(name)] = unstacked(value, of=name)
         return xarray.Dataset(variables, coordinates, {"myriad_version": _core.version})
 
     def to_pandas(self) -> pandas.DataFrame:

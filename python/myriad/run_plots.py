@@ -26,6 +26,9 @@ class Plots:
     def __init__(self, run: Any) -> None:
         self._run = run
 
+    def _label(self, name: str) -> str:
+        return self._run._components.label(name)
+
     def _per_instance(self, name: str) -> Array:
         """A value for each instance: of the sweep, so that initial states are those given, else of the results."""
         run = self._run
@@ -41,7 +44,8 @@ class Plots:
         x, y = name_of(x), name_of(y)
         if y not in self._run.records:
             raise Error(f"{y} was not recorded: give record=dict(from_phase=..., states=[{y}]) to solve")
-        return plots.bifurcation(self._per_instance(x), self._run.records[y], xlabel=x, ylabel=y, axes=axes, **style)
+        return plots.bifurcation(self._per_instance(x), self._run.records[y], xlabel=self._label(x),
+                                 ylabel=self._label(y), axes=axes, **style)
 
     def map(self, x: Component, y: Component, z: Component, *, phase: int = -1, axes: Axes | None = None,
             **style: Any) -> Any:
@@ -59,8 +63,9 @@ class Plots:
             values = np.where(run.failed, np.nan, values)
         grid = np.moveaxis(run.sweep.unstack(values), (along.index(x), along.index(y)), (0, 1))
         values_of = dict(run.sweep.axes)
-        return plots.parameter_map(values_of[x], values_of[y], grid.reshape(grid.shape[:2]), xlabel=x, ylabel=y,
-                                   zlabel=z, names=status_names if z == "status" else None, axes=axes, **style)
+        return plots.parameter_map(values_of[x], values_of[y], grid.reshape(grid.shape[:2]), xlabel=self._label(x),
+                                   ylabel=self._label(y), zlabel=self._label(z),
+                                   names=status_names if z == "status" else None, axes=axes, **style)
 
     def _instances(self, instances: npt.ArrayLike | None) -> tuple[Array, list[str]]:
         """Numbers of instances and what tells them apart."""
@@ -81,8 +86,10 @@ class Plots:
         chosen, labels = self._instances(instances)
         if y not in run.samples:
             raise Error(f"there are no samples of {y}: give samples=, as in samples=200, to solve")
-        return plots.time_series(run.sample_times[chosen], run.samples[y][chosen], labels=labels, ylabel=y, axes=axes,
-                                 **style)
+        unit = run._components.time_unit
+        xlabel = f"t ({unit})" if unit else None
+        return plots.time_series(run.sample_times[chosen], run.samples[y][chosen], labels=labels, xlabel=xlabel,
+                                 ylabel=self._label(y), axes=axes, **style)
 
     def phase_portrait(self, x: Component, y: Component, *, instances: npt.ArrayLike | None = None,
                        axes: Axes | None = None, **style: Any) -> Any:
@@ -94,8 +101,8 @@ class Plots:
         kept = run.records if points else run.samples
         if x not in kept or y not in kept:
             raise Error(f"there are no samples of {x} and {y}, nor records of both: give samples= or record= to solve")
-        return plots.phase_portrait(kept[x][chosen], kept[y][chosen], labels=labels, xlabel=x, ylabel=y, points=points,
-                                    axes=axes, **style)
+        return plots.phase_portrait(kept[x][chosen], kept[y][chosen], labels=labels, xlabel=self._label(x),
+                                    ylabel=self._label(y), points=points, axes=axes, **style)
 
     def statuses(self, *, axes: Axes | None = None) -> Any:
         """How many instances ended in which way."""

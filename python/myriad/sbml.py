@@ -11,11 +11,13 @@ from . import symbols as sym
 from .components import Components, name_of, unknown
 from .errors import Error, users_line
 from .expression import Node, symbols_of
+from .folding import constant, is_constant, value_of
 from .model import Model
 from .sbml_document import library, read
 from .sbml_events import Events
-from .sbml_math import Refused, constant, is_constant, value_of
+from .sbml_math import Refused
 from .sbml_semantics import Semantics
+from .sbml_units import Units
 
 if TYPE_CHECKING:
     from .hints import Names, Path
@@ -70,7 +72,8 @@ class SbmlModel(Model):
     """A model from a file of SBML. `outputs` are expressions by name that a run computes from states and parameters:
     assignment rules, rates of reactions, amounts and concentrations. `defaults` are the values of the file by
     component, those of initial assignments as expressions; `aliases` are the components of ids that no component can
-    have as its name."""
+    have as its name; `units` has the file's units by component or output, as texts, and `time_unit`
+    that of time."""
 
     def __init__(self, semantics: Semantics, name: str) -> None:
         states = semantics.states()
@@ -110,6 +113,8 @@ class SbmlModel(Model):
                 self.defaults[state] = constant(0.0)
         self.outputs: dict[str, Any] = {n: e for n, e in outputs.items() if not (
             e.op == "symbol" and e.value[0] in ("state", "parameter") and e.value[1] == n and e not in constants)}
+        units = Units(semantics.libsbml, semantics.model)
+        self.units, self.time_unit = _units(semantics, units), units.time()
         self.aliases = {id: component for id, component in semantics.names.items()
                         if id != component and not (
                             id in semantics.quantities and semantics.quantities[id].in_amount)}
@@ -121,6 +126,22 @@ class SbmlModel(Model):
         if missing:
             raise Error(f"the file has no value of {', '.join(map(repr, missing))}: give one")
         return {n: float(v) for n, v in values.items()}
+
+
+def _units(semantics: Semantics, units: Units) -> dict[str, str]:
+    """The units of components and outputs, as far as the file has them."""
+    known: dict[str, str] = {}
+    for name, quantity in semantics.quantities.items():
+        component = semantics.names.get(name, name)
+        if quantity.kind == "species":
+            amount, concentration = units.of_species(quantity.element)
+            known[name] = concentration if quantity.compartment else amount
+            known[component] = amount if quantity.in_amount else known[name]
+            known |= {f"{name}_amount": amount, f"{name}_concentration": concentration}
+        elif quantity.kind in ("compartment", "parameter"):
+            known[name] = known[component] = units.text(quantity.element)
+    known |= {name: units.of_rate(reaction) for name, reaction in semantics.reactions.items()}
+    return {name: unit for name, unit in known.items() if unit}
 
 
 def _outputs(semantics: Semantics) -> dict[str, Any]:

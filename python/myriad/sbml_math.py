@@ -12,7 +12,8 @@ import numpy as np
 
 from . import expression as ex
 from .errors import Error
-from .expression import Expression, as_node
+from .folding import (add, apply, both, choose, compare, constant, divide, either, folded, is_constant, make_folded,
+                      multiply, nan, number, opposite, power, subtract, truth, value_of)
 from .numpy_functions import of_numbers
 from .table import Table
 
@@ -22,142 +23,6 @@ avogadro = 6.02214179e23
 
 class Refused(Error):
     """Something in a file of SBML that is not supported, or not valid; the message has the element, its id and line."""
-
-
-# -- Constants ---------------------------------------------------------------------------------------------------------
-
-
-def constant(value: Any) -> Expression:
-    """The node of a number, which may be infinite or NaN."""
-    if isinstance(value, (bool, np.bool_)):
-        return ex.constant(bool(value))
-    value = float(value)
-    if math.isnan(value):  # as a difference, since a constant of a model is never NaN, and 0 / 0 is whole in C++
-        return ex.make("subtract", (ex.constant(math.inf), ex.constant(math.inf)))
-    return ex.constant(value)
-
-
-_nan = constant(math.nan)
-
-
-def is_constant(node: Any) -> bool:
-    """Whether an expression is a number or a truth value."""
-    return node.op in ("constant", "truth") or node is _nan
-
-
-def value_of(node: Any) -> Any:
-    """The number or truth value that a constant is."""
-    return math.nan if node is _nan else node.value
-
-
-def folded(node: Any) -> Any:
-    """The constant that an operation of constants is; other expressions as they are."""
-    if node.args and node is not _nan and all(is_constant(a) for a in node.args):
-        value, = ex.evaluate([node], {})
-        return constant(bool(value) if node.type == ex.condition else value)
-    return node
-
-
-def number(node: Any) -> Any:
-    """A number: of a condition 1 where it holds, and 0 elsewhere."""
-    return folded(ex.make("select", (node, ex.constant(1.0), ex.constant(0.0)))) if node.type == ex.condition else node
-
-
-def truth(node: Any) -> Any:
-    """A condition: of a number whether it is not zero."""
-    return node if node.type == ex.condition else folded(ex.make("not_equal", (node, ex.constant(0.0)),
-                                                                  type=ex.condition))
-
-
-def _make(op: str, *arguments: Any) -> Any:
-    return folded(ex.make(op, tuple(number(a) for a in arguments)))
-
-
-def add(a: Any, b: Any) -> Any:
-    """a + b, of which zero is left out."""
-    if is_constant(a) and value_of(a) == 0:
-        return b
-    return a if is_constant(b) and value_of(b) == 0 else _make("add", a, b)
-
-
-def subtract(a: Any, b: Any) -> Any:
-    """a - b, of which zero is left out."""
-    if is_constant(a) and value_of(a) == 0:
-        return _make("negate", b)
-    return a if is_constant(b) and value_of(b) == 0 else _make("subtract", a, b)
-
-
-def multiply(a: Any, b: Any) -> Any:
-    """a * b, of which one is left out."""
-    if is_constant(a) and value_of(a) == 1:
-        return b
-    return a if is_constant(b) and value_of(b) == 1 else _make("multiply", a, b)
-
-
-def divide(a: Any, b: Any) -> Any:
-    """a / b; infinite or NaN where b is zero."""
-    return a if is_constant(b) and value_of(b) == 1 else _make("divide", a, b)
-
-
-def both(a: Any, b: Any) -> Any:
-    """Whether both conditions hold."""
-    return _connective("and", a, b, neutral=True)
-
-
-def either(a: Any, b: Any) -> Any:
-    """Whether one of two conditions holds."""
-    return _connective("or", a, b, neutral=False)
-
-
-def _connective(op: str, a: Any, b: Any, neutral: bool) -> Any:
-    a, b = truth(a), truth(b)
-    for one, other in ((a, b), (b, a)):
-        if one.op == "truth":
-            return other if one.value is neutral else one
-    return ex.make(op, (a, b), type=ex.condition)
-
-
-def opposite(a: Any) -> Any:
-    """Whether a condition does not hold."""
-    a = truth(a)
-    return a.args[0] if a.op == "not" else folded(ex.make("not", (a,), type=ex.condition))
-
-
-def choose(condition: Any, a: Any, b: Any) -> Any:
-    """a where the condition holds, else b."""
-    condition = truth(condition)
-    if condition.op == "truth":
-        return a if condition.value else b
-    if a.type == b.type == ex.condition:
-        return either(both(condition, a), both(opposite(condition), b))
-    a, b = number(a), number(b)
-    return a if a is b else ex.make("select", (condition, a, b))
-
-
-def compare(op: str, a: Any, b: Any) -> Any:
-    """A condition, such as `compare("less", a, b)`."""
-    return folded(ex.make(op, (number(a), number(b)), type=ex.condition))
-
-
-def apply(function: Callable[..., Any], *arguments: Any) -> Any:
-    """A function of this package, computed at once where all arguments are constants."""
-    arguments = tuple(number(a) for a in arguments)
-    if not all(is_constant(a) for a in arguments):
-        return as_node(function(*arguments))
-    symbols = [ex.make("symbol", value=("argument", str(i))) for i in range(len(arguments))]
-    value, = ex.evaluate([as_node(function(*symbols))], dict(zip(symbols, map(value_of, arguments))))
-    return constant(value)
-
-
-def power(base: Any, exponent: Any) -> Any:
-    """base to the power exponent; whole constant exponents by multiplication."""
-    base, exponent = number(base), number(exponent)
-    if is_constant(base) and is_constant(exponent):
-        with np.errstate(all="ignore"):
-            return constant(np.power(np.float64(value_of(base)), np.float64(value_of(exponent))))
-    if is_constant(exponent) and not math.isfinite(value_of(exponent)):
-        return ex.make("pow", (base, exponent))
-    return as_node(ex.pow(base, exponent))
 
 
 # -- MathML ------------------------------------------------------------------------------------------------------------
@@ -271,7 +136,7 @@ class Translator:
         if kind == "TIMES":
             return number(functools.reduce(multiply, arguments, constant(1.0)))
         if kind == "MINUS" and len(arguments) in (1, 2):
-            return _make("negate", *arguments) if len(arguments) == 1 else subtract(*arguments)
+            return make_folded("negate", *arguments) if len(arguments) == 1 else subtract(*arguments)
         if kind == "LOGICAL_AND":
             return functools.reduce(both, arguments, constant(True))
         if kind == "LOGICAL_OR":
@@ -281,7 +146,7 @@ class Translator:
         if kind == "LOGICAL_NOT" and len(arguments) == 1:
             return opposite(arguments[0])
         if kind == "FUNCTION_PIECEWISE":
-            chosen = arguments.pop() if len(arguments) % 2 else _nan
+            chosen = arguments.pop() if len(arguments) % 2 else nan
             for value, condition in reversed(list(zip(arguments[::2], arguments[1::2]))):
                 chosen = choose(condition, value, chosen)
             return chosen
@@ -289,7 +154,7 @@ class Translator:
             pairs = zip(arguments, arguments[1:])
             return functools.reduce(both, (compare(_comparisons[kind], a, b) for a, b in pairs), constant(True))
         if kind in ("FUNCTION_MIN", "FUNCTION_MAX") and arguments:
-            return functools.reduce(functools.partial(_make, kind[-3:].lower()), map(number, arguments))
+            return functools.reduce(functools.partial(make_folded, kind[-3:].lower()), map(number, arguments))
         if kind == "FUNCTION_FACTORIAL" and len(arguments) == 1:
             return folded(self._factorial(number(arguments[0])))
         if kind in ("FUNCTION_ROOT", "FUNCTION_LOG") and len(arguments) in (1, 2):
@@ -310,7 +175,7 @@ class Translator:
         found = ex.make("lookup", (n,), (self.factorials, 0, 1, len(_factorials)))
         is_whole = both(compare("greater_equal", n, constant(0.0)), compare("equal", n, apply(ex.floor, n)))
         too_large = compare("greater", n, constant(len(_factorials) - 1.0))
-        return choose(is_whole, choose(too_large, constant(math.inf), found), _nan)
+        return choose(is_whole, choose(too_large, constant(math.inf), found), nan)
 
     def _call(self, node: Any, children: list[Any], where: str, bound: Mapping[str, Any]) -> Any:
         name = node.getName()
@@ -329,10 +194,3 @@ class Translator:
 
 def _functions_arguments(kind: str) -> int:
     return 2 if kind in ("FUNCTION_REM", "FUNCTION_QUOTIENT") else 1
-
-
-def total(terms: list[Any]) -> Any:
-    """The sum of expressions."""
-    return functools.reduce(add, terms, constant(0.0))
-
-

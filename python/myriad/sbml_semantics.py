@@ -12,9 +12,9 @@ from typing import Any
 from . import symbols as sym
 from .derivatives import derivatives
 from .errors import Error
+from .folding import add, constant, divide, is_constant, multiply, number, subtract, total, value_of
 from .sbml_document import named
-from .sbml_math import (Functions, Refused, Translator, add, constant, divide, is_constant, multiply, number, subtract,
-                        total, value_of)
+from .sbml_math import Functions, Refused, Translator
 
 
 @dataclass

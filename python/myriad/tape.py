@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 methods = tuple(_core.interpreted_methods())
 _codes = {name: number for number, name in enumerate(_core.tape_operations())}
-_limits = _core.tape_limits  # the most components of each kind
+_sizes = _core.tape_sizes  # of the interpreters, from the smallest: the most components of each kind
 
 
 def _refuse(why: str) -> Error:
@@ -35,6 +35,15 @@ _of_whole_numbers = {"add": "wrapping_add", "subtract": "wrapping_subtract", "mu
 
 def _plural(kind: str) -> str:
     return kinds.every[kind].plural.replace("_", " ")
+
+
+def _size_for(components):
+    """The smallest interpreter that has all components of a model."""
+    for size, limits in _sizes.items():
+        if all(len(components.names[kind]) <= most for kind, most in limits.items()):
+            return size
+    kind, most = next((k, m) for k, m in limits.items() if len(components.names[k]) > m)
+    raise _refuse(f"it has {len(components.names[kind])} {_plural(kind)}, and the interpreter {most} at the most")
 
 
 class Writer:
@@ -85,10 +94,11 @@ class Writer:
                 if uses[argument] == 0:
                     free.append(register[argument])
             # products read their arguments after they have stored something
-            unread = [r for r in free if node.op != "dot" or r not in arguments]
+            unread = free if node.op != "dot" else [r for r in free if r not in arguments]
             if len(unread) < (2 if node.op == "dot" else 1):
                 raise _refuse("one of its functions needs more intermediate values than the interpreter has")
             to = register[id(node)] = unread[-1]
+            term = unread[-2] if node.op == "dot" else None
             free.remove(to)
             if node.op == "symbol":
                 self._symbol(node, to)
@@ -97,11 +107,11 @@ class Writer:
             elif node.op == "dot":
                 table, start = node.value
                 for j, argument in enumerate(arguments):
-                    term = unread[-2] if j else to
-                    self._emit("load_shared", term, self.place[element_name(table, start + j)][1])
-                    self._emit("multiply", term, term, argument)
+                    product = term if j else to
+                    self._emit("load_shared", product, self.place[element_name(table, start + j)][1])
+                    self._emit("multiply", product, product, argument)
                     if j:
-                        self._emit("add", to, to, term)
+                        self._emit("add", to, to, product)
             elif node.op in ("lookup", "find_interval"):
                 table, first, *numbers = node.value
                 stride, rows = numbers if len(numbers) == 2 else (1, *numbers)
@@ -149,10 +159,7 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
         raise _refuse("it has stop times")
     if model.summaries:
         raise _refuse("it has extrema or integrals over a phase")
-    for kind, most in _limits.items():
-        count = len(components.names[kind])
-        if count > most:
-            raise _refuse(f"it has {count} {_plural(kind)}, and the interpreter {most} at the most")
+    size = _size_for(components)
     writer = Writer(components)
     results = [("store_result", c) for c in range(max(len(model.rhs), len(model.events)))]
     writer.function(model.rhs, results)
@@ -161,13 +168,13 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
     writer.hook(model.after_step, "after_step")
     writer.hook(model.finalise, "finalise")
     writer.hook(model.generate, "generate")
-    actions: list[Assignments] = [e.do for e in model.events] + [[]] * (_limits["event"] - len(model.events))
+    actions: list[Assignments] = [e.do for e in model.events]
     for number, assignments in enumerate(actions):
         writer.hook(assignments, f"event {number}")
     may_stop = any(t.value[0] == "action" for a in (model.after_step, *actions) for t, _ in a)
     made = _core.Tape(writer.functions, writer.codes, writer.values, writer.registers)
     shared, shared_integers = (len(components.names[kind]) for kind in kinds.shared)
-    return _core.Library(method, shared, shared_integers, may_stop, made)
+    return _core.Library(method, size, shared, shared_integers, may_stop, made)
 
 
 def give_model(library: _core.Library, model: AnyModel, components: Components, method: str) -> None:
@@ -181,7 +188,7 @@ def give_model(library: _core.Library, model: AnyModel, components: Components, 
             writer.function(roots, [("store_result", c) for c in range(len(roots))])
     except Error:
         return
-    for _ in range(4 + _limits["event"]):  # no hooks
+    for _ in range(4):  # no hooks
         writer.function([], [])
     library.give_model(_core.Tape(writer.functions, writer.codes, writer.values, writer.registers), method)
 
@@ -199,4 +206,5 @@ def kernel(model: AnyModel, components: Components, method: str, why: str) -> Ke
 
 def padded(components: Components) -> dict[str, list[str]]:
     """The names of all components that the interpreter has: those of the model, and empty ones for the others."""
-    return {kind: names + [""] * (_limits.get(kind, 0) - len(names)) for kind, names in components.names.items()}
+    limits = _sizes[_size_for(components)]
+    return {kind: names + [""] * (limits.get(kind, 0) - len(names)) for kind, names in components.names.items()}

@@ -449,13 +449,17 @@ NB_MODULE(_core, m) {
 #undef METHOD_NAME
     m.def("tape_operations", &tape_operations);
     m.attr("component_kinds") = component_kinds();
-    nb::dict limits;
-    const detail::model_numbers& most = interpreter(interpreted_methods().front()).facts.model;
+    nb::dict sizes;
+    for (const std::string& size : interpreter_sizes()) {
+        nb::dict limits;
+        const detail::model_numbers& most = interpreter(interpreted_methods().front(), size).facts.model;
 #define MYRIAD_LIMIT_OF_KIND(kind, ...) limits[#kind] = most.n_##kind;
-    MYRIAD_INSTANCE_KINDS(MYRIAD_LIMIT_OF_KIND)
+        MYRIAD_INSTANCE_KINDS(MYRIAD_LIMIT_OF_KIND)
 #undef MYRIAD_LIMIT_OF_KIND
-    limits["event"] = most.n_event;
-    m.attr("tape_limits") = limits;
+        limits["event"] = most.n_event;
+        sizes[size.c_str()] = limits;
+    }
+    m.attr("tape_sizes") = sizes;
     m.attr("tape_registers") = tape_registers;
     nb::class_<interpreted>(m, "Tape").def("__init__", [](interpreted* self, const tape_functions& functions,
                                                           const std::vector<int>& codes,
@@ -476,7 +480,7 @@ NB_MODULE(_core, m) {
     nb::class_<library>(m, "Library")
         .def(nb::init<const std::string&>())
         .def("give_model", &library::give_model, "tape"_a, "method"_a)
-        .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
+        .def(nb::init<const std::string&, const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
         .def("__init__", [](library* self, const nb::bytes& image,
                             int device) { new (self) library(std::string(image.c_str(), image.size()), device); })
         .def_prop_ro("instruction_set", [](const library& l) {

@@ -25,12 +25,15 @@ public:
 
 private:
     std::vector<tape_step> steps_;
+    std::vector<tape_function> after_event_;
     tape tape_;
 };
 
-/// The kernel that interprets models by a method.
-const kernel_library& interpreter(const std::string& method);
+/// The kernel that interprets models by a method; `size`: one of `interpreter_sizes`.
+const kernel_library& interpreter(const std::string& method, const std::string& size);
 std::vector<std::string> interpreted_methods();
+/// The interpreters' sizes, from the smallest.
+std::vector<std::string> interpreter_sizes();
 std::vector<std::string> tape_operations();
 
 /// `start_team` for a kernel that interprets the calling thread's tape.

@@ -30,9 +30,9 @@ library::library(const std::string& path) {
     require(host::cpu_has(set), "the model was compiled for ", host::name_of(set), ", which this CPU lacks");
 }
 
-library::library(const std::string& method, int shared, int shared_integers, bool may_stop,
+library::library(const std::string& method, const std::string& size, int shared, int shared_integers, bool may_stop,
                  std::shared_ptr<const interpreted> model)
-    : cpu_(interpreter(method)), model_(std::move(model)) {
+    : cpu_(interpreter(method, size)), model_(std::move(model)) {
     cpu_.facts.model.n_shared = shared;
     cpu_.facts.model.n_shared_integer = shared_integers;
     cpu_.facts.call.hooks_may_stop = may_stop;
@@ -58,9 +58,8 @@ constexpr auto limit_of() -> double (*)() {
 }  // namespace
 
 void library::give_model(std::shared_ptr<const interpreted> model, const std::string& method) {
-    const auto needed =
-        static_cast<openmp::instruction_set>(interpreter(interpreted_methods().front()).instruction_set);
-    if (!host::cpu_has(needed)) return;
+    const kernel_library& some = interpreter(interpreted_methods().front(), interpreter_sizes().front());
+    if (!host::cpu_has(static_cast<openmp::instruction_set>(some.instruction_set))) return;
     model_ = std::move(model);
 #define MYRIAD_TAKE_LIMIT(name) \
     if (method == #name) stability_limit_ = limit_of<name>();

@@ -28,8 +28,8 @@ class library {
 public:
     /// Throws `error` if the file is no kernel library of this version, or not for this CPU.
     explicit library(const std::string& path);
-    /// The interpreter with a model of that many shared values; `may_stop`: its hooks may end phases.
-    library(const std::string& method, int shared, int shared_integers, bool may_stop,
+    /// The interpreter of that size with a model of that many shared values; `may_stop`: its hooks may end phases.
+    library(const std::string& method, const std::string& size, int shared, int shared_integers, bool may_stop,
             std::shared_ptr<const interpreted> model);
     /// A program that NVRTC made, loaded on a GPU. Throws `error` if its driver refuses it.
     library(std::string image, int device);

@@ -38,7 +38,10 @@
 #define MYRIAD_TAPE_STORE(X) \
     X(result) X(state) X(parameter) X(accessory) X(integer_accessory) X(next_step) X(end_phase) X(end_instance)
 // The methods that the interpreter is compiled for.
-#define MYRIAD_TAPE_METHODS(X) X(tsitouras_5) X(cash_karp) X(dormand_prince_5) X(runge_kutta_4)
+#define MYRIAD_TAPE_METHODS(X, ...)           \
+    X(tsitouras_5 __VA_OPT__(, ) __VA_ARGS__) \
+    X(cash_karp __VA_OPT__(, ) __VA_ARGS__)   \
+    X(dormand_prince_5 __VA_OPT__(, ) __VA_ARGS__) X(runge_kutta_4 __VA_OPT__(, ) __VA_ARGS__)
 
 namespace myriad::python {
 
@@ -105,14 +108,29 @@ struct tape_function {
     bool empty() const { return begin == end; }
 };
 
-/// The most that the interpreter has of each: models with more need a compiler.
-inline constexpr int tape_registers = 128, tape_states = 8, tape_parameters = 16, tape_accessories = 6,
-                     tape_integers = 3, tape_events = 3;
+inline constexpr int tape_registers = 512;
 inline constexpr int tape_batches = 2;  ///< SIMD registers per pack
+
+/// The most that an interpreter has of each kind of component.
+template <int states, int parameters, int accessories, int integers, int events, bool lane_by_lane>
+struct tape_size {
+    static constexpr bool scalar_only = lane_by_lane;
+    static constexpr int n_state = states, n_parameter = parameters, n_accessory = accessories,
+                         n_integer_accessory = integers, n_event = events;
+};
+// The interpreters, from the smallest: a model has the first that it fits in, as what it does not use costs time and
+// memory; models with more need a compiler. The large one has no packs, which more than double the time to compile it.
+#define MYRIAD_TAPE_SIZES(X) X(small, 8, 16, 6, 3, 3, false) X(large, 128, 128, 128, 8, 64, true)
+namespace tape_sizes {
+#define MYRIAD_TAPE_SIZE(name, ...) using name = tape_size<__VA_ARGS__>;
+MYRIAD_TAPE_SIZES(MYRIAD_TAPE_SIZE)
+#undef MYRIAD_TAPE_SIZE
+}  // namespace tape_sizes
 
 /// A model.
 struct tape {
-    tape_function rhs, events, initialise, after_step, finalise, generate, after_event[tape_events];
+    tape_function rhs, events, initialise, after_step, finalise, generate;
+    const tape_function* after_event = nullptr;  ///< for each event that any interpreter has
 };
 
 /// The tape that the calling thread runs.

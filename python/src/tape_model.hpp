@@ -252,17 +252,20 @@ inline void run_in_generate(const tape_step& step, Instance& instance, R* r) {
     }
 }
 
+/// `size`: a `tape_size`.
+template <class size>
 struct tape_model {
     static constexpr bool writes_parameters = true;
     static constexpr bool rare_events = true;
+    static constexpr bool scalar_only = size::scalar_only;
     static constexpr int pack_batches = tape_batches;
-    enum state { n_state = tape_states };
-    enum parameter { n_parameter = tape_parameters };
+    enum state { n_state = size::n_state };
+    enum parameter { n_parameter = size::n_parameter };
     enum shared { n_shared = 1 };
     enum shared_integer { n_shared_integer = 1 };
-    enum accessory { n_accessory = tape_accessories };
-    enum integer_accessory { n_integer_accessory = tape_integers };
-    enum event { n_event = tape_events };
+    enum accessory { n_accessory = size::n_accessory };
+    enum integer_accessory { n_integer_accessory = size::n_integer_accessory };
+    enum event { n_event = size::n_event };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {

@@ -102,12 +102,12 @@ def reaction(id, equation, law, modifiers="", **local):
         element("kineticLaw", math(law) + parameters), id=id, reversible=False))
 
 
-def event(trigger, do, before=True, persistent=True, delay=None, priority=None, id=None):
+def event(trigger, do, before=True, persistent=True, delay=None, priority=None, id=None, at_trigger=True):
     inside = element("trigger", math(trigger), initialValue=before, persistent=persistent)
     inside += element("priority", math(priority)) if priority else ""
     inside += element("delay", math(delay)) if delay else ""
     inside += several("listOfEventAssignments", [_formula("eventAssignment", v, f) for v, f in do.items()])
-    return Part("Events", element("event", inside, id=id, useValuesFromTriggerTime=True))
+    return Part("Events", element("event", inside, id=id, useValuesFromTriggerTime=at_trigger))
 
 
 _order = ("FunctionDefinitions", "Compartments", "Species", "Parameters", "InitialAssignments", "Rules", "Reactions",
@@ -370,6 +370,61 @@ cases = [
     Case("a trigger that becomes true again", [
         variable("x", 0), variable("n", 0), rate("x", "6 * cos(6 * time)"), event("x > 0.5", {"n": "n + 1"})],
         {"n": lambda t: np.floor(6 * t / (2 * np.pi) + 11 / 12)}),
+    Case("an event without a priority comes after those that have one", [
+        variable("x", 1), event("time > 0.65", {"x": "2"}), event("time > 0.65", {"x": "3"}, priority="-5")],
+        {"x": lambda t: _step(t, 0.65, 1.0, 2.0)}),
+    Case("priorities that are computed", [
+        variable("x", 1), variable("y", 2), event("time > 0.65", {"x": "10"}, priority="x"),
+        event("time > 0.65", {"x": "20"}, priority="y"), event("time > 1.15", {"x": "30"}, priority="-x"),
+        event("time > 1.15", {"x": "40"}, priority="-y")],
+        {"x": lambda t: np.where(t < 0.65, 1.0, np.where(t < 1.15, 10.0, 30.0))}),
+    Case("equality of what events alone change", [
+        variable("n", 0), variable("x", 0), event("time >= 0.65", {"n": "2"}), event("n == 2", {"x": "1"}),
+        event("n != 0 && time > 1.15", {"x": "5"})],
+        {"x": lambda t: np.where(t < 0.65, 0.0, np.where(t < 1.15, 1.0, 5.0))}),
+    Case("a threshold that is met exactly by an event", [
+        variable("n", 0), variable("x", 0), event("time >= 0.65", {"n": "16"}),
+        event("floor(n / 16) >= 1", {"x": "1", "n": "0"})],
+        {"x": lambda t: _step(t, 0.65, 0.0, 1.0), "n": lambda t: 0 * t}),
+    Case("events of equal priority that read what the other writes", [
+        variable("n", 0), variable("m", 0), *2 * [event("time >= 0.65", {"n": "n + 1"}, priority="1")],
+        *2 * [event("time >= 0.65", {"m": "m + 1"}, priority="1", at_trigger=False)]],
+        {"n": lambda t: _step(t, 0.65, 0.0, 1.0), "m": lambda t: _step(t, 0.65, 0.0, 2.0)}),
+    Case("one of two events that cancel each other", [
+        variable("n", 0), variable("m", 0), variable("last", 0), variable("sum"), always("sum", "n + m"),
+        event("time - last >= 0.33", {"n": "n + 1", "last": "time"}, priority="1", persistent=False),
+        event("time - last >= 0.33", {"m": "m + 1", "last": "time"}, priority="1", persistent=False)],
+        {"sum": lambda t: np.floor(t / 0.33)}),
+    Case("an event that triggers others again and again at one instant", [
+        variable("m", 0), variable("x", 0), variable("y", 0), variable("z", 0),
+        *(event("time >= 0.65", {"m": "2" if i % 2 == 0 else "0"}, priority=str(10 - i)) for i in range(9)),
+        event("m > 1", {"x": "x + 1"}, priority="1", at_trigger=False), event("m > 1", {"y": "y + 1"}, priority="1"),
+        event("m > 1", {"z": "z + 3"}, priority="1", persistent=False, at_trigger=False)],
+        {"x": lambda t: _step(t, 0.65, 0.0, 5.0), "y": lambda t: _step(t, 0.65, 0.0, 1.0),
+         "z": lambda t: _step(t, 0.65, 0.0, 3.0)}),
+    Case("an event that sets what its trigger reads to what it was", [
+        variable("k", 1.5), variable("n", 0), event("time > k", {"k": "2", "n": "n + 1"})],
+        {"n": lambda t: np.where(t > 2.01, 2.0, np.where(t > 1.5, 1.0, 0.0))}, end=4.1),
+    Case("an event that waits three times", [
+        variable("n", 0), variable("x"), always("x", "piecewise(sin(10 * time), time < 2, 1)"),
+        event("x < 0", {"n": "n + 1"}, delay="2", at_trigger=False)],
+        {"n": lambda t: np.floor(np.clip(t - 2, 0, 2) * 10 / (2 * np.pi) + 0.5)}, end=4.1),
+    Case("a trigger that holds right after the start", [
+        variable("x", 1), variable("y", 1), variable("n", 0), rate("x", "1"), rate("y", "2"),
+        event("y > x", {"n": "n + 1"}, delay="0.5")], {"n": lambda t: _step(t, 0.5 + 1e-9, 0.0, 1.0)}, end=2.1),
+    Case("thirty events with one trigger and delays of their own", [
+        *(variable(f"x{i}", 0) for i in range(30)),
+        *(event("time >= 0.15", {f"x{i}": "1"}, delay=f"{0.03 * i + 0.013}") for i in range(30))],
+        {f"x{i}": lambda t, i=i: _step(t, 0.163 + 0.03 * i, 0.0, 1.0) for i in range(30)}),
+    Case("forty events at times of their own", [
+        *(variable(f"x{i}", 0) for i in range(40)),
+        *(event(f"time > {0.047 * i + 0.02}", {f"x{i}": "1"}) for i in range(40))],
+        {f"x{i}": lambda t, i=i: _step(t, 0.047 * i + 0.02, 0.0, 1.0) for i in range(40)}),
+    Case("a chain of a hundred species", [
+        _c, *(species(f"S{i}", concentration=float(i == 0)) for i in range(100)), _k,
+        *(reaction(f"R{i}", f"S{i} -> S{i + 1}", f"c * k * S{i}") for i in range(99))],
+        {"S0_concentration": lambda t: exp(-0.7 * t),
+         "S9_concentration": lambda t: (0.7 * t)**9 * exp(-0.7 * t) / 362880}),
     # Ids
     Case("ids that are words of C++ or of the library", [
         variable("double", 1), variable("state", 2), variable("_x", 3), variable("a__b", 4), variable("t", 5),
@@ -386,8 +441,10 @@ refused = [
     ([variable("x", 1), variable("y"), always("y", "delay(x, 1)")], "a delay, in assignmentRule 'y' (line "),
     ([variable("x", 1), event("time > 1", {"x": "2"}, delay="-0.5", id="earlier")], "event 'earlier' (line "),
     ([variable("x", 1), event("time == 1", {"x": "2"}, id="once")], "event 'once' (line "),
-    ([variable("x", 1), event("time > 1", {"x": "2"}, id="one"), event("time > 1", {"x": "3"}, id="two")],
-     "their order matters"),
+    ([variable("x", 1), event("x == 2", {"x": "3"}, id="once"), rate("x", "1")], "event 'once' (line "),
+    ([variable(f"x{i}", 1) for i in range(20)] + [
+        event(f"time > 1 && x{(i + 1) % 20} < 2", {f"x{i}": "3"}, priority="x0", persistent=False) for i in range(20)],
+     "up to 16 can be"),
     ([variable("x", 1), event("time > 1", {"x": "2"}, persistent=False), event("x < 1.5 && time > 1", {"x": "3"}),
       Part("Rules", element("rateRule", variable="y"))], "no valid SBML"),
     ([variable("x"), variable("y"), always("x", "y"), always("y", "x")], "no valid SBML"),

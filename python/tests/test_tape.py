@@ -91,10 +91,33 @@ def test_calls_beyond_the_interpreter(change, message):
         my.solve(oscillator(), {"w": 1}, start={"x": 1, "v": 0}, time=(0, 1), interpreted=True, **change)
 
 
+@pytest.mark.parametrize("method", my._core.interpreted_methods())
+@pytest.mark.parametrize("count, crossings", [(8, 3), (9, 3), (8, 4), (128, 64)])
+def test_models_of_any_size_that_the_interpreter_has(method, count, crossings):
+    """Decays at rates of their own; events count the levels that the first one passes, and mark them in accessories."""
+    states, rate = my.states([f"x{i}" for i in range(count)]), my.parameter("rate")
+    marks = [my.accessory(f"mark{i}") for i in range(2 * crossings)]
+    levels = np.exp(-1.5 * (np.arange(crossings) + 0.5) / crossings)
+    events = [my.event(states[0] - level, name=f"level{i}", direction="falling",
+                       do={marks[2 * i]: my.time, marks[2 * i + 1]: states[-1]}) for i, level in enumerate(levels)]
+    model = my.model({x: -rate * (1 + i / count) * x for i, x in enumerate(states)}, events=events)
+    rates = np.linspace(1, 2, 11)
+    steps = {"step": 1 / 256} if method == "runge_kutta_4" else {"rtol": 1e-9, "atol": 1e-12}
+    run = my.solve(model, {rate: rates}, start={x: 1 for x in states} | {m: 0 for m in marks}, time=(0, 2),
+                   interpreted=True, method=method, **steps)
+    assert not run.failed.any()
+    for i in (0, count // 2, count - 1):
+        np.testing.assert_allclose(run[states[i]], np.exp(-2 * rates * (1 + i / count)), rtol=1e-6)
+    for i, level in enumerate(levels):
+        at = -np.log(level) / rates
+        np.testing.assert_allclose(run[marks[2 * i]], at, rtol=1e-6)
+        np.testing.assert_allclose(run[marks[2 * i + 1]], np.exp(-rates * (2 - 1 / count) * at), rtol=1e-6)
+
+
 def test_models_beyond_the_interpreter():
-    nine = my.states([f"x{i}" for i in range(9)])
-    with pytest.raises(my.Error, match="it has 9 states, and the interpreter 8 at the most: install a C"):
-        my.solve(my.model({x: -x for x in nine}), start={x: 1 for x in nine}, time=(0, 1), interpreted=True)
+    many = my.states([f"x{i}" for i in range(129)])
+    with pytest.raises(my.Error, match="it has 129 states, and the interpreter 128 at the most: install a C"):
+        my.solve(my.model({x: -x for x in many}), start={x: 1 for x in many}, time=(0, 1), interpreted=True)
     x, = my.states("x")
     peak = my.accessory("peak")
     with pytest.raises(my.Error, match="extrema or integrals over a phase"):

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""Units of SBML as texts for the labels of results. No value depends on them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+_short = {"mole": "mol", "litre": "l", "liter": "l", "second": "s", "metre": "m", "meter": "m", "gram": "g",
+          "kilogram": "kg", "item": "items", "dimensionless": "", "kelvin": "K", "ampere": "A", "volt": "V",
+          "joule": "J", "newton": "N", "pascal": "Pa", "hertz": "Hz", "coulomb": "C", "watt": "W", "farad": "F",
+          "siemens": "S", "ohm": "Ω", "weber": "Wb", "tesla": "T", "henry": "H", "lumen": "lm", "lux": "lx",
+          "becquerel": "Bq", "gray": "Gy", "sievert": "Sv", "katal": "kat", "candela": "cd", "radian": "rad",
+          "steradian": "sr", "avogadro": "N_A"}
+_prefixes = {0: "", -1: "d", -2: "c", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f", 3: "k", 6: "M", 9: "G"}
+_times = {60.0: "min", 3600.0: "h", 86400.0: "d", 604800.0: "weeks"}
+_predefined = {"substance": "mole", "time": "second"}  # of Levels 1 and 2, unless a file defines them
+_powers = {2: "²", 3: "³"}
+
+
+def _factor(libsbml: Any, unit: Any) -> tuple[str, float] | None:
+    """A unit without its exponent, and its exponent; None where it has no short name."""
+    exponent = unit.getExponentAsDouble()
+    kind = libsbml.UnitKind_toString(unit.getKind())
+    name, scale, multiplier = _short.get(kind, kind), unit.getScale(), unit.getMultiplier()
+    if multiplier == 1 and scale in _prefixes and (name or scale == 0):
+        return _prefixes[scale] + name, exponent
+    if kind == "second" and scale == 0 and multiplier in _times:
+        return _times[multiplier], exponent
+    size = multiplier * 10.0**scale
+    return f"{size:g} {name}".strip(), exponent
+
+
+def text_of(libsbml: Any, definition: Any) -> str:
+    """A unit as "mmol/l"; empty where it is not known or has no dimension."""
+    if definition is None or definition.getNumUnits() == 0:
+        return ""
+    above, below = [], []
+    for i in range(definition.getNumUnits()):
+        unit = definition.getUnit(i)
+        if unit.getKind() == libsbml.UNIT_KIND_INVALID:
+            return ""
+        factor = _factor(libsbml, unit)
+        if factor is None or not factor[0] or factor[1] == 0:
+            continue
+        name, exponent = factor
+        size = abs(exponent)
+        power = "" if size == 1 else _powers.get(size, f"^{size:g}")
+        if power and " " in name:
+            name = f"({name})"
+        (above if exponent > 0 else below).append(name + power)
+    if not below:
+        return "·".join(above)
+    bottom = below[0] if len(below) == 1 else f"({'·'.join(below)})"
+    return f"{'·'.join(above) or '1'}/{bottom}"
+
+
+class Units:
+    """The units of a model's quantities."""
+
+    def __init__(self, libsbml: Any, model: Any) -> None:
+        self.libsbml, self.model = libsbml, model
+
+    def of(self, element: Any) -> Any:
+        """The definition of an element's unit, or None."""
+        definition = element.getDerivedUnitDefinition() if hasattr(element, "getDerivedUnitDefinition") else None
+        return None if definition is None or element.containsUndeclaredUnits() else definition
+
+    def _named(self, unit: str) -> Any:
+        """The definition of a unit that is given by its name."""
+        defined = self.model.getUnitDefinition(unit) if unit else None
+        if not unit or defined is not None:
+            return defined
+        made = self.libsbml.UnitDefinition(self.model.getLevel(), self.model.getVersion())
+        factor = made.createUnit()
+        factor.initDefaults()
+        factor.setKind(self.libsbml.UnitKind_forName(_predefined.get(unit, unit)))
+        return made
+
+    def time(self) -> str:
+        """The unit of time."""
+        name = self.model.getTimeUnits() if self.model.getLevel() > 2 else "time"
+        return text_of(self.libsbml, self._named(name))
+
+    def of_species(self, species: Any) -> tuple[str, str]:
+        """The units of a species' amount and concentration."""
+        substance = species.getSubstanceUnits() or (
+            self.model.getSubstanceUnits() if self.model.getLevel() > 2 else "substance")
+        amount, size = self._named(substance), self.of(self.model.getCompartment(species.getCompartment()))
+        if amount is None:
+            return "", ""
+        if size is None:
+            return text_of(self.libsbml, amount), ""
+        inverse = size.clone()
+        for i in range(inverse.getNumUnits()):
+            unit = inverse.getUnit(i)
+            unit.setExponent(-unit.getExponentAsDouble())
+        both = self.libsbml.UnitDefinition.combine(amount, inverse)
+        return text_of(self.libsbml, amount), text_of(self.libsbml, both)
+
+    def text(self, element: Any) -> str:
+        """The unit of a compartment or parameter."""
+        return text_of(self.libsbml, self.of(element))
+
+    def of_rate(self, reaction: Any) -> str:
+        """The unit of a reaction's rate: of its extent, by time."""
+        extent = self.model.getExtentUnits() if self.model.getLevel() > 2 else "substance"
+        amount, time = text_of(self.libsbml, self._named(extent)), self.time()
+        return f"{amount}/{time}" if amount and time else ""

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: MIT
+"""Models from .ode files of XPPAUT: what their statements mean, and what is refused."""
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+
+def solved(text, *arguments, time=(0, 2), samples=21, **options):
+    options = dict(interpreted=True, device="cpu", method="dormand_prince_5", rtol=1e-10, atol=1e-12) | options
+    return my.solve(my.read_xpp(text), *arguments, time=time, samples=samples, **options)
+
+
+hodgkin_huxley = """
+# Hodgkin and Huxley, with a resting potential of -65 mV
+par I0=10, gna=120, gk=36
+par gl=.3 ena=50 ek=-77 el=-54.4
+number c=1, phi = 1
+init v=-65,m=.0529,h=.596
+n(0)=.3177
+am(v)=.1*(v+40)/(1-exp(-(v+40)/10))
+bm(v)=4*exp(-(v+65)/18)
+ah(v)=.07*exp(-(v+65)/20)
+bh(v)=1/(1+exp(-(v+35)/10))
+an(v)=.01*(v+55)/(1-exp(-(v+55)/10))
+bn(v)=.125*exp(-(v+65)/80)
+ina=gna*m^3*h*(v-ena)
+ik=gk*n^4*(v-ek)
+v'=(I0-ina-ik \\
+  -gl*(v-el))/c
+dm/dt=phi*(am(v)*(1-m)-bm(v)*m)
+dh/dt=phi*(ah(v)*(1-h)-bh(v)*h)
+dn/dt=phi*(an(v)*(1-n)-bn(v)*n)
+aux power=v*(ina+ik)
+@ total=50,dt=.02,meth=qualrk,xlo=0,xhi=50
+done
+what follows is not read
+"""
+
+
+def _hodgkin_huxley(t, y, current):
+    v, m, h, n = y
+    x, w = (v + 40) / 10, (v + 55) / 10
+    ina, ik = 120 * m**3 * h * (v - 50), 36 * n**4 * (v + 77)
+    return [current - ina - ik - 0.3 * (v + 54.4),
+            x / (1 - np.exp(-x)) * (1 - m) - 4 * np.exp(-(v + 65) / 18) * m,
+            0.07 * np.exp(-(v + 65) / 20) * (1 - h) - h / (1 + np.exp(-(v + 35) / 10)),
+            0.1 * w / (1 - np.exp(-w)) * (1 - n) - 0.125 * np.exp(-(v + 65) / 80) * n]
+
+
+def test_the_equations_of_hodgkin_and_huxley():
+    integrate = pytest.importorskip("scipy.integrate")
+    model = my.read_xpp(hodgkin_huxley)
+    assert model.states == ["v", "m", "h", "n"]
+    assert model.parameters == ["i0", "gna", "gk", "gl", "ena", "ek", "el"]
+    assert model.time == (0, 50) and model.settings["meth"] == "qualrk" and model.settings["dt"] == 0.02
+    currents = np.array([0.0, 10.0, 20.0])
+    run = my.solve(model, {"I0": currents}, time=(0, 10), rtol=1e-10, atol=1e-12, interpreted=True)
+    for i, current in enumerate(currents):
+        right = integrate.solve_ivp(_hodgkin_huxley, (0, 10), [-65, 0.0529, 0.596, 0.3177], args=(current,), rtol=1e-11,
+                                    atol=1e-12, method="DOP853").y[:, -1]
+        np.testing.assert_allclose([run[name][i] for name in "vmhn"], right, rtol=1e-6)
+        v, m, h, n = right
+        ina, ik = 120 * m**3 * h * (v - 50), 36 * n**4 * (v + 77)
+        np.testing.assert_allclose(run["ina"][i], ina, rtol=1e-5)
+        np.testing.assert_allclose(run["power"][i], v * (ina + ik), rtol=1e-5)
+
+
+def test_a_neuron_that_fires_and_is_reset():
+    """dv/dt = I - v from 0 reaches 1 after log(I / (I - 1)), each time."""
+    text = """
+    p I=1.5 reset=0
+    V'=I-V
+    count'=0
+    global 1 {v-1} {v=reset;count=count+1}
+    @ total=10
+    """
+    currents = np.array([1.2, 1.5, 3.0])
+    model = my.read_xpp(text)
+    run = my.solve(model, {"I": currents}, time=model.time, rtol=1e-10, atol=1e-12, interpreted=True)
+    period = np.log(currents / (currents - 1))
+    np.testing.assert_array_equal(run["count"], np.floor(10 / period))
+    np.testing.assert_allclose(run["V"], currents * (1 - np.exp(-np.mod(10, period))), rtol=1e-6)
+
+
+def test_resets_follow_each_other_and_parameters_come_last():
+    run = solved("par p=1\nx'=1\ny'=0\nz'=0\nglobal 1 {x-0.55} {x=10;y=x+1;p=5;z=p}\naux twice=2*p")
+    np.testing.assert_allclose(run["x"][0, -1], 10 + 2 - 0.55)
+    np.testing.assert_allclose([run["y"][0, -1], run["z"][0, -1]], [11, 1])
+
+
+def test_signs_of_events_and_the_end_of_a_run():
+    run = solved("x'=cos(t)\nup'=0\ndown'=0\nglobal 1 x-0.5 {up=up+1}\nglobal -1 {x-.5} {down=down+1}", time=(0, 6),
+                 samples=None)
+    assert run["up"][0] == 1 and run["down"][0] == 1
+    run = solved("x'=1\nglobal 1 {x-0.7} {arret=1}", samples=None)
+    assert my.status_names[run.status[0]] == "stopped_by_user"
+    np.testing.assert_allclose(run["x"], 0.7)
+
+
+def _value(text, **given):
+    lines = [f"par {name}={value}" for name, value in given.items()]
+    return solved("\n".join([*lines, "x'=0", f"aux found={text}"]), samples=None)["found"][0]
+
+
+@pytest.mark.parametrize("text, value", [
+    ("2+3*4^2/8-1", 7), ("-a^2", -9), ("2^3^2", 64), ("a**2", 9), ("2*-a", -6), ("1e-1+.5+2.", 2.6), ("-(-a)", 3),
+    ("a>2", 1), ("a>2+1", 2), ("a>(2+1)", 0), ("1+a<2", 1), ("(a>2)&(a<4)", 1), ("a<2|(a==3)", 1), ("not(a)", 0),
+    ("not(a>5)", 1), ("a!=3", 0), ("(a>=3)+(a<=3)", 2), ("if(a>2)then(10)else(20)", 10),
+    ("if(a>(2+4))then(10)else(if(a==3)then(5)else(6))", 5), ("heav(0)+heav(a)*10+heav(-a)*100", 11),
+    ("sign(a)+10*sign(-a)+100*sign(0)", -9), ("mod(-a,2)", 1), ("mod(a,2)", 1), ("flr(-a/2)", -2),
+    ("max(a,4)+min(a,4)", 7), ("ln(exp(a))+log(exp(1))+log10(100)", 6), ("sqrt(abs(-a*a))", 3),
+    ("atan2(1,1)*4", np.pi), ("pi", np.pi), ("sum(1,3)of(i'*a)", 18), ("sum(0,1)of(sum(0,i')of(a))", 9),
+    ("sinh(1)+cosh(1)", np.e), ("asin(1)+acos(1)+atan(1)", 0.75 * np.pi)])
+def test_formulas_mean_what_they_mean_there(text, value):
+    np.testing.assert_allclose(_value(text, a=3), value, rtol=1e-12, atol=1e-15)
+
+
+def test_quantities_and_derived_parameters_follow_parameters():
+    text = "!b=a^2\npar a=2\nc=b+x\nf(x,y)=x-y*b\nx'=f(c,a)\n"
+    model = my.read_xpp("par a=2\n!b=a^2\nc=b+x\nf(x,y)=x-y*b\nx'=f(c,a)\n")
+    run = my.solve(model, {"a": [2.0, 3.0]}, time=(0, 1), interpreted=True, rtol=1e-10, atol=1e-12)
+    b, a = np.array([4.0, 9.0]), np.array([2.0, 3.0])
+    forced = b - a * b  # x' = x + forced
+    np.testing.assert_allclose(run["x"], forced * (np.e - 1), rtol=1e-8)
+    np.testing.assert_allclose(run["c"], b + run["x"], rtol=1e-12)
+    np.testing.assert_array_equal(run["b"], b)
+    assert my.read_xpp(text).outputs.keys() == {"b", "c"}
+
+
+def test_arrays_and_groups_are_written_out():
+    run = solved("""
+        par k=.5
+        x[1..4]'=-k*x[j]+x[j-1]
+        x0=0
+        init x[1..4]=[j]
+        %[1..2]
+        y[j]'=[j]*x3
+        aux z[j]=y[j]+x[2]
+        %
+        aux total=sum(0,3)of(shift(x1,i'))
+        """, samples=None, time=(0, 1))
+    x1 = np.exp(-0.5)
+    x2 = (2 + 1) * np.exp(-0.5)
+    np.testing.assert_allclose([run["x1"][0], run["x2"][0]], [x1, x2], rtol=1e-8)
+    np.testing.assert_allclose(run["y2"], 2 * run["y1"], rtol=1e-8)
+    np.testing.assert_allclose(run["z2"], run["y2"] + x2, rtol=1e-8)
+    np.testing.assert_allclose(run["total"], sum(run[f"x{i}"] for i in (1, 2, 3, 4)), rtol=1e-12)
+
+
+def test_tables_are_linear_and_go_on_beyond_their_ends(tmp_path):
+    (tmp_path / "force.tab").write_text("3\n0\n2\n0\n1\n4\n")
+    (tmp_path / "pairs.tab").write_text("xyvals\n3\n0 0\n0.5 1\n2 4\n")
+    (tmp_path / "model.ode").write_text("table f force.tab\ntable g pairs.tab\ntable h % 3 0 2 t^2\n"
+                                        "x'=1\naux a=f(x)\naux b=g(x)\naux c=h(x)\naux d=f(.5)\ninit x=-1\n")
+    run = my.solve(my.read_xpp(tmp_path / "model.ode"), time=(0, 4), samples=[0.0, 1.5, 2.5, 4.0], interpreted=True)
+    np.testing.assert_allclose(run["x"], [[-1, 0.5, 1.5, 3]], atol=1e-12)
+    np.testing.assert_allclose(run["a"], [[-1, 0.5, 2.5, 7]], atol=1e-12)
+    np.testing.assert_allclose(run["b"], [[-2, 1, 3, 6]], atol=1e-12)
+    np.testing.assert_allclose(run["c"], run["a"], atol=1e-12)
+    np.testing.assert_allclose(run["d"], 0.5)
+
+
+def test_names_are_small_letters_and_those_of_the_file():
+    text = "PAR Iapp=2,double=3\nV'=Iapp\nState'=double\nINIT V=1\nAUX Sum=v+STATE\nset fast {Iapp=20, v=5}\n"
+    model = my.read_xpp(text)
+    run = my.solve(model, {"Iapp": 4}, time=(0, 1), interpreted=True)
+    np.testing.assert_allclose([run["V"][0], run["v"][0], run["State"][0], run["state"][0]], [5, 5, 3, 3])
+    np.testing.assert_allclose([run["Sum"][0], run["sum"][0]], 8)
+    fast = my.solve(model, model.sets["fast"], time=(0, 1), interpreted=True)
+    np.testing.assert_allclose(fast["V"], 25)
+
+
+def test_a_file_gives_its_name_to_the_model(tmp_path):
+    (tmp_path / "van-der-pol.ode").write_text("par mu=1\nx'=y\ny'=mu*(1-x^2)*y-x\ninit x=1\nd\n")
+    model = my.read_xpp(tmp_path / "van-der-pol.ode")
+    assert model.name == "van_der_pol" and model.time == (0, 20)
+    grid = my.solve(model, my.grid(mu=np.linspace(0.5, 2, 4), x=[1.0, 2.0]), time=model.time, interpreted=True)
+    assert grid["x"].shape == (8,) and "struct van_der_pol" in model.cpp()
+    with pytest.raises(my.Error, match="there is no file"):
+        my.read_xpp(tmp_path / "missing.ode")
+
+
+@pytest.mark.parametrize("line, said", [
+    ("wiener w", "noise"), ("markov z 2", "Markov"), ("y'=delay(x,1)", "delays"), ("bdry x-1", "boundary"),
+    ("0=x+y", "algebraic equations"), ("solv y=1", "algebraic equations"), ("x(t+1)=2*x", "a map"),
+    ("y(t)=int{exp(-t)#x}", "integral equations"), ("volterra y=1", "integrals over the past"),
+    ("y'=ran(1)", "random numbers"), ("special k=conv(even,11,3,w,x)", "networks"), ("export {x} {y}", "libraries"),
+    ("global 0 {x-1} {x=0}", "sign 0"), ("global 1 {x-1} {q=0}", "neither a state nor a parameter"),
+    ("y'=q+1", "`q` is unknown"), ("early=late\nlate=x", "`late` is unknown"), ("y'=f(x,2)\nf(x)=x", "2 arguments"),
+    ("y'=x+", "it ends where"), ("y'=(x", "`)` is expected"), ("y'=x$2", "`$` is not understood"),
+    ("par a=1\npar a=2", "a second time"), ("x'=2", "a second time"), ("init q=1", "has no equation"),
+    ("table f missing.tab", "there is no file"), ("f(x)=f(x)\ny'=f(x)", "calls itself"), ("y'=besselj(0,x)", "unknown"),
+    ("t=2", "meaning of its own"), ("what is this", "no statement")])
+def test_what_is_not_supported_is_refused_with_its_line(line, said):
+    with pytest.raises(my.Error) as error:
+        my.read_xpp(f"# a comment\nx'=1\n{line}\n")
+    assert said in str(error.value) and "line " in str(error.value)
+
+
+def test_a_compiled_model_agrees():
+    text = "p I=1.5\nv'=I-v\nu'=v/10\nglobal 1 {v-1} {v=u/5;u=u+.1}\naux w=u+v\n"
+    runs = [solved(text, {"I": [1.2, 1.5]}, interpreted=interpreted) for interpreted in (True, False)]
+    for name in ("v", "u", "w"):
+        np.testing.assert_allclose(runs[0][name], runs[1][name], rtol=1e-9, atol=1e-9)
