@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stiff methods as CUDA kernels: in registers up to six equations, through local memory above, where the stack holds
-// one matrix (8 n^2 bytes), the stages and little else; single precision stays single.
+// one matrix (8 n^2 bytes), the stages and little else, or with steps in shared memory, little; single precision stays
+// single.
 //
 // limit: integrate_ensemble<chain<2>, rosenbrock_23> stack 0 spill 0 registers 72
 // limit: integrate_ensemble<chain<2>, rodas_5p> stack 0 spill 0 registers 80
@@ -15,8 +16,8 @@
 // limit: integrate_ensemble<sparse_chain<8>, rosenbrock_23> stack 24 spill 68
 // limit: integrate_ensemble<sparse_chain<8>, rodas_5p> stack 0 spill 0
 // limit: integrate_ensemble<sparse_chain<32>, rosenbrock_23> stack 3000
-// limit: integrate_ensemble<sparse_chain<32>, rodas_5p> stack 4000
-// limit: integrate_ensemble<van_der_pol_ring<32>, rodas_5p> stack 4000
+// limit: integrate_ensemble<sparse_chain<32>, rodas_5p> stack 300
+// limit: integrate_ensemble<van_der_pol_ring<32>, rodas_5p> stack 100
 // forbid: f64 in integrate_ensemble<chain<3>, rosenbrock_23>
 // forbid: f64 in integrate_ensemble<chain<3>, rodas_5p>
 

@@ -27,6 +27,7 @@ CUDA_CODE = {
     "myriad/kernel/controller/norm.hpp",
     "myriad/kernel/controller/fast_power.hpp",
     "myriad/kernel/integrator/warp_aggregation.hpp",
+    "myriad/kernel/stepper/step_memory.hpp",    # the shared memory of a block
 }
 
 ASKS_FOR_CUDA = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*\b__(?:CUDA\w*|NVCC)__", re.MULTILINE)

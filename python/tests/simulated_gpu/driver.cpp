@@ -218,6 +218,9 @@ DRIVER cuDeviceGetAttribute(int* value, int attribute, int) {
         case 76:
             *value = capability % 10;
             return success;
+        case 81:  // shared memory of a multiprocessor
+            *value = 233'472;
+            return success;
         case 97:  // shared memory per block
             *value = 232'448;
             return success;

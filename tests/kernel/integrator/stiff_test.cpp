@@ -377,6 +377,26 @@ TEST_CASE("the order of the ensemble changes no bit of a stiff method's results"
     check_order_of_instances<rodas_5p>();
 }
 
+// With more instances blocks of a GPU are larger, and with them the part of its shared memory that has their steps.
+TEST_CASE("the number of instances changes no bit of a large network's results") {
+    const auto device = tests::test_device(1);
+    const std::int64_t many = device.which() == myriad::device::kind::cuda ? 6000 : 40;
+    const auto o = compare::with_tolerance(1e-5, 1e-3);
+    auto all = rings<sparse::ring<32>>(many);
+    const auto of_all = solve<rodas_5p>(device, all, o);
+    for (const std::int64_t size : {std::int64_t{1}, many / 20}) {
+        auto some = rings<sparse::ring<32>>(size);
+        solve<rodas_5p>(device, some, o);
+        for (std::int64_t i = 0; i < size; ++i) CHECK(compare::difference(some, i, all, i).empty());
+    }
+    auto blocks = rings<sparse::ring<32>>(many);
+    auto of_one_warp = o;
+    of_one_warp.block_size = 32;
+    solve<rodas_5p>(device, blocks, of_one_warp);
+    for (std::int64_t i = 0; i < many; ++i) CHECK(compare::difference(blocks, i, all, i).empty());
+    if (device.which() == myriad::device::kind::cuda) CHECK(of_all.kernel.shared_bytes > 0);
+}
+
 // + - * / only, so that one lane has no other functions than packs
 TEST_CASE("a stiff method gives the same bits in a scalar lane and in packs of every size") {
     check_pack_sizes<rodas_5p>();

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "myriad/kernel/model/jacobian.hpp"
 #include "myriad/kernel/scalar/pack.hpp"
@@ -144,6 +145,17 @@ TEST_CASE("sparse factors solve their systems, in one lane and in packs") {
         check_solutions<sparse::ring<32>, float>(seed);
         check_solutions<sparse::ring<66>, pack<float, 1>>(seed);  // sets of more than one word
     }
+}
+
+TEST_CASE("factors are kept with their last values, each once") {
+    using model = sparse::ring<32>;
+    sparse_lu_factors<model, double> lu;
+    for (int e = 0; e < decltype(lu)::tables::n_entry; ++e) lu.a[e] = 1.0 / (e + 2);
+    for (int i = 0; i < n_state<model>; ++i) lu.size[i] = lu.a[lu_tables_of<model>.diagonal[i]] = 8 + i;
+    std::vector<std::vector<double>> kept(decltype(lu)::tables::n_entry);
+    CHECK(factorise(lu,
+                    [&](auto entry, const double& value) { kept[static_cast<std::size_t>(entry)].push_back(value); }));
+    for (std::size_t e = 0; e < kept.size(); ++e) CHECK(kept[e] == std::vector<double>{lu.a[e]});
 }
 
 TEST_CASE("a pivot that cancels is singular however its state is scaled, and a small one that does not is not") {

@@ -162,16 +162,18 @@ struct launch_arguments<Model, R, shared_placement::constant_bank> {
 /// What launches depend on. Launch parameters are put where these have them.
 template <class Model, class Method, class R>
 inline constexpr cuda::kernel_traits traits_of{numbers_of<Model>, shared_parameter_bytes<Model, R>,
-                                               max_block_size<Model>(), costs_differ<Model, Method>};
+                                               max_block_size<Model>(), costs_differ<Model, Method>,
+                                               shared_step_bytes<Method, Model, R>};
 template <class Model, class R, shared_placement placement>
 constexpr bool is_laid_out =
     sizeof(launch_arguments<Model, R, placement>) == cuda::launch_offsets<R>(numbers_of<Model>).bytes(placement);
 
-/// Copies the shared parameters to the block's shared memory, with all its threads.
-template <class Model, class R>
+/// Copies the shared parameters to the block's shared memory, behind what its threads' steps take, with all its
+/// threads.
+template <class Model, class Method, class R>
 __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parameters<R>& from) {
     extern __shared__ double staged[];  // double: aligned for either real type
-    R* const real = reinterpret_cast<R*>(staged);
+    R* const real = reinterpret_cast<R*>(staged) + blockDim.x * (shared_step_bytes<Method, Model, R> / sizeof(R));
     auto* const integer = reinterpret_cast<std::int32_t*>(real + n_shared<Model>);
     for (int i = static_cast<int>(threadIdx.x); i < n_shared<Model>; i += static_cast<int>(blockDim.x))
         real[i] = from.real[i];
@@ -187,7 +189,7 @@ __device__ __forceinline__ void integrate_thread(const launch_arguments<Model, R
     static_assert(is_laid_out<Model, R, placement>);
     shared_parameters<R> shared = arguments.ensemble.shared;
     if constexpr (placement == shared_placement::constant_bank) shared = {arguments.shared, arguments.shared_integer};
-    if constexpr (placement == shared_placement::shared_memory) shared = detail::stage_shared<Model, R>(shared);
+    if constexpr (placement == shared_placement::shared_memory) shared = detail::stage_shared<Model, Method, R>(shared);
     using supply = std::conditional_t<costs_differ<Model, Method>, queued_instances, own_instance>;
     supply instances(arguments.ensemble.size, arguments.ensemble.order, arguments.queue, arguments.stop);
     detail::integrate<Model, Method, R>(arguments.ensemble, shared, instances);

@@ -38,7 +38,7 @@ public:
         int limit = 0;
         MYRIAD_CUDA(cudaDeviceGetAttribute(&limit, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
         const int bytes = traits().shared_bytes;
-        const bool fits = bytes <= limit;
+        const bool fits = bytes + smallest_block * traits().step_bytes <= limit;
         facts_.shared_placement = wanted.shared_placement;
         if (wanted.shared_placement == place::automatic)
             facts_.shared_placement = is_compiled(place::constant_bank, bytes) ? place::constant_bank
@@ -52,6 +52,8 @@ public:
                 " bytes: up to 1024 they are kept in the constant bank, more in "
                 "shared memory or the cache; set it to automatic");
         parameters_.resize(static_cast<std::size_t>(offsets_.bytes(facts_.shared_placement)) / sizeof(double));
+        if (uses_shared_memory())
+            MYRIAD_CUDA(cudaFuncSetAttribute(function(), cudaFuncAttributeMaxDynamicSharedMemorySize, limit));
         choose_block(device, static_cast<int>(wanted.block_size));
     }
 
@@ -78,6 +80,8 @@ public:
         const int block = facts_.block_size = block_for(arguments.size);
         auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
         if (queue != nullptr) blocks = std::min(blocks, blocks_at_once(block));
+        facts_.shared_bytes = shared_bytes_of(block);
+        divide_cache(static_cast<int>(blocks), block);
         put(0, static_cast<const argument_head<R>*>(&arguments), 1);
         put(offsets_.arrays, arguments.arrays, arguments.offsets().end);
         put(offsets_.queue, &queue, 1);
@@ -91,9 +95,18 @@ public:
 
 private:
     static constexpr std::int64_t cache_bytes = 128 * 1024;  // of a V100; later GPUs have more
+    static constexpr int smallest_block = 8;                 // of kernels with steps in shared memory
 
     const void* function() const {
         return facts_.shared_placement == place::shared_memory ? kernels_.integrate_staged : kernels_.integrate;
+    }
+    bool keeps_steps_in_shared_memory() const { return traits().step_bytes > 0; }
+    bool uses_shared_memory() const {
+        return facts_.shared_placement == place::shared_memory || keeps_steps_in_shared_memory();
+    }
+    int shared_bytes_of(int block) const {
+        const int parameters = facts_.shared_placement == place::shared_memory ? traits().shared_bytes : 0;
+        return block * traits().step_bytes + parameters;
     }
     /// Writes values to a place of the launch parameters.
     template <class T>
@@ -107,50 +120,73 @@ private:
         MYRIAD_CUDA(cudaFuncGetAttributes(&attributes, function()));
         facts_.registers = attributes.numRegs;
         facts_.local_bytes = static_cast<std::int64_t>(attributes.localSizeBytes);
-        if (facts_.shared_placement == place::shared_memory) {
-            const int bytes = traits().shared_bytes;
-            MYRIAD_CUDA(cudaFuncSetAttribute(function(), cudaFuncAttributeMaxDynamicSharedMemorySize, bytes));
-            facts_.shared_bytes = bytes;
-        }
         const int most = attributes.maxThreadsPerBlock;
         require(wanted <= most, "block_size is ", wanted, ", but a block of this kernel has at most ", most,
                 " threads (", attributes.numRegs, " registers each)", host::cure, "give a smaller block_size",
                 wanted <= 1024 && traits().max_block_size < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");
-        // The smallest block size among those that keep most threads resident.
+        // The smallest block size among those that keep most threads resident. Where shared memory limits these, blocks
+        // of one warp leave least of it unused; where it has no room for a warp, blocks are parts of one.
+        int first = wanted > 0 ? wanted : std::min(keeps_steps_in_shared_memory() ? 32 : 64, most / 32 * 32);
+        consider_blocks(first, wanted > 0 ? wanted : most);
+        while (facts_.block_size == 0 && wanted == 0 && keeps_steps_in_shared_memory() && first > smallest_block) {
+            first /= 2;
+            consider_blocks(first, first);
+        }
+        require(facts_.block_size > 0, "not one block of this kernel fits into a multiprocessor: ", attributes.numRegs,
+                " registers per thread and ", shared_bytes_of(wanted > 0 ? wanted : first),
+                " bytes of shared memory per block", wanted > 0 ? ": give a smaller block_size" : "");
+        facts_.shared_bytes = shared_bytes_of(chosen_block_);
+        MYRIAD_CUDA(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, device));
+        MYRIAD_CUDA(cudaDeviceGetAttribute(&shared_memory_, cudaDevAttrMaxSharedMemoryPerMultiprocessor, device));
+        chosen_by_user_ = wanted > 0;
+    }
+
+    /// Takes the smallest of these block sizes, each twice the one before, that keeps the most threads resident.
+    void consider_blocks(int first, int last) {
         int best_threads = 0;
-        for (int block = wanted > 0 ? wanted : std::min(64, most / 32 * 32); block <= (wanted > 0 ? wanted : most);
-             block *= 2) {
+        for (int block = first; block <= last; block *= 2) {
             int blocks = 0;
-            MYRIAD_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, function(), block,
-                                                                      static_cast<std::size_t>(facts_.shared_bytes)));
+            MYRIAD_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(
+                &blocks, function(), block, static_cast<std::size_t>(shared_bytes_of(block))));
             if (blocks * block <= best_threads) continue;
             best_threads = blocks * block;
             chosen_block_ = facts_.block_size = block;
             facts_.blocks_per_multiprocessor = blocks;
         }
-        require(facts_.block_size > 0, "not one block of this kernel fits into a multiprocessor: ", attributes.numRegs,
-                " registers per thread and ", facts_.shared_bytes, " bytes of shared memory per block");
-        MYRIAD_CUDA(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, device));
-        chosen_by_user_ = wanted > 0;
     }
 
+    int resident_blocks(int block) const {
+        return std::max(facts_.blocks_per_multiprocessor * chosen_block_ / block, 1);
+    }
     unsigned blocks_at_once(int block) const {
-        const int per_multiprocessor = std::max(facts_.blocks_per_multiprocessor * chosen_block_ / block, 1);
-        return static_cast<unsigned>(per_multiprocessor * multiprocessors_);
+        return static_cast<unsigned>(resident_blocks(block) * multiprocessors_);
+    }
+
+    /// Shared memory and the cache of local memory are one: asks for as much shared memory as the blocks of a launch
+    /// use at a time. Else the cache would be as small as for a launch that fills the GPU.
+    void divide_cache(int blocks, int block) {
+        if (!keeps_steps_in_shared_memory()) return;
+        constexpr std::int64_t reserved = 1024;  // for each block
+        const int resident = std::min((blocks + multiprocessors_ - 1) / multiprocessors_, resident_blocks(block));
+        const std::int64_t used = resident * (shared_bytes_of(block) + reserved);
+        const auto percent =
+            static_cast<int>(std::min<std::int64_t>((100 * used + shared_memory_ - 1) / shared_memory_, 100));
+        MYRIAD_CUDA(cudaFuncSetAttribute(function(), cudaFuncAttributePreferredSharedMemoryCarveout, percent));
     }
 
     /// Ensembles too small to fill the GPU are spread over all its multiprocessors, down to one warp per block. With
     /// still fewer instances than warps have threads, a warp gets only some of its threads to run, as long as each has
-    /// a scheduler for itself: then fewer threads wait for what only one of them does.
+    /// a scheduler for itself: then fewer threads wait for what only one of them does. Steps in shared memory are
+    /// spread over all multiprocessors alone: a second warp would only take the first one's cache.
     int block_for(std::int64_t size) const {
         int block = chosen_block_;
         if (chosen_by_user_) return block;
         while (block > 32 && size <= static_cast<std::int64_t>(multiprocessors_) * block / 2) block /= 2;
         if (traits().costs_differ) {
-            const std::int64_t schedulers = least_threads() / 32;
-            while (block > 1 && block <= 32 && size <= schedulers * (block / 2) && fits_the_cache(size, block / 2))
+            const std::int64_t warps = keeps_steps_in_shared_memory() ? multiprocessors_ : least_threads() / 32;
+            while (block > 1 && block <= 32 && size <= warps * (block / 2) && fits_the_cache(size, block / 2))
                 block /= 2;
         }
         return block;
@@ -158,6 +194,7 @@ private:
     /// Whether the local memory of blocks of at most one warp stays in the cache of a multiprocessor. A warp has that
     /// of 32 threads, word by word side by side, however many of them run: docs/numerics.md has what that cost.
     bool fits_the_cache(std::int64_t size, std::int64_t block) const {
+        if (keeps_steps_in_shared_memory()) return true;  // as closely as one warp does
         const std::int64_t blocks = (size + block - 1) / block;
         const std::int64_t resident = (blocks + multiprocessors_ - 1) / multiprocessors_;
         return resident * 32 * facts_.local_bytes <= cache_bytes;
@@ -168,7 +205,7 @@ private:
     std::vector<double> parameters_;  // doubles, for their alignment
     kernel_facts facts_;
     const std::uint32_t* stop_ = nullptr;
-    int multiprocessors_ = 1, chosen_block_ = 0;
+    int multiprocessors_ = 1, shared_memory_ = 1, chosen_block_ = 0;  // shared memory of a multiprocessor, in bytes
     bool chosen_by_user_ = false;
 };
 

@@ -107,8 +107,9 @@ struct adaptive_stepping {
             s.steps.last_not_finite = select(moved, !finite, s.steps.last_not_finite);
             // Where the right-hand side itself is not finite, there is no Jacobian.
             if constexpr (solves_linear_systems<Method>)
-                s.steps.last_singular =
-                    select(moved & !finite, trial.singular & all_finite(trial.k[0]), s.steps.last_singular);
+                s.steps.last_singular = select(
+                    moved & !finite, trial.singular & all_finite<most_components_written_out<Method>>(trial.k[0]),
+                    s.steps.last_singular);
             stuck = rejected & (abs(s.h) <= S(args.minimum_step) + rounding);
         }
         S next = s.h * S(factor);

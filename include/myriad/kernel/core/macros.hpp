@@ -25,6 +25,8 @@
 /// An optimisation barrier: hides from the compiler that a pointer or index has not changed, so that addresses are
 /// recomputed instead of kept in registers through the loop.
 #define MYRIAD_OPTIMISATION_BARRIER(value) asm volatile("" : "+l"(value))
+/// An optimisation barrier: what lies in memory that others might change is written before it and read again after it.
+#define MYRIAD_MEMORY_BARRIER asm volatile("" ::: "memory")
 #if defined(__CUDA_ARCH__)
 /// A point where diverged threads of a warp reconverge; all threads that have not exited reach it. The compiler's own
 /// reconvergence points are not enough: threads that took instances one by one were seen never to reconverge.

@@ -202,10 +202,11 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
     return factorise(lu);
 }
 
-/// The same for a matrix whose pattern is known.
-template <class Method, class Model, class S>
+/// The same for a matrix whose pattern is known; calls `keep(entry, value)` for each entry of the factors.
+template <class Method, class Model, class S, class Keep = keep_nothing>
 MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
-                                                  const inputs<Model, S>& p, sparse_lu_factors<Model, S>& lu) {
+                                                  const inputs<Model, S>& p, sparse_lu_factors<Model, S>& lu,
+                                                  Keep&& keep = {}) {
     using lu_type = sparse_lu_factors<Model, S>;
     using tables = typename lu_type::tables;
     using loop = typename lu_type::loop;
@@ -232,7 +233,7 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
         lu.a[place] = lu.a[place] - derivative;
         if (row >= 0) lu.size[row] = lu.size[row] + abs(derivative);
     });
-    return factorise(lu);
+    return factorise(lu, keep);
 }
 template <class Model, class S>
 using stage_factors =

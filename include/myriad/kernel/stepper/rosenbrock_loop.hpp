@@ -5,29 +5,12 @@
 #include <cstddef>
 #include <utility>
 
-#include "myriad/kernel/stepper/rosenbrock.hpp"
+#include "myriad/kernel/stepper/step_memory.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Bytes of stages up to which they are written out. Larger ones lie in local memory either way, and a loop has less
-/// code and spills less. NVIDIA H200, rodas_5p, blocks of 64, ms for written-out stages and for a loop, in an earlier
-/// form: 8 states 4.3 and 14.5 (512 bytes), pollution with 20 states in single precision 0.35 and 0.97 (640), in double
-/// precision 4.0 and 3.3 (1280), ring of 32 states 80 and 77 (2048), of 64 states 654 and 250 (4096).
-inline constexpr int largest_stages_written_out = 1024;
-
 /// Components whose sums over stages are added up in registers at a time.
 inline constexpr int summed_at_once = 16;
-
-template <class Method, class Model, class S>
-constexpr bool loops_over_stages_of() {
-    if constexpr (factorises_sparsely<Model> && lanes_of<S> == 1) {
-        return static_cast<int>(sizeof(S)) * Method::stages * n_state<Model> > largest_stages_written_out;
-    } else {
-        return false;
-    }
-}
-template <class Method, class Model, class S>
-inline constexpr bool loops_over_stages = loops_over_stages_of<Method, Model, S>();
 
 /// The weights as tables, for a loop over stages.
 template <class Method, class R>
@@ -71,8 +54,12 @@ MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& 
     constexpr auto& table = rosenbrock_table_of<Method, R>;
     using loop = unrolled_loop<n>;
     const R per_h = detail::reciprocal_of_step(h);
-    stage_factors<Model, R> lu;
-    trial.singular = !detail::factorise_stage_matrix<Method, Model>(t, per_h, y, p, lu);
+    step_storage<Method, Model, R> storage(trial);
+    auto& u = storage.u();
+    auto& argument = storage.argument();
+    sparse_lu_factors<Model, R> lu;
+    trial.singular = !detail::factorise_stage_matrix<Method, Model>(
+        t, per_h, y, p, lu, [&](auto entry, const R& value) MYRIAD_LAMBDA { storage.keep(entry, value); });
     vec<R, n> slope_t;
     if constexpr (depends_on_time<Model>) slope_t = detail::time_derivative<Model>(t, y, p);
 
@@ -86,57 +73,61 @@ MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& 
     add_time(0);
     MYRIAD_ROLLED
     for (int i = 1;; ++i) {
-        solve_factorised(lu, right);
-        loop::all([&](auto c) MYRIAD_LAMBDA { trial.u[i - 1][c] = right[c]; });
+        storage.read_again();
+        solve_factorised<Model>(storage.factors(lu), right);
+        loop::all([&](auto c) MYRIAD_LAMBDA { u[i - 1][c] = right[c]; });
+        storage.read_again();
+        const auto& solved = storage.solved(i - 1, right);
         const auto& row = table.row[i];
         static_for<0, (n + summed_at_once - 1) / summed_at_once>([&](auto part) MYRIAD_LAMBDA {
             constexpr int begin = decltype(part)::value * summed_at_once;
             constexpr int count = n - begin < summed_at_once ? n - begin : summed_at_once;
             R sum[count], moved[count];
             static_for<0, count>([&](auto c) MYRIAD_LAMBDA {
-                sum[c] = row.weight[i - 1].argument * right[begin + c];
-                moved[c] = row.weight[i - 1].coupling * right[begin + c];
+                sum[c] = row.weight[i - 1].argument * solved[begin + c];
+                moved[c] = row.weight[i - 1].coupling * solved[begin + c];
             });
             if (row.extends) {
                 const int coupled = i < Method::stages ? i - 1 : 0;
                 MYRIAD_ROLLED
                 for (int j = 0; j < coupled; ++j) {
                     const R coupling = row.weight[j].coupling;
-                    static_for<0, count>(
-                        [&](auto c) MYRIAD_LAMBDA { moved[c] = fma(coupling, trial.u[j][begin + c], moved[c]); });
+                    static_for<0, count>([&](auto c)
+                                             MYRIAD_LAMBDA { moved[c] = fma(coupling, u[j][begin + c], moved[c]); });
                 }
-                static_for<0, count>([&](auto c) MYRIAD_LAMBDA { trial.y[begin + c] = trial.y[begin + c] + sum[c]; });
+                static_for<0, count>([&](auto c) MYRIAD_LAMBDA { argument[begin + c] = argument[begin + c] + sum[c]; });
             } else {
                 MYRIAD_ROLLED
                 for (int j = 0; j < i - 1; ++j) {
                     const auto weight = row.weight[j];
                     static_for<0, count>([&](auto c) MYRIAD_LAMBDA {
-                        const R u = trial.u[j][begin + c];
-                        sum[c] = fma(weight.argument, u, sum[c]);
-                        moved[c] = fma(weight.coupling, u, moved[c]);
+                        const R stage = u[j][begin + c];
+                        sum[c] = fma(weight.argument, stage, sum[c]);
+                        moved[c] = fma(weight.coupling, stage, moved[c]);
                     });
                 }
-                static_for<0, count>([&](auto c) MYRIAD_LAMBDA { trial.y[begin + c] = y[begin + c] + sum[c]; });
+                static_for<0, count>([&](auto c) MYRIAD_LAMBDA { argument[begin + c] = y[begin + c] + sum[c]; });
             }
             // Kept where the stage will be, as registers are short in the right-hand side.
-            if (i < Method::stages)
-                static_for<0, count>([&](auto c) MYRIAD_LAMBDA { trial.u[i][begin + c] = moved[c]; });
+            if (i < Method::stages) static_for<0, count>([&](auto c) MYRIAD_LAMBDA { u[i][begin + c] = moved[c]; });
         });
+        storage.read_again();
         if (i == Method::stages) break;
         const bool at_end = Method::first_same_as_last && i == Method::stages - 1;
-        right = detail::evaluate_rhs<Model>(at_end ? t1 : fma(table.stage_node[i], h, t), trial.y, p);
+        right = detail::evaluate_rhs<Model>(at_end ? t1 : fma(table.stage_node[i], h, t), argument, p);
         if constexpr (Method::first_same_as_last)
             if (at_end) trial.k[1] = right;
         if constexpr (has_mass_matrix<Model>) {
             static_for<0, n_mass_entry<Model>>([&](auto m) MYRIAD_LAMBDA {
                 constexpr int entry = decltype(m)::value, to = mass_row<Model, entry>;
-                right[to] = fma(per_h * mass_value<Model, entry, R>, trial.u[i][mass_column<Model, entry>], right[to]);
+                right[to] = fma(per_h * mass_value<Model, entry, R>, u[i][mass_column<Model, entry>], right[to]);
             });
         } else {
-            loop::all([&](auto c) MYRIAD_LAMBDA { right[c] = fma(per_h, trial.u[i][c], right[c]); });
+            loop::all([&](auto c) MYRIAD_LAMBDA { right[c] = fma(per_h, u[i][c], right[c]); });
         }
         add_time(i);
     }
+    storage.finish();
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -203,10 +203,17 @@ struct sparse_lu_factors {
 template <class R>
 inline constexpr R least_pivot = std::is_same_v<R, float> ? R(0x1p-11) : R(0x1p-26);
 
-/// Factorises `lu.a`. Returns false in lanes with a pivot that is not finite or that cancellation has made too small:
-/// a test that scaling a state does not change.
-template <class Model, class S>
-MYRIAD_FUNCTION mask_of<S> factorise(sparse_lu_factors<Model, S>& lu) {
+/// For factors that are used where they were made.
+struct keep_nothing {
+    template <class I, class S>
+    MYRIAD_FUNCTION void operator()(I, const S&) const {}
+};
+
+/// Factorises `lu.a`, and calls `keep(entry, value)` as soon as an entry has its last value. Returns false in lanes
+/// with a pivot that is not finite or that cancellation has made too small: a test that scaling a state does not
+/// change.
+template <class Model, class S, class Keep = keep_nothing>
+MYRIAD_FUNCTION mask_of<S> factorise(sparse_lu_factors<Model, S>& lu, Keep&& keep = {}) {
     using R = real_of<S>;
     using lu_type = sparse_lu_factors<Model, S>;
     using tables = typename lu_type::tables;
@@ -221,10 +228,18 @@ MYRIAD_FUNCTION mask_of<S> factorise(sparse_lu_factors<Model, S>& lu) {
         const S inverse = reciprocal(a[d]);
         regular = regular & (pivot_size > S(least_pivot<R>) * lu.size[row]) & (abs(inverse) > S(R(0)));
         a[d] = inverse;
+        keep(d, inverse);
+        if constexpr (!std::is_same_v<std::remove_cvref_t<Keep>, keep_nothing>) {
+            lu_type::template of_step<&tables::upper_begin>(s, [&](auto u) MYRIAD_LAMBDA {
+                const auto entry = lu_type::template at<&tables::upper_entry>(u);
+                keep(entry, a[entry]);
+            });
+        }
         lu_type::template of_step<&tables::lower_begin>(s, [&](auto l) MYRIAD_LAMBDA {
             const auto entry = lu_type::template at<&tables::lower_entry>(l);
             const S multiplier = a[entry] * inverse;
             a[entry] = multiplier;
+            keep(entry, multiplier);
             lu_type::template of_step<&tables::upper_begin>(s, [&](auto u) MYRIAD_LAMBDA {
                 const auto update = loop::sum(lu_type::template at<&tables::first_update>(l), u);
                 const auto target = lu_type::template at<&tables::target>(update);
@@ -238,13 +253,12 @@ MYRIAD_FUNCTION mask_of<S> factorise(sparse_lu_factors<Model, S>& lu) {
     return regular;
 }
 
-/// Solves A x = b with the factors of A; x replaces b.
+/// Solves A x = b with the entries of A's factors; x replaces b.
 template <class Model, class S>
-MYRIAD_FUNCTION void solve_factorised(const sparse_lu_factors<Model, S>& lu, vec<S, n_state<Model>>& b) {
+MYRIAD_FUNCTION void solve_factorised(const S* a, vec<S, n_state<Model>>& b) {
     using lu_type = sparse_lu_factors<Model, S>;
     using tables = typename lu_type::tables;
     using loop = typename lu_type::loop;
-    const auto& a = lu.a;
     loop::template range<0, n_state<Model>>([&](auto s) MYRIAD_LAMBDA {
         const S x = b[lu_type::template at<&tables::pivot>(s)];
         lu_type::template of_step<&tables::lower_begin>(s, [&](auto l) MYRIAD_LAMBDA {
@@ -261,6 +275,10 @@ MYRIAD_FUNCTION void solve_factorised(const sparse_lu_factors<Model, S>& lu, vec
         });
         b[row] = x * a[lu_type::template at<&tables::diagonal>(row)];
     });
+}
+template <class Model, class S>
+MYRIAD_FUNCTION void solve_factorised(const sparse_lu_factors<Model, S>& lu, vec<S, n_state<Model>>& b) {
+    solve_factorised<Model>(lu.a, b);
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

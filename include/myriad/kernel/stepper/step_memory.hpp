@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// Where a Rosenbrock step whose stages are a loop keeps its stages and factors: with the thread's own variables, or in
+// the shared memory of its block.
+#pragma once
+
+#include "myriad/kernel/stepper/rosenbrock.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Bytes of the registers that a GPU's thread can have.
+inline constexpr int register_bytes = 255 * 4;
+
+template <class Method, class Model, class S>
+constexpr bool loops_over_stages_of() {
+    if constexpr (factorises_sparsely<Model> && lanes_of<S> == 1) {
+        return static_cast<int>(sizeof(S)) * Method::stages * n_state<Model> > register_bytes;
+    } else {
+        return false;
+    }
+}
+/// Whether the stages are a loop: if they alone are more than registers hold. They lie in memory either way then, and a
+/// loop has less code and spills less. NVIDIA H200, rodas_5p, ms for written-out stages and for a loop, in an earlier
+/// form: 8 states 4.3 and 14.5 (512 bytes), pollution with 20 states in single precision 0.35 and 0.97 (640), in double
+/// precision 4.0 and 3.3 (1280), ring of 32 states 80 and 77 (2048), of 64 states 654 and 250 (4096). At 34fad3e, ring
+/// of 32 states in single precision (1024): 4.8 and 3.4, and of 32 768 instances 17.2 and 8.6.
+template <class Method, class Model, class S>
+inline constexpr bool loops_over_stages = loops_over_stages_of<Method, Model, S>();
+
+/// What a thread has in the shared memory of its block.
+template <class Method, class Model, class R>
+struct step_memory {
+    vec<vec<R, n_state<Model>>, Method::stages> u;
+    vec<R, n_state<Model>> argument;  // of a stage, and the new state
+    R factor[n_factor_entry<Model>];
+};
+/// Bytes from one thread's to the next one's: an odd number of words of R, so that no two threads of a warp meet in a
+/// bank.
+template <class Method, class Model, class R>
+inline constexpr int step_memory_stride = static_cast<int>((sizeof(step_memory<Method, Model, R>) / sizeof(R) | 1) *
+                                                           sizeof(R));
+/// Largest such stride: with it eight threads have room in a GPU with 64 KiB of shared memory.
+inline constexpr int largest_step_memory_stride = 8000;
+
+template <class Method, class Model, class R>
+constexpr int shared_step_bytes_of() {
+#if defined(__CUDACC__)
+    if constexpr (rosenbrock_method<Method>) {
+        if constexpr (loops_over_stages<Method, Model, R>) {
+            constexpr int in_registers = static_cast<int>(sizeof(R)) * (n_factor_entry<Model> + 3 * n_state<Model>);
+            constexpr int stride = step_memory_stride<Method, Model, R>;
+            if (in_registers > register_bytes && stride <= largest_step_memory_stride) return stride;
+        }
+    }
+#endif
+    return 0;
+}
+/// Bytes of shared memory that a thread's steps take; zero if they take none: on CPUs, if registers hold the factors
+/// beside the vectors of a solve, and beyond the largest stride. Local memory has room for 32 threads a warp, however
+/// many run, and it is the cache's choice what stays; shared memory has room for those that run, and no more threads
+/// run at a time than it has room for. docs/numerics.md has what that gains.
+template <class Method, class Model, class R>
+inline constexpr int shared_step_bytes = shared_step_bytes_of<Method, Model, R>();
+
+#if defined(__CUDACC__)
+/// This thread's, the first in the block's shared memory.
+template <class Method, class Model, class R>
+__host__ __device__ __forceinline__ step_memory<Method, Model, R>& step_memory_of_thread() {
+#if defined(__CUDA_ARCH__)
+    extern __shared__ double of_block[];  // double: aligned for either real type
+    auto* const bytes = reinterpret_cast<char*>(of_block) + threadIdx.x * shared_step_bytes<Method, Model, R>;
+    return *reinterpret_cast<step_memory<Method, Model, R>*>(bytes);
+#else
+    return *static_cast<step_memory<Method, Model, R>*>(nullptr);  // never called
+#endif
+}
+#endif
+
+/// Stages in the trial step, factors in variables.
+template <class Method, class Model, class R>
+class own_step {
+public:
+    static constexpr int n = n_state<Model>;
+    MYRIAD_FUNCTION explicit own_step(trial_step<Method, R, n>& trial) : trial_(trial) {}
+
+    MYRIAD_FUNCTION vec<vec<R, n>, Method::stages>& u() { return trial_.u; }
+    MYRIAD_FUNCTION vec<R, n>& argument() { return trial_.y; }
+    /// Stage i, just solved for, which `x` is.
+    MYRIAD_FUNCTION const vec<R, n>& solved(int, const vec<R, n>& x) { return x; }
+    template <class I>
+    MYRIAD_FUNCTION void keep(I, const R&) {}
+    MYRIAD_FUNCTION const R* factors(const sparse_lu_factors<Model, R>& lu) { return lu.a; }
+    MYRIAD_FUNCTION void read_again() {}
+    MYRIAD_FUNCTION void finish() {}
+
+private:
+    trial_step<Method, R, n>& trial_;
+};
+
+#if defined(__CUDACC__)
+/// Both in the shared memory of the block.
+template <class Method, class Model, class R>
+class shared_step {
+public:
+    static constexpr int n = n_state<Model>;
+    MYRIAD_FUNCTION explicit shared_step(trial_step<Method, R, n>& trial)
+        : trial_(trial), memory_(step_memory_of_thread<Method, Model, R>()) {}
+
+    MYRIAD_FUNCTION vec<vec<R, n>, Method::stages>& u() { return memory_.u; }
+    MYRIAD_FUNCTION vec<R, n>& argument() { return memory_.argument; }
+    MYRIAD_FUNCTION const vec<R, n>& solved(int i, const vec<R, n>&) { return memory_.u[i]; }
+    template <class I>
+    MYRIAD_FUNCTION void keep(I entry, const R& value) {
+        memory_.factor[entry] = value;
+    }
+    MYRIAD_FUNCTION const R* factors(const sparse_lu_factors<Model, R>&) { return memory_.factor; }
+    /// From here on nothing that was written there is known from registers, which nvcc would fill with it, and spill.
+    MYRIAD_FUNCTION void read_again() { MYRIAD_MEMORY_BARRIER; }
+    /// The stages are the trial step's, of which only what is used later is copied.
+    MYRIAD_FUNCTION void finish() {
+        unrolled_loop<n>::all([&](auto c) MYRIAD_LAMBDA {
+            static_for<0, Method::stages>([&](auto i) MYRIAD_LAMBDA { trial_.u[i][c] = memory_.u[i][c]; });
+            trial_.y[c] = memory_.argument[c];
+        });
+    }
+
+private:
+    trial_step<Method, R, n>& trial_;
+    step_memory<Method, Model, R>& memory_;
+};
+template <class Method, class Model, class R>
+using step_storage = std::conditional_t<(shared_step_bytes<Method, Model, R> > 0), shared_step<Method, Model, R>,
+                                        own_step<Method, Model, R>>;
+#else
+template <class Method, class Model, class R>
+using step_storage = own_step<Method, Model, R>;
+#endif
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
