@@ -424,7 +424,7 @@ class Writer:
             lines[-1] = lines[-1].rstrip(",") + "};"
         return lines + ["}"]
 
-    def stop_time(self):
+    def stop_time(self) -> list[str]:
         """The function with the times of all stops, of which each has a number."""
         n, stops = self.names, self.model.stops
         body = Body([value for s in stops for value in s.values], n, self.in_function, scalar=True)

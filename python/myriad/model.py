@@ -346,7 +346,7 @@ class Model(kinds.ComponentNames):
             one = Stop([], None, None, given.name or f"stop_{i + 1}", None)
             one.line, what = given.line, f"stop {one.name}"
 
-            def real_of(value, what=what):
+            def real_of(value: Any, what: str = what) -> Node | None:
                 return None if value is None else to_real(self._real(self._value(value, what), what))
 
             one.times = [real_of(t) for t in given.times]
@@ -362,7 +362,7 @@ class Model(kinds.ComponentNames):
             made.append(one)
         return made
 
-        def _accessories(self, accessories: ByComponent | None) -> Assignments:
+    def _accessories(self, accessories: ByComponent | None) -> Assignments:
         self.summaries, self.observed, start = [], [], []
         quantities = {}
         self._accessory_targets = []
@@ -499,7 +499,7 @@ class Model(kinds.ComponentNames):
         """(kind, names) of everything that has an enumeration in C++."""
         shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
         return [*{**kinds.names_of(self), "shared": shared}.items(), ("observed", [n for n, _ in self.observed]),
-                ("stop", [s.name for s in self.stops])]
+                ("stop", [str(s.name) for s in self.stops])]
 
     @property
     def component_names(self) -> list[str]:
@@ -537,10 +537,10 @@ class Model(kinds.ComponentNames):
                     if kind == "event_count" and name not in [e.name for e in self.events]:
                         raise Error(f"event_count('{name}') in {what}{at(self.line)} names no event: there are "
                                     f"{', '.join(e.name for e in self.events) or 'none'}")
-        clash = next((n for n in ("stop", "stop_time", "after_stop") if self.stops and n in kind_of), None)
-        if clash is not None:
-            raise Error(f"'{clash}' names {sym.a(kind_of[clash])}{at(self.line)}, and has a meaning of its own in a "
-                        f"model with stops: call it '{clash}_'")
+        taken = next((n for n in ("stop", "stop_time", "after_stop") if self.stops and n in kind_of), None)
+        if taken is not None:
+            raise Error(f"'{taken}' names {sym.a(kind_of[taken])}{at(self.line)}, and has a meaning of its own in a "
+                        f"model with stops: call it '{taken}_'")
         if self.name in kind_of:
             raise Error(f"the model has the name of its {kind_of[self.name]} '{self.name}'{at(self.line)}: give "
                         "it another one, name='...'")

@@ -37,7 +37,7 @@ def _plural(kind: str) -> str:
     return kinds.every[kind].plural.replace("_", " ")
 
 
-def _size_for(components):
+def _size_for(components: Components) -> str:
     """The smallest interpreter that has all components of a model."""
     for size, limits in _sizes.items():
         if all(len(components.names[kind]) <= most for kind, most in limits.items()):
@@ -98,7 +98,7 @@ class Writer:
             if len(unread) < (2 if node.op == "dot" else 1):
                 raise _refuse("one of its functions needs more intermediate values than the interpreter has")
             to = register[id(node)] = unread[-1]
-            term = unread[-2] if node.op == "dot" else None
+            term = unread[-2] if node.op == "dot" else to
             free.remove(to)
             if node.op == "symbol":
                 self._symbol(node, to)

@@ -281,7 +281,7 @@ more = dict(samples=1000, time=(0, 0.1))  # 8 KB for an instance, so that each G
 expected = solve("cuda:0", 9000, **more)
 both = solve(["cuda:0", "cuda:1"], 9000, **more)
 assert both.report.by_status == {"success": 9000} and same(both, expected, ["x", "v", "peak", "n"])
-""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_MEGABYTES=32, MYRIAD_SIMULATED_FULL_AFTER=2)  # the first one is of the program's facts
+""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_MEGABYTES=32, MYRIAD_SIMULATED_FULL_AFTER=2)  # the first one: facts
 
 
 def test_several_gpus_in_one_call_have_the_bits_of_one(run):
