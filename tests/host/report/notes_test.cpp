@@ -47,7 +47,7 @@ std::pair<int, std::int64_t> stiff_runs_of_roessler(double tolerance) {
 }
 
 bool mentions(const std::vector<myriad::statement>& notes, const char* what) {
-    for (const std::string& note : notes)
+    for (const std::string note : notes)
         if (note.find(what) != std::string::npos) return true;
     return false;
 }

@@ -48,7 +48,7 @@ double first_step(myriad::ensemble<line, R> e, options o = {}) {
     return static_cast<double>(e.t()[0]) - static_cast<double>(e.t_begin_of(0));
 }
 bool has_note(const std::vector<myriad::statement>& notes, const std::string& text) {
-    for (const std::string& note : notes)
+    for (const std::string note : notes)
         if (note.find(text) != std::string::npos) return true;
     return false;
 }

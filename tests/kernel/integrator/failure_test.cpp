@@ -493,7 +493,7 @@ TEST_CASE("a forgotten max_steps ends adaptive steps after 200 000 and lets as m
     const auto report = solve<myriad::cash_karp>(tests::test_device(1), adaptive, o);
     CHECK(adaptive.status(0) == status::max_steps);
     CHECK(adaptive.accepted_steps()[0] + adaptive.rejected_steps()[0] == 200'000);
-    CHECK(report.notes.back().find("max_steps: 200000 trial steps") == 0);
+    CHECK(report.notes.back().text().find("max_steps: 200000 trial steps") == 0);
     solve<runge_kutta_4>(tests::test_device(1), fixed, fixed_step(1.0 / 1024));
     CHECK(fixed.status(0) == status::success);
     CHECK(fixed.accepted_steps()[0] == 250'000);

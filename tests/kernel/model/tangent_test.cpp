@@ -200,7 +200,7 @@ std::pair<double, std::string> smallest_of_strong_roessler(double phase, double 
     const auto report = myriad::solve<myriad::tsitouras_5>(tests::test_device(2), e, o);
     CHECK(report.failed() == 0);
     std::string said;
-    for (const std::string& note : report.notes)
+    for (const std::string note : report.notes)
         if (note.find("smallest exponent") != std::string::npos) said = note;
     return {myriad::exponents(e).col(2).mean(), said};
 }
