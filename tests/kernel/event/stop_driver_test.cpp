@@ -428,3 +428,13 @@ TEST_CASE("where no stop is met, stop times change no bit") {
         CHECK(e.rhs_evaluations()[0] == late.rhs_evaluations()[0]);
     });
 }
+TEST_CASE("an instance that its call's time limit interrupts has had all stops up to where it is") {
+    auto e = treated(0, 0.25, 2'000'000'000, 4e8);
+    options o = with_tolerance(1e-6);
+    o.max_steps = 2'000'000'000;
+    o.time_limit = 0.05;
+    solve<myriad::tsitouras_5>(tests::test_device(), e, o);
+    CHECK(e.status(0) == status::interrupted);
+    CHECK(e.t()[0] > 0);
+    CHECK(e.integer_accessory(dosed::given)[0] == static_cast<std::int32_t>(std::floor(e.t()[0] / 0.25)) + 1);
+}

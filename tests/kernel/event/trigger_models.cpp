@@ -9,3 +9,5 @@ MYRIAD_INSTANTIATE(triggers::alone<triggers::logic>, myriad::runge_kutta_4, myri
 MYRIAD_INSTANTIATE(triggers::chain, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(triggers::alone<triggers::chain>, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(triggers::thermostat, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(triggers::relay, myriad::runge_kutta_4, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(triggers::alone<triggers::relay>, myriad::runge_kutta_4, myriad::tsitouras_5)

@@ -2,6 +2,8 @@
 // Models with triggers, conditions of several event functions.
 #pragma once
 
+#include <type_traits>
+
 #include <myriad/model.hpp>
 
 namespace triggers {
@@ -101,6 +103,39 @@ struct thermostat {
     MYRIAD_FUNCTION static void after_trigger(int trigger, auto& lane) {
         lane.integer_accessory[on] = trigger == on_now ? 1 : 0;
         lane.integer_accessory[switched] += 1;
+    }
+};
+
+/// x' = 1; `delay` after x has risen through 1 a stop takes it down by 2.
+struct relay {
+    enum state { x, n_state };
+    enum parameter { delay, n_parameter };
+    enum accessory { due, n_accessory };
+    enum integer_accessory { actions, n_integer_accessory };
+    enum event { one, n_event };
+    enum trigger { reached, n_trigger };
+    enum stop { falls, n_stop };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto&) {
+        return myriad::vec<R, n_state>{R(1)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_event>{y[x] - R(1)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int, const auto& p) {
+        return p.accessory[due];  // NaN, no stop, until something is due
+    }
+    MYRIAD_FUNCTION static bool condition(int, const auto& positive) { return positive[one]; }
+    MYRIAD_FUNCTION static bool initial_value(int) { return false; }
+    MYRIAD_FUNCTION static void after_trigger(int, auto& lane) { lane.accessory[due] = lane.t + lane.parameter[delay]; }
+    MYRIAD_FUNCTION static void after_stop(int, int, auto& lane) {
+        using R = std::remove_cvref_t<decltype(lane.t)>;
+        lane.y[x] -= R(2);
+        lane.accessory[due] = myriad::nan_of<R>;
+        lane.integer_accessory[actions] += 1;
     }
 };
 

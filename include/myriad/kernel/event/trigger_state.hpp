@@ -42,10 +42,7 @@ struct trigger_conditions {
         t.holds[i] = now;
         t.pending[i].clear();
         if (get_lane(sides.s.data.phase, i) > 0) return;
-        static_for<0, triggers>([&](auto j) MYRIAD_LAMBDA {
-            if constexpr (requires { Model::initial_value(0); })
-                t.pending[i].set(j, now[j] && !Model::initial_value(j));
-        });
+        for (int j = 0; j < triggers; ++j) t.pending[i].set(j, now[j] && !holds_before_start(j));
     }
     /// Looks at the functions of lane i again. One on its surface whose side is not yet known keeps the last.
     MYRIAD_FUNCTION void update(int i) const {
@@ -55,17 +52,29 @@ struct trigger_conditions {
             if (!own.open[j]) t.seen.set(j, i, sides.e.above.get(j, i));
         const auto now = conditions(i);
         t.pending[i] = t.pending[i] | (now & ~t.holds[i]);
-        static_for<0, triggers>([&](auto j) MYRIAD_LAMBDA {
-            if constexpr (requires { Model::persistent(0); }) {
-                if (!Model::persistent(j) && !now[j]) t.pending[i].set(j, false);
-            }
-        });
+        for (int j = 0; j < triggers; ++j)
+            if (!now[j] && !persists(j)) t.pending[i].set(j, false);
         t.holds[i] = now;
     }
     /// The lanes in which a function may have changed sides.
     MYRIAD_FUNCTION mask_of<S> turned() const { return sides.s.running() & (sides.e.above ^ t.seen).any_of(); }
 
 private:
+    // Not in lambdas, where nvcc takes every such branch.
+    static MYRIAD_FUNCTION bool holds_before_start(int trigger) {
+        if constexpr (requires { Model::initial_value(0); }) {
+            return Model::initial_value(trigger);
+        } else {
+            return true;
+        }
+    }
+    static MYRIAD_FUNCTION bool persists(int trigger) {
+        if constexpr (requires { Model::persistent(0); }) {
+            return Model::persistent(trigger);
+        } else {
+            return true;
+        }
+    }
     MYRIAD_FUNCTION mask_set<bool, triggers> conditions(int i) const {
         const event_signs<m> positive(t.seen.of_lane(i));
         mask_set<bool, triggers> now;
