@@ -4,16 +4,14 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <system_error>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include "compile/compiled_cache.hpp"
 #include "myriad/host/core/error.hpp"
+#include "myriad/study/file_system.hpp"
 
 namespace myriad::programs {
 
@@ -25,26 +23,16 @@ std::string contents_of(const fs::path& path) {
     const auto refuse = [&](const std::string& why) {
         throw error(message("the header ", path.string(), why, ": give the path of a file with the model"));
     };
-    const auto failed = [&] { refuse(message(" cannot be read (", std::generic_category().message(errno), ')')); };
-    // A pipe would wait for its other end, and a device may have no end.
-    const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) failed();
-    const struct closed_at_end {
-        int file;
-        ~closed_at_end() { ::close(file); }
-    } guard{file};
-    struct stat is;
-    if (::fstat(file, &is) < 0) failed();
-    if (!S_ISREG(is.st_mode)) refuse(" is no regular file");
-    std::string text;
-    char part[65536];
-    for (;;) {
-        const ssize_t got = ::read(file, part, sizeof part);
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) failed();
-        if (got == 0) return text;
-        text.append(part, static_cast<std::size_t>(got));
+    std::error_code unknown;
+    if (fs::exists(path, unknown) && !fs::is_regular_file(path, unknown)) refuse(" is no regular file");
+    int problem = ENOENT;
+    try {
+        if (std::optional<std::string> text = studies::read_text(studies::file_system::real(), path)) return *text;
+    } catch (const studies::file_error& failure) {
+        problem = failure.code();
     }
+    refuse(message(" cannot be read (", std::generic_category().message(problem), ')'));
+    return "";
 }
 
 std::string_view trimmed(std::string_view text) {

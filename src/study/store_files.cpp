@@ -85,17 +85,10 @@ store_files::store_files(file_system& used, std::string where, stored_group of)
     }
 }
 
-bool store_files::exists(const std::string& path) const {
+std::optional<std::int64_t> store_files::length_of(const std::string& path) const {
     std::int64_t size = 0;
-    if (files.size(path, size) == 0) return true;
-    if (errno == ENOENT) return false;
-    throw file_error("looking for", path, errno);
-}
-
-bool store_files::has_length(const std::string& path, std::int64_t length) const {
-    std::int64_t size = 0;
-    if (files.size(path, size) == 0) return size == length;
-    if (errno == ENOENT) return false;
+    if (files.size(path, size) == 0) return size;
+    if (errno == ENOENT) return std::nullopt;
     throw file_error("looking for", path, errno);
 }
 

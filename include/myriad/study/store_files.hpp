@@ -74,8 +74,10 @@ public:
     std::string result_record_path(std::size_t v) const { return own("results/" + variables[v].name + ".json"); }
     std::string path_of(const stored_array& array, std::int64_t file) const { return places->path_of(array, file); }
 
-    bool exists(const std::string& path) const;
-    bool has_length(const std::string& path, std::int64_t length) const;
+    /// The bytes of a file; nothing if there is none.
+    std::optional<std::int64_t> length_of(const std::string& path) const;
+    bool exists(const std::string& path) const { return length_of(path).has_value(); }
+    bool has_length(const std::string& path, std::int64_t length) const { return length_of(path) == length; }
 
     /// The record of a chunk. Throws `error` if it is damaged or missing.
     stored_chunk read_record(std::int64_t chunk) const;

@@ -71,9 +71,9 @@ enum class advice {
     off,  ///< no checks
     on,   ///< checks, and notes in the report if they find something
 };
-/// What to do with instances whose state, parameters or times are not finite, and with those that ended in an earlier
-/// call and whose state or parameters were set again without `ensemble::restart`: refuse the call; or mark the former
-/// `invalid_input`, leave the latter as they are, and run the others.
+/// What to do with two sorts of instances: some have a state, parameter or time that is not finite; others ended in an
+/// earlier call, and their state or parameters were set again without `ensemble::restart`. Refuse the call; or mark the
+/// former `invalid_input`, leave the latter as they are, and run the others.
 enum class invalid_instances {
     refuse,  ///< throw `error` before any work
     mark,    ///< give them the status `invalid_input`, and run the others

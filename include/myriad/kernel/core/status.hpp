@@ -22,8 +22,8 @@ enum class status : std::uint8_t {
                          ///< last one was counted: a bouncing ball comes to rest 2 v / (g (1 - e)) later
                          ///< (docs/numerics.md)
     singular_jacobian,   ///< a linear solve of an implicit method failed
-    queue_overflow,      ///< a hook returned `action::overflow`: no room for an action that is to run later
     invalid_input,       ///< a state, parameter or time was not finite at the start
+    queue_overflow,      ///< a hook returned `action::overflow`: no room for an action that is to run later
     interrupted,         ///< the call ended before: by its time limit, or by the progress function, half a second ago
 };
 /// The number of statuses.
