@@ -132,15 +132,10 @@ constexpr int max_block_size() {
     }
 }
 
-/// Blocks of that size that nvcc keeps registers for; with 0 as it finds best. Sparse factors and stages are more than
-/// registers hold, so that fewer threads with more registers each are faster (docs/gpu.md).
-template <class Model, class Method>
+/// Blocks of that size that nvcc keeps registers for; with 0 as it finds best (docs/gpu.md).
+template <class Model, class Method, class R>
 constexpr int least_blocks() {
-    if constexpr (rosenbrock_method<Method>) {
-        return factorises_sparsely<Model> ? 1 : 0;
-    } else {
-        return 0;
-    }
+    return fills_registers<Method, Model, R>() ? 1 : 0;
 }
 
 /// A kernel's launch parameters. For the constant bank, they include the shared parameters.
@@ -196,7 +191,7 @@ __device__ __forceinline__ void integrate_thread(const launch_arguments<Model, R
 }
 
 template <class Model, class Method, class R, shared_placement placement>
-__global__ void __launch_bounds__(max_block_size<Model>(), (least_blocks<Model, Method>()))
+__global__ void __launch_bounds__(max_block_size<Model>(), (least_blocks<Model, Method, R>()))
     integrate_ensemble(const __grid_constant__ launch_arguments<Model, R, placement> arguments) {
     detail::integrate_thread<Model, Method, R, placement>(arguments);
 }

@@ -26,6 +26,18 @@ constexpr bool loops_over_stages_of() {
 template <class Method, class Model, class S>
 inline constexpr bool loops_over_stages = loops_over_stages_of<Method, Model, S>();
 
+/// Whether stages and factors take more than half of the registers. Then fewer threads with all of them are faster,
+/// else more threads, of which one works while another waits.
+template <class Method, class Model, class R>
+constexpr bool fills_registers() {
+    if constexpr (rosenbrock_method<Method> && factorises_sparsely<Model>) {
+        constexpr int numbers = Method::stages * n_state<Model> + n_factor_entry<Model>;
+        return 2 * numbers * static_cast<int>(sizeof(R)) > register_bytes;
+    } else {
+        return false;
+    }
+}
+
 /// What a thread has in the shared memory of its block.
 template <class Method, class Model, class R>
 struct step_memory {
