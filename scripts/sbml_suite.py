@@ -87,7 +87,7 @@ def solved(model, settings, times, options):
         try:
             return my.solve(model, interpreted=True, **arguments)
         except my.Error as error:
-            if "cannot be interpreted" not in str(error) or len(model.states) > 110 or len(model.events) > 16:
+            if "cannot be interpreted" not in str(error):
                 raise
     return my.solve(model, **arguments)
 
@@ -138,9 +138,9 @@ def check(folder, options):
     found = []
     with without_libsbmls_messages():
         for file in models_of(folder, options.all_levels):
-            begin = time.perf_counter()
+            begin = sum(os.times()[:4])  # of a core, those of a compiler too
             outcome, why = outcome_of(folder, file, options)
-            found.append((file.name, outcome, why, time.perf_counter() - begin))
+            found.append((file.name, outcome, why, sum(os.times()[:4]) - begin))
     return found
 
 
@@ -191,7 +191,7 @@ def main():
                 print(f"{file}: {outcome}: {why}", file=sys.stderr)
     rows = [(tag, *counts[:4], f"{counts[4]:.1f}") for tag, counts in
             sorted(by_tag.items(), key=lambda item: (item[0] != "all", item[0].lower()))]
-    print(table([("tag", *outcomes, "seconds"), *rows]))
+    print(table([("tag", *outcomes, "seconds of a core"), *rows]))
     print(f"\n{seconds:.1f} s with {options.processes} processes")
     return 1 if by_tag["all"][2] + by_tag["all"][3] else 0
 

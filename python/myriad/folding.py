@@ -114,7 +114,8 @@ def _connective(op: str, a: Any, b: Any, neutral: bool) -> Any:
 
 def _parts(op: str, condition: Any) -> list[Any]:
     """Some of the conditions that `and` or `or` connects."""
-    found, waiting = [], [condition]
+    found: list[Any] = []
+    waiting = [condition]
     while waiting and len(found) < 32:
         part = waiting.pop()
         if part.op == op:

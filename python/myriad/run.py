@@ -340,7 +340,8 @@ class Run(Mapping):
             return (*dims, *more), array.reshape(*lengths, *array.shape[1:]), (
                 {"units": units[of]} if of in units else {})
 
-        variables, coordinates = {}, {}
+        variables: dict[str, Any] = {}
+        coordinates: dict[str, Any] = {}
         for name, array in self.records.items():
             variables[self._column(name)] = unstacked(array, "phase", of=name)
         for name, array in self.samples.items():

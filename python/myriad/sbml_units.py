@@ -14,11 +14,11 @@ _short = {"mole": "mol", "litre": "l", "liter": "l", "second": "s", "metre": "m"
 _prefixes = {0: "", -1: "d", -2: "c", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f", 3: "k", 6: "M", 9: "G"}
 _times = {60.0: "min", 3600.0: "h", 86400.0: "d", 604800.0: "weeks"}
 _predefined = {"substance": "mole", "time": "second"}  # of Levels 1 and 2, unless a file defines them
-_powers = {2: "²", 3: "³"}
+_powers = {2.0: "²", 3.0: "³"}
 
 
-def _factor(libsbml: Any, unit: Any) -> tuple[str, float] | None:
-    """A unit without its exponent, and its exponent; None where it has no short name."""
+def _factor(libsbml: Any, unit: Any) -> tuple[str, float]:
+    """A unit without its exponent, and its exponent."""
     exponent = unit.getExponentAsDouble()
     kind = libsbml.UnitKind_toString(unit.getKind())
     name, scale, multiplier = _short.get(kind, kind), unit.getScale(), unit.getMultiplier()
@@ -34,15 +34,15 @@ def text_of(libsbml: Any, definition: Any) -> str:
     """A unit as "mmol/l"; empty where it is not known or has no dimension."""
     if definition is None or definition.getNumUnits() == 0:
         return ""
-    above, below = [], []
+    above: list[str] = []
+    below: list[str] = []
     for i in range(definition.getNumUnits()):
         unit = definition.getUnit(i)
         if unit.getKind() == libsbml.UNIT_KIND_INVALID:
             return ""
-        factor = _factor(libsbml, unit)
-        if factor is None or not factor[0] or factor[1] == 0:
+        name, exponent = _factor(libsbml, unit)
+        if not name or exponent == 0:
             continue
-        name, exponent = factor
         size = abs(exponent)
         power = "" if size == 1 else _powers.get(size, f"^{size:g}")
         if power and " " in name:

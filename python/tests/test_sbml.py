@@ -237,6 +237,34 @@ def test_units_of_the_file_are_in_the_labels_of_results():
     assert "units" not in table["status"].attrs and "units" not in table["plain"].attrs
 
 
+_enzyme = [compartment("c", 2), species("S", concentration=3), species("E", concentration=0.5),
+           species("C", concentration=0.25), species("P", concentration=0), parameter("on", 1.5), parameter("off", 0.5),
+           parameter("cat", 0.7), reaction("bind", "S + E -> C", "c * (on * S * E - off * C)"),
+           reaction("make", "C -> E + P", "c * cat * C")]
+
+
+def test_species_that_follow_from_others_are_left_out_if_asked_for():
+    whole, reduced = (my.read_sbml(sbml_models.document(_enzyme), reduce=reduce) for reduce in (False, True))
+    assert whole.states == ["S", "E", "C", "P"] and len(reduced.states) == 2
+    arguments = dict(start={"S": [3.0, 5.0]}, time=(0, 4), samples=9, interpreted=True, rtol=1e-10, atol=1e-12)
+    runs = [my.solve(model, {"c": [2.0, 1.0], "cat": 0.6}, **arguments) for model in (whole, reduced)]
+    for name in ("S", "E", "C", "P", "E_amount", "bind", "make"):
+        np.testing.assert_allclose(runs[1][name], runs[0][name], rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(runs[1]["conserved_C"], [1.5, 0.75])  # of the enzyme, free and bound
+    swept = my.solve(reduced, {"conserved_C": [1.5, 3.0]}, time=(0, 4), interpreted=True, rtol=1e-10)
+    np.testing.assert_allclose(swept["E_amount"] + swept["C_amount"], [1.5, 3.0])
+
+
+def test_sums_that_an_event_changes_are_not_conserved():
+    parts = [*_enzyme, event("time > 1", {"E": "E + 1", "on": "2"})]
+    parts[5] = variable("on", 1.5)
+    whole, reduced = (my.read_sbml(sbml_models.document(parts), reduce=reduce) for reduce in (False, True))
+    assert len(whole.states) == 5 and len(reduced.states) == 4
+    runs = [my.solve(model, time=(0, 2), interpreted=True, rtol=1e-10, atol=1e-12) for model in (whole, reduced)]
+    for name in ("S", "E", "C", "P"):
+        np.testing.assert_allclose(runs[1][name], runs[0][name], rtol=1e-7)
+
+
 def test_models_without_units_have_none():
     model = my.read_sbml(_decay)
     assert model.units == {} and model.time_unit == ""
