@@ -24,9 +24,9 @@ def _factor(libsbml: Any, unit: Any) -> tuple[str, float]:
     name, scale, multiplier = _short.get(kind, kind), unit.getScale(), unit.getMultiplier()
     if multiplier == 1 and scale in _prefixes and (name or scale == 0):
         return _prefixes[scale] + name, exponent
-    if kind == "second" and scale == 0 and multiplier in _times:
-        return _times[multiplier], exponent
     size = multiplier * 10.0**scale
+    if kind == "second" and round(size, 6) in _times:
+        return _times[round(size, 6)], exponent
     return f"{size:g} {name}".strip(), exponent
 
 
