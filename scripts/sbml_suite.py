@@ -161,6 +161,7 @@ def main():
     parser.add_argument("--method", default="dormand_prince_5", help="of integration (dormand_prince_5)")
     parser.add_argument("--all-levels", action="store_true", help="check all levels and versions of each model")
     parser.add_argument("--cases", help="some cases alone, as in 00001,00007")
+    parser.add_argument("--part", default="1/1", help="one part of several, as in 2/3: compiling all takes long")
     parser.add_argument("--without-tags", default="", help="leave out cases with one of these tags")
     parser.add_argument("--with-tags", default="", help="only cases with one of these tags")
     parser.add_argument("--time-limit", type=float, default=60.0, help="seconds for each model")
@@ -172,6 +173,8 @@ def main():
     tags = {p.name: description_of(p, "componentTags", "testTags", "packagesPresent") for p in folders}
     only, without = (set(t for t in x.split(",") if t) for x in (options.with_tags, options.without_tags))
     folders = [p for p in folders if not without & set(tags[p.name]) and (not only or only & set(tags[p.name]))]
+    part, parts = map(int, options.part.split("/"))
+    folders = folders[part - 1::parts]
     if not folders:
         parser.error(f"{options.folder} has no such cases")
     begin = time.perf_counter()
