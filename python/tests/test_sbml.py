@@ -145,6 +145,19 @@ def test_every_order_of_three_events_comes_as_often():
     assert np.abs(counts - 1000).max() < 5 * np.sqrt(1000 * 5 / 6)
 
 
+def test_compiled_models_have_the_same_random_order():
+    parts = [variable("order", 0), *(event("time > 1", {"order": f"10 * order + {i}"}, at_trigger=False)
+                                     for i in (1, 2, 3)),
+             variable("first", 0), *(event("time >= 0", {"first": f"10 * first + {i}"}, at_trigger=False, before=False)
+                                     for i in (1, 2, 3))]
+    model = my.read_sbml(sbml_models.document(parts))
+    interpreted, compiled = (my.solve(model, time=(0, 2), size=200, interpreted=interpreted, device="cpu")
+                             for interpreted in (True, False))
+    for name in ("first", "order"):
+        np.testing.assert_array_equal(interpreted[name], compiled[name])
+        assert len(set(interpreted[name].tolist())) == 6
+
+
 def test_events_of_a_model_with_short_times_are_not_at_one_instant():
     parts = [variable("x", 1), variable("y", 1), parameter("p", 1.5), event("time > 1e-11", {"x": "y + 1"}),
              event("time > p", {"y": "x + 1"})]
