@@ -88,8 +88,7 @@ def solved(model, settings, times, options):
         try:
             return my.solve(model, interpreted=True, **arguments)
         except CannotInterpret:
-            if len(model.states) > 110 or len(model.events) > 16:
-                raise
+            pass
     return my.solve(model, **arguments)
 
 
@@ -139,9 +138,9 @@ def check(folder, options):
     found = []
     with without_libsbmls_messages():
         for file in models_of(folder, options.all_levels):
-            begin = time.perf_counter()
+            begin = sum(os.times()[:4])  # of a core, those of a compiler too
             outcome, why = outcome_of(folder, file, options)
-            found.append((file.name, outcome, why, time.perf_counter() - begin))
+            found.append((file.name, outcome, why, sum(os.times()[:4]) - begin))
     return found
 
 
@@ -162,6 +161,7 @@ def main():
     parser.add_argument("--method", default="dormand_prince_5", help="of integration (dormand_prince_5)")
     parser.add_argument("--all-levels", action="store_true", help="check all levels and versions of each model")
     parser.add_argument("--cases", help="some cases alone, as in 00001,00007")
+    parser.add_argument("--part", default="1/1", help="one part of several, as in 2/3: compiling all takes long")
     parser.add_argument("--without-tags", default="", help="leave out cases with one of these tags")
     parser.add_argument("--with-tags", default="", help="only cases with one of these tags")
     parser.add_argument("--time-limit", type=float, default=60.0, help="seconds for each model")
@@ -173,6 +173,8 @@ def main():
     tags = {p.name: description_of(p, "componentTags", "testTags", "packagesPresent") for p in folders}
     only, without = (set(t for t in x.split(",") if t) for x in (options.with_tags, options.without_tags))
     folders = [p for p in folders if not without & set(tags[p.name]) and (not only or only & set(tags[p.name]))]
+    part, parts = map(int, options.part.split("/"))
+    folders = folders[part - 1::parts]
     if not folders:
         parser.error(f"{options.folder} has no such cases")
     begin = time.perf_counter()
@@ -192,7 +194,7 @@ def main():
                 print(f"{file}: {outcome}: {why}", file=sys.stderr)
     rows = [(tag, *counts[:4], f"{counts[4]:.1f}") for tag, counts in
             sorted(by_tag.items(), key=lambda item: (item[0] != "all", item[0].lower()))]
-    print(table([("tag", *outcomes, "seconds"), *rows]))
+    print(table([("tag", *outcomes, "seconds of a core"), *rows]))
     print(f"\n{seconds:.1f} s with {options.processes} processes")
     return 1 if by_tag["all"][2] + by_tag["all"][3] else 0
 

@@ -16,6 +16,7 @@ from .model import Model
 from .sbml_document import library, read
 from .sbml_events import Events
 from .sbml_math import Refused
+from .sbml_reduce import Reduction
 from .sbml_semantics import Semantics
 from .sbml_units import Units
 
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["read_sbml", "read_antimony", "SbmlModel"]
 
 
-def read_sbml(source: Path | str, *, parameters: Names | None = None, name: str | None = None) -> SbmlModel:
+def read_sbml(source: Path | str, *, parameters: Names | None = None, reduce: bool = False,
+              name: str | None = None) -> SbmlModel:
     """The model of a file of SBML (Level 1 to 3), given by its path or as text. It needs the package python-libsbml.
 
     Species, parameters and compartments keep their ids: `solve(model, {"k1": np.linspace(0, 1, 100)}, start={"S1": 2},
@@ -37,6 +39,10 @@ def read_sbml(source: Path | str, *, parameters: Names | None = None, name: str 
     `parameters` names the constants that sweeps may set; the others are written into the equations. Without it sweeps
     may set all, those of kinetic laws as `reaction_parameter`.
 
+    `reduce=True` leaves out the states of species whose amounts follow from those of others, as of an enzyme that is
+    free or bound. Their conserved sums are parameters, `conserved_E`, which follow from the initial values; the species
+    are outputs.
+
     Raises `myriad.Error` with element, id and line for what is not supported: algebraic rules, fast reactions, `delay`,
     triggers other than those of docs/sbml.md, packages that change a model's meaning, and for what is not valid.
     """
@@ -44,10 +50,11 @@ def read_sbml(source: Path | str, *, parameters: Names | None = None, name: str 
     swept = None
     if parameters is not None:
         swept = [name_of(n) for n in ([parameters] if isinstance(parameters, Node) else sym.names(parameters))]
-    return SbmlModel(Semantics(library(), document, model, swept), name or model.getId() or "model")
+    return SbmlModel(Semantics(library(), document, model, swept), name or model.getId() or "model", reduce)
 
 
-def read_antimony(source: Path | str, *, parameters: Names | None = None, name: str | None = None) -> SbmlModel:
+def read_antimony(source: Path | str, *, parameters: Names | None = None, reduce: bool = False,
+                  name: str | None = None) -> SbmlModel:
     """The model of a text in Antimony, as `"S1 -> S2; k*S1; k = 1; S1 = 10"`, or of the file with such a text; its last
     model if there are several. All else is as in `read_sbml`. It needs the packages antimony and python-libsbml."""
     try:
@@ -59,7 +66,8 @@ def read_antimony(source: Path | str, *, parameters: Names | None = None, name: 
     loaded = antimony.loadAntimonyFile(os.fspath(source)) if is_path else antimony.loadAntimonyString(source)
     if loaded < 0:
         raise Refused(f"the text is no Antimony: {' '.join(antimony.getLastError().split())}")
-    return read_sbml(antimony.getSBMLString(antimony.getMainModuleName()), parameters=parameters, name=name)
+    return read_sbml(antimony.getSBMLString(antimony.getMainModuleName()), parameters=parameters, reduce=reduce,
+                     name=name)
 
 
 def _suffixed(taken: Any, name: str) -> str:
@@ -75,7 +83,7 @@ class SbmlModel(Model):
     have as its name; `units` has the file's units by component or output, as texts, and `time_unit`
     that of time."""
 
-    def __init__(self, semantics: Semantics, name: str) -> None:
+    def __init__(self, semantics: Semantics, name: str, reduce: bool = False) -> None:
         states = semantics.states()
         equations: dict[Any, Any] = {q.symbol: semantics.slope(q) for q in states}
         if not equations:
@@ -87,6 +95,13 @@ class SbmlModel(Model):
                 raise unknown(given, known, "constant of the file that parameters= can name")
         happening = Events(semantics, next(iter(equations)))
         defaults = semantics.defaults
+        reduction = Reduction(semantics) if reduce else None
+        if reduction is not None and reduction.values:
+            equations = reduction.of({s: e for s, e in equations.items() if s not in reduction.values})
+            outputs, happening.initialise = reduction.of(outputs), reduction.of(happening.initialise)
+            for one in happening.events:
+                one.do = reduction.of(one.do)
+                one.function, = reduction.of({0: one.function}).values()
         actions = [e for one in happening.events for e in (one.function, *one.do.values())]
         needed = set(symbols_of([*equations.values(), *defaults.values(), *actions, *happening.initialise.values()]))
         constants: dict[Any, float] = {}
@@ -101,6 +116,7 @@ class SbmlModel(Model):
                 defaults.pop(symbol.value[1], None)
             else:
                 declared.append(symbol)
+        declared += reduction.parameters if reduction is not None else []
         name = _suffixed(semantics.names.values(), semantics.component_name(name))
         super().__init__(equations, happening.events, None, happening.initialise, None, None, None, None, declared, (),
                          name)

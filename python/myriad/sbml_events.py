@@ -94,7 +94,7 @@ class Events:
         if self._random is None:
             name = self.semantics.component_name("random_number")
             self.semantics.names["accessory random_number"] = name
-            start = next_random(next_random(sym.instance * -1640531527))
+            start = next_random(next_random(sym.instance % (2**31 - 1), True), True)
             self._random = sym.integer_accessory(name), start
         return self._random
 

@@ -95,9 +95,11 @@ def interfere(a: Occurrence, b: Occurrence, at_once: bool = False) -> bool:
     return bool(a.writes & (reads_of_b | b.writes | b.inputs) or b.writes & (reads_of_a | a.inputs))
 
 
-def next_random(number: Any) -> Any:
-    """The number after one in a sequence of whole numbers of 32 bits that looks random."""
-    return number * 1664525 + 1013904223
+def next_random(number: Any, at_start: bool = False) -> Any:
+    """The number after one in a sequence of whole numbers of 32 bits that looks random. At the start they follow from
+    the instance's number, which has more, and are kept small, so that interpreted models have them exactly."""
+    following = number * 1664525 + 1013904223
+    return following % (2**31 - 1) if at_start else following
 
 
 def _may_tie(a: Any, b: Any) -> bool:
@@ -282,7 +284,7 @@ class Instant:
         """The random number of an execution: the next of the instance."""
         if p.key is None:
             stream, start = self.events.random_numbers()
-            p.key = next_random(self.values.get(stream, start if self.at_start else stream))
+            p.key = next_random(self.values.get(stream, start if self.at_start else stream), self.at_start)
             self.values[stream] = p.key
         return p.key
 

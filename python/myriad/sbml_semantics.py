@@ -89,7 +89,7 @@ class Semantics:
                 raise Refused(f"{named(r)} is fast: such reactions are equations without derivatives, which Myriad "
                               "does not solve")
             self.reactions[r.getId()] = r
-            for reference in self._references(r):
+            for reference in self.references(r):
                 name = reference.getIdAttribute()
                 if name:
                     self._add(Quantity(name, "stoichiometry", reference, self._stoichiometry_given(reference)))
@@ -109,7 +109,8 @@ class Semantics:
             quantity.value, quantity.initial = None, ("concentration", s.getCompartment(), given)
         return quantity
 
-    def _references(self, reaction: Any) -> list[Any]:
+    def references(self, reaction: Any) -> list[Any]:
+        """The species of a reaction: its reactants, and then its products."""
         return [*(reaction.getReactant(i) for i in range(reaction.getNumReactants())),
                 *(reaction.getProduct(i) for i in range(reaction.getNumProducts()))]
 
@@ -149,7 +150,7 @@ class Semantics:
                 raise Refused(f"the {named(initial)} sets what is not there")
             self.quantities[symbol].initial = initial
         for reaction in self.reactions.values():
-            for reference in self._references(reaction):
+            for reference in self.references(reaction):
                 name = reference.getSpecies()
                 if name not in self.quantities:
                     raise Refused(f"{named(reference)} of {named(reaction)} names no species")
@@ -307,7 +308,8 @@ class Semantics:
                 self.defaults[component] = given
         return number(self.translate(law.getMath(), f"the kinetic law of {named(reaction)}", local))
 
-    def _stoichiometry(self, reference: Any, reaction: Any) -> Any:
+    def stoichiometry(self, reference: Any, reaction: Any) -> Any:
+        """The stoichiometry of a species in a reaction."""
         name = reference.getIdAttribute()
         where = f"the stoichiometry of '{reference.getSpecies()}' in {named(reaction)}"
         if self.level == 2 and reference.isSetStoichiometryMath() and reference.getStoichiometryMath().isSetMath():
@@ -327,9 +329,9 @@ class Semantics:
         terms = []
         for key, reaction in self.reactions.items():
             reactants = reaction.getNumReactants()
-            for i, reference in enumerate(self._references(reaction)):
+            for i, reference in enumerate(self.references(reaction)):
                 if reference.getSpecies() == name:
-                    term = multiply(self._stoichiometry(reference, reaction), self.reaction_rate(key))
+                    term = multiply(self.stoichiometry(reference, reaction), self.reaction_rate(key))
                     terms.append((i < reactants, term))
         gained = total([t for lost, t in terms if not lost])
         rate = subtract(gained, total([t for lost, t in terms if lost]))

@@ -17,16 +17,16 @@ _predefined = {"substance": "mole", "time": "second"}  # of Levels 1 and 2, unle
 _powers = {2.0: "²", 3.0: "³"}
 
 
-def _factor(libsbml: Any, unit: Any) -> tuple[str, float] | None:
-    """A unit without its exponent, and its exponent; None where it has no short name."""
+def _factor(libsbml: Any, unit: Any) -> tuple[str, float]:
+    """A unit without its exponent, and its exponent."""
     exponent = unit.getExponentAsDouble()
     kind = libsbml.UnitKind_toString(unit.getKind())
     name, scale, multiplier = _short.get(kind, kind), unit.getScale(), unit.getMultiplier()
     if multiplier == 1 and scale in _prefixes and (name or scale == 0):
         return _prefixes[scale] + name, exponent
-    if kind == "second" and scale == 0 and multiplier in _times:
-        return _times[multiplier], exponent
     size = multiplier * 10.0**scale
+    if kind == "second" and round(size, 6) in _times:
+        return _times[round(size, 6)], exponent
     return f"{size:g} {name}".strip(), exponent
 
 
@@ -40,10 +40,9 @@ def text_of(libsbml: Any, definition: Any) -> str:
         unit = definition.getUnit(i)
         if unit.getKind() == libsbml.UNIT_KIND_INVALID:
             return ""
-        factor = _factor(libsbml, unit)
-        if factor is None or not factor[0] or factor[1] == 0:
+        name, exponent = _factor(libsbml, unit)
+        if not name or exponent == 0:
             continue
-        name, exponent = factor
         size = abs(exponent)
         power = "" if size == 1 else _powers.get(size, f"^{size:g}")
         if power and " " in name:

@@ -145,6 +145,19 @@ def test_every_order_of_three_events_comes_as_often():
     assert np.abs(counts - 1000).max() < 5 * np.sqrt(1000 * 5 / 6)
 
 
+def test_compiled_models_have_the_same_random_order():
+    parts = [variable("order", 0), *(event("time > 1", {"order": f"10 * order + {i}"}, at_trigger=False)
+                                     for i in (1, 2, 3)),
+             variable("first", 0), *(event("time >= 0", {"first": f"10 * first + {i}"}, at_trigger=False, before=False)
+                                     for i in (1, 2, 3))]
+    model = my.read_sbml(sbml_models.document(parts))
+    interpreted, compiled = (my.solve(model, time=(0, 2), size=200, interpreted=interpreted, device="cpu")
+                             for interpreted in (True, False))
+    for name in ("first", "order"):
+        np.testing.assert_array_equal(interpreted[name], compiled[name])
+        assert len(set(interpreted[name].tolist())) == 6
+
+
 def test_events_of_a_model_with_short_times_are_not_at_one_instant():
     parts = [variable("x", 1), variable("y", 1), parameter("p", 1.5), event("time > 1e-11", {"x": "y + 1"}),
              event("time > p", {"y": "x + 1"})]
@@ -235,6 +248,34 @@ def test_units_of_the_file_are_in_the_labels_of_results():
     assert table["A"].attrs["units"] == "mmol/ml" and table["R"].attrs["units"] == "mmol/min"
     assert table["time"].attrs["units"] == "min" and table["k"].attrs["units"] == "1/min"
     assert "units" not in table["status"].attrs and "units" not in table["plain"].attrs
+
+
+_enzyme = [compartment("c", 2), species("S", concentration=3), species("E", concentration=0.5),
+           species("C", concentration=0.25), species("P", concentration=0), parameter("on", 1.5), parameter("off", 0.5),
+           parameter("cat", 0.7), reaction("bind", "S + E -> C", "c * (on * S * E - off * C)"),
+           reaction("make", "C -> E + P", "c * cat * C")]
+
+
+def test_species_that_follow_from_others_are_left_out_if_asked_for():
+    whole, reduced = (my.read_sbml(sbml_models.document(_enzyme), reduce=reduce) for reduce in (False, True))
+    assert whole.states == ["S", "E", "C", "P"] and len(reduced.states) == 2
+    arguments = dict(start={"S": [3.0, 5.0]}, time=(0, 4), samples=9, interpreted=True, rtol=1e-10, atol=1e-12)
+    runs = [my.solve(model, {"c": [2.0, 1.0], "cat": 0.6}, **arguments) for model in (whole, reduced)]
+    for name in ("S", "E", "C", "P", "E_amount", "bind", "make"):
+        np.testing.assert_allclose(runs[1][name], runs[0][name], rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(runs[1]["conserved_C"], [1.5, 0.75])  # of the enzyme, free and bound
+    swept = my.solve(reduced, {"conserved_C": [1.5, 3.0]}, time=(0, 4), interpreted=True, rtol=1e-10)
+    np.testing.assert_allclose(swept["E_amount"] + swept["C_amount"], [1.5, 3.0])
+
+
+def test_sums_that_an_event_changes_are_not_conserved():
+    parts = [*_enzyme, event("time > 1", {"E": "E + 1", "on": "2"})]
+    parts[5] = variable("on", 1.5)
+    whole, reduced = (my.read_sbml(sbml_models.document(parts), reduce=reduce) for reduce in (False, True))
+    assert len(whole.states) == 5 and len(reduced.states) == 4
+    runs = [my.solve(model, time=(0, 2), interpreted=True, rtol=1e-10, atol=1e-12) for model in (whole, reduced)]
+    for name in ("S", "E", "C", "P"):
+        np.testing.assert_allclose(runs[1][name], runs[0][name], rtol=1e-7)
 
 
 def test_models_without_units_have_none():

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""From a file of SBML to a map over two parameters, and to bands of percentiles over time of many patients."""
+
+import pathlib
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+here = pathlib.Path(__file__).parent
+
+# snippet: model
+import myriad as my  # noqa: E402
+
+model = my.read_sbml(here / "doses.xml")
+one = my.solve(model, {"clearance": [3, 5, 8]}, time=(0, 72), samples=500, maximum_step=1)
+one.plot.time_series("drug")  # with the file's units: t (h), drug (mg/l)
+plt.savefig("doses_three.png")
+# end of snippet
+
+# snippet: map
+plt.figure()
+sweep = my.grid(dose=np.linspace(20, 200, 60), interval=np.linspace(4, 24, 41))
+run = my.solve(model, sweep, time=(0, 240), samples=np.linspace(192, 240, 200), maximum_step=1)
+table = run.to_xarray()  # with the axes dose and interval
+last_days = table["drug"]
+safe = (last_days.max("sample") < 4) & (last_days.min("sample") > 0.5)
+safe.plot.pcolormesh(x="dose", y="interval")
+plt.savefig("doses.png")
+# end of snippet
+
+# snippet: bands
+times, edges = np.linspace(0, 72, 145), np.linspace(0, 8, 401)
+
+
+def counts(values):
+    """How many patients are in each bin at each time: what is kept of a chunk, whatever its size."""
+    drug = values["drug_sample"][values["status"] == my.status_names.index("success")]
+    return np.stack([np.histogram(column, edges)[0] for column in drug.T]).ravel()
+
+
+body = {"clearance": my.normal(5, 1), "body": my.normal(40, 6), "absorption": my.uniform(0.4, 1.2)}
+patients = my.study(model, body, draws=20_000, seed=1, time=(0, 72), samples=times, maximum_step=1,
+                    keep=dict(end=[], samples=False, random=False),
+                    reduce=[my.reduce.mean("drug_sample"),
+                            my.reduce.total("counts", "drug_sample", times.size * (edges.size - 1), counts)])
+result = patients.run()
+share = np.cumsum(np.reshape(result["counts"], (times.size, -1)), axis=1)
+share = share / share[:, -1:]
+middle = 0.5 * (edges[1:] + edges[:-1])
+low, median, high = ([np.interp(p, s, middle) for s in share] for p in (0.05, 0.5, 0.95))
+
+plt.figure()
+plt.fill_between(times, low, high, alpha=0.3, label="90 % of patients")
+plt.plot(times, median, label="median")
+plt.plot(times, result["drug_sample_mean"], "--", label="mean")
+plt.xlabel(f"t ({model.time_unit})")
+plt.ylabel(f"drug ({model.units['drug']})")
+plt.legend()
+plt.savefig("doses_bands.png")
+# end of snippet
+
+assert not run.failed.any() and not one.failed.any()
+doses, intervals = table["dose"].values, table["interval"].values
+# In the long run as much is eliminated as is given: the mean concentration is dose / interval / clearance.
+mean = last_days.sel(dose=100, interval=12, method="nearest")
+expected = float(mean["dose"]) / float(mean["interval"]) / 5
+assert abs(float(mean.mean()) / expected - 1) < 0.02, (float(mean.mean()), expected)
+assert 0 < int(safe.sum()) < safe.size
+assert np.all(np.diff([low, median, high], axis=0) >= 0) and high[-1] > 1.5 * low[-1] > 0
