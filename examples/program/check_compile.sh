@@ -40,7 +40,7 @@ expect 2 'bifurcation\.toml:5:1: model\.hpp does not compile .*model\.hpp:[0-9]+
 cp "$here/../quickstart/model.hpp" ../quickstart/model.hpp
 # What the library advises is said in the words of files.
 sed '/^method = /d; s/^header = /method = "runge_kutta_4"\n&/' bifurcation.toml >fixed.toml
-expect 2 '^fixed\.toml: step is not set, but the method takes fixed steps: give step under \[options\]$' \
+expect 2 'fixed\.toml: step is not set, but the method takes fixed steps: give step under \[options\]$' \
     myriad run fixed.toml
 printf '\n// changed\n' >>../quickstart/model.hpp
 expect 2 'bifurcation\.toml.*another study' myriad run bifurcation.toml

@@ -11,8 +11,6 @@ from collections.abc import Collection, Iterable
 
 import numpy as np
 
-from . import option_names
-
 _here = os.path.dirname(os.path.abspath(__file__)) + os.sep
 
 
@@ -22,57 +20,6 @@ class Error(ValueError):
 
 class CannotInterpret(Error):
     """The interpreter, which runs models where there is no compiler, lacks what a model has."""
-
-
-# Statements of the core, its errors and notes, are lists of parts: what it is of these, what C++ says, a key, and a
-# number. What follows has Python's words for options, cures and events, by their keys.
-_text, _option, _component, _event, _separator, _cure = range(6)
-
-_options = {**option_names.names, "repeat": "draws=", "ensemble": "the sweep"}
-_cures = {
-    "mark_invalid": "give invalid=\"mark\"", "set_value": "give it in {where}", "name_in_record": "name it in record=",
-    "name_in_samples": "name it in samples=", "give_step": "give step=", "use_doubles": "give precision=\"double\"",
-    "scale_tolerances": "give control=\"tolerance_per_instance\"",
-    "smaller_parts": "integrate the sweep in smaller parts", "fewer_instances": "integrate the sweep in {parts}",
-    "smaller_chunk": "make chunk= smaller", "new_folder": "give another store= and a smaller chunk="}
-# Where values are given that the core calls by these names; others are in the sweep.
-_given_in = {"t_begin": "time=", "t_end": "time=", "state": "start=", "tolerance_scale": "tolerance_scale="}
-
-
-def in_words(parts, events=()):
-    """A statement of the core in Python's words. `events`: the names of the model's events."""
-    subject = next((key for kind, _, key, _ in parts if kind in (_option, _component, _event)), "")
-
-    def words(kind, said, key, number):
-        if kind == _option:
-            name = key.removeprefix("options.")
-            if name.startswith("samples.") and name == key:
-                return key.replace(".", " ")
-            return key[:len(key) - len(name)] + _options[name] if name in _options else said
-        if kind == _event and number < len(events):
-            return f"event {events[number]!r}"
-        if kind == _cure:
-            return _cures[key].format(where=_given_in.get(subject, "the sweep"),
-                                      parts=f"parts of at most {number} instances" if number > 0 else "smaller parts")
-        return said
-
-    return "".join(words(*part) for part in parts)
-
-
-def in_python(parts, events=()):
-    """An error of the core in Python's words."""
-    error = Error(in_words(parts, events))
-    error.parts = parts
-    return error
-
-
-def with_event_names(error, events):
-    """The same error with the names of the model's events, where the core had their numbers."""
-    if not hasattr(error, "parts"):
-        return error
-    named = in_python(error.parts, events)
-    named.__dict__.update({**error.__dict__, **named.__dict__})
-    return named
 
 
 class UnknownOption(Error, TypeError):

@@ -11,10 +11,11 @@ import numpy as np
 from . import _core, kinds
 from .components import name_of
 from .device import DeviceInput, DeviceResults
-from .errors import Error, in_words
+from .errors import Error
 from .expression import evaluate, symbols_of
 from .grid import Sweep
 from .run_plots import Plots, html
+from .statements import in_words
 from .statuses import first_failure, status_names
 from .symbols import time
 

@@ -15,13 +15,14 @@ from .core_options import finish_options, make_options, options_of, takes_option
 from .device import DeviceInput
 from .empty import EmptyEnsemble, EmptyReport
 from .empty import kernel as no_kernel
-from .errors import Error, with_event_names
+from .errors import Error
 from .grid import Sweep
 from .inputs import Along, by_name, numbers, whole, whole_numbers
 from .methods import default, fixed_step, method_type
 from .options import Options, SolveArguments
 from .progress import ProgressDisplay
 from .run import Interrupted, Run
+from .statements import with_event_names
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -20,7 +20,7 @@ from . import _core, nvrtc
 from .axes import Axis, Random, drawn
 from .components import Components, name_of, unknown
 from .core_options import finish_options, make_options, options_of, takes_options
-from .errors import Error, in_words, with_event_names
+from .errors import Error
 from .expression import Node
 from .grid import Sweep
 from .inputs import by_name, numbers, only, whole
@@ -31,6 +31,7 @@ from .progress import ProgressDisplay
 from .reduce import Reduction
 from .run import Interrupted
 from .solve import device_names, ends_of, kernel_for, refuse_missing
+from .statements import in_words, with_event_names
 from .study_result import StudyResult
 from .symbols import t_begin, t_end
 from .symbols import time as time_symbol

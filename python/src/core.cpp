@@ -410,8 +410,8 @@ NB_MODULE(_core, m) {
             try {
                 std::rethrow_exception(thrown);
             } catch (const error& e) {
-                const nb::object errors = nb::module_::import_("myriad.errors");
-                PyErr_SetObject(errors.attr("Error").ptr(), errors.attr("in_python")(e.said()).ptr());
+                const nb::object said = nb::module_::import_("myriad.statements").attr("in_python")(e.said());
+                PyErr_SetObject(said.type().ptr(), said.ptr());
             }
         },
         nullptr);

@@ -277,11 +277,12 @@ with concurrent.futures.ThreadPoolExecutor(2) as pool:
 
 def test_several_gpus_go_on_where_another_program_takes_the_memory_of_one_meanwhile(run):
     run("""
-more = dict(samples=1000, time=(0, 0.1))  # 8 KB for an instance, so that each GPU has several parts
+# Instances of 8 KB, so that each GPU has several parts. The first kernel told the facts of the program.
+more = dict(samples=1000, time=(0, 0.1))
 expected = solve("cuda:0", 9000, **more)
 both = solve(["cuda:0", "cuda:1"], 9000, **more)
 assert both.report.by_status == {"success": 9000} and same(both, expected, ["x", "v", "peak", "n"])
-""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_MEGABYTES=32, MYRIAD_SIMULATED_FULL_AFTER=2)  # the first one: facts
+""", MYRIAD_SIMULATED_GPUS=2, MYRIAD_SIMULATED_MEGABYTES=32, MYRIAD_SIMULATED_FULL_AFTER=2)
 
 
 def test_several_gpus_in_one_call_have_the_bits_of_one(run):

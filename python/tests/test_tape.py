@@ -10,6 +10,7 @@ import pytest
 
 import example_models
 import myriad as my
+from myriad.errors import CannotInterpret
 
 
 def oscillator():
@@ -116,12 +117,12 @@ def test_models_of_any_size_that_the_interpreter_has(method, count, crossings):
 
 def test_models_beyond_the_interpreter():
     many = my.states([f"x{i}" for i in range(129)])
-    with pytest.raises(my.Error, match="it has 129 states, and the interpreter 128 at the most: install a C"):
+    with pytest.raises(CannotInterpret, match="it has 129 states, and the interpreter 128 at the most: install a C"):
         my.solve(my.model({x: -x for x in many}), start={x: 1 for x in many}, time=(0, 1), interpreted=True)
     x, = my.states("x")
     peak = my.accessory("peak")
-    with pytest.raises(my.Error, match="extrema or integrals over a phase"):
+    with pytest.raises(CannotInterpret, match="extrema or integrals over a phase"):
         my.solve(my.model({x: -x}, accessories={peak: my.phase_maximum(x)}), start={x: 1}, time=(0, 1),
                  interpreted=True)
-    with pytest.raises(my.Error, match="as it is written in C"):
+    with pytest.raises(CannotInterpret, match="as it is written in C"):
         my.solve(my.CppModel("struct a", "a", "x"), start={"x": 1}, time=(0, 1), interpreted=True)
