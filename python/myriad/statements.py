@@ -2,6 +2,11 @@
 """What the core says, in Python's words. Its errors and notes are statements, lists of parts: what it is, what C++
 says, a key and a number. Options, cures and events have words here, by their keys."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
 from . import option_names
 from .errors import Error
 
@@ -19,11 +24,12 @@ _cures = {
 _given_in = {"t_begin": "time=", "t_end": "time=", "state": "start=", "tolerance_scale": "tolerance_scale="}
 
 
-def in_words(parts, events=()):
+def in_words(parts: Iterable[tuple[int, str, str, int]], events: Sequence[str] = ()) -> str:
     """A statement of the core in Python's words. `events`: the names of the model's events."""
+    parts = list(parts)
     subject = next((key for kind, _, key, _ in parts if kind in (_option, _component, _event)), "")
 
-    def words(kind, said, key, number):
+    def words(kind: int, said: str, key: str, number: int) -> str:
         if kind == _option:
             name = key.removeprefix("options.")
             if name.startswith("samples.") and name == key:
@@ -39,17 +45,17 @@ def in_words(parts, events=()):
     return "".join(words(*part) for part in parts)
 
 
-def in_python(parts, events=()):
+def in_python(parts: Iterable[tuple[int, str, str, int]], events: Sequence[str] = ()) -> Error:
     """An error of the core in Python's words."""
-    error = Error(in_words(parts, events))
+    error: Any = Error(in_words(parts, events))
     error.parts = parts
     return error
 
 
-def with_event_names(error, events):
+def with_event_names(error: Error, events: Sequence[str]) -> Error:
     """The same error with the names of the model's events, where the core had their numbers."""
     if not hasattr(error, "parts"):
         return error
-    named = in_python(error.parts, events)
+    named = in_python(error.parts, events)  # which the core's errors have
     named.__dict__.update({**error.__dict__, **named.__dict__})
     return named

@@ -225,8 +225,7 @@ void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o,
     if (any(status::max_steps))
         r.notes.push_back(statement_of(named_option("max_steps"), ": ", max_steps,
                                        " trial steps did not take an instance to the end of its phase", cure, "raise ",
-                                       named_option("max_steps"),
-                                       ", or look at why the steps are so short"));
+                                       named_option("max_steps"), ", or look at why the steps are so short"));
     if (any(status::interrupted) && o.time_limit > 0)
         r.notes.push_back(
             statement_of("interrupted: ", named_option("time_limit"), " = ", o.time_limit, " s was over"));
@@ -281,7 +280,8 @@ template work_count counted_work(const ensemble_data<double>&, std::int64_t, std
 template void add_summary(const ensemble_data<double>&, report_of<double>&, std::int64_t, std::int64_t);
 template void summarise(const ensemble_data<double>&, report_of<double>&, std::int64_t);
 template void note_ended(report_of<double>&, const ensemble_data<double>&, std::int64_t);
-template void note_failures(report_of<double>&, const ensemble_data<double>&, const options&, std::int64_t, std::int64_t);
+template void note_failures(report_of<double>&, const ensemble_data<double>&, const options&, std::int64_t,
+                            std::int64_t);
 template void end_call(report_of<double>&, const ensemble_data<double>&, const options&, std::int64_t, std::string,
                        std::chrono::steady_clock::time_point, const std::exception_ptr&);
 template void note_raised_tolerances(report_of<double>&, const options&);

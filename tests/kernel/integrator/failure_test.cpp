@@ -486,7 +486,7 @@ TEST_CASE("as many steps as max_steps are enough") {
         }
     });
 }
-TEST_CASE("a forgotten max_steps ends adaptive steps after 200 000 and lets as many fixed ones be taken as are needed") {
+TEST_CASE("a forgotten max_steps ends adaptive steps after 200 000, and has no limit for fixed ones") {
     auto adaptive = healthy(1, 1e6), fixed = healthy(1, 250'000.0 / 1024);
     options o;
     o.step = o.maximum_step = 1.0 / 1024;

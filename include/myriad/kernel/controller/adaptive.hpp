@@ -59,8 +59,8 @@ struct adaptive_stepping {
 
     /// The next step of every lane: the proposed one, or the rest of the way to the next stop; the former in lanes that
     /// are `locating` an event before that. A step that falls short of the stop by less than 1/1024 of itself is
-    /// stretched, so that no sliver remains; its error is tested as usual. The state advances by exactly the same step as
-    /// t; otherwise the difference would accumulate.
+    /// stretched, so that no sliver remains; its error is tested as usual. The state advances by exactly the same step
+    /// as t; otherwise the difference would accumulate.
     MYRIAD_FUNCTION void propose(const mask& locating) {
         S remaining = s.t_stop() - s.data.t;
         if constexpr (keeps_low) remaining = remaining - s.steps.time_low;

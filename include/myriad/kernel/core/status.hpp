@@ -18,8 +18,8 @@ enum class status : std::uint8_t {
     max_steps,           ///< more trial steps in one phase than `options::max_steps`
     step_underflow,      ///< the error test failed at the minimum step, or the step became negligible against t
     not_finite,          ///< the right-hand side, an event function or a hook gave a non-finite value
-    event_accumulation,  ///< actions of one event accumulated on its surface (Zeno), or stops at one time; t is when the
-                         ///< last one was counted: a bouncing ball comes to rest 2 v / (g (1 - e)) later
+    event_accumulation,  ///< actions of one event accumulated on its surface (Zeno), or stops at one time; t is when
+                         ///< the last one was counted: a bouncing ball comes to rest 2 v / (g (1 - e)) later
                          ///< (docs/numerics.md)
     singular_jacobian,   ///< a linear solve of an implicit method failed
     invalid_input,       ///< a state, parameter or time was not finite at the start
