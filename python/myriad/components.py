@@ -65,10 +65,6 @@ class Components:
         self.events = list(model.events)
         self.place = {name: (kind, number) for kind in kinds.valued for number, name in enumerate(self.names[kind])}
 
-    def label(self, name: str) -> str:
-        """A name with its unit, for axes of pictures."""
-        return f"{name} ({self.units[name]})" if name in self.units else name
-
     def component(self, key: Component) -> str:
         """The name of a component that is given by its symbol, its name, or another name of it."""
         name = name_of(key)

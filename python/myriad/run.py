@@ -90,6 +90,8 @@ class Run(Mapping):
         self.sweep = sweep if isinstance(sweep, Sweep) else None
         self.report = Report(report, kernel, seconds, notes)
         self.from_phase = from_phase  #: number of the first recorded phase
+        self.units: dict[str, str] = components.units  #: of components and outputs, where the model knows them
+        self.time_unit: str = components.time_unit  #: empty where it is not known
 
     @property
     def size(self) -> int:

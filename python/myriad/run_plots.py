@@ -27,7 +27,8 @@ class Plots:
         self._run = run
 
     def _label(self, name: str) -> str:
-        return self._run._components.label(name)
+        units = self._run.units
+        return f"{name} ({units[name]})" if name in units else name
 
     def _per_instance(self, name: str) -> Array:
         """A value for each instance: of the sweep, so that initial states are those given, else of the results."""
@@ -86,8 +87,7 @@ class Plots:
         chosen, labels = self._instances(instances)
         if y not in run.samples:
             raise Error(f"there are no samples of {y}: give samples=, as in samples=200, to solve")
-        unit = run._components.time_unit
-        xlabel = f"t ({unit})" if unit else None
+        xlabel = f"t ({run.time_unit})" if run.time_unit else None
         return plots.time_series(run.sample_times[chosen], run.samples[y][chosen], labels=labels, xlabel=xlabel,
                                  ylabel=self._label(y), axes=axes, **style)
 

@@ -93,6 +93,7 @@ class ARun:
         self.failed = np.zeros(self.size, bool)
         self.status = np.ones(self.size, np.uint8)
         self.sample_times = np.tile(np.arange(3.0), (self.size, 1))
+        self.units, self.time_unit = {"x": "mol"}, ""
 
     def __getitem__(self, name):
         return self.final[name]
@@ -103,6 +104,7 @@ def test_a_run_draws_its_components_by_name_or_symbol():
     run = ARun(my.grid({k: [1.0, 2.0]}), records={"x": np.array([[1.0], [2.0]])}, samples={"x": np.ones((2, 3))})
     axes = Plots(run).bifurcation(k, x)
     assert axes.lines[0].get_xydata().tolist() == [[1, 1], [2, 2]]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("k", "x (mol)")
     assert Plots(run).time_series("x").lines[1].get_label() == "k = 2"
     with pytest.raises(my.Error, match="v was not recorded: give record="):
         Plots(run).bifurcation("k", "v")
