@@ -17,7 +17,7 @@
 // limit: integrate_ensemble<sparse_chain<8>, rodas_5p> stack 0 spill 0
 // limit: integrate_ensemble<sparse_chain<32>, rosenbrock_23> stack 3000
 // limit: integrate_ensemble<sparse_chain<32>, rodas_5p> stack 300
-// limit: integrate_ensemble<van_der_pol_ring<32>, rodas_5p> stack 0 spill 0
+// limit: integrate_ensemble<van_der_pol_ring<32>, rodas_5p> stack 100
 // forbid: f64 in integrate_ensemble<chain<3>, rosenbrock_23>
 // forbid: f64 in integrate_ensemble<chain<3>, rodas_5p>
 

@@ -84,11 +84,6 @@ void check_derivatives(double tolerance) {
     for (int c = 0; c < n; ++c) y[c] = std::sin(1.0 + c);
     matrix<double, n> dense;
     dual_jacobian<Model>(0.3, y, p, dense);
-    for_each_jacobian_entry<Model, table_loop<true>>(0.3, y, p, [&](int e, double derivative) {
-        const auto entry = jacobian_entries_of<Model>[e];
-        CHECK(std::abs(derivative - dense[entry.row][entry.column]) <=
-              tolerance * std::abs(dense[entry.row][entry.column]));
-    });
     int found = 0;
     for_each_jacobian_entry<Model, table_loop<false>>(0.3, y, p, [&](int e, double derivative) {
         const auto entry = jacobian_entries_of<Model>[e];

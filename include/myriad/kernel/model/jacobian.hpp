@@ -11,10 +11,10 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Derivative of the right-hand side in the direction given by the derivatives of t and y.
-template <class Model, class S, class Dual>
-MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const Dual& t, const vec<Dual, n_state<Model>>& y,
+template <class Model, class S>
+MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const dual<S>& t, const vec<dual<S>, n_state<Model>>& y,
                                                               const inputs<Model, S>& p) {
-    const auto f = Model::template rhs<Dual>(t, y, p);
+    const auto f = Model::template rhs<dual<S>>(t, y, p);
     vec<S, n_state<Model>> out;
     MYRIAD_UNROLL_UP_TO(128)
     for (int c = 0; c < n_state<Model>; ++c) out[c] = f[c].derivative;
@@ -22,11 +22,11 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const Dual& t, con
 }
 
 /// y as constants.
-template <class Dual, class S, int n>
-MYRIAD_FUNCTION vec<Dual, n> constants(const vec<S, n>& y) {
-    vec<Dual, n> out;
+template <class S, int n>
+MYRIAD_FUNCTION vec<dual<S>, n> constants(const vec<S, n>& y) {
+    vec<dual<S>, n> out;
     MYRIAD_UNROLL_UP_TO(128)
-    for (int c = 0; c < n; ++c) out[c] = Dual(y[c]);
+    for (int c = 0; c < n; ++c) out[c] = dual<S>(y[c]);
     return out;
 }
 
@@ -34,7 +34,7 @@ MYRIAD_FUNCTION vec<Dual, n> constants(const vec<S, n>& y) {
 template <class Model, class S>
 MYRIAD_FUNCTION vec<S, n_state<Model>> time_derivative(const S& t, const vec<S, n_state<Model>>& y,
                                                        const inputs<Model, S>& p) {
-    return detail::directional_derivative<Model>(dual<S>(t, S(real_of<S>(1))), constants<dual<S>>(y), p);
+    return detail::directional_derivative<Model>(dual<S>(t, S(real_of<S>(1))), constants(y), p);
 }
 
 /// df_i/dy_j in row i and column j, by one evaluation of the right-hand side with dual numbers per column. In an
@@ -44,7 +44,7 @@ MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, 
                                    matrix<S, n_state<Model>>& jacobian) {
     constexpr int n = n_state<Model>;
     matrix_loop<S, n>::all([&](auto j) MYRIAD_LAMBDA {
-        auto seeded = constants<dual<S>>(y);
+        auto seeded = constants(y);
         seeded[j].derivative = S(real_of<S>(1));
         const auto column = detail::directional_derivative<Model>(dual<S>(t), seeded, p);
         matrix_loop<S, n>::all([&](auto i) MYRIAD_LAMBDA { jacobian[i][j] = column[i]; });
@@ -52,8 +52,7 @@ MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, 
 }
 
 /// Calls `put(e, derivative)` for the entries e of the pattern, declared or found: the model's own derivatives if it
-/// has them, else those by dual numbers, by one evaluation of rhs for each group of columns, in which written-out loops
-/// spend no operation on what does not depend on the group. `Loop` is a table_loop.
+/// has them, else those by dual numbers, by one evaluation of rhs for each group of columns. `Loop` is a table_loop.
 template <class Model, class Loop, class S, class Put>
 MYRIAD_FUNCTION void for_each_jacobian_entry(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                              Put&& put) {
@@ -70,14 +69,13 @@ MYRIAD_FUNCTION void for_each_jacobian_entry(const S& t, const vec<S, n_state<Mo
                       [Loop::template at<jacobian_groups_of<Model>, &groups::column>(e)]);
         });
     } else {
-        using number = std::conditional_t<Loop::is_written_out, dual<S, partial<S>>, dual<S>>;
         Loop::template range<0, jacobian_groups_of<Model>.count>([&](auto group) MYRIAD_LAMBDA {
-            auto seeded = constants<number>(y);
+            auto seeded = constants(y);
             Loop::template range<0, n_state<Model>>([&](auto j) MYRIAD_LAMBDA {
                 const int its = Loop::template at<jacobian_groups_of<Model>, &groups::group_of_column>(j);
-                if (its == group) seeded[j].derivative = S(R(1));
+                seeded[j].derivative = S(its == group ? R(1) : R(0));
             });
-            const auto columns = detail::directional_derivative<Model>(number(t), seeded, p);
+            const auto columns = detail::directional_derivative<Model>(dual<S>(t), seeded, p);
             Loop::template range<0, entries>([&](auto e) MYRIAD_LAMBDA {
                 if (Loop::template at<jacobian_groups_of<Model>, &groups::group>(e) == group)
                     put(e, columns[Loop::template at<jacobian_groups_of<Model>, &groups::row>(e)]);

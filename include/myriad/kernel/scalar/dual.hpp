@@ -8,25 +8,24 @@
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/scalar/function_list.hpp"
 #include "myriad/kernel/scalar/math.hpp"
-#include "myriad/kernel/scalar/partial.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
 /// value + derivative * e with e * e = 0; S is double, float or a pack. Mixes with S and with plain numbers, which are
-/// constants. Comparisons use only the values. The derivative is another S, or a `partial<S>`.
-template <class S, class Derivative = S>
+/// constants. Comparisons use only the values.
+template <class S>
 struct dual {
     using value_type = real_of<S>;
 
     S value;
-    Derivative derivative;
+    S derivative;
 
     dual() = default;
-    MYRIAD_FUNCTION dual(const S& value_, const Derivative& derivative_) : value(value_), derivative(derivative_) {}
-    MYRIAD_FUNCTION dual(const S& constant)
-        : value(constant), derivative(detail::derivative_of_constant<Derivative>::get()) {}
-    MYRIAD_FUNCTION dual(value_type constant) requires(!std::is_same_v<S, value_type>) : dual(S(constant)) {}
+    MYRIAD_FUNCTION dual(const S& value_, const S& derivative_) : value(value_), derivative(derivative_) {}
+    MYRIAD_FUNCTION dual(const S& constant) : value(constant), derivative(S(value_type(0))) {}
+    MYRIAD_FUNCTION dual(value_type constant) requires(!std::is_same_v<S, value_type>)
+        : value(S(constant)), derivative(S(value_type(0))) {}
 
     friend MYRIAD_FUNCTION dual operator-(const dual& a) { return dual(-a.value, -a.derivative); }
     friend MYRIAD_FUNCTION dual operator+(const dual& a) { return a; }
@@ -65,16 +64,16 @@ struct dual {
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-template <class S, class Derivative>
-struct scalar_traits<dual<S, Derivative>> {
+template <class S>
+struct scalar_traits<dual<S>> {
     using real = real_of<S>;
     using mask = mask_of<S>;
     using integer = integer_of<S>;
     static constexpr int lanes = lanes_of<S>;
 };
 
-template <class S, class Derivative>
-inline constexpr int kind_rank<dual<S, Derivative>> = 2;
+template <class S>
+inline constexpr int kind_rank<dual<S>> = 2;
 
 template <class A>
 inline constexpr bool is_dual = kind_rank<A> == 2;
@@ -86,11 +85,11 @@ concept with_dual = (is_dual<A> || is_dual<B>)&&requires {
 
 template <class D>
 struct dual_part;
-template <class S, class Derivative>
-struct dual_part<dual<S, Derivative>> {
+template <class S>
+struct dual_part<dual<S>> {
     using type = S;
 };
-/// The S of the dual number that is the common type of A and B.
+/// The S of the `dual<S>` that is the common type of A and B.
 template <class A, class B>
 using part_of = typename dual_part<common_kind<A, B>>::type;
 
@@ -112,59 +111,55 @@ namespace myriad::inline MYRIAD_TARGET {
 // apart, as multiplying by a zero derivative is not free and turns infinities into NaN.
 template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator+(const A& a, const B& b) {
-    using D = detail::common_kind<A, B>;
     using S = detail::part_of<A, B>;
     const S value = detail::value_of<S>(a) + detail::value_of<S>(b);
     if constexpr (!detail::is_dual<B>) {
-        return D(value, a.derivative);
+        return dual<S>(value, a.derivative);
     } else if constexpr (!detail::is_dual<A>) {
-        return D(value, b.derivative);
+        return dual<S>(value, b.derivative);
     } else {
-        return D(value, a.derivative + b.derivative);
+        return dual<S>(value, a.derivative + b.derivative);
     }
 }
 
 template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator-(const A& a, const B& b) {
-    using D = detail::common_kind<A, B>;
     using S = detail::part_of<A, B>;
     const S value = detail::value_of<S>(a) - detail::value_of<S>(b);
     if constexpr (!detail::is_dual<B>) {
-        return D(value, a.derivative);
+        return dual<S>(value, a.derivative);
     } else if constexpr (!detail::is_dual<A>) {
-        return D(value, -b.derivative);
+        return dual<S>(value, -b.derivative);
     } else {
-        return D(value, a.derivative - b.derivative);
+        return dual<S>(value, a.derivative - b.derivative);
     }
 }
 
 template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator*(const A& a, const B& b) {
-    using D = detail::common_kind<A, B>;
     using S = detail::part_of<A, B>;
     const S u = detail::value_of<S>(a);
     const S v = detail::value_of<S>(b);
     if constexpr (!detail::is_dual<B>) {
-        return D(u * v, a.derivative * v);
+        return dual<S>(u * v, a.derivative * v);
     } else if constexpr (!detail::is_dual<A>) {
-        return D(u * v, u * b.derivative);
+        return dual<S>(u * v, u * b.derivative);
     } else {
-        return D(u * v, a.derivative * v + u * b.derivative);
+        return dual<S>(u * v, a.derivative * v + u * b.derivative);
     }
 }
 
 template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator/(const A& a, const B& b) {
-    using D = detail::common_kind<A, B>;
     using S = detail::part_of<A, B>;
     const S v = detail::value_of<S>(b);
     const S quotient = detail::value_of<S>(a) / v;
     if constexpr (!detail::is_dual<B>) {
-        return D(quotient, a.derivative / v);
+        return dual<S>(quotient, a.derivative / v);
     } else if constexpr (!detail::is_dual<A>) {
-        return D(quotient, -quotient * b.derivative / v);
+        return dual<S>(quotient, -quotient * b.derivative / v);
     } else {
-        return D(quotient, (a.derivative - quotient * b.derivative) / v);
+        return dual<S>(quotient, (a.derivative - quotient * b.derivative) / v);
     }
 }
 
@@ -181,9 +176,9 @@ MYRIAD_COMPARISONS(MYRIAD_DUAL_COMPARISON)
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-template <class S, class Derivative>
-struct functions<dual<S, Derivative>> {
-    using D = dual<S, Derivative>;
+template <class S>
+struct functions<dual<S>> {
+    using D = dual<S>;
     using f = functions<S>;
     using real = real_of<S>;
 
@@ -287,7 +282,7 @@ struct functions<dual<S, Derivative>> {
     static MYRIAD_FUNCTION D pow(const D& x, const D& y) {
         const D of_base = pow_of_base(x, y.value);
         // With a constant exponent, the logarithm of a non-positive base must not spoil the result.
-        const auto of_exponent = of_base.value * f::log(x.value) * y.derivative;
+        const S of_exponent = of_base.value * f::log(x.value) * y.derivative;
         return D(of_base.value,
                  of_base.derivative + select(y.derivative == constant(real(0)), y.derivative, of_exponent));
     }
@@ -317,7 +312,7 @@ struct functions<dual<S, Derivative>> {
     }
     static MYRIAD_FUNCTION D fma(const D& a, const D& b, const D& c) {
         return D(f::fma(a.value, b.value, c.value),
-                 add_product(a.derivative, b.value, add_product(a.value, b.derivative, c.derivative)));
+                 f::fma(a.derivative, b.value, f::fma(a.value, b.derivative, c.derivative)));
     }
     static MYRIAD_FUNCTION auto is_finite(const D& x) { return f::is_finite(x.value) && f::is_finite(x.derivative); }
 
