@@ -216,7 +216,9 @@ TEST_CASE("a hundred thousand doses are given, each at its time") {
     each_method([]<class Method> {
         constexpr int doses = 100'000;
         auto e = treated(0.1, 0.3, doses, 0.1 + 0.3 * doses);
-        solve<Method>(tests::test_device(), e, with_tolerance(1e-6, 0.125));
+        options o = with_tolerance(1e-6, 0.125);
+        o.max_steps = 1'000'000;
+        solve<Method>(tests::test_device(), e, o);
         REQUIRE(e.status(0) == status::success);
         CHECK(e.integer_accessory(dosed::given)[0] == doses);
         // the last interval of the periodic solution; the first doses are forgotten
