@@ -24,9 +24,9 @@ ON_CPUS = NUMERICS + ["backends/openmp"]
 REPORTS = {
     "docs/validation.md": (r"^\* sources: (\w+)", NUMERICS, 24, "scripts/validate.sh"),
     "docs/methods.md": (r"The figures are for commit (\w+)", ON_GPUS, 40, "scripts/method_registers.py"),
-    "validation/gpu/results.csv": (r"^# sources: (\w+)", ON_GPUS, 30, "scripts/validate.sh --device cuda"),
+    "validation/gpu/results.csv": (r"^# sources: (\w+)", ON_GPUS, 40, "scripts/validate.sh --device cuda"),
     "benchmarks/results/h200.csv": (r"^# commit: (\w+)", ON_GPUS, 40, "scripts/gpu.sh --bench"),
-    "benchmarks/results/cpu.csv": (r"^# commit: (\w+)", ON_CPUS, 80, "scripts/bench.sh"),
+    "benchmarks/results/cpu.csv": (r"^# commit: (\w+)", ON_CPUS, 100, "scripts/bench.sh"),
 }
 CODE = re.compile(r"\.(hpp|cuh)$")
 

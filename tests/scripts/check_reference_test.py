@@ -16,7 +16,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 # File, what is taken away or added, and the entity that must then be named.
 CHANGES = (
     ("include/myriad/host/solve/solver.hpp", r"    /// The largest number of instances\.\n", "", "solver::capacity"),
-    ("include/myriad/host/options/options.hpp", r"///< trial steps per phase.*", "", "options::max_steps"),
+    ("include/myriad/host/options/options.hpp", r"///< smallest step size; 0: the resolution of t", "",
+     "options::minimum_step"),
     ("include/myriad/kernel/core/status.hpp", r"///< a linear solve of an implicit method failed", "",
      "status::singular_jacobian"),
     ("include/myriad/kernel/scalar/select.hpp", r"/// Infinity\.\n", "", "infinity_of"),

@@ -62,6 +62,7 @@ void measure_work(session& s, const problem& p, const references& r) {
             double setting = tolerances[k];
             if (m.adaptive()) {
                 o.relative_tolerance = o.absolute_tolerance = setting;
+                o.max_steps = 10'000'000;
             } else {
                 o.step = setting = p.fixed_step * 4 / std::exp2(static_cast<double>(k));
             }
