@@ -106,8 +106,8 @@ class Options:
     maximum_step: largest step size (in (0, inf], in the model's unit of time)
     growth_limit: largest factor from one step to the next (in [1, inf))
     shrink_limit: smallest factor from one step to the next (in (0, 1))
-    max_steps: trial steps per phase; an instance that needs more ends as `max_steps`; 0: 200 000 adaptive steps, or as
-        many fixed ones as it takes (in 0 or [1, 2000000000])
+    max_steps: trial steps per phase; an instance that needs more ends as `max_steps`; 0: 200 000 adaptive steps, or 2e9
+        fixed ones (in single precision 1.6e7) (in 0 or [1, 2000000000])
     time_limit: time from the beginning of the call after which what is left ends as `interrupted`: instances under way
         where they are, the others as they were; 0: no limit (in [0, inf], in seconds)
     carry_on: a phase starts at t_begin, or where the last one ended (`carry_on`), for phases that events or hooks end

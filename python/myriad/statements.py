@@ -35,7 +35,7 @@ def in_words(parts: Iterable[tuple[int, str, str, int]], events: Sequence[str] =
             if name.startswith("samples.") and name == key:
                 return key.replace(".", " ")
             return key[:len(key) - len(name)] + _options[name] if name in _options else said
-        if kind == _event and number < len(events):
+        if kind == _event and 0 <= number < len(events):
             return f"event {events[number]!r}"
         if kind == _cure:
             return _cures[key].format(where=_given_in.get(subject, "the sweep"),

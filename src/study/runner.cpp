@@ -291,11 +291,13 @@ private:
             const std::int64_t rest = range.count - at;
             const std::int64_t count = std::min(piece, sharing_.part(d.number, rest, left()));
             try {
-                // For no more than this part: a slow device may give the rest back.
-                for (std::size_t q = 0; q < wanted.size(); ++q)
-                    if (wanted[q])
-                        made.values[q].resize(
-                            static_cast<std::size_t>((at + count) * plan_.quantities[q].as.item_bytes()));
+                // Written for no more than this part: a slow device may give the rest back.
+                for (std::size_t q = 0; q < wanted.size(); ++q) {
+                    if (!wanted[q]) continue;
+                    const std::int64_t bytes = plan_.quantities[q].as.item_bytes();
+                    made.values[q].reserve(static_cast<std::size_t>(range.count * bytes));
+                    made.values[q].resize(static_cast<std::size_t>((at + count) * bytes));
+                }
                 as_device(d, solver, [&] { solver.prepare(range.first + at, count); });
                 const auto progress = [&](std::int64_t done) {
                     mine.done = at + done;

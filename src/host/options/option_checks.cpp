@@ -16,9 +16,6 @@ void check_count(const char* name, std::int64_t value, std::int64_t least, std::
 
 namespace {
 
-/// Fixed steps are counted in the state's real type, exact up to its mantissa.
-std::int64_t most_steps(int digits) { return digits > 31 ? 2'000'000'000 : 16'000'000; }
-
 void check_tolerance_count(const char* name, const per_component& t, std::size_t components) {
     require(t.size() == 1 || t.size() == components, named_option(name), " has ", t.size(),
             " values, but the model has ", components, " state components", cure,
@@ -154,6 +151,8 @@ void option_limits::check_kept(const char* key, double value, const char* name) 
     require(std::isinf(value) || std::isfinite(rounded(value)), named_option(key, name), " is ", value,
             ", which is infinite in single precision", cure, "give a smaller value or ", cures::use_doubles);
 }
+std::int64_t most_steps(int digits) { return digits > 31 ? 2'000'000'000 : 16'000'000; }
+
 std::int64_t step_limit(const options& o, bool adaptive, int digits) {
     // One that a few instances of a large ensemble may reach without holding up the call for minutes.
     constexpr std::int64_t adaptive_steps = 200'000;

@@ -15,6 +15,7 @@
 
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/core/error.hpp"
+#include "myriad/host/options/option_checks.hpp"
 #include "myriad/host/threads/parallel.hpp"
 
 namespace myriad {
@@ -222,10 +223,13 @@ template <class R>
 void note_failures(report_of<R>& r, const ensemble_data<R>& e, const options& o, std::int64_t max_steps,
                    std::int64_t count) {
     const auto any = [&](status s) { return r.by_status[static_cast<std::size_t>(s)] > 0; };
-    if (any(status::max_steps))
-        r.notes.push_back(statement_of(named_option("max_steps"), ": ", max_steps,
-                                       " trial steps did not take an instance to the end of its phase", cure, "raise ",
-                                       named_option("max_steps"), ", or look at why the steps are so short"));
+    if (any(status::max_steps)) {
+        const bool can_rise = max_steps < most_steps(std::numeric_limits<R>::digits);
+        r.notes.push_back(statement_of(
+            named_option("max_steps"), ": ", max_steps, " trial steps did not take an instance to the end of its phase",
+            cure, can_rise ? "raise " : "no more are counted, so take longer steps than with this ",
+            named_option("max_steps"), ", or look at why the steps are so short"));
+    }
     if (any(status::interrupted) && o.time_limit > 0)
         r.notes.push_back(
             statement_of("interrupted: ", named_option("time_limit"), " = ", o.time_limit, " s was over"));

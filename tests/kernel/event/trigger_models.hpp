@@ -139,6 +139,37 @@ struct relay {
     }
 };
 
+/// x falls from zero and y rises to one half: the action that follows x's side moves y, whose event is located
+/// meanwhile.
+struct falling {
+    enum state { x, y, n_state };
+    enum accessory { t_action, t_event, y_event, n_accessory };
+    enum integer_accessory { actions, detections, n_integer_accessory };
+    enum event { zero, half, n_event };
+    enum trigger { below, n_trigger };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto&) {
+        return {R(-1), R(1)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return {s[x], s[y] - R(0.5)};
+    }
+    MYRIAD_FUNCTION static bool condition(int, const auto& positive) { return !positive[zero]; }
+    MYRIAD_FUNCTION static void after_trigger(int, auto& lane) {
+        lane.y[y] -= 10;
+        lane.accessory[t_action] = lane.t;
+        lane.integer_accessory[actions] += 1;
+    }
+    MYRIAD_FUNCTION static void after_event(int j, auto& lane) {
+        if (j != half) return;
+        lane.accessory[t_event] = lane.t;
+        lane.accessory[y_event] = lane.y[y];
+        lane.integer_accessory[detections] += 1;
+    }
+};
+
 /// The same one instance at a time, as in a GPU's thread.
 template <class Model>
 struct alone : Model {

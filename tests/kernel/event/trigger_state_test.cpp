@@ -157,3 +157,36 @@ TEST_CASE("a trigger's action sets a stop time, also for the same instant, and t
     check.operator()<alone<relay>, myriad::runge_kutta_4>();
     check.operator()<alone<relay>, myriad::tsitouras_5>();
 }
+
+namespace {
+
+template <class Model>
+myriad::ensemble<Model> fallen(double step) {
+    myriad::ensemble<Model> e(3);
+    for (int c = 0; c < Model::n_state; ++c) e.state(c) = 0.0;
+    for (int c = 0; c < Model::n_accessory; ++c) e.accessory(c) = -1.0;
+    for (int c = 0; c < Model::n_integer_accessory; ++c) e.integer_accessory(c) = 0;
+    e.time_domain(0, 2);
+    myriad::options o;
+    o.step = o.maximum_step = step;
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, o);
+    return e;
+}
+
+}  // namespace
+
+TEST_CASE("a trigger does not act while a step is redone to an event, and the event is found where it is") {
+    using model = triggers::falling;
+    for (const double step : {1.0, 0.3, 0.01}) {
+        CAPTURE(step);
+        const auto together = fallen<model>(step);
+        const auto alone = fallen<triggers::alone<model>>(step);
+        for (int i = 0; i < 3; ++i) {
+            CHECK(together.integer_accessory(model::actions)[i] == 1);
+            CHECK(together.integer_accessory(model::detections)[i] == alone.integer_accessory(model::detections)[i]);
+            for (int c = 0; c < model::n_accessory; ++c) CHECK(together.accessory(c)[i] == alone.accessory(c)[i]);
+            if (together.integer_accessory(model::detections)[i] > 0)
+                CHECK(std::abs(together.accessory(model::y_event)[i] - 0.5) < 1e-12);
+        }
+    }
+}

@@ -37,7 +37,9 @@ inline constexpr model_components components_of{
 #undef MYRIAD_LIST_KIND
 };
 
-/// The trial steps that a phase may take, with a real type of so many digits.
+/// The most trial steps that can be counted, with a real type of so many digits: fixed ones are counted in it.
+std::int64_t most_steps(int digits);
+/// The trial steps that a phase may take.
 std::int64_t step_limit(const options& o, bool adaptive, int digits);
 
 /// The properties of a model, a method and a real type that the options must fit.

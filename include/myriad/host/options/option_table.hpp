@@ -217,7 +217,7 @@ struct option_table<options> {
                      "give the smallest factor from one step to the next, such as 0.1"},
         option_entry{"max_steps", &o::max_steps, results, "", zero_or(from_to(1, 2e9)),
                      "trial steps per phase; an instance that needs more ends as `max_steps`; 0: 200 000 adaptive "
-                     "steps, or as many fixed ones as it takes"},
+                     "steps, or 2e9 fixed ones (in single precision 1.6e7)"},
         option_entry{"time_limit", &o::time_limit, call, "seconds", from_to(0, infinite),
                      "time from the beginning of the call after which what is left ends as `interrupted`: instances "
                      "under way where they are, the others as they were; 0: no limit",

@@ -127,7 +127,7 @@ struct options {
     double growth_limit = 5;    ///< largest factor from one step to the next; rounded to single precision
     double shrink_limit = 0.1;  ///< smallest factor from one step to the next, rounded in the same way
     /// Trial steps per phase; an instance that needs more ends as `max_steps`. 0: 200 000 adaptive steps, or as many
-    /// fixed ones as it takes.
+    /// fixed ones as are counted, 2e9 (in single precision 1.6e7).
     std::int64_t max_steps = 0;
     /// Seconds from the beginning of the call after which what is left ends as `interrupted`: instances under way where
     /// they are, the others as they were. 0, or infinity: no limit. Solvers, which are asynchronous, and studies, which

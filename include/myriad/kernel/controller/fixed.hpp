@@ -59,8 +59,8 @@ struct fixed_stepping {
         return fma(static_cast<R>(get_lane(s.steps.done, i)), get_lane(s.steps.step, i), args.t[s.instance[i]]);
     }
 
-    /// The next step of every lane: the fixed one, or the rest of the way to the next stop; that of event location in
-    /// lanes that are `locating`.
+    /// The next step of every lane: the fixed one, or the rest of the way to the next stop. In lanes that are
+    /// `locating`, the step that event location has set.
     MYRIAD_FUNCTION void propose(const mask& locating) {
         s.final_step = (s.steps.left <= count(1)) & !locating;
         s.h = has_events<Model> ? select(locating, s.data.h_next, s.steps.step) : s.steps.step;

@@ -56,8 +56,11 @@ struct trigger_conditions {
             if (!now[j] && !persists(j)) t.pending[i].set(j, false);
         t.holds[i] = now;
     }
-    /// The lanes in which a function may have changed sides.
-    MYRIAD_FUNCTION mask_of<S> turned() const { return sides.s.running() & (sides.e.above ^ t.seen).any_of(); }
+    /// The lanes in which a function may have changed sides. In a lane that redoes its step nothing has happened yet.
+    MYRIAD_FUNCTION mask_of<S> turned() const {
+        const auto& e = sides.e;
+        return sides.s.running() & (e.above ^ t.seen).any_of() & !e.flags[e.locating];
+    }
 
 private:
     // Not in lambdas, where nvcc takes every such branch.
