@@ -104,7 +104,7 @@ struct hook_driver {
             mask acted = mask(false);
             for_each_lane(turned, [&](int i) MYRIAD_LAMBDA {
                 events.conditions().update(i);
-                set_lane(acted, i, !is_failure(s.ending[i]) && act_on_triggers_of(i));
+                set_lane(acted, i, act_on_triggers_of(i));
             });
             if (!has_stops<Model> || !any(acted)) return;
             if (rounds >= args.accumulation_limit) return s.end_lanes(acted, status::event_accumulation);
@@ -118,7 +118,6 @@ struct hook_driver {
         if (!MYRIAD_UNLIKELY(any(due))) return;
         const lane_data<Model, S> before = s.data;
         for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
-            if (is_failure(s.ending[i])) return;  // by another hook: its state is the last finite one
             stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
                 if constexpr (has_after_stop<Model>)
                     run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_stop(j, number, lane); });
