@@ -11,7 +11,6 @@ from typing import Any
 
 from . import symbols as sym
 from .derivatives import derivatives
-from .errors import Error
 from .folding import add, constant, divide, is_constant, multiply, number, subtract, total, value_of
 from .sbml_document import named
 from .sbml_math import Functions, Refused, Translator
@@ -173,14 +172,7 @@ class Semantics:
         """A name that a component of a model can have, like that one, and none has yet."""
         name = re.sub("_+", "_", re.sub("[^A-Za-z0-9_]", "_", wanted)).strip("_") or "unnamed"
         name = name if name[0].isalpha() else f"x_{name}"
-        for candidate in (name, f"{name}_", *(f"{name}_{i}" for i in range(2, 10000))):
-            try:
-                sym.check_name(candidate, "a component")
-            except Error:
-                continue
-            if candidate not in self.names.values():
-                return candidate
-        raise Refused(f"no name for '{wanted}'")
+        return sym.free_name(name, self.names.values())
 
     def _represent(self) -> None:
         """Decides how each quantity is stored, and with which name."""

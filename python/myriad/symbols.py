@@ -6,6 +6,7 @@ its kind and its name: made twice, it is the same.
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
 from . import kinds
@@ -55,6 +56,19 @@ def check_name(name: Any, what: str) -> str:
         raise Error(f"'{name}' has a meaning of its own in a C++ model or in C's headers, and cannot be the name of "
                     f"{what}{line}: call it '{name}_'")
     return name
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """The name, or else the first like it, with an underscore or a number, that a component can have and that is not
+    taken."""
+    for candidate in (name, f"{name}_", *(f"{name}_{i}" for i in range(2, 10000))):
+        try:
+            check_name(candidate, "a component")
+        except Error:
+            continue
+        if candidate not in taken:
+            return candidate
+    raise Error(f"no name for a component is left that is like '{name}'")
 
 
 def a(kind: str) -> str:

@@ -378,15 +378,9 @@ class XppModel(Model):
         """A name that a component of a model can have, like that one."""
         name = re.sub("_+", "_", wanted).rstrip("_") or "x"
         name = name if name[0].isalpha() else f"x{name}"
-        for candidate in (name, f"{name}_", *(f"{name}_{i}" for i in range(2, 10000))):
-            try:
-                sym.check_name(candidate, "a component")
-            except Error:
-                continue
-            if candidate not in self._taken:
-                self._taken[candidate] = wanted
-                return candidate
-        raise Error(f"no name for '{wanted}'")
+        free = sym.free_name(name, self._taken)
+        self._taken[free] = wanted
+        return free
 
     def _event(self, one: _Global, number: int, names: Names, states: dict[str, Any],
                parameters: dict[str, Any]) -> Event:

@@ -62,7 +62,7 @@ TEST_CASE("actions that wait run at their times, with what was put and what is t
         CHECK(std::abs(e.accessory(queued::sum)[0] - (3 * 1.0 + 10 * (2.2 + 3.3 + 4.1))) < 1e-11);
     });
 }
-TEST_CASE("an action for now, or for a time that has passed, runs at once, and one beyond the end does not run") {
+TEST_CASE("an action whose time is the present or has passed runs at once, and one beyond the end does not run") {
     each([]<class Method>() {
         const auto e = run<Method>({1, 0.5, 7});
         CHECK(code_of(e) == 12);

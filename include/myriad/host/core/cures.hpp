@@ -7,17 +7,20 @@
 #include "myriad/kernel/core/abi.hpp"
 
 /// All of them: name, and words in C++.
-#define MYRIAD_CURES(of)                                                                                               \
-    of(mark_invalid, "set invalid_instances = invalid_instances::mark") of(                                            \
-        set_value, "set it in the ensemble before solving") of(name_in_record, "name it in options::record")           \
-        of(name_in_samples, "name it in options::samples.states") of(give_step, "give options::step") of(              \
-            use_doubles, "use an ensemble of doubles")                                                                 \
-            of(scale_tolerances, "use controlled<Method, tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE") \
-                of(smaller_parts, "integrate the ensemble in smaller parts")                                           \
-                    of(fewer_instances,                                                                                \
-                       "integrate fewer instances at a time: a smaller options::chunk_size or solver capacity")        \
-                        of(smaller_chunk, "make chunk smaller")                                                        \
-                            of(new_folder, "start the study in a new folder with a smaller chunk")
+// clang-format off
+#define MYRIAD_CURES(of) \
+    of(mark_invalid, "set invalid_instances = invalid_instances::mark") \
+    of(set_value, "set it in the ensemble before solving") \
+    of(name_in_record, "name it in options::record") \
+    of(name_in_samples, "name it in options::samples.states") \
+    of(give_step, "give options::step") \
+    of(use_doubles, "use an ensemble of doubles") \
+    of(scale_tolerances, "use controlled<Method, tolerance_per_instance>, in solve and in MYRIAD_INSTANTIATE") \
+    of(smaller_parts, "integrate the ensemble in smaller parts") \
+    of(fewer_instances, "integrate fewer instances at a time: a smaller options::chunk_size or solver capacity") \
+    of(smaller_chunk, "make chunk smaller") \
+    of(new_folder, "start the study in a new folder with a smaller chunk")
+// clang-format on
 
 namespace myriad::host::inline MYRIAD_ABI {
 

@@ -24,7 +24,7 @@ enum class status : std::uint8_t {
     singular_jacobian,   ///< a linear solve of an implicit method failed
     invalid_input,       ///< a state, parameter or time was not finite at the start
     queue_overflow,      ///< a hook returned `action::overflow`: no room for an action that is to run later
-    interrupted,         ///< the call ended before: by its time limit, or by the progress function, half a second ago
+    interrupted,  ///< the call ended before: by its time limit, or half a second after the progress function asked
 };
 /// The number of statuses.
 inline constexpr int status_count = 12;

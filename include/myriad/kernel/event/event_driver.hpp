@@ -58,8 +58,7 @@ public:
     MYRIAD_FUNCTION void reset(int i) { tracker{sides()}.reset(i); }
 
     // Trial steps
-    /// The lanes that redo their step, to end at an event. They may not be ended if their step does not advance t: a
-    /// flight between events may be shorter than the resolution of t.
+    /// The lanes that redo their step, to end at an event.
     MYRIAD_FUNCTION mask locating() const {
         if constexpr (m > 0) {
             return e_.flags[e_.locating];
@@ -109,7 +108,7 @@ public:
                         accepted = outcome != trial_outcome::is_redone;
                         follow = outcome == trial_outcome::stands_before_sides;
                     } else {
-                        locator{sides()}.give_up(0);
+                        locator{sides()}.stop_locating(0);
                     }
                 }
             }

@@ -84,7 +84,7 @@ struct event_location {
         }
         if (redo.length != R(0)) return redo_step(i);
         add_to_count(s.located, i);
-        give_up(i);
+        stop_locating(i);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool close = abs(step.g[j]) <= max(redo.tolerance[j], near.floor(j));
@@ -104,11 +104,11 @@ struct event_location {
     }
     /// The event to which the step was redone is reached.
     MYRIAD_FUNCTION void end(int i) const {
-        give_up(i);
+        stop_locating(i);
         stepping<Model, Method, S>{sides.args, sides.s}.resume(i, sides.memory_of(i).redo.resume);
     }
     /// A redone step that failed its error test is not redone: the controller sets the length of the next.
-    MYRIAD_FUNCTION void give_up(int i) const {
+    MYRIAD_FUNCTION void stop_locating(int i) const {
         sides.e.flags.set(sides.e.locating, i, false);
         sides.update_in_question(i);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Locates events where rounding may decide: functions on their surface, at jumps, several at once, without a tolerance,
-// checked at points inside the step, or at the end of the domain.
+// checked at points inside the step, or at t_end or a stop.
 #pragma once
 
 #include "myriad/kernel/event/event_location.hpp"
@@ -79,7 +79,7 @@ struct general_locator {
     }
 
 private:
-    /// Whether an event may happen at the end of the domain.
+    /// Whether an event may happen at t_end or a stop.
     MYRIAD_FUNCTION bool ends_near_root(int i, const ends_of_step& step) const {
         const auto& near = sides.memory_of(i).near;
         bool any_near = false;
@@ -208,7 +208,7 @@ private:
         return trial_outcome::stands;
     }
 
-    /// Events at the end of the domain: a function moving towards zero fires if it is at or past zero, or short of it
+    /// Events at t_end or a stop: a function moving towards zero fires if it is at or past zero, or short of it
     /// by rounding alone, judged by both its slope and the last step. A function that comes to rest at zero, or is
     /// still falling towards it, gets there later or never; one that is about to turn back, as at a double root, does
     /// not cross it.
@@ -230,7 +230,7 @@ private:
         }
     }
 
-    /// A bound on the time between the end of the domain and a crossing that the phase's rounding errors may have
+    /// A bound on the time between t_end or a stop and a crossing that the phase's rounding errors may have
     /// caused; capped at a small part of a step, beyond which it could not be told from a slow approach.
     MYRIAD_FUNCTION R end_rounding(int i, const ends_of_step& step) const {
         const auto& args = sides.args;

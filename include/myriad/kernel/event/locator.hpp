@@ -51,14 +51,14 @@ struct event_locator {
     }
 
     /// A redone step that failed its error test is not redone.
-    MYRIAD_FUNCTION void give_up(int i) const { location{sides}.give_up(i); }
+    MYRIAD_FUNCTION void stop_locating(int i) const { location{sides}.stop_locating(i); }
     /// Locates events in all of these lanes whose trial is accepted, and gives up in the others. Lanes whose step is
     /// redone are removed from `accepted`.
     __attribute__((noinline)) void locate_lanes(const mask& candidates, const trial_ends<Model, S>& ends,
                                                 const event_detection<S, m>& detected, mask& accepted,
                                                 fired& events) const {
         for_each_lane(candidates, [&](int i) MYRIAD_LAMBDA {
-            if (!get_lane(accepted, i)) return give_up(i);
+            if (!get_lane(accepted, i)) return stop_locating(i);
             if (locate(i, ends, detected, events) == trial_outcome::is_redone) set_lane(accepted, i, false);
         });
     }

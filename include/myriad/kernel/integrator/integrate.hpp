@@ -160,6 +160,7 @@ struct integrator {
         mask defined = mask(true);
         if constexpr (has_events<Model>) defined = events.defined(detected);
         const auto end_stuck = [&](const mask& failed, mask still) MYRIAD_LAMBDA {
+            // A flight between events may be shorter than the resolution of t.
             still = still & !events.locating();
             for_each_lane(failed | still, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, steps.failure_of(i)); });
             return still;
