@@ -9,9 +9,11 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from ._core import factor_entries
 from .derivatives import dependencies, derivatives
 from .expression import (as_number, condition, draws, infix, integer, is_long, number_text, real, symbols_of, text,
                          walk, write)
+from .mass_matrix import left_sides, mass_entries
 
 if TYPE_CHECKING:
     from .expression import Node
@@ -328,6 +330,9 @@ class Writer:
             out.append("    };")
         pattern, jacobian = self.jacobian()
         out += ["    " + line for line in pattern]
+        if model.mass_matrix is not None:
+            mass = f"static constexpr myriad::mass_entry mass_matrix[] = {{{mass_entries(model)}}};"
+            out += ["    " + line for line in _wrap(mass, 0)]
         blocks = [self.function("rhs", "n_state", model.rhs)] + jacobian
         if model.events:
             blocks.append(self.function("events", "n_event", [e.function for e in model.events]))
@@ -352,7 +357,7 @@ class Writer:
         return "\n".join(out + ["};", ""])
 
     def description(self) -> list[str]:
-        lines = [f"{s}' = {text(e)}" for s, e in zip(self.model.states, self.model.rhs)]
+        lines = [f"{side} = {text(e)}" for side, e in zip(left_sides(self.model), self.model.rhs)]
         return lines if len(lines) <= 8 else lines[:7] + [f"... and {len(lines) - 7} more equations"]
 
     def declarations(self) -> list[str]:
@@ -378,7 +383,7 @@ class Writer:
         entries = [(row, i) for row, columns in enumerate(rows) for i in sorted(columns)]
         if not entries or len(entries) > len(model.states) ** 2 // 2 and len(entries) > _most_derivatives:
             return [], []
-        lines = []
+        lines = [f"// {self.matrix([(row, column[i]) for row, i in entries])}"]
         if all(s.value != ("built-in", "time") for s in symbols_of(model.rhs)):
             lines.append("static constexpr bool autonomous = true;")
         written = ", ".join(f"{{{model.states[row]}, {model.states[column[i]]}}}" for row, i in entries)
@@ -386,6 +391,17 @@ class Writer:
         if found is None or len(entries) > _most_derivatives:
             return lines, []
         return lines, [self.function("jacobian", len(entries), [as_number(found[row][i]) for row, i in entries])]
+
+    def matrix(self, entries: Sequence[tuple[int, int]]) -> str:
+        """What stiff methods make of the entries of the Jacobian."""
+        n, mass = len(self.model.states), self.model.mass_matrix
+        every, diagonal = list(entries), set(range(n))
+        if mass is not None:
+            every += [(int(i), int(j)) for i, j in zip(*mass.nonzero())]
+            diagonal = {i for i, j in every if i == j}
+        factors = factor_entries(n, every) if len(diagonal) == n else -1
+        made = f"the factors of stiff methods have {factors}" if factors >= 0 else "stiff methods factorise all of it"
+        return f"{len(entries)} of {n * n} entries of the Jacobian may differ from zero; {made}"
 
     # Functions of the state
 

@@ -17,6 +17,7 @@ from .cpp import Writer, generic_problem
 from .errors import Error, at, users_line
 from .expression import (Node, as_condition, as_number, draws, evaluate, integer, is_sympy, real, symbols_of, text,
                          to_real, vector, walk)
+from .mass_matrix import left_sides, read_mass_matrix
 from .parse import from_sympy, parse, parse_equations, sympy_name
 from .table import element_name, tables_of
 from .whole_numbers import check_constants
@@ -133,7 +134,8 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
           stops: Stop | Sequence[Stop] = (), accessories: ByComponent | None = None,
           initialise: ByComponent | None = None, after_step: ByComponent | None = None,
           finalise: ByComponent | None = None, generate: ByComponent | None = None, states: Names | None = None,
-          parameters: Names = (), shared: Names = (), name: str | None = None) -> Model:
+          parameters: Names = (), shared: Names = (), mass_matrix: npt.ArrayLike | ByComponent | None = None,
+          name: str | None = None) -> Model:
     """Records a model.
 
     `equations` is a dictionary {state: its derivative}; or a function f(t, y, ...) that returns the derivatives, as for
@@ -150,9 +152,14 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
     integrated, after its axes: from the instance's number `myriad.instance`, from what axes and the study have set, and
     from random numbers, `myriad.uniform(low, high)` and `myriad.normal(mean, deviation)`, which depend on the study's
     seed and the instance's number alone. `solve` has no use for it.
+
+    `mass_matrix` is the constant matrix M of M y' = f(t, y), of which the equations then are f: numbers by rows and
+    columns in the order of the states, the numbers of a diagonal, or {state: factor of its derivative}, 1 if it is not
+    named. It may be singular, so that equations are algebraic, if these determine their states (index one):
+    `mass_matrix={c: 0}` makes 0 = f of the equation of c. For the method "rodas_5p" alone.
     """
     return Model(equations, events, accessories, initialise, after_step, finalise, generate, states, parameters, shared,
-                 name, stops)
+                 name, stops, mass_matrix)
 
 
 class Model(kinds.ComponentNames):
@@ -163,7 +170,8 @@ class Model(kinds.ComponentNames):
     def __init__(self, equations: ByComponent | Callable[..., Any] | str, events: Event | Sequence[Event],
                  accessories: ByComponent | None, initialise: ByComponent | None, after_step: ByComponent | None,
                  finalise: ByComponent | None, generate: ByComponent | None, states: Names | None, parameters: Names,
-                 shared: Names, name: str | None, stops: Stop | Sequence[Stop] = ()) -> None:
+                 shared: Names, name: str | None, stops: Stop | Sequence[Stop] = (),
+                 mass_matrix: npt.ArrayLike | ByComponent | None = None) -> None:
         self.line = users_line()
         self._source: str | None = None
         self._declared = self._declare(states, parameters, shared, accessories)
@@ -180,6 +188,9 @@ class Model(kinds.ComponentNames):
         self.finalise = self._assignments(finalise, "finalise")
         self.generate = self._generate(generate)
         self._collect(targets)
+        #: M of M y' = f by rows and columns; None for the identity
+        self.mass_matrix = None if mass_matrix is None else read_mass_matrix(
+            mass_matrix, self.states, lambda key: self._target(key, "mass_matrix").value[1], self.line)
         self.name = self._default_name(equations) if name is None else sym.check_name(name, "a model")
         self._check()
 
@@ -576,7 +587,7 @@ class Model(kinds.ComponentNames):
         return hashlib.sha256(self.cpp("model").encode()).hexdigest()
 
     def derivatives(self, t: npt.ArrayLike, y: Any, **values: Any) -> Array:
-        """The right-hand side by NumPy: y has one entry per state, each a number or an array; parameters and shared
+        """The right-hand side f by NumPy: y has one entry per state, each a number or an array; parameters and shared
         values are given by name. For looking at a model and for tests; SciPy can integrate it."""
         known = {sym.time: t, **{sym.symbol("state", n): v for n, v in zip(self.states, y)}}
         for symbol in self._in_functions:
@@ -588,5 +599,5 @@ class Model(kinds.ComponentNames):
         return np.array(np.broadcast_arrays(*evaluate(self.rhs, known), *y, t)[:len(y)])
 
     def __repr__(self) -> str:
-        equations = [f"{s}' = {text(e)}" for s, e in zip(self.states[:4], self.rhs)]
+        equations = [f"{side} = {text(e)}" for side, e in zip(left_sides(self)[:4], self.rhs)]
         return f"<myriad model {self.name}: {'; '.join(equations)}{'; ...' if len(self.states) > 4 else ''}>"

@@ -18,6 +18,7 @@ from .empty import kernel as no_kernel
 from .errors import Error
 from .grid import Sweep
 from .inputs import Along, by_name, numbers, whole, whole_numbers
+from .mass_matrix import check_method
 from .methods import default, fixed_step, method_type
 from .options import Options, SolveArguments
 from .progress import ProgressDisplay
@@ -171,6 +172,7 @@ def device_names(device: str | Sequence[str], interpreted: bool | None) -> tuple
 def kernel_for(device: str, model: AnyModel, components: Components, method: str, control: str | Sequence[str],
                sampled: bool, precision: str, interpreted: bool | None) -> tuple[Kernel, dict[str, list[str]]]:
     """The kernel of a model and a method for a device of the core, and the names of all components that it has."""
+    check_method(model, method)
     if not device.startswith("cuda"):
         return choose_kernel(model, components, method, control, sampled, precision, interpreted)
     if interpreted:
@@ -207,7 +209,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
           control: Control | Sequence[Control] = (),
           options: Options | None = None, tolerance_scale: Values | None = None, size: int | None = None,
           precision: Precision = "double", device: str | Sequence[str] = "auto", interpreted: bool | None = None,
-          progress: Progress = None, **others: Unpack[SolveArguments]) -> Run:
+          make_consistent: bool = False, progress: Progress = None, **others: Unpack[SolveArguments]) -> Run:
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
     model             from `myriad.model(...)`
@@ -233,6 +235,9 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                       instances among them, with the bits that one of them has
     interpreted       True runs the model without compiling it, several times slower; None does so only where there
                       is no compiler, which the report tells
+    make_consistent   True changes initial states so that they satisfy the algebraic equations of a model with a
+                      singular mass matrix, by Newton's method, in directions that leave M y as it is; otherwise values
+                      that do not are refused
     progress          True for a bar, or a function of the numbers of instances done and of all
 
     Raises `myriad.Error` if something is missing or does not fit, before any work. Ctrl-C raises
@@ -284,6 +289,11 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
             if scale.ndim and len(scale) != count:
                 raise Error(f"'tolerance_scale' has {len(scale)} values for {count} instances: give one for each")
             ensemble.array("tolerance_scale")[...] = scale
+        if make_consistent:
+            if any(isinstance(array, DeviceInput) for array in given.values()):
+                raise Error("make_consistent=True changes arrays on the host, and some are on a GPU: copy them to the "
+                            "host")
+            _core.make_consistent(kernel.library, ensemble)
         report, failure = _core.solve([(k.library, d) for (k, _), d in zip(kernels, devices)], ensemble,
                                       core_options, display if progress else None)
     except Error as error:

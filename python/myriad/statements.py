@@ -17,6 +17,7 @@ _options = {**option_names.names, "repeat": "draws=", "ensemble": "the sweep"}
 _cures = {
     "mark_invalid": "give invalid=\"mark\"", "set_value": "give it in {where}", "name_in_record": "name it in record=",
     "name_in_samples": "name it in samples=", "give_step": "give step=", "use_doubles": "give precision=\"double\"",
+    "make_consistent": "let myriad.solve find them by make_consistent=True",
     "scale_tolerances": "give control=\"tolerance_per_instance\"",
     "smaller_parts": "integrate the sweep in smaller parts", "fewer_instances": "integrate the sweep in {parts}",
     "smaller_chunk": "make chunk= smaller", "new_folder": "give another store= and a smaller chunk="}

@@ -23,7 +23,7 @@ def with_tangents(model: Model | CppModel, vectors: int = 1) -> WithTangents:
     """The model with tangent vectors: one gives the largest Lyapunov exponent, as many as there are states the full
     spectrum. They are orthonormalised at the end of every phase, and their growth is summed from phase
     `transient_phases` on, a shared integer that is 0 unless the sweep sets it: `exponents(run)` has the result. Phases
-    should be short enough (docs/writing_a_model.md). Explicit methods only."""
+    should be short enough (docs/writing_a_model.md)."""
     return WithTangents(model, vectors)
 
 
@@ -36,6 +36,9 @@ class WithTangents(ComponentNames):
         n = len(model.states)
         if isinstance(vectors, bool) or not isinstance(vectors, (int, np.integer)) or not 1 <= vectors <= n:
             raise Error(f"{vectors!r} tangent vectors{at(line)}: a model of {n} states has from 1 to {n}")
+        if getattr(model, "mass_matrix", None) is not None:
+            raise Error(f"the model has a mass matrix{at(line)}, with which tangents of algebraic states would not be "
+                        "independent: solve its algebraic equations in the others")
         self.model, self.vectors, self.name = model, int(vectors), model.name
         numbers = range(1, self.vectors + 1)
         tangents = [f"{state}_tangent_{i}" for i in numbers for state in model.states]

@@ -155,6 +155,8 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
         raise _refuse("it has tangents" if hasattr(model, "vectors") else "it is written in C++")
     if method not in methods:
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
+    if model.mass_matrix is not None:
+        raise _refuse("it has a mass matrix")
     if model.stops:
         raise _refuse("it has stop times")
     if model.summaries:
@@ -190,7 +192,8 @@ def give_model(library: _core.Library, model: AnyModel, components: Components, 
         return
     for _ in range(4):  # no hooks
         writer.function([], [])
-    library.give_model(_core.Tape(writer.functions, writer.codes, writer.values, writer.registers), method)
+    mass = [] if model.mass_matrix is None or model.initialise else model.mass_matrix.ravel().tolist()
+    library.give_model(_core.Tape(writer.functions, writer.codes, writer.values, writer.registers), method, mass)
 
 
 _known: weakref.WeakKeyDictionary[Any, Any] = weakref.WeakKeyDictionary()

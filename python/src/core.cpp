@@ -29,6 +29,7 @@
 #include "myriad/host/options/option_table.hpp"
 #include "myriad/host/threads/parallel.hpp"
 #include "myriad/kernel/methods/method_list.hpp"
+#include "myriad/kernel/stepper/sparse_lu.hpp"
 #include "myriad/version.hpp"
 #include "resident.hpp"
 #include "run.hpp"
@@ -298,6 +299,7 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
         .def_ro("device", &all::device)
         .def_ro("instruction_set", &all::instruction_set)
         .def_ro("kernel_seconds", &all::kernel_seconds)
+        .def_ro("matrix", &all::matrix)
         .def_prop_ro("registers", [](const all& r) { return r.kernel.registers; })
         .def_prop_ro("block_size", [](const all& r) { return r.kernel.block_size; })
         .def_ro("notes", &all::notes)
@@ -312,6 +314,7 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
             text << without_notes;
             return text.str();
         });
+    m.def("make_consistent", &make_consistent<R>, "kernel"_a, "ensemble"_a, nb::call_guard<nb::gil_scoped_release>());
     m.def("solve", &solve_from_python<R>, "kernels"_a, "ensemble"_a, "options"_a, "progress"_a.none() = nb::none());
 }
 
@@ -331,6 +334,21 @@ nb::list component_kinds() {
     MYRIAD_COMPONENT_KINDS(MYRIAD_ADD_KIND)
 #undef MYRIAD_ADD_KIND
     return all;
+}
+
+/// The number of entries in the factors of a matrix with the given entries, {row, column}, and a full diagonal, in the
+/// order of pivots that kernels have; -1 if they would factorise it as a dense one.
+int factor_entries(int states, const std::vector<std::pair<int, int>>& entries) {
+    constexpr int most = 128;
+    if (states > most) return -1;
+    std::vector<jacobian_entry> all;
+    for (const auto& [row, column] : entries) {
+        require(row >= 0 && row < states && column >= 0 && column < states, "an entry is beyond the states");
+        all.push_back({row, column});
+    }
+    // Rows beyond the states have no entries, and so no part in the factors.
+    const detail::symbolic_lu<most> found(all, static_cast<int>(all.size()));
+    return found.updates <= detail::most_updates ? states + found.lower + found.upper : -1;
 }
 
 /// The options of a struct, by their names: choices as text, tolerances and numbers of components as lists.
@@ -432,6 +450,13 @@ NB_MODULE(_core, m) {
         for (int s = 0; s < status_count; ++s) names.emplace_back(name_of(static_cast<status>(s)));
         return names;
     });
+    nb::class_<matrix_facts>(m, "MatrixFacts")
+        .def_ro("states", &matrix_facts::states)
+        .def_ro("jacobian_entries", &matrix_facts::jacobian_entries)
+        .def_ro("factor_entries", &matrix_facts::factor_entries)
+        .def_ro("jacobian_evaluations", &matrix_facts::jacobian_evaluations)
+        .def_ro("lacks_pattern", &matrix_facts::lacks_pattern);
+    m.def("factor_entries", &factor_entries, "states"_a, "entries"_a);
     m.def("check_device", [](const std::string& name) { return device::parse(name).name(); });
     m.def("gpu", [](int device) {
         const gpu_facts facts = facts_of_gpu(device);
@@ -479,7 +504,7 @@ NB_MODULE(_core, m) {
     });
     nb::class_<library>(m, "Library")
         .def(nb::init<const std::string&>())
-        .def("give_model", &library::give_model, "tape"_a, "method"_a)
+        .def("give_model", &library::give_model, "tape"_a, "method"_a, "mass_matrix"_a)
         .def(nb::init<const std::string&, const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
         .def("__init__", [](library* self, const nb::bytes& image,
                             int device) { new (self) library(std::string(image.c_str(), image.size()), device); })

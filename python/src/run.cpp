@@ -7,6 +7,8 @@
 
 #include <dlfcn.h>
 
+#include "myriad/host/checks/consistency.hpp"
+#include "myriad/host/report/matrix_note.hpp"
 #include "myriad/host/report/stability.hpp"
 #include "myriad/host/report/stiffness.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
@@ -57,10 +59,12 @@ constexpr auto limit_of() -> double (*)() {
 
 }  // namespace
 
-void library::give_model(std::shared_ptr<const interpreted> model, const std::string& method) {
+void library::give_model(std::shared_ptr<const interpreted> model, const std::string& method,
+                         std::vector<double> mass_matrix) {
     const kernel_library& some = interpreter(interpreted_methods().front(), interpreter_sizes().front());
     if (!host::cpu_has(static_cast<openmp::instruction_set>(some.instruction_set))) return;
     model_ = std::move(model);
+    mass_matrix_ = std::move(mass_matrix);
 #define MYRIAD_TAKE_LIMIT(name) \
     if (method == #name) stability_limit_ = limit_of<name>();
     MYRIAD_METHODS(MYRIAD_TAKE_LIMIT)
@@ -119,6 +123,10 @@ host::called_model<R> called_for(const library& kernel, const named_shape& shape
         made.functions.rhs = of_tape.rhs;
         made.functions.stability_limit = of_tape.stability_limit;
         made.functions.event_resolution = of_tape.event_resolution;
+        if (kernel.mass_matrix() != nullptr) {
+            made.functions.mass_matrix = kernel.mass_matrix();
+            made.functions.linearise = of_tape.linearise;
+        }
     }
     made.enter_thread = [&kernel] { current_tape = kernel.model(); };  // what the functions interpret
     if (is_for_gpu) {
@@ -139,6 +147,19 @@ template host::called_model<double> called_for(const library&, const named_shape
 template host::called_model<float> called_for(const library&, const named_shape&, const device&, const options&);
 
 template <class R>
+void make_consistent(const library& kernel, ensemble<R>& instances) {
+    const detail::default_arithmetic here;
+    const auto which = kernel.gpu() != nullptr ? device::parse("cuda") : device::parse("cpu");
+    const host::called_model<R> model = called_for<R>(kernel, *instances.shape, which, {});
+    require(model.functions.linearise != nullptr,
+            "make_consistent is for models with a mass matrix and without `initialise`: leave it out");
+    if (model.enter_thread) model.enter_thread();
+    host::project_initial_states(instances.data, model.functions);
+}
+template void make_consistent(const library&, ensemble<double>&);
+template void make_consistent(const library&, ensemble<float>&);
+
+template <class R>
 std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<R>& instances, const options& o,
                                  results_are results) {
     const detail::default_arithmetic here;
@@ -149,7 +170,10 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     for (const placed_kernel& k : on) {
         models.push_back(called_for<R>(*k.kernel, *instances.shape, k.where, o));
         models.back().check_kernel(k.where);
-        if (!instances.on_device.empty()) models.back().functions.event_resolution = nullptr;  // inputs are not here
+        if (!instances.on_device.empty()) {  // inputs are not here
+            models.back().functions.event_resolution = nullptr;
+            models.back().functions.linearise = nullptr;
+        }
         require(k.where.which() == where.which(), "the devices are of different kinds");
     }
     require(on_gpu || on.size() == 1, "the CPU is named several times");
@@ -194,6 +218,7 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
         for (int k = 0; k < tangents.n_vectors; ++k) bring(data.accessory.component(tangents.first_growth + k));
     }
     call.add_notes(*result, result->interrupted);
+    host::note_matrix<R>(*result, on.front().kernel->facts().matrix);
     return result;
 }
 template std::unique_ptr<report<double>> solve(const std::vector<placed_kernel>&, ensemble<double>&, const options&,

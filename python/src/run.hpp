@@ -40,8 +40,11 @@ public:
     /// What an interpreter runs, or the model of a GPU's program for checks and notes; null where there is none.
     const tape* model() const { return model_ ? &model_->get() : nullptr; }
     /// Gives checks and notes of a GPU's program the model's functions, unless this CPU cannot run tapes. `method`: as
-    /// in `facts`.
-    void give_model(std::shared_ptr<const interpreted> model, const std::string& method);
+    /// in `facts`; `mass_matrix`: row by row, or empty.
+    void give_model(std::shared_ptr<const interpreted> model, const std::string& method,
+                    std::vector<double> mass_matrix);
+    /// Null where there is none.
+    const double* mass_matrix() const { return mass_matrix_.empty() ? nullptr : mass_matrix_.data(); }
     /// See `instance_functions`.
     double (*stability_limit() const)() { return stability_limit_; }
     /// The program for GPUs; null for the CPU's kernels.
@@ -50,6 +53,7 @@ public:
 private:
     kernel_library cpu_{};
     std::shared_ptr<const interpreted> model_;
+    std::vector<double> mass_matrix_;
     double (*stability_limit_)() = nullptr;
     device_program* gpu_ = nullptr;  // never destroyed
 };
@@ -116,6 +120,10 @@ struct interruption {};
 template <class R>
 host::called_model<R> called_for(const library& kernel, const named_shape& shape, const device& where,
                                  const options& o);
+
+/// Changes initial states so that they satisfy the algebraic equations of a model with a mass matrix. Throws `error`.
+template <class R>
+void make_consistent(const library& kernel, ensemble<R>& instances);
 
 /// Where the results of a GPU are after a call.
 enum class results_are {

@@ -68,6 +68,19 @@ void write_resolution(const detail::argument_head<R>& a, std::int64_t i, R* fine
         finest[j] = host::event_resolution(g[static_cast<std::size_t>(j)], g0[static_cast<std::size_t>(j)]);
 }
 
+template <class R>
+void linearise(const detail::argument_head<R>& a, std::int64_t i, R t, const R* state, R* slopes, R* jacobian) {
+    const int n = results_of(current_tape->rhs);
+    const inputs_of_instance<R> p(a, i);
+    evaluate(current_tape->rhs, t, state, p, slopes);
+    const auto y = zeros<dual<R>>(n), f = zeros<dual<R>>(n);
+    for (int j = 0; j < n; ++j) {
+        for (int c = 0; c < n; ++c) y[static_cast<std::size_t>(c)] = dual<R>(state[c], R(c == j ? 1 : 0));
+        evaluate(current_tape->rhs, dual<R>(t), y.get(), p, f.get());
+        for (int c = 0; c < n; ++c) jacobian[c * n + j] = f[static_cast<std::size_t>(c)].derivative;
+    }
+}
+
 }  // namespace
 
 template <class R>
@@ -79,6 +92,7 @@ detail::instance_functions<R> functions_of_tape(const tape& model, double (*stab
         };
         all.stability_limit = stability_limit;
     }
+    all.linearise = &linearise<R>;
     // not before `initialise`
     if (!model.events.empty() && model.initialise.empty()) all.event_resolution = &write_resolution<R>;
     return all;

@@ -82,6 +82,18 @@ def test_the_pattern_has_the_entries_that_may_differ_from_zero():
     assert "jacobian" not in small.cpp()  # dense factors stay in registers
 
 
+def test_the_entries_of_the_factors_are_those_of_the_kernel():
+    """Of a ring they have more than the Jacobian."""
+    states = my.states([f"s{i}" for i in range(12)])
+    ring = my.model({s: states[i - 1] * states[(i + 1) % 12] - s for i, s in enumerate(states)})
+    run = my.solve(ring, start={s: 1.0 for s in states}, time=(0, 1), method="rodas_5p")
+    assert run.report.matrix.jacobian_entries == 36 < run.report.matrix.factor_entries < 144
+    assert (f"36 of 144 entries of the Jacobian may differ from zero; the factors of stiff methods have "
+            f"{run.report.matrix.factor_entries}\n") in ring.cpp()
+    explicit = my.solve(ring, start={s: 1.0 for s in states}, time=(0, 1))
+    assert explicit.report.matrix.states == 0 and "Jacobian" not in str(explicit.report)
+
+
 def test_a_sparse_network_takes_the_steps_of_the_dense_one():
     model, states = chain(9)
     text = model.cpp()
@@ -95,6 +107,12 @@ def test_a_sparse_network_takes_the_steps_of_the_dense_one():
                      start={f"s{i}": 0.5 for i in range(9)}, time=(0.0, 10.0), method="rodas_5p", rtol=1e-7, atol=1e-9)
             for source in (text, dense)]
     assert runs[0].report.accepted_steps == runs[1].report.accepted_steps
+    written, found = (run.report.matrix for run in runs)
+    assert (written.states, written.jacobian_entries, written.factor_entries) == (9, 17, 17)
+    assert (found.jacobian_entries, found.factor_entries) == (17, 17)
+    assert written.jacobian_evaluations == 0 and found.jacobian_evaluations == 2
+    assert "// 17 of 81 entries of the Jacobian may differ from zero; the factors of stiff methods have 17" in text
+    assert "of 81 entries of the Jacobian 17 may differ from zero; its factors have 17" in str(runs[0].report)
     for i in range(9):
         # the Jacobians differ by rounding alone, and the chain damps all differences
         np.testing.assert_allclose(runs[0][f"s{i}"], runs[1][f"s{i}"], rtol=1e-9)

@@ -25,7 +25,22 @@ def test_exponents_of_linear_equations_are_their_eigenvalues():
     np.testing.assert_allclose(my.exponents(run), [[-1, -3], [-2, -3]], atol=1e-8)
 
 
+def test_stiff_methods_take_tangents_of_networks():
+    """A chain of decays at rates of 1 to 1e5: the exponents of the two slowest ones. With eight states the model has a
+    Jacobian and a pattern of its own, which hold for the states without tangents."""
+    c = my.states([f"c{i}" for i in range(8)])
+    rates = [1, 3, 10, 1e2, 1e3, 1e4, 1e4, 1e5]
+    chain = my.model({s: -rate * s + (before * before if i else 0) for i, (s, before, rate) in
+                      enumerate(zip(c, [c[0], *c[:-1]], rates))})
+    run = my.solve(my.with_tangents(chain, 2), {"transient_phases": 20}, start={s: 1 for s in c}, time=(0, 0.5),
+                   phases=50, method="rodas_5p", rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(my.exponents(run), [[-1, -3]], atol=1e-5)
+    assert run.report.matrix.states == 24
+    assert run.report.matrix.factor_entries < 24 * 24 / 3
+
+
 @pytest.mark.parametrize("make, message", [
+    (lambda: my.with_tangents(my.model({x: -x, v: x - v}, mass_matrix={v: 0})), "has a mass matrix"),
     (lambda: my.with_tangents(decay, 3), "a model of 2 states has from 1 to 2"),
     (lambda: my.with_tangents(decay, 0), "from 1 to 2"),
     (lambda: my.with_tangents(my.model({my.state("growth_1"): 1})), "component 'growth_1'"),

@@ -10,13 +10,16 @@ Exit status 1 if a changed loop passes, or the unchanged one fails.
 """
 import argparse
 import concurrent.futures
+import math
 import os
 import pathlib
+import resource
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
-import time
+import threading
 
 # name: (header, text, replacement, the problem that shows it). The text must occur exactly once.
 MUTATIONS = {
@@ -59,8 +62,11 @@ MUTATIONS = {
                                         "loop::template range_backwards<0, n_state<Model>>(",
                                         "loop::template range<0, n_state<Model>>(", "hires"),
 }
-DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_accepted"]
-SECONDS = 120  # so that an endless loop is detected too
+DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_accepted",
+           "entry_left_out_of_the_pattern", "factors_solved_in_another_order"]
+# An endless loop, or one of tiny steps, is detected too: by this many times the CPU time of the unchanged one, and
+# after so many seconds at the latest.
+MOST_TIMES, SECONDS = 8, 120
 
 
 def stale_mutations(source):
@@ -85,8 +91,8 @@ def prepare(options, name):
     return folder
 
 
-def examine(options, name, problems):
-    """Builds and runs; returns (is the verdict right, message)."""
+def build_program(options, name, problems):
+    """Builds the validation of some problems; returns what went wrong, or None."""
     include = prepare(options, name)
     build = options.work / (name or "unchanged")
     build.mkdir(parents=True, exist_ok=True)
@@ -102,26 +108,41 @@ def examine(options, name, problems):
             "-DMYRIAD_SCALAR_LANES", "-O0", "-c", str(kernels), "-o", objects[-1]]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 0:
-            return False, f"{name}: does not compile\n{done.stderr[-2000:]}"
-    program = str(build / "validate")
-    link = shlex.split(options.compile) + objects + [str(options.host)] + shlex.split(options.link) + ["-o", program]
+            return f"{name}: does not compile\n{done.stderr[-2000:]}"
+    link = shlex.split(options.compile) + objects + [str(options.host)] + shlex.split(options.link)
+    link += ["-o", str(build / "validate")]
     done = subprocess.run(link, capture_output=True, text=True)
-    if done.returncode != 0:
-        return False, f"{name}: does not link\n{done.stderr[-2000:]}"
-    started = time.monotonic()
-    try:
-        done = subprocess.run([program, "--quick", "--problems", ",".join(problems), "--output", str(build)],
-                              capture_output=True, text=True, timeout=SECONDS,
-                              env={**os.environ, "OMP_NUM_THREADS": "1"})
-    except subprocess.TimeoutExpired:
-        return name is not None, f"{name or 'unchanged'}: did not end"
-    missed = [line for line in done.stdout.splitlines() if line.startswith("MISSED")]
-    seconds = time.monotonic() - started
-    if name is None:
-        output = done.stdout[-2000:] if done.returncode else ""
-        return done.returncode == 0, f"unchanged: exit status {done.returncode} after {seconds:.0f} s\n{output}"
-    first = missed[0][:150] if missed else done.stderr[-300:]
-    return done.returncode == 1, f"{name}: exit status {done.returncode}, {len(missed)} bounds missed: {first}"
+    return f"{name}: does not link\n{done.stderr[-2000:]}" if done.returncode != 0 else None
+
+
+def run(options, name, problems, limit):
+    """Runs the validation for `limit` seconds of CPU time at the most; returns its exit status, or None if it was
+    stopped, what it wrote, and its CPU seconds."""
+    build = options.work / (name or "unchanged")
+    said = build / "said.txt"
+    with said.open("w") as output:
+        process = subprocess.Popen(
+            [str(build / "validate"), "--quick", "--problems", ",".join(problems), "--output", str(build)],
+            stdout=output, stderr=output, env={**os.environ, "OMP_NUM_THREADS": "1"},
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit)))
+        stop = threading.Timer(SECONDS, process.kill)
+        stop.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        stop.cancel()
+    process.returncode = os.waitstatus_to_exitcode(status)
+    was_stopped = process.returncode in (-signal.SIGXCPU, -signal.SIGKILL)
+    seconds = usage.ru_utime + usage.ru_stime
+    return None if was_stopped else process.returncode, said.read_text(), seconds
+
+
+def verdict(options, name, problems, limit):
+    """Runs a changed loop; returns (is the verdict right, message)."""
+    status, said, seconds = run(options, name, problems, limit)
+    if status is None:
+        return True, f"{name}: did not end within {seconds:.0f} s of CPU time"
+    missed = [line for line in said.splitlines() if line.startswith("MISSED")]
+    first = missed[0][:150] if missed else said[-300:]
+    return status == 1, f"{name}: exit status {status}, {len(missed)} bounds missed: {first}"
 
 
 def main():
@@ -144,7 +165,15 @@ def main():
     examined = {name: [MUTATIONS[name][-1]] for name in names}
     examined[None] = sorted({problem for problems in examined.values() for problem in problems})
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for right, text in pool.map(lambda name: examine(options, name, examined[name]), [None] + names):
+        broken = pool.map(lambda name: build_program(options, name, examined[name]), examined)
+        for message in filter(None, broken):
+            parser.exit(1, f"WRONG: {message}\n")
+        status, said, seconds = run(options, None, examined[None], SECONDS)
+        print(f"{'WRONG' if status else 'right'}: unchanged: exit status {status} after {seconds:.1f} s of CPU time",
+              said[-2000:] if status else "", flush=True)
+        wrong += status != 0
+        limit = math.ceil(MOST_TIMES * seconds)
+        for right, text in pool.map(lambda name: verdict(options, name, examined[name], limit), names):
             print(("right: " if right else "WRONG: ") + text, flush=True)
             wrong += not right
     print(f"{len(names)} changed loops, {wrong} verdicts wrong")

@@ -126,7 +126,7 @@ bool algebraic_equations::solve(std::vector<double>& change) const {
     return true;
 }
 
-std::string algebraic_equations::text(int k) const {
+std::string algebraic_equations::text(int k, const std::function<std::string(int)>& name_of) const {
     const auto n = static_cast<std::size_t>(of.n);
     std::ostringstream out;
     out << "0 =";
@@ -136,7 +136,7 @@ std::string algebraic_equations::text(int k) const {
         if (v == 0) continue;
         out << (v < 0 ? " - " : first ? " " : " + ");
         if (std::abs(v) != 1) out << std::abs(v) << ' ';
-        out << "f_" << i;
+        out << "f_" << name_of(static_cast<int>(i));
         first = false;
     }
     return out.str();

@@ -257,6 +257,23 @@ void ensemble_data<R>::remember_ended() {
     });
 }
 
+template <class R>
+detail::argument_head<R> inputs_in(ensemble_data<R>& data) {
+    detail::argument_head<R> all{};
+    all.size = data.size;
+    all.first_index = data.first_index;
+    using arrays = typename ensemble_data<R>::arrays;
+    for_each_instance_array<R>(
+        *data.shape, [](auto&&, auto, auto*& pointer, auto& array) { pointer = array.data(); }, all,
+        static_cast<arrays&>(data));
+    all.common_t_begin = data.common_begin;
+    all.common_t_end = data.common_end;
+    all.shared = {data.shared.data(), data.shared_integer.data()};
+    return all;
+}
+template detail::argument_head<double> inputs_in(ensemble_data<double>&);
+template detail::argument_head<float> inputs_in(ensemble_data<float>&);
+
 void refuse_pinning(const memory_need& need, const error& why) {
     throw error(message("an ensemble that takes ", bytes_text(need.bytes()), " or more was not pinned: ", why.what()));
 }

@@ -50,7 +50,10 @@ std::ostream& print(std::ostream& stream, const report_of<R>& r) {
     }
     if (r.matrix.states > 0) {
         out << "of " << r.matrix.states * r.matrix.states << " entries of the Jacobian " << r.matrix.jacobian_entries
-            << " may differ from zero, and its factors have " << r.matrix.factor_entries << '\n';
+            << " may differ from zero";
+        if (r.matrix.jacobian_evaluations > 0)
+            out << ", found by " << r.matrix.jacobian_evaluations << " evaluations of rhs with dual numbers";
+        out << "; its factors have " << r.matrix.factor_entries << '\n';
     }
     if (r.first_failed >= 0) {
         out << "first failure: instance " << r.first_failed << " ended as " << name_of(r.first_status)

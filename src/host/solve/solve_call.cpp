@@ -8,6 +8,7 @@
 #include <limits>
 #include <mutex>
 
+#include "myriad/host/checks/consistency.hpp"
 #include "myriad/host/checks/event_tolerances.hpp"
 #include "myriad/host/chunks/chunked_solve.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
@@ -49,26 +50,6 @@ double called_model<R>::bytes_per_instance(const options& o) const {
     return need.bytes();
 }
 
-namespace {
-
-/// What the functions of a model need of an ensemble's arrays.
-template <class R>
-argument_head<R> inputs_in(ensemble_data<R>& data) {
-    argument_head<R> all{};
-    all.size = data.size;
-    all.first_index = data.first_index;
-    using arrays = typename ensemble_data<R>::arrays;
-    for_each_instance_array<R>(
-        *data.shape, [](auto&&, auto, auto*& pointer, auto& array) { pointer = array.data(); }, all,
-        static_cast<arrays&>(data));
-    all.common_t_begin = data.common_begin;
-    all.common_t_end = data.common_end;
-    all.shared = {data.shared.data(), data.shared_integer.data()};
-    return all;
-}
-
-}  // namespace
-
 template <class R>
 phases_left called_model<R>::check_uses(ensemble_data<R>& data, const options& o, std::int64_t count) const {
     check_ended(data, o, count);
@@ -78,14 +59,7 @@ phases_left called_model<R>::check_uses(ensemble_data<R>& data, const options& o
     if (enter_thread) enter_thread();
     check_event_tolerances<R>(data, o, count, {functions, inputs});
     if (functions.check_jacobian != nullptr) functions.check_jacobian(inputs, count);
-    if (functions.check_consistency != nullptr) {
-        std::vector<double> relative, absolute;
-        for (std::size_t c = 0; c < static_cast<std::size_t>(shape->n_state); ++c) {
-            relative.push_back(o.relative_tolerance[c]);
-            absolute.push_back(o.absolute_tolerance[c]);
-        }
-        functions.check_consistency(inputs, relative.data(), absolute.data(), count);
-    }
+    check_consistency<R>(data, o, count, {functions, inputs});
     return find_phases_left(data, o, count, may_end_early(o));
 }
 

@@ -223,3 +223,32 @@ TEST_CASE("the traits of a dual number are those of what it is made of") {
     STATIC_REQUIRE(std::is_same_v<decltype(2.0 * dual<float>()), dual<float>>);
     STATIC_REQUIRE(std::is_trivially_copyable_v<dual<double>>);
 }
+
+TEST_CASE("dual numbers of dual numbers have second derivatives") {
+    using twice = dual<dual<double>>;
+    // along one direction twice, and mixed with what is constant in the outer or in both derivatives
+    const auto f = [](auto x, auto t) {
+        using myriad::abs, myriad::copysign, myriad::exp, myriad::fma, myriad::log, myriad::max, myriad::min,
+            myriad::pow, myriad::powr, myriad::sin, myriad::sqrt, myriad::tanh;
+        return sin(x) * exp(2.0 * x) / (1.0 + x * x) + pow(x, 3) + powr(x, 2.5) + tanh(x * t) * log(x) +
+               fma(x, t, 2.0) + sqrt(x) * t + abs(-x) + max(x, 0.1) - min(x, t) + myriad::cbrt(x) +
+               myriad::reciprocal(x) + myriad::asin(x * 0.5) + myriad::fmod(x, 0.5) + copysign(x, -1.0) + pow(x, t) +
+               myriad::hypot(x, 2.0) + myriad::atan2(x, t);
+    };
+    // of the sixth order, of first derivatives by dual numbers
+    const auto difference_of = [](auto slope) {
+        const double h = 1e-3;
+        return (45 * (slope(h) - slope(-h)) - 9 * (slope(2 * h) - slope(-2 * h)) + slope(3 * h) - slope(-3 * h)) /
+               (60 * h);
+    };
+    const double x = 0.7, t = 1.3;
+    const twice by_x = f(twice(dual<double>(x, 1), dual<double>(1, 0)), t);
+    CHECK(by_x.value.value == f(x, t));
+    CHECK(by_x.derivative.value == by_x.value.derivative);
+    const double curvature = difference_of([&](double h) { return f(dual<double>(x + h, 1), t).derivative; });
+    CHECK(std::abs(by_x.derivative.derivative - curvature) <= 1e-9 * std::abs(curvature));
+    // t with the inner derivative alone
+    const twice mixed = f(twice(dual<double>(x, 0), dual<double>(1, 0)), dual<double>(t, 1));
+    const double by_both = difference_of([&](double h) { return f(dual<double>(x, 1), t + h).derivative; });
+    CHECK(std::abs(mixed.derivative.derivative - by_both) <= 1e-9 * std::abs(by_both));
+}

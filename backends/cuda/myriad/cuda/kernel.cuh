@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "myriad/cuda/launch_traits.hpp"
+#include "myriad/cuda/local_memory.cuh"
 #include "myriad/kernel/core/stop_request.hpp"
 #include "myriad/kernel/integrator/integrate.hpp"
 
@@ -182,6 +183,9 @@ __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parame
 template <class Model, class Method, class R, shared_placement placement>
 __device__ __forceinline__ void integrate_thread(const launch_arguments<Model, R, placement>& arguments) {
     static_assert(is_laid_out<Model, R, placement>);
+    static_assert(bytes_of_step<Model, Method, R> <= most_local_memory,
+                  "a step of this method with so many states takes more than the 512 KiB of local memory that a thread "
+                  "of a GPU has: integrate on the CPU, by an explicit method, or declare a sparse jacobian_pattern");
     shared_parameters<R> shared = arguments.ensemble.shared;
     if constexpr (placement == shared_placement::constant_bank) shared = {arguments.shared, arguments.shared_integer};
     if constexpr (placement == shared_placement::shared_memory) shared = detail::stage_shared<Model, Method, R>(shared);

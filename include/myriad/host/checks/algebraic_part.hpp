@@ -2,6 +2,7 @@
 // The algebraic equations of a system with a singular mass matrix, of any model. Host code.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,8 @@ struct algebraic_equations {
     /// The change along the right vectors with which all residuals vanish; false if the equations do not determine it,
     /// as in a system of a higher index.
     bool solve(std::vector<double>& change) const;
-    /// Equation k as text, such as "0 = f_2".
-    std::string text(int k) const;
+    /// Equation k as text, such as "0 = f_z", with what a function calls the states.
+    std::string text(int k, const std::function<std::string(int)>& name_of) const;
 };
 
 }  // namespace myriad::host::inline MYRIAD_ABI

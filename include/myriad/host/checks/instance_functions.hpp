@@ -19,10 +19,10 @@ struct instance_functions {
     void (*event_resolution)(const argument_head<R>&, std::int64_t i, R* finest) = nullptr;
     /// Throws `error` if the model's own Jacobian, or its pattern, is wrong in some of the first `count` instances.
     void (*check_jacobian)(const argument_head<R>&, std::int64_t count) = nullptr;
-    /// Throws `error` if initial values do not satisfy the algebraic equations to within the tolerances, one of each
-    /// kind per state.
-    void (*check_consistency)(const argument_head<R>&, const double* relative, const double* absolute,
-                              std::int64_t count) = nullptr;
+    /// The mass matrix of a model that has one, row by row.
+    const double* mass_matrix = nullptr;
+    /// The right-hand side of instance i at time t in state y, and its derivatives by the states, row by row.
+    void (*linearise)(const argument_head<R>&, std::int64_t i, R t, const R* y, R* slopes, R* jacobian) = nullptr;
     /// Calls the model's `generate` for instances [begin, end).
     void (*generate)(const argument_head<R>&, std::uint64_t seed, std::int64_t begin, std::int64_t end) = nullptr;
 };

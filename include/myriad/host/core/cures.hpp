@@ -19,7 +19,8 @@
     of(smaller_parts, "integrate the ensemble in smaller parts") \
     of(fewer_instances, "integrate fewer instances at a time: a smaller options::chunk_size or solver capacity") \
     of(smaller_chunk, "make chunk smaller") \
-    of(new_folder, "start the study in a new folder with a smaller chunk")
+    of(new_folder, "start the study in a new folder with a smaller chunk") \
+    of(make_consistent, "call myriad::make_consistent(ensemble)")
 // clang-format on
 
 namespace myriad::host::inline MYRIAD_ABI {

@@ -17,6 +17,7 @@
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/state/instance_arrays.hpp"
+#include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::host::inline MYRIAD_ABI {
 
@@ -116,6 +117,10 @@ private:
     component_array<T>& on_demand(component_array<T>& array, T value) const;
     digest inputs_digest(std::int64_t i) const;
 };
+
+/// What the functions of a model need of an ensemble's arrays.
+template <class R>
+detail::argument_head<R> inputs_in(ensemble_data<R>& data);
 
 /// Throws `error`: an ensemble that needs that much memory was not pinned.
 [[noreturn]] void refuse_pinning(const memory_need& need, const error& why);

@@ -6,6 +6,7 @@
 #include "myriad/host/checks/event_resolution.hpp"
 #include "myriad/host/checks/instance_functions.hpp"
 #include "myriad/host/checks/instance_inputs.hpp"
+#include "myriad/host/checks/linearisation.hpp"
 #include "myriad/host/report/stability.hpp"
 #include "myriad/kernel/study/generator.hpp"
 
@@ -29,6 +30,7 @@ constexpr instance_functions<R> functions_of() {
                                                    detail::inputs_of<Model>(a, i), finest);
         };
     }
+    if constexpr (!has_initialise<Model>) detail::add_linearisation<Model>(all);
     if constexpr (generates<Model, R>) {
         all.generate = [](const argument_head<R>& a, std::uint64_t seed, std::int64_t begin, std::int64_t end) {
             for (std::int64_t i = begin; i < end; ++i) detail::generate_instance<Model, R>(a, a, a.shared, seed, i);

@@ -19,15 +19,9 @@
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/status.hpp"
+#include "myriad/kernel/model/matrix_facts.hpp"
 
 namespace myriad {
-
-/// The matrix that a stiff method factorises in every step; zeros for other methods.
-struct matrix_facts {
-    int states = 0;            ///< its rows and columns
-    int jacobian_entries = 0;  ///< derivatives that may differ from zero, as far as the compiler could find
-    int factor_entries = 0;    ///< numbers in its factors
-};
 
 /// How the instances ended, the first failure with its inputs, the work.
 template <class R>

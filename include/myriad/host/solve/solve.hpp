@@ -5,8 +5,8 @@
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"
-#include "myriad/host/checks/consistency.hpp"
 #include "myriad/host/checks/jacobian_check.hpp"
+#include "myriad/host/checks/make_consistent.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/options/option_checks.hpp"
 #include "myriad/host/options/options.hpp"
@@ -17,6 +17,7 @@
 #include "myriad/host/threads/default_arithmetic.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/model/facts_of.hpp"
+#include "myriad/kernel/stepper/matrix_facts_of.hpp"
 
 namespace myriad {
 namespace host::inline MYRIAD_ABI {
@@ -40,7 +41,6 @@ called_model<R> called() {
     called_model<R> made{&shape_of<Model>, &components_of<Model>, detail::facts_of<Model, Method, R>,
                          detail::functions_of<Model, Method, R>()};
     made.functions.check_jacobian = &check_jacobians<Model, Method, R>;
-    if constexpr (detail::has_mass_matrix<Model>) made.functions.check_consistency = &check_consistency<Model, R>;
     return made;
 }
 /// The same with the kernel for that device.
@@ -74,7 +74,7 @@ report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const
                              host::ensemble_access::samples(instances), result.records.data());
     call.integrate(result);
     call.add_notes(result);
-    host::note_matrix<Method>(result);
+    host::note_matrix<R>(result, detail::matrix_facts_of<Model, Method, R>);
     return result;
 }
 

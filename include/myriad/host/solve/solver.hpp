@@ -231,7 +231,7 @@ public:
         host::note_ended(report_, data(), count_);
         host::note_failures(report_, data(), options_, prepared_.arguments.max_steps, count_);
         if (model_.facts.adaptive()) host::note_raised_tolerances<R>(report_, options_);
-        host::note_matrix<Method>(report_);
+        host::note_matrix<R>(report_, detail::matrix_facts_of<Model, Method, R>);
         report_.device = where_.name();
         if (engine_) {
             report_.kernel = engine_->facts();

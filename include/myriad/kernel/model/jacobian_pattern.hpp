@@ -25,6 +25,18 @@ struct jacobian_entry {
 
 namespace myriad::detail {
 
+/// The model without the tangents that it may have.
+template <class Model>
+struct without_tangents_of {
+    using type = Model;
+};
+template <class Model>
+requires(n_tangent<Model> > 0) struct without_tangents_of<Model> {
+    using type = typename Model::original;
+};
+template <class Model>
+using original_of = typename without_tangents_of<Model>::type;
+
 /// Whether a model declares its Jacobian's pattern. One that a model with tangents inherits is for the states without
 /// tangents, and does not count.
 template <class Model>
@@ -133,7 +145,9 @@ inline constexpr slope_dependences<Model> slope_dependences_of = trace_slopes<Mo
 
 template <class Model>
 constexpr bool may_depend_on_time() {
-    if constexpr (autonomous<Model>) {
+    if constexpr (n_tangent < Model >> 0) {
+        return may_depend_on_time<original_of<Model>>();
+    } else if constexpr (autonomous<Model>) {
         return false;
     } else if constexpr (traceable<Model>) {
         for (const auto& slope : slope_dependences_of<Model>.of_slope)
@@ -151,7 +165,9 @@ inline constexpr bool depends_on_time = may_depend_on_time<Model>();
 enum class pattern_origin { none, declared, found };
 template <class Model>
 constexpr pattern_origin origin_of_pattern() {
-    if constexpr (has_jacobian_pattern<Model>) {
+    if constexpr (n_tangent < Model >> 0) {
+        return origin_of_pattern<original_of<Model>>();
+    } else if constexpr (has_jacobian_pattern<Model>) {
         return pattern_origin::declared;
     } else {
         return traceable<Model> ? pattern_origin::found : pattern_origin::none;
@@ -160,7 +176,9 @@ constexpr pattern_origin origin_of_pattern() {
 
 template <class Model>
 constexpr int n_jacobian_entry_of() {
-    if constexpr (origin_of_pattern<Model>() == pattern_origin::found) {
+    if constexpr (n_tangent < Model >> 0) {
+        return n_jacobian_entry_of<original_of<Model>>() * (1 + 2 * Model::n_vectors);
+    } else if constexpr (origin_of_pattern<Model>() == pattern_origin::found) {
         int count = 0;
         for (const auto& slope : slope_dependences_of<Model>.of_slope)
             for (int j = 0; j < n_state<Model>; ++j) count += slope.contains(j) ? 1 : 0;
@@ -173,14 +191,25 @@ constexpr int n_jacobian_entry_of() {
 template <class Model>
 inline constexpr int n_jacobian_entry = n_jacobian_entry_of<Model>();
 
-/// These entries: as declared, or row by row.
+/// These entries: as declared, or row by row. With tangents, v' = J v for each of them, the original model's J stands
+/// once for the states and once for each tangent, and a slope of a tangent depends on the states on which the slope of
+/// its component does.
 template <class Model>
 struct jacobian_entries {
     jacobian_entry entry[n_jacobian_entry<Model>]{};
 
     constexpr jacobian_entries() {
         int e = 0;
-        if constexpr (has_jacobian_pattern<Model>) {
+        if constexpr (n_tangent < Model >> 0) {
+            constexpr int n = Model::n_original;
+            for (const jacobian_entry& own : jacobian_entries<original_of<Model>>().entry) {
+                entry[e++] = own;
+                for (int v = 1; v <= Model::n_vectors; ++v) {
+                    entry[e++] = {v * n + own.row, own.column};
+                    entry[e++] = {v * n + own.row, v * n + own.column};
+                }
+            }
+        } else if constexpr (has_jacobian_pattern<Model>) {
             for (const jacobian_entry& declared : Model::jacobian_pattern) entry[e++] = declared;
         } else {
             for (int i = 0; i < n_state<Model>; ++i)

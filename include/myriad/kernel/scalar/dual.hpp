@@ -12,8 +12,8 @@
 
 namespace myriad::inline MYRIAD_TARGET {
 
-/// value + derivative * e with e * e = 0; S is double, float or a pack. Mixes with S and with plain numbers, which are
-/// constants. Comparisons use only the values.
+/// value + derivative * e with e * e = 0; S is double, float or a pack, or itself dual, which gives second derivatives.
+/// Mixes with S and with what S mixes with, which are constants. Comparisons use only the values.
 template <class S>
 struct dual {
     using value_type = real_of<S>;
@@ -73,15 +73,18 @@ struct scalar_traits<dual<S>> {
 };
 
 template <class S>
-inline constexpr int kind_rank<dual<S>> = 2;
+inline constexpr int kind_rank<dual<S>> = kind_rank<S> < 2 ? 2 : kind_rank<S> + 1;
 
 template <class A>
-inline constexpr bool is_dual = kind_rank<A> == 2;
+inline constexpr bool is_dual = kind_rank<A> >= 2;
 
 template <class A, class B>
 concept with_dual = (is_dual<A> || is_dual<B>)&&requires {
     typename common_kind_of<A, B>::type;
 };
+/// Whether A, beside the number B, is a constant: not dual, or dual of a lower rank.
+template <class A, class B>
+inline constexpr bool is_constant_beside = kind_rank<A> < kind_rank<B>;
 
 template <class D>
 struct dual_part;
@@ -89,13 +92,23 @@ template <class S>
 struct dual_part<dual<S>> {
     using type = S;
 };
+/// The kind of the numbers that a number with derivatives, or with second ones, consists of.
+template <class S>
+struct underlying_kind {
+    using type = S;
+};
+template <class S>
+struct underlying_kind<dual<S>> : underlying_kind<S> {};
+template <class S>
+using without_derivative = typename underlying_kind<S>::type;
+
 /// The S of the `dual<S>` that is the common type of A and B.
 template <class A, class B>
 using part_of = typename dual_part<common_kind<A, B>>::type;
 
 template <class S, class A>
 MYRIAD_FUNCTION S value_of(const A& a) {
-    if constexpr (is_dual<A>) {
+    if constexpr (std::is_same_v<A, dual<S>>) {
         return a.value;
     } else {
         return to_kind<S>(a);
@@ -113,9 +126,9 @@ template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator+(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
     const S value = detail::value_of<S>(a) + detail::value_of<S>(b);
-    if constexpr (!detail::is_dual<B>) {
+    if constexpr (detail::is_constant_beside<B, A>) {
         return dual<S>(value, a.derivative);
-    } else if constexpr (!detail::is_dual<A>) {
+    } else if constexpr (detail::is_constant_beside<A, B>) {
         return dual<S>(value, b.derivative);
     } else {
         return dual<S>(value, a.derivative + b.derivative);
@@ -126,9 +139,9 @@ template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator-(const A& a, const B& b) {
     using S = detail::part_of<A, B>;
     const S value = detail::value_of<S>(a) - detail::value_of<S>(b);
-    if constexpr (!detail::is_dual<B>) {
+    if constexpr (detail::is_constant_beside<B, A>) {
         return dual<S>(value, a.derivative);
-    } else if constexpr (!detail::is_dual<A>) {
+    } else if constexpr (detail::is_constant_beside<A, B>) {
         return dual<S>(value, -b.derivative);
     } else {
         return dual<S>(value, a.derivative - b.derivative);
@@ -140,9 +153,9 @@ requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator*(const A& a, cons
     using S = detail::part_of<A, B>;
     const S u = detail::value_of<S>(a);
     const S v = detail::value_of<S>(b);
-    if constexpr (!detail::is_dual<B>) {
+    if constexpr (detail::is_constant_beside<B, A>) {
         return dual<S>(u * v, a.derivative * v);
-    } else if constexpr (!detail::is_dual<A>) {
+    } else if constexpr (detail::is_constant_beside<A, B>) {
         return dual<S>(u * v, u * b.derivative);
     } else {
         return dual<S>(u * v, a.derivative * v + u * b.derivative);
@@ -154,9 +167,9 @@ requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator/(const A& a, cons
     using S = detail::part_of<A, B>;
     const S v = detail::value_of<S>(b);
     const S quotient = detail::value_of<S>(a) / v;
-    if constexpr (!detail::is_dual<B>) {
+    if constexpr (detail::is_constant_beside<B, A>) {
         return dual<S>(quotient, a.derivative / v);
-    } else if constexpr (!detail::is_dual<A>) {
+    } else if constexpr (detail::is_constant_beside<A, B>) {
         return dual<S>(quotient, -quotient * b.derivative / v);
     } else {
         return dual<S>(quotient, (a.derivative - quotient * b.derivative) / v);
@@ -268,9 +281,10 @@ struct functions<dual<S>> {
     }
     template <class B>
     static MYRIAD_FUNCTION D powr(const D& x, const B& exponent) {
-        const S y = to_kind<S>(exponent), one = constant(real(1));
+        using E = without_derivative<S>;
+        const E y = to_kind<E>(exponent), one(real(1));
         // here x^0 is 1, though powr(0, 0) is not
-        const S slope = select(y == one, one, y * f::powr(x.value, y - one));
+        const S slope = select(y == one, S(one), y * f::powr(x.value, y - one));
         return D(f::powr(x.value, y), slope * x.derivative);
     }
     template <class A>

@@ -38,7 +38,7 @@ MYRIAD_FUNCTION auto floor_mod(A a, B b) {
 template <class A, class B>
 requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION auto floor_divide(const A& a, const B& b) {
     using S = detail::common_kind<A, B>;
-    if constexpr (detail::kind_rank<S> == 2) {
+    if constexpr (detail::kind_rank<S> >= 2) {
         return S(floor_divide(detail::to_kind<S>(a).value, detail::to_kind<S>(b).value));  // without a derivative
     } else {
         using f = detail::functions<S>;

@@ -308,8 +308,8 @@ template <class A, class B>
 requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::common_kind<A, B> powr(const A& x,
                                                                                                      const B& y) {
     using S = detail::common_kind<A, B>;
-    static_assert(detail::kind_rank<B> != 2, "powr has no derivative by its exponent: use pow");
-    if constexpr (detail::kind_rank<A> == 2) {
+    static_assert(detail::kind_rank<B> < 2, "powr has no derivative by its exponent: use pow");
+    if constexpr (detail::kind_rank<A> >= 2) {
         return detail::functions<S>::powr(x, y);
     } else {
         return detail::functions<S>::powr(detail::to_kind<S>(x), detail::to_kind<S>(y));
@@ -331,9 +331,9 @@ requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION detail::co
             if (n > 1) factor = factor * factor;
         }
         return y < 0 ? one / result : result;
-    } else if constexpr (detail::kind_rank<A> == 2 && detail::kind_rank<B> != 2) {
+    } else if constexpr (detail::kind_rank<A> >= 2 && detail::kind_rank<B> < detail::kind_rank<A>) {
         return detail::functions<S>::pow_of_base(x, y);
-    } else if constexpr (detail::kind_rank<A> != 2 && detail::kind_rank<B> == 2) {
+    } else if constexpr (detail::kind_rank<B> >= 2 && detail::kind_rank<A> < detail::kind_rank<B>) {
         return detail::functions<S>::pow_of_exponent(x, y);
     } else {
         return detail::functions<S>::pow(detail::to_kind<S>(x), detail::to_kind<S>(y));

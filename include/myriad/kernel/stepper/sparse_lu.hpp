@@ -12,6 +12,9 @@
 
 namespace myriad::detail {
 
+/// Most updates for which a GPU's code is written out.
+inline constexpr int most_updates = 4096;
+
 /// The pattern of the factors of a matrix with the given entries and a full diagonal, and the order of its pivots: in
 /// each step the one of least Markowitz count, (entries of its row - 1) (entries of its column - 1), among those left
 /// (Markowitz, Management Science 3, 1957, 255; Duff, Erisman and Reid, Direct Methods for Sparse Matrices, 7.2). Of
@@ -51,6 +54,7 @@ struct symbolic_lu {
             lower += below[step].size();
             upper += right[step].size();
             updates += least;
+            if (updates > most_updates) return;  // the factors will be dense; a compiler may not have the patience
             for (int k = 0; k < n; ++k) {
                 if ((below[step].contains(k) || right[step].contains(k)) && depth[k] <= depth[best])
                     depth[k] = depth[best] + 1;
@@ -127,9 +131,6 @@ template <class Model>
 inline constexpr lu_tables<n_state<Model>, symbolic_lu_of<Model>.lower, symbolic_lu_of<Model>.upper,
                            symbolic_lu_of<Model>.updates, n_matrix_entry<Model>>
     lu_tables_of{symbolic_lu_of<Model>, matrix_entries_of<Model>};
-
-/// Most updates for which a GPU's code is written out.
-inline constexpr int most_updates = 4096;
 
 /// Whether no entry on the diagonal of a stiff method's matrix is always zero. With a mass matrix there may be one, if
 /// an algebraic equation does not contain the state of its own number.

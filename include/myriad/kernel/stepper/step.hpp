@@ -13,9 +13,9 @@ template <class Method, class Model, class S>
 MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                      const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
     if constexpr (rosenbrock_method<Method>) {
-        static_assert(n_tangent<Model> == 0,
-                      "stiff methods do not take with_tangents: their Jacobian would need second "
-                      "derivatives of rhs; use an explicit method");
+        static_assert(n_tangent<Model> == 0 || !has_mass_matrix<Model>,
+                      "with_tangents does not take a model with a mass_matrix, as tangents of algebraic states are not "
+                      "independent: solve its algebraic equations in rhs");
         static_assert(!has_mass_matrix<Model> || is_stiffly_accurate<Method>,
                       "the model has a mass_matrix, which this method does not take, as its last stage is not the "
                       "solution: use rodas_5p");
