@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import kinds
-from .components import Components, name_of, unknown
+from .components import Components, unknown
 from .core_options import per_state
 from .derivatives import derivatives
 from .errors import Error, at, users_line
-from .expression import Node, evaluate, symbols_of
+from .expression import Node, symbols_of
 from .extended import Extended
 from .statuses import status_names
 from .symbols import time
