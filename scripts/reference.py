@@ -49,6 +49,8 @@ PAGES = {
     "queue": ("Delayed actions", "`<myriad/action_queue.hpp>`.", ["kernel/model/action_queue.hpp"]),
     "tangent": ("Tangents and Lyapunov exponents", "`<myriad/tangent.hpp>`.",
                 ["kernel/model/tangent.hpp", "host/ensemble/exponents.hpp"]),
+    "sensitivity": ("Sensitivities", "`<myriad/sensitivity.hpp>`.",
+                    ["kernel/model/sensitivity.hpp", "host/ensemble/sensitivities.hpp"]),
     "study": ("Studies", "`<myriad/study.hpp>`, target `myriad::study`. Axes, what is kept, the run, results on disk.",
               ["study/study.hpp", "study/model_study.hpp", "study/axes.hpp", "study/reduction.hpp", "study/",
                "kernel/study/"]),

@@ -5,6 +5,7 @@
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/ensemble/exponents.hpp"
+#include "myriad/host/ensemble/sensitivities.hpp"
 #include "myriad/host/model/describe.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/progress.hpp"

@@ -11,14 +11,17 @@ from .axes import *  # noqa: F403
 from .cpp_model import CppModel as CppModel
 from .errors import Error as Error
 from .expression import *  # noqa: F403
+from .fit import *  # noqa: F403
 from .grid import *  # noqa: F403
 from .interpolate import *  # noqa: F403
+from .least_squares import *  # noqa: F403
 from .methods import controls as controls, methods as methods
 from .model import *  # noqa: F403
 from .options import (EventChoice as EventChoice, Options as Options, RecordChoice as RecordChoice,
                       SampleChoice as SampleChoice)
 from .run import Interrupted as Interrupted, Run as Run
 from .sbml import SbmlModel as SbmlModel, read_antimony as read_antimony, read_sbml as read_sbml
+from .sensitivities import *  # noqa: F403
 from .solve import solve as solve
 from .statuses import status_names as status_names
 from .study import Study as Study, study as study
@@ -34,7 +37,8 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
            "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "methods",
            "open_study", "plots", "read_antimony", "read_sbml", "read_xpp", "reduce", "solve", "status_names", "study",
            "verify",
-           *(name for part in ("axes", "expression", "grid", "interpolate", "model", "symbols", "table", "tangents")
+           *(name for part in ("axes", "expression", "fit", "grid", "interpolate", "least_squares", "model",
+                               "sensitivities", "symbols", "table", "tangents")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]

@@ -97,8 +97,8 @@ def make_options(components: Components, size: int, given: Options) -> tuple[_co
 
 def finish_options(made: _core.Options, given: Options, components: Components, n_state: int, n_event: int) -> None:
     """Sets tolerances and events, for so many states and events of the kernel."""
-    made.relative_tolerance = _per_state(given.rtol, components, "rtol", n_state)
-    made.absolute_tolerance = _per_state(given.atol, components, "atol", n_state)
+    made.relative_tolerance = per_state(given.rtol, components, "rtol", n_state)
+    made.absolute_tolerance = per_state(given.atol, components, "atol", n_state)
     _set_events(made, given.events, components, n_event)
 
 
@@ -109,7 +109,7 @@ def _choice(value: Any, name: str, choices: list[str]) -> str:
     return value
 
 
-def _per_state(value: Any, components: Components, name: str, count: int) -> list[float]:
+def per_state(value: Any, components: Components, name: str, count: int) -> list[float]:
     """One tolerance for all states, one for each in their order, or a dict by state; those that it leaves out get the
     default. For `count` states, of which those beyond the model's are not used."""
     if hasattr(value, "items"):

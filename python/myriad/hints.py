@@ -15,6 +15,7 @@ from .expression import Expression, Node
 if TYPE_CHECKING:
     from .cpp_model import CppModel
     from .model import Model
+    from .sensitivities import WithSensitivities
     from .tangents import WithTangents
 
 # A component: a symbol, as from `myriad.states`, or its name. Those of SymPy will do, and a mapping with keys of one
@@ -39,7 +40,7 @@ Names = Union[str, Expression, Iterable[Any]]
 # What a hook or an event of a model sets: targets, and the values that they get.
 Assignments = list[tuple[Node, Node]]
 # A model of any kind.
-AnyModel = Union["Model", "CppModel", "WithTangents"]
+AnyModel = Union["Model", "CppModel", "WithTangents", "WithSensitivities"]
 Path = Union[str, "os.PathLike[str]"]
 Array = npt.NDArray[Any]
 Direction = Literal["falling", "either", "rising", "none"]

@@ -15,6 +15,7 @@ from .errors import Error
 from .expression import evaluate, symbols_of
 from .grid import Sweep
 from .run_plots import Plots, html
+from .sensitivities import Sensitivities
 from .statements import in_words
 from .statuses import first_failure, status_names
 from .symbols import time
@@ -197,6 +198,14 @@ class Run(Mapping):
     def samples(self) -> dict[str, Array]:
         """The sampled states by name: one row per instance, one column per sample."""
         return {name: self._ensemble.samples(c) for name, c in self._sampled.items()}
+
+    @property
+    def sensitivity(self) -> Sensitivities:
+        """Derivatives of the results, if `sensitivities=` was given: `run.sensitivity[x, k]` has the shape of
+        `run[x]`, `run.sensitivity[x]` one more axis behind it, for all components that they are by."""
+        if not self._components.derivatives_by:
+            raise Error("the run has no sensitivities: give sensitivities= to solve, as in sensitivities=[k, x]")
+        return Sensitivities(self, self._components.derivatives_by)
 
     @property
     def device(self) -> DeviceResults:

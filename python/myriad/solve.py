@@ -23,6 +23,7 @@ from .methods import default, fixed_step, method_type
 from .options import Options, SolveArguments
 from .progress import ProgressDisplay
 from .run import Interrupted, Run
+from .sensitivities import WithSensitivities, note
 from .statements import with_event_names
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from .compiler import Kernel
-    from .hints import AnyModel, ByComponent, Precision, Progress, Values
+    from .hints import AnyModel, ByComponent, Precision, Progress, SomeComponents, Values
     from .methods import Control, Method
 
 
@@ -100,6 +101,11 @@ def _gather(components: Components, sweep: Sweep | ByComponent | None, start: By
         raise Error(f"'{first}' has {n} values and '{other}' has {m}: give one for each instance, or single numbers; "
                     "myriad.grid(...) combines all values with all")
     return given, domain, next(iter(lengths.values()), 1)
+
+
+def _names_given(components: Components, sweep: Sweep | ByComponent | None, start: ByComponent | None) -> set[str]:
+    """The components that a call gives values of."""
+    return {components.component(name) for values in (_sweep_values(sweep), start or {}) for name in values}
 
 
 def _fill(ensemble: Any, components: Components, given: Mapping[str, Any], domain: tuple[Any, Any],
@@ -209,7 +215,8 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
           control: Control | Sequence[Control] = (),
           options: Options | None = None, tolerance_scale: Values | None = None, size: int | None = None,
           precision: Precision = "double", device: str | Sequence[str] = "auto", interpreted: bool | None = None,
-          make_consistent: bool = False, progress: Progress = None, **others: Unpack[SolveArguments]) -> Run:
+          make_consistent: bool = False, progress: Progress = None, sensitivities: SomeComponents | None = None,
+          sensitivity_control: bool = True, **others: Unpack[SolveArguments]) -> Run:
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
     model             from `myriad.model(...)`
@@ -239,6 +246,10 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                       singular mass matrix, by Newton's method, in directions that leave M y as it is; otherwise values
                       that do not are refused
     progress          True for a bar, or a function of the numbers of instances done and of all
+    sensitivities     components that derivatives of the results are wanted by, as in `[k, x]`: initial states,
+                      parameters and shared values; `run.sensitivity[x, k]` are then the derivatives
+    sensitivity_control  whether their errors take part in choosing the steps; without, the solution is that of a call
+                      without sensitivities
 
     Raises `myriad.Error` if something is missing or does not fit, before any work. Ctrl-C raises
     `myriad.Interrupted`, whose `run` has what is done; instances that take more than half a second longer end as
@@ -258,8 +269,13 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
     chosen = default if method is None else method
+    if sensitivities is not None:
+        model = WithSensitivities(model, sensitivities)
     components = Components(model)
     given, domain, count = _gather(components, sweep, start, time, size)
+    if isinstance(model, WithSensitivities):
+        model.check_start(components, _names_given(components, sweep, start))
+        given_options = model.options(given_options, components, given, sensitivity_control)
     samples = given_options.samples is not None
     method_type(chosen, control, samples)  # refuses what does not exist
     if chosen in fixed_step and given_options.step is None:
@@ -302,6 +318,8 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
         display.close()
     run = Run(components, ensemble, report, kernel, sweep, _inputs(components, given), recorded, sampled,
               clock.perf_counter() - begin, core_options.record.from_phase, [no_gpu] if no_gpu else [])
+    if isinstance(model, WithSensitivities) and (undefined := note(run)) is not None:
+        run.report.notes.append(undefined)
     if failure is not None:
         if isinstance(failure, KeyboardInterrupt):
             raise Interrupted(run) from None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .errors import Error, at, users_line
-from .kinds import ComponentNames, names_of
+from .extended import Extended
 
 if TYPE_CHECKING:
     from .cpp_model import CppModel
@@ -27,49 +27,30 @@ def with_tangents(model: Model | CppModel, vectors: int = 1) -> WithTangents:
     return WithTangents(model, vectors)
 
 
-class WithTangents(ComponentNames):
+class WithTangents(Extended):
     """A model with tangent vectors. Component c of tangent i is the state `<c>_tangent_<i>`, and the growth of tangent
     i the accessory `growth_<i>`, counted from 1."""
 
     def __init__(self, model: Model | CppModel, vectors: int) -> None:
-        line = users_line()
         n = len(model.states)
         if isinstance(vectors, bool) or not isinstance(vectors, (int, np.integer)) or not 1 <= vectors <= n:
-            raise Error(f"{vectors!r} tangent vectors{at(line)}: a model of {n} states has from 1 to {n}")
+            raise Error(f"{vectors!r} tangent vectors{at(users_line())}: a model of {n} states has from 1 to {n}")
         if getattr(model, "mass_matrix", None) is not None:
-            raise Error(f"the model has a mass matrix{at(line)}, with which tangents of algebraic states would not be "
-                        "independent: solve its algebraic equations in the others")
-        self.model, self.vectors, self.name = model, int(vectors), model.name
+            raise Error(f"the model has a mass matrix{at(users_line())}, with which tangents of algebraic states would "
+                        "not be independent: solve its algebraic equations in the others")
+        self.vectors = int(vectors)
         numbers = range(1, self.vectors + 1)
         tangents = [f"{state}_tangent_{i}" for i in numbers for state in model.states]
-        self._growth = [f"growth_{i}" for i in numbers]
-        added = {"state": tangents, "shared_integer": ["transient_phases"],
-                 "accessory": [*self._growth, "time_summed", "phase_began"]}
-        names = {kind: [*known, *added.get(kind, ())] for kind, known in names_of(model).items()}
-        self._set_names(names)
-        self.events = model.events
-        self.generated, self.generator = model.generated, model.generator
-        self.generate = getattr(model, "generate", [])  # not of a model in C++
-        every = [name for of_kind in names.values() for name in of_kind]
-        twice = next((name for name in every if every.count(name) > 1), None)
-        if twice is not None:
-            raise Error(f"the model has a component '{twice}'{at(line)}, which is the name of one that tangents add: "
-                        "rename it")
+        growth = [f"growth_{i}" for i in numbers]
         # The same orthonormal vectors for all instances, columns of a reflection that no symmetry leaves invariant.
         # With the rounding of the C++ library's `initial_tangents`.
         golden = 0.6180339887498949 * np.arange(1, n + 1)
         mirror = 1 + golden - np.floor(golden)
         mirror /= np.sqrt(sum(mirror * mirror))
         start = np.eye(n) - 2 * mirror[:, None] * mirror
-        self.shared_values = getattr(model, "shared_values", {})
-        self.aliases, self.outputs = getattr(model, "aliases", {}), getattr(model, "outputs", {})
-        self.constants = getattr(model, "constants", {})
-        self.defaults = {**getattr(model, "defaults", self.shared_values), "transient_phases": 0,
-                         **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}
-
-    def cpp(self) -> str:
-        """The model and its tangents as the text of a C++ header."""
-        return self.source()[0]
+        super().__init__(model, {"state": tangents, "shared_integer": ["transient_phases"],
+                                 "accessory": [*growth, "time_summed", "phase_began"]},
+                         {"transient_phases": 0, **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}, "tangents")
 
     def source(self) -> tuple[str, str]:
         """The text that kernels are compiled from, and the name of its struct."""

@@ -152,7 +152,8 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
     """The interpreter of the core with the tape of a traced model. Raises `Error` if the model or the method is beyond
     it."""
     if not isinstance(model, Model):
-        raise _refuse("it has tangents" if hasattr(model, "vectors") else "it is written in C++")
+        raise _refuse("it has tangents" if hasattr(model, "vectors") else
+                      "it has sensitivities" if hasattr(model, "by") else "it is written in C++")
     if method not in methods:
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
     if model.mass_matrix is not None:

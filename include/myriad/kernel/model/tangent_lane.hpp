@@ -1,10 +1,66 @@
 // SPDX-License-Identifier: MIT
-// Tools of tangent dynamics beside the variational equations: hooks of a model called with dual numbers, and the QR
-// decomposition that keeps tangent vectors linearly independent.
+// Tools of tangents and sensitivities beside the variational equations: what neighbouring solutions differ in, hooks of
+// a model called with dual numbers, and the QR decomposition that keeps tangent vectors linearly independent.
 #pragma once
 
+#include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/model/hooks.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// Shared values of which one has a derivative; tables among them are constants.
+template <class Model, class S>
+struct moving_shared {
+    shared_values<Model, real_of<S>> all;
+    int moving;  ///< the one
+
+    MYRIAD_FUNCTION operator const real_of<S>*() const { return all; }
+    template <class I>
+    MYRIAD_FUNCTION dual<S> operator[](I i) const {
+        return dual<S>(S(all[i]), S(real_of<S>(static_cast<int>(i) == moving ? 1 : 0)));
+    }
+};
+/// The arguments of a model's functions with such values.
+template <class Model, class S>
+struct moving_inputs : inputs<Model, dual<S>> {
+    moving_shared<Model, S> shared;
+};
+template <class Model, class S>
+struct moving_shared_lane : lane<Model, dual<S>> {
+    moving_shared<Model, S> shared;
+    MYRIAD_FUNCTION moving_shared_lane(detail::lane_data<Model, dual<S>>& d, int moving)
+        : lane<Model, dual<S>>(d), shared{d.shared, moving} {}
+};
+
+}  // namespace myriad::inline MYRIAD_TARGET
+
+namespace myriad::detail {
+
+/// What a neighbouring solution differs in: its state alone, or a value of the model too.
+enum class moving : char { state, parameter, shared };
+struct moving_component {
+    moving kind;
+    int number;
+};
+
+/// Directions of the state alone, for which everything that hooks write outside the state is constant.
+template <int vectors>
+struct state_directions {
+    static constexpr int count = vectors;
+    static constexpr bool carries_accessories = false;  ///< whether accessories have derivatives
+    static constexpr bool keeps_times = false;          ///< whether what the times of events depend on is kept
+    template <int>
+    static constexpr moving_component at = {moving::state, 0};
+};
+
+/// Where the derivatives of accessories in direction i begin among the accessories.
+template <class Model>
+constexpr int first_moving_accessory(int i) {
+    return (1 + i) * n_accessory<Model>;
+}
+
+}  // namespace myriad::detail
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -52,16 +108,65 @@ MYRIAD_FUNCTION inputs<Model, S> inputs_in(const lane<W, S>& l) {
     return p;
 }
 
+/// The parameters and accessories of `from`, inputs or a lane of a model W that has additional accessories, with their
+/// derivatives in direction i.
+template <class Model, class Directions, int i, class S, class From>
+MYRIAD_FUNCTION vec<dual<S>, n_parameter<Model>> moving_parameters(const From& from) {
+    constexpr moving_component its = Directions::template at<i>;
+    vec<dual<S>, n_parameter<Model>> moved;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_parameter<Model>; ++c)
+        moved[c] = dual<S>(from.parameter[c], S(real_of<S>(its.kind == moving::parameter && its.number == c ? 1 : 0)));
+    return moved;
+}
+template <class Model, class Directions, int i, class S, class From>
+MYRIAD_FUNCTION vec<dual<S>, n_accessory<Model>> moving_accessories(const From& from) {
+    vec<dual<S>, n_accessory<Model>> moved;
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_accessory<Model>; ++c) {
+        moved[c] = dual<S>(from.accessory[c]);
+        if constexpr (Directions::carries_accessories)
+            moved[c].derivative = from.accessory[first_moving_accessory<Model>(i) + c];
+    }
+    return moved;
+}
+
+/// The inputs of Model in direction i, taken from inputs or a lane of W: as they are if nothing of them moves.
+template <class Model, class Directions, int i, class S, class From>
+MYRIAD_FUNCTION decltype(auto) inputs_along(const From& from) {
+    constexpr moving_component its = Directions::template at<i>;
+    constexpr bool accessories_move =
+        Directions::carries_accessories && n_accessory < Model >> 0 && !accessories_are_outputs<Model>;
+    if constexpr (its.kind == moving::state && !accessories_move) {
+        if constexpr (requires { from.h_next; }) {
+            return detail::inputs_in<Model>(from);
+        } else {
+            return static_cast<const From&>(from);
+        }
+    } else {
+        using given = std::conditional_t<its.kind == moving::shared, moving_inputs<Model, S>, inputs<Model, dual<S>>>;
+        given p;
+        p.parameter = detail::moving_parameters<Model, Directions, i, S>(from);
+        if constexpr (!accessories_are_outputs<Model>) {
+            p.accessory = detail::moving_accessories<Model, Directions, i, S>(from);
+            p.integer_accessory = from.integer_accessory;
+        }
+        if constexpr (its.kind == moving::shared) p.shared.moving = its.number;
+        static_cast<inputs<Model, dual<S>>&>(p).shared = from.shared.values;
+        if constexpr (its.kind == moving::shared) p.shared.all = from.shared.values;
+        p.shared_integer = from.shared_integer.values;
+        return p;
+    }
+}
+
 /// The lane of Model alone, in dual numbers: its state has the given direction as derivative, its time has dt, and
-/// everything else is constant.
-template <class Model, class W, class S>
+/// everything else moves as direction i says.
+template <class Model, class Directions, int i, class W, class S>
 MYRIAD_FUNCTION lane_data<Model, dual<S>> moving_lane(const lane<W, S>& l, const vec<S, n_state<Model>>& direction,
                                                       const S& dt) {
     lane_data<Model, dual<S>> d;
-    MYRIAD_UNROLL
-    for (int c = 0; c < n_parameter<Model>; ++c) d.parameter[c] = l.parameter[c];
-    MYRIAD_UNROLL
-    for (int c = 0; c < n_accessory<Model>; ++c) d.accessory[c] = l.accessory[c];
+    d.parameter = detail::moving_parameters<Model, Directions, i, S>(l);
+    d.accessory = detail::moving_accessories<Model, Directions, i, S>(l);
     d.integer_accessory = l.integer_accessory;
     d.shared = l.shared.values;
     d.shared_integer = l.shared_integer.values;
@@ -96,35 +201,42 @@ MYRIAD_FUNCTION void take_values(lane<W, S>& l, const lane_data<Model, dual<S>>&
     }
 }
 
-/// Calls `hook` with Model's own lane once for each of `count` directions, with the direction and its dt as derivatives
-/// of state and time, and returns the derivatives of the state after the hook. The values after the hook are the same
+/// Calls `hook` with Model's own lane once for each of the directions, with the direction and its dt as derivatives of
+/// state and time, and returns the derivatives of the state after the hook. The values after the hook are the same
 /// every time.
-template <class Model, int count, class W, class S, class Hook>
-MYRIAD_FUNCTION vec<S, count * n_state<Model>> move_through(lane<W, S>& l,
-                                                            const vec<S, count * n_state<Model>>& directions,
-                                                            const vec<S, count>& dt, Hook&& hook) {
-    constexpr int n = n_state<Model>;
+template <class Model, class Directions, class W, class S, class Hook>
+MYRIAD_FUNCTION vec<S, Directions::count * n_state<Model>> move_through(
+    lane<W, S>& l, const vec<S, Directions::count * n_state<Model>>& directions, const vec<S, Directions::count>& dt,
+    Hook&& hook) {
+    constexpr int n = n_state<Model>, count = Directions::count;
     vec<S, count * n> left;
     lane_data<Model, dual<S>> own;
-    MYRIAD_UNROLL
-    for (int i = 0; i < count; ++i) {
-        own = detail::moving_lane<Model>(l, part<n>(directions, i * n), dt[i]);
-        lane<Model, dual<S>> view(own);
-        hook(view);
+    static_for<0, count>([&](auto i) MYRIAD_LAMBDA {
+        constexpr moving_component its = Directions::template at<i.value>;
+        own = detail::moving_lane<Model, Directions, i.value>(l, part<n>(directions, i * n), dt[i]);
+        if constexpr (its.kind == moving::shared) {
+            moving_shared_lane<Model, S> view(own, its.number);
+            hook(view);
+        } else {
+            lane<Model, dual<S>> view(own);
+            hook(view);
+        }
         set_part(left, i * n, derivatives(own.y));
-    }
+        if constexpr (Directions::carries_accessories)
+            set_part(l.accessory, first_moving_accessory<Model>(i), derivatives(own.accessory));
+    });
     detail::take_values<Model>(l, own);
     return left;
 }
 
-/// The same for a hook called at given times, in the directions of the tangents after Model's state; updates them.
-template <class Model, int count, class W, class S, class Hook>
-MYRIAD_FUNCTION void move_tangents(lane<W, S>& l, Hook&& hook) {
-    constexpr int n = n_state<Model>;
+/// The same for a hook called at given times, in the directions after Model's state; updates them.
+template <class Model, class Directions, class W, class S, class Hook>
+MYRIAD_FUNCTION void move_directions(lane<W, S>& l, Hook&& hook) {
+    constexpr int n = n_state<Model>, count = Directions::count;
     vec<S, count> at_once;
     MYRIAD_UNROLL
     for (int i = 0; i < count; ++i) at_once[i] = S(real_of<S>(0));
-    set_part(l.y, n, detail::move_through<Model, count>(l, part<count * n>(l.y, n), at_once, hook));
+    set_part(l.y, n, detail::move_through<Model, Directions>(l, part<count * n>(l.y, n), at_once, hook));
 }
 
 /// Makes `count` vectors of n components, from v[from] on, orthonormal, and calls `stretch(i, length)` with the

@@ -10,6 +10,7 @@
 #include "myriad/model.hpp"
 #include "myriad/python/device_facts.hpp"
 #include "myriad/random.hpp"
+#include "myriad/sensitivity.hpp"
 #include "myriad/tangent.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {

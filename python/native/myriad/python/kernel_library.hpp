@@ -11,6 +11,7 @@
 #include "myriad/model.hpp"
 #include "myriad/openmp/packs.hpp"
 #include "myriad/random.hpp"
+#include "myriad/sensitivity.hpp"
 #include "myriad/tangent.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// Forward sensitivities: a model with the derivatives of its solution with respect to initial states, parameters and
+// shared values, by its variational equations in dual numbers.
+#pragma once
+
+#include "myriad/kernel/model/variations.hpp"
+
+namespace myriad::detail {
+
+/// The component that an enumerator of the model's names.
+template <class Model, auto component>
+constexpr moving_component moving_of() {
+    using E = std::remove_cv_t<decltype(component)>;
+    constexpr int number = static_cast<int>(component);
+    constexpr bool is_state = enumerates_state<Model, E>(), is_parameter = enumerates_parameter<Model, E>(),
+                   is_shared = enumerates_shared<Model, E>();
+    static_assert(is_state || is_parameter || is_shared,
+                  "with_sensitivities takes enumerators of the model's states, parameters and shared values: "
+                  "with_sensitivities<model, model::k, model::x>");
+    constexpr int count = is_state ? n_state<Model> : is_parameter ? n_parameter<Model> : n_shared<Model>;
+    static_assert(number >= 0 && number < count, "with_sensitivities names a component that the model does not have");
+    return {is_state ? moving::state : is_parameter ? moving::parameter : moving::shared, number};
+}
+
+/// What a model with sensitivities keeps among its accessories, behind those of the model.
+template <class Model, int directions>
+struct sensitivity_places {
+    /// The derivatives of the model's accessories come first.
+    static constexpr int time = first_moving_accessory<Model>(directions);
+    static constexpr int event_time = time + directions;
+    static constexpr int undefined = event_time + 1;
+    static constexpr int count = undefined + 1;
+};
+
+/// Directions along given components, in which accessories and times of events move too.
+template <class Model, auto... wrt>
+struct component_directions {
+    static constexpr int count = sizeof...(wrt);
+    static constexpr bool carries_accessories = true;
+    static constexpr bool keeps_times = true;
+    static constexpr moving_component all[] = {moving_of<Model, wrt>()...};
+    template <int i>
+    static constexpr moving_component at = all[i];
+    using places = sensitivity_places<Model, count>;
+
+    /// An action after an event, by `cross`, which returns false if it made something jump that has no derivative.
+    /// Keeps the time and its derivatives, as the phase may end here. What an action sets has no derivative if the time
+    /// of the event has none.
+    template <class R>
+    MYRIAD_FUNCTION static void cross_at_event(auto& wrapped, const vec<R, count>& dt, auto&& cross) {
+        wrapped.accessory[places::event_time] = wrapped.t;
+        MYRIAD_UNROLL
+        for (int i = 0; i < count; ++i) wrapped.accessory[places::time + i] = is_finite(dt[i]) ? dt[i] : nan_of<R>;
+        const auto before = wrapped.accessory;
+        bool defined = cross();
+        if (MYRIAD_UNLIKELY(!all_finite(dt))) {
+            for (int i = 0; i < count; ++i) {
+                if (is_finite(dt[i])) continue;
+                for (int a = 0; a < n_accessory<Model>; ++a) {
+                    const int own = first_moving_accessory<Model>(i) + a;
+                    if (wrapped.accessory[a] == before[a] && wrapped.accessory[own] == before[own]) continue;
+                    wrapped.accessory[own] = nan_of<R>;
+                    defined = false;
+                }
+            }
+        }
+        if (!defined) wrapped.accessory[places::undefined] += R(1);
+    }
+};
+
+}  // namespace myriad::detail
+
+namespace myriad {
+
+/// Model with the derivatives of its solution with respect to components of its own, named by their enumerators:
+/// initial states, parameters and shared values. Itself a model: `with_sensitivities<Model, Model::k, Model::x>` has,
+/// after the states of Model, `sensitivity(c, i)`, the derivative of state c by component i of the list, which `rhs`
+/// called with dual numbers determines; after the accessories of Model `accessory_sensitivity(a, i)`, their
+/// derivatives, and `time_sensitivity(i)`, that of the time at which the phase ended. They are derivatives of the
+/// numbers beside them: at a given time within a phase, and at its end too, unless an event ended it, whose time
+/// depends on the component. Actions transform them as they transform the distance to a neighbouring solution.
+/// `initial_sensitivities(ensemble)` sets them where the solution starts.
+///
+/// What a derivative at an event needs and does not exist, as where the solution only touches the surface, makes the
+/// derivative of an accessory NaN and ends the instance as `not_finite` where it is one of a state; `undefined` counts
+/// such events. The accessories that summaries write have NaN as derivative.
+///
+/// Model's functions, hooks included, are called with dual numbers: their variables must be `auto` or R, the functions
+/// they call those of `myriad`. `rhs` may jump only at an event with `after_event`.
+template <class Model, auto... wrt>
+struct with_sensitivities : detail::with_variations<Model, detail::component_directions<Model, wrt...>> {
+    static_assert(sizeof...(wrt) > 0,
+                  "with_sensitivities needs at least one component: "
+                  "with_sensitivities<model, model::k>");
+    static_assert(!detail::writes_parameters<Model>,
+                  "with_sensitivities takes no model that writes parameters: let its hooks write an accessory instead");
+    static_assert(!detail::writes_time_domain<Model>,
+                  "with_sensitivities takes no model that writes its time domain: end phases by an event");
+
+    using directions = detail::component_directions<Model, wrt...>;
+    using base = detail::with_variations<Model, directions>;  ///< with the equations of the derivatives
+    using base::n_original, base::n_tangent, base::n_state;
+    static constexpr int n_directions = directions::count;  ///< number of components that it has derivatives by
+    using places = detail::sensitivity_places<Model, n_directions>;
+
+    /// The derivative of state c by component i, among the states.
+    MYRIAD_FUNCTION static int sensitivity(int c, int i = 0) { return n_original * (1 + i) + c; }
+    /// The derivative of accessory a by component i, among the accessories.
+    MYRIAD_FUNCTION static int accessory_sensitivity(int a, int i = 0) {
+        return detail::first_moving_accessory<Model>(i) + a;
+    }
+    /// The derivative by component i of the time at which the phase ended, among the accessories.
+    MYRIAD_FUNCTION static int time_sensitivity(int i = 0) { return places::time + i; }
+    static constexpr int event_time = places::event_time;  ///< the time of the phase's last event, or of its begin
+    static constexpr int undefined = places::undefined;    ///< number of events at which a derivative did not exist
+    static constexpr int n_accessory = places::count;      ///< number of all accessories
+
+    /// The model's own hook, and what derivatives need of the phase's begin.
+    MYRIAD_FUNCTION static void initialise(auto& wrapped) {
+        using R = std::remove_cvref_t<decltype(wrapped.t)>;
+        const bool continues =
+            wrapped.phase != 0 && wrapped.t != wrapped.t_begin && wrapped.t == wrapped.accessory[event_time];
+        vec<R, n_directions> dt{};
+        if (wrapped.phase == 0) {
+            for (int a = detail::n_accessory<Model>; a < n_accessory; ++a) wrapped.accessory[a] = R(0);
+        } else if (continues) {  // from an event, whose time is another in neighbouring solutions
+            dt = detail::part<n_directions>(wrapped.accessory, places::time);
+        }
+        auto v = detail::part<n_tangent>(wrapped.y, n_original);
+        if constexpr (detail::has_initialise<Model>)
+            v = detail::move_through<Model, directions>(wrapped, v, dt,
+                                                        [](auto& own) MYRIAD_LAMBDA { Model::initialise(own); });
+        if (continues) shift(wrapped, v, dt, R(-1));
+        detail::set_part(wrapped.y, n_original, v);
+        detail::set_part(wrapped.accessory, places::time, dt);
+        wrapped.accessory[event_time] = wrapped.t;
+        forget_summaries(wrapped);
+    }
+
+    /// The model's own hook, after which derivatives are those of the values at the end, wherever that is.
+    MYRIAD_FUNCTION static void finalise(auto& wrapped) {
+        using R = std::remove_cvref_t<decltype(wrapped.t)>;
+        vec<R, n_directions> dt{};
+        auto v = detail::part<n_tangent>(wrapped.y, n_original);
+        if (wrapped.t == wrapped.accessory[event_time] && wrapped.t != wrapped.t_end) {
+            dt = detail::part<n_directions>(wrapped.accessory, places::time);
+            shift(wrapped, v, dt, R(1));
+            if (!detail::all_finite(dt)) wrapped.accessory[undefined] += R(1);
+        }
+        forget_summaries(wrapped);
+        if constexpr (detail::has_finalise<Model>)
+            v = detail::move_through<Model, directions>(wrapped, v, dt,
+                                                        [](auto& own) MYRIAD_LAMBDA { Model::finalise(own); });
+        detail::set_part(wrapped.y, n_original, v);
+        detail::set_part(wrapped.accessory, places::time, dt);
+    }
+
+private:
+    /// Follows neighbouring solutions along their slope for `sign` times the time by which each is later.
+    template <class R>
+    MYRIAD_FUNCTION static void shift(const auto& wrapped, vec<R, n_tangent>& v, const vec<R, n_directions>& dt,
+                                      R sign) {
+        const auto slope = base::template slope<R>(wrapped);
+        for (int i = 0; i < n_directions; ++i)
+            for (int c = 0; c < n_original; ++c)
+                v[i * n_original + c] = fma(sign * slope[c], dt[i], v[i * n_original + c]);
+    }
+    MYRIAD_FUNCTION static void forget_summaries(auto& wrapped) {
+        using R = std::remove_cvref_t<decltype(wrapped.t)>;
+        detail::static_for<0, detail::n_summary<Model>>([&](auto r) MYRIAD_LAMBDA {
+            constexpr int into = detail::summary_at<Model, r.value>.accessory;
+            for (int i = 0; i < n_directions; ++i) wrapped.accessory[accessory_sensitivity(into, i)] = nan_of<R>;
+        });
+    }
+};
+
+}  // namespace myriad

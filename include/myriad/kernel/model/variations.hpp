@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+// A model together with neighbouring solutions, in directions that are states after its own: the variational equations
+// by dual numbers, and how hooks, events and stop times transform the directions. What the directions are is
+// `Directions`, as in tangent_lane.hpp.
+#pragma once
+
+#include <utility>
+
+#include "myriad/kernel/core/static_for.hpp"
+#include "myriad/kernel/model/tangent_lane.hpp"
+#include "myriad/kernel/scalar/lanes.hpp"
+
+namespace myriad::detail {
+
+// One layer for each optional function, present only if the model has it, so that the wrapped model has the same
+// functions as the model. Each layer inherits the previous one, and hides the model's function with its own.
+namespace variation_layers {
+
+template <class Model, class Directions>
+struct events_layer : Model {};
+template <class Model, class Directions>
+requires has_events<Model>
+struct events_layer<Model, Directions> : Model {
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, n_event<Model>> events(auto t, const auto& y, const auto& p) {
+        return Model::template events<R>(t, part<n_state<Model>>(y), p);
+    }
+};
+
+template <class Model, class Directions>
+struct observe_layer : events_layer<Model, Directions> {};
+template <class Model, class Directions>
+requires has_observe<Model>
+struct observe_layer<Model, Directions> : events_layer<Model, Directions> {
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, n_observed<Model>> observe(auto t, const auto& y, const auto& p) {
+        return Model::template observe<R>(t, part<n_state<Model>>(y), p);
+    }
+};
+
+template <class Model, class Directions>
+struct after_step_layer : observe_layer<Model, Directions> {};
+template <class Model, class Directions>
+requires(has_after_step<Model> && !has_generic_after_step<Model>) struct after_step_layer<Model, Directions>
+    : observe_layer<Model, Directions> {
+    MYRIAD_FUNCTION static action after_step(auto& wrapped) {
+        action wanted = action::proceed;
+        detail::move_directions<Model, Directions>(wrapped, [&](auto& own) MYRIAD_LAMBDA {
+            wanted = detail::action_of([&]() MYRIAD_LAMBDA { return Model::after_step(own); });
+        });
+        return wanted;
+    }
+};
+template <class Model, class Directions>
+requires has_generic_after_step<Model>
+struct after_step_layer<Model, Directions> : observe_layer<Model, Directions> {
+    template <class R>
+    MYRIAD_FUNCTION static mask_of<R> after_step(auto& wrapped) {
+        mask_of<R> stops = mask_of<R>(false);
+        detail::move_directions<Model, Directions>(wrapped, [&](auto& own) MYRIAD_LAMBDA {
+            if constexpr (std::is_void_v<decltype(Model::template after_step<dual<R>>(own))>) {
+                Model::template after_step<dual<R>>(own);
+            } else {
+                stops = Model::template after_step<dual<R>>(own);
+            }
+        });
+        return stops;
+    }
+};
+
+/// A neighbouring solution reaches the surface g = 0 later by dt = -(grad g v) / (dg/dt). With f and f+ the slopes
+/// before and after the action y -> r(t, y), its distance v becomes Dr (v + f dt) + dr/dt dt - f+ dt (Mueller, Chaos,
+/// Solitons and Fractals 5 (1995) 1671), where the first two terms are the derivative of r along (v + f dt, dt).
+template <class Model, class Directions>
+struct crossing_layer : after_step_layer<Model, Directions> {
+protected:
+    static constexpr int n = n_state<Model>, count = Directions::count;
+
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, n> slope(const auto& wrapped) {
+        return Model::template rhs<R>(wrapped.t, part<n>(wrapped.y), detail::inputs_in<Model>(wrapped));
+    }
+
+    /// Calls an action of the model's at a time that is later by dt in neighbouring solutions. A dt that is not finite
+    /// does not exist, as where the solution only touches a surface; this is harmless if nothing jumps. Returns false
+    /// if something does.
+    template <class R>
+    MYRIAD_FUNCTION static bool cross(auto& wrapped, const vec<R, count>& dt, auto&& hook) {
+        const vec<R, n> before = slope<R>(wrapped);
+        vec<R, count * n> arriving;
+        MYRIAD_UNROLL
+        for (int i = 0; i < count; ++i) {
+            vec<R, n> v = part<n>(wrapped.y, n + i * n);
+            const R finite = is_finite(dt[i]) ? dt[i] : R(0);
+            for (int c = 0; c < n; ++c) v[c] = fma(before[c], finite, v[c]);
+            set_part(arriving, i * n, v);
+        }
+        const auto left = detail::move_through<Model, Directions>(wrapped, arriving, dt, hook);
+        const vec<R, n> after = slope<R>(wrapped);
+        if (same_values(left, arriving) && same_values(before, after)) return true;  // exactly, without rounding
+        MYRIAD_UNROLL
+        for (int i = 0; i < count; ++i)
+            for (int c = 0; c < n; ++c) wrapped.y[n + i * n + c] = fma(-after[c], dt[i], left[i * n + c]);
+        return all_finite(dt);
+    }
+};
+
+template <class Model, class Directions>
+struct after_event_layer : crossing_layer<Model, Directions> {};
+template <class Model, class Directions>
+requires(has_after_event<Model> ||
+         (has_events<Model> && Directions::keeps_times)) struct after_event_layer<Model, Directions>
+    : crossing_layer<Model, Directions> {
+    MYRIAD_FUNCTION static action after_event(int event, auto& wrapped) {
+        constexpr int n = n_state<Model>, count = Directions::count;
+        using R = std::remove_cvref_t<decltype(wrapped.t)>;
+        const auto derivative = [&](const vec<R, n>& direction, R dt, const auto& p) MYRIAD_LAMBDA {
+            const auto g =
+                Model::template events<dual<R>>(dual<R>(wrapped.t, dt), along(part<n>(wrapped.y), direction), p);
+            return g[event].derivative;
+        };
+        const R approach = derivative(crossing_layer<Model, Directions>::template slope<R>(wrapped), R(1),
+                                      detail::inputs_in<Model>(wrapped));
+        vec<R, count> dt;
+        static_for<0, count>([&](auto i) MYRIAD_LAMBDA {
+            dt[i] = -derivative(part<n>(wrapped.y, n + i * n), R(0),
+                                detail::inputs_along<Model, Directions, i.value, R>(wrapped)) /
+                    approach;
+        });
+        action wanted = action::proceed;
+        const auto act = [&](auto& own) MYRIAD_LAMBDA {
+            if constexpr (has_after_event<Model>)
+                wanted = detail::action_of([&]() MYRIAD_LAMBDA { return Model::after_event(event, own); });
+        };
+        if constexpr (Directions::keeps_times) {
+            Directions::cross_at_event(wrapped, dt, [&]() MYRIAD_LAMBDA {
+                return crossing_layer<Model, Directions>::template cross<R>(wrapped, dt, act);
+            });
+        } else {
+            crossing_layer<Model, Directions>::template cross<R>(wrapped, dt, act);
+        }
+        return wanted;
+    }
+};
+
+/// Stop times of a neighbouring solution are the same, unless they depend on inputs that differ.
+template <class Model, class Directions>
+struct after_stop_layer : after_event_layer<Model, Directions> {};
+template <class Model, class Directions>
+requires has_after_stop<Model>
+struct after_stop_layer<Model, Directions> : after_event_layer<Model, Directions> {
+    MYRIAD_FUNCTION static action after_stop(int stop, int number, auto& wrapped) {
+        action wanted = action::proceed;
+        const auto act = [&](auto& own) MYRIAD_LAMBDA {
+            wanted = detail::action_of([&]() MYRIAD_LAMBDA { return Model::after_stop(stop, number, own); });
+        };
+        if constexpr (Directions::keeps_times) {
+            using R = std::remove_cvref_t<decltype(wrapped.t)>;
+            vec<R, Directions::count> dt;
+            static_for<0, Directions::count>([&](auto i) MYRIAD_LAMBDA {
+                dt[i] = dual<R>(Model::template stop_time<dual<R>>(
+                                    stop, number, detail::inputs_along<Model, Directions, i.value, R>(wrapped)))
+                            .derivative;
+            });
+            crossing_layer<Model, Directions>::template cross<R>(wrapped, dt, act);
+        } else {
+            detail::move_directions<Model, Directions>(wrapped, act);
+        }
+        return wanted;
+    }
+};
+
+}  // namespace variation_layers
+}  // namespace myriad::detail
+
+namespace myriad::detail {
+
+/// Model with `Directions::count` directions v' = J v + df/dp, among the states after Model's own: v of direction i
+/// begins at n (1 + i).
+template <class Model, class Directions>
+struct with_variations : variation_layers::after_stop_layer<Model, Directions> {
+    static_assert(check_model<Model>());
+    static_assert(!has_triggers<Model>,
+                  "models with triggers have no tangents and no sensitivities, which pass the surface of one event");
+
+    using original = Model;                                    ///< the model alone
+    static constexpr int n_original = detail::n_state<Model>;  ///< number of its states
+    /// Number of states, the last ones, that are not Model's own.
+    static constexpr int n_tangent = Directions::count * n_original;
+    static constexpr int n_state = n_original + n_tangent;  ///< number of all states
+
+    /// The slopes of the states and, by dual numbers, of the directions.
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, n_state> rhs(auto t, const vec<R, n_state>& y, const auto& p) {
+        static_assert(hooks_fit<Model, real_of<R>>);
+        return slopes<R>(t, y, p, std::make_integer_sequence<int, n_original>{},
+                         std::make_integer_sequence<int, Directions::count>{},
+                         std::make_integer_sequence<int, n_state>{});
+    }
+
+private:
+    template <class R, int... c, int... i, int... all>
+    MYRIAD_FUNCTION static vec<R, n_state> slopes(const auto& t, const vec<R, n_state>& y, const auto& p,
+                                                  std::integer_sequence<int, c...>, std::integer_sequence<int, i...>,
+                                                  std::integer_sequence<int, all...>) {
+        const auto along_direction = [&](auto k) MYRIAD_LAMBDA {
+            constexpr int first = n_original * (1 + decltype(k)::value);
+            return Model::template rhs<dual<R>>(t, vec<dual<R>, n_original>{dual<R>(y[c], y[first + c])...},
+                                                detail::inputs_along<Model, Directions, decltype(k)::value, R>(p));
+        };
+        const vec<dual<R>, n_original> f[Directions::count] = {along_direction(constant_index<i>{})...};
+        return vec<R, n_state>{(all < n_original
+                                    ? f[0][all % n_original].value
+                                    : f[all / n_original - (all >= n_original)][all % n_original].derivative)...};
+    }
+};
+
+}  // namespace myriad::detail

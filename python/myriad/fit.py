@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: MIT
+"""Fits of a model to data by the method of Levenberg and Marquardt from many starts, all of which are integrated as one
+ensemble in every iteration."""
+
+from __future__ import annotations
+
+from statistics import NormalDist
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .components import by_component
+from .errors import Error
+from .inputs import whole
+from .least_squares import Free, LeastSquares, from_logarithms, logarithms
+
+if TYPE_CHECKING:
+    from .hints import AnyModel, Array, ByComponent
+    from .run import Run
+
+__all__ = ["Fit", "fit"]
+
+_running, _converged, _stopped, _failed = range(4)
+_names = ("running", "converged", "iterations", "failed")
+_largest_damping = 1e16  # beyond, a step changes nothing
+
+
+def _hypercube(count: int, free: list[Free], seed: int) -> Array:
+    """Points within the bounds, of a Latin hypercube: each of `count` parts of each range has one."""
+    random = np.random.default_rng(seed)
+    parts = np.stack([random.permutation(count) for _ in free], axis=1)
+    places = (parts + random.random(parts.shape)) / count
+    least, most = (logarithms(free, np.array([getattr(f, end) for f in free])) for end in ("least", "most"))
+    return least + places * (most - least)
+
+
+class _Descent:
+    """Levenberg's and Marquardt's method for many starts within bounds; damping as of Nielsen (1999), scaled by the
+    largest diagonal of J^T J so far (More 1978). Components at a bound, whose gradient leads out of it, rest."""
+
+    def __init__(self, problem: LeastSquares, varied: Array, tolerance: float) -> None:
+        self.problem, self.tolerance = problem, tolerance
+        self.least, self.most = (logarithms(problem.free, end) for end in problem.bounds)
+        self.varied = np.clip(varied, self.least, self.most)
+        self.residuals, self.jacobian = self._evaluate(self.varied)
+        self.loss = _loss(self.residuals)
+        count = len(varied)
+        self.state = np.where(np.isfinite(self.loss), _running, _failed)
+        self.damping, self.growth = np.full(count, 1e-3), np.full(count, 2.0)
+        self.scale = np.zeros(varied.shape)
+        self.iterations = np.zeros(count, int)
+
+    def _evaluate(self, varied: Array) -> tuple[Array, Array]:
+        """Residuals, and their derivatives by what varies."""
+        values = from_logarithms(self.problem.free, varied)
+        residuals, jacobian = self.problem.evaluate(values)
+        inner = np.stack([values[:, i] if f.log else np.ones(len(values))
+                          for i, f in enumerate(self.problem.free)], axis=1)
+        return residuals, jacobian * inner[:, None, :]
+
+    def step(self) -> bool:
+        """One iteration of all starts that go on. Returns whether there were any."""
+        on = np.flatnonzero(self.state == _running)
+        if not on.size:
+            return False
+        u, r, jac, loss = self.varied[on], self.residuals[on], self.jacobian[on], self.loss[on]
+        normal = np.einsum("srp,srq->spq", jac, jac)
+        gradient = np.einsum("srp,sr->sp", jac, r)
+        diagonal = np.einsum("spp->sp", normal)
+        self.scale[on] = np.maximum(self.scale[on], diagonal)
+        scale = np.where(self.scale[on] > 0, self.scale[on], 1.0)
+        rests = ((u <= self.least) & (gradient >= 0)) | ((u >= self.most) & (gradient <= 0)) | (diagonal == 0)
+        # the cosine of the angle between the residuals and each column
+        size = np.sqrt(diagonal * (2 * loss)[:, None])
+        slant = np.where(rests | (size == 0), 0.0, np.abs(gradient) / np.where(size == 0, 1.0, size))
+        flat = slant.max(axis=1) <= 1e-9
+        moves = ~rests
+        matrix = normal * (moves[:, :, None] & moves[:, None, :])
+        count = matrix.shape[-1]
+        matrix[:, range(count), range(count)] += self.damping[on][:, None] * scale + rests * scale
+        move = np.linalg.solve(matrix, -(gradient * moves)[..., None])[..., 0]
+        to = np.clip(u + move, self.least, self.most)
+        move = to - u
+        predicted = -np.einsum("sp,sp->s", gradient, move) - 0.5 * np.einsum("sp,spq,sq->s", move, normal, move)
+        still = flat | (np.abs(move) <= 1e-12 * (1e-12 + np.abs(u))).all(axis=1)
+        self.state[on[still]] = _converged
+        goes = np.flatnonzero(~still)
+        if goes.size:
+            self._take(on[goes], to[goes], predicted[goes])
+        return True
+
+    def _take(self, on: Array, to: Array, predicted: Array) -> None:
+        """Tries the steps, and takes those that lessen the loss."""
+        residuals, jacobian = self._evaluate(to)
+        new, old = _loss(residuals), self.loss[on]
+        self.iterations[on] += 1
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = (old - new) / predicted
+        better = (new < old) & np.isfinite(jacobian).all(axis=(1, 2))
+        taken = on[better]
+        self.varied[taken], self.loss[taken] = to[better], new[better]
+        self.residuals[taken], self.jacobian[taken] = residuals[better], jacobian[better]
+        factor = np.maximum(1 / 3, 1 - (2 * np.clip(ratio[better], 0, 1) - 1) ** 3)
+        self.damping[taken] = np.maximum(self.damping[taken] * factor, 1e-15)
+        self.growth[taken] = 2
+        refused = on[~better]
+        self.damping[refused] *= self.growth[refused]
+        self.growth[refused] *= 2
+        done = better & (old - new <= self.tolerance * old) & (predicted <= self.tolerance * old)
+        self.state[on[done]] = _converged
+        self.state[on[self.damping[on] > _largest_damping]] = _converged  # no shorter step lessens the loss
+
+
+def _loss(residuals: Array) -> Array:
+    with np.errstate(over="ignore", invalid="ignore"):
+        loss = 0.5 * np.sum(residuals * residuals, axis=1)
+    return np.where(np.isfinite(loss), loss, np.inf)
+
+
+class Fit:
+    """The outcome of `fit`. Arrays have one value for each start, in the order of the starts; what has no start is of
+    the best one."""
+
+    def __init__(self, problem: LeastSquares, descent: _Descent, starts: Array) -> None:
+        self.problem = problem  #: its `LeastSquares`
+        values = from_logarithms(problem.free, descent.varied)
+        self.loss: Array = descent.loss  #: half the sum of squares of (model - data) / sigma; infinite: no solution
+        self.status = [_names[s] for s in descent.state]  #: "converged", "iterations" if there were too few, "failed"
+        self.iterations: Array = descent.iterations  #: that each start took
+        self.starts = _by_name(problem, from_logarithms(problem.free, starts))  #: where each began, by name
+        self.values = _by_name(problem, values)  #: where each ended, by name
+        self.index = int(np.argmin(descent.loss))  #: of the best start
+        if not np.isfinite(descent.loss[self.index]):
+            raise Error("no start of the fit has a solution up to the last time of the data: look at one by "
+                        "my.least_squares(...).run(values).report, and give narrower bounds")
+        self.best = {name: float(of[self.index]) for name, of in self.values.items()}  #: the best values, by name
+        self.residuals: Array = descent.residuals[self.index]  #: in the order of `problem.labels`
+        self._assess(descent)
+
+    def _assess(self, descent: _Descent) -> None:
+        """Fisher information, standard errors, and what the fit cannot tell."""
+        problem, free = self.problem, self.problem.free
+        jacobian, varied = descent.jacobian[self.index], descent.varied[self.index]
+        self.notes: list[str] = []  #: what to know of the result
+        length = np.linalg.norm(jacobian, axis=0)
+        #: names of those on which no result that was compared depends
+        self.without_influence = [f.name for f, size in zip(free, length) if size == 0]
+        #: names of those that ended at a bound
+        self.at_bound = [f.name for f, u, least, most in zip(free, varied, descent.least, descent.most)
+                         if (u == least or u == most) and f.name not in self.without_influence]
+        degrees = jacobian.shape[0] - (len(free) - len(self.without_influence))
+        #: the variance of the residuals, by which information is divided: 1 if `sigma` was given
+        self.variance = 1.0 if problem.has_sigma else 2 * self.loss[self.index] / degrees if degrees > 0 else np.nan
+        information = jacobian.T @ jacobian
+        inner = np.array([self.best[f.name] if f.log else 1.0 for f in free])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            #: J^T J / variance by the free components themselves, in the order of `problem.names`
+            self.fisher_information: Array = information / np.outer(inner, inner) / self.variance
+        determined = length > 0
+        covariance = np.full(information.shape, np.nan)
+        undetermined: list[str] = []
+        if determined.any():
+            unit = jacobian[:, determined] / length[determined]
+            _, singular, vectors = np.linalg.svd(unit, full_matrices=False)
+            rank = int(np.sum(singular > 1e-7 * singular[0]))
+            if rank < determined.sum():
+                names = [f.name for f, d in zip(free, determined) if d]
+                lost = np.linalg.svd(unit)[2][rank:]
+                undetermined = [n for n, w in zip(names, np.abs(lost).max(axis=0)) if w > 0.1]
+            else:
+                inverse = (vectors.T / singular**2) @ vectors * self.variance
+                covariance[np.ix_(determined, determined)] = inverse / np.outer(length[determined], length[determined])
+        self._deviations = np.sqrt(np.diag(covariance))  # of what varies
+        self.covariance: Array = covariance * np.outer(inner, inner)  #: of the free components; NaN: not determined
+        self.standard_errors = _by_name(problem, np.sqrt(np.diag(self.covariance)))  #: by name
+        if self.without_influence:
+            self.notes.append(f"no result that is compared with data depends on {', '.join(self.without_influence)}: "
+                              "leave out of free=, or compare something else")
+        if undetermined:
+            self.notes.append(f"the data determine combinations of {', '.join(undetermined)} alone, and not each of "
+                              "them: fix one, or add data")
+        if self.at_bound:
+            self.notes.append(f"the fit ended at a bound of {', '.join(self.at_bound)}, where confidence intervals do "
+                              "not hold: widen the bounds, or think why")
+        if self.status[self.index] != "converged":
+            self.notes.append("the best start was still on its way: give more iterations=")
+        failed = self.status.count("failed")
+        if failed:
+            self.notes.append(f"{failed} of {len(self.status)} starts had no solution up to the last time of the data")
+        if degrees <= 0 and not problem.has_sigma:
+            self.notes.append("there are no more data than free components: give sigma= for confidence intervals")
+
+    def confidence(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
+        """Confidence intervals by name, from the Fisher information: of the logarithm, where that varied. They hold for
+        many data; NaN where the data do not determine a component."""
+        if not 0 < level < 1:
+            raise Error(f"the level of confidence is {level!r}: give a number between 0 and 1, as 0.95")
+        width = NormalDist().inv_cdf((1 + level) / 2) * self._deviations
+        intervals = {}
+        for f, w in zip(self.problem.free, width):
+            value = self.best[f.name]
+            intervals[f.name] = (value * float(np.exp(-w)), value * float(np.exp(w))) if f.log else (
+                value - float(w), value + float(w))
+        return intervals
+
+    def run(self) -> Run:
+        """A run of the best values, with its sensitivities."""
+        return self.problem.run([self.best[name] for name in self.problem.names])
+
+    def __str__(self) -> str:
+        intervals = self.confidence()
+        near = int(np.sum(self.loss <= self.loss[self.index] * (1 + 1e-3) + 1e-12))
+        lines = [f"loss {self.loss[self.index]:.6g}, reached by {near} of {len(self.loss)} starts"]
+        width = max(map(len, self.problem.names))
+        lines += [f"{name:{width}}  {self.best[name]:.6g}  [{low:.6g}, {high:.6g}]"
+                  for name, (low, high) in intervals.items()]
+        return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
+
+    __repr__ = __str__
+
+
+def _by_name(problem: LeastSquares, values: Array) -> dict[str, Any]:
+    return {name: values[..., i] for i, name in enumerate(problem.names)}
+
+
+def fit(model: AnyModel, data: Any, *, free: ByComponent, starts: int | ByComponent = 16,
+        sweep: ByComponent | None = None, start: ByComponent | None = None, begin: float = 0.0, sigma: Any = None,
+        iterations: int = 100, tolerance: float = 1e-10, seed: int = 0, **options: Any) -> Fit:
+    """Fits a model to data by least squares from many starts.
+
+    model       from `myriad.model(...)`, or another that `solve` takes with sensitivities
+    data        a dict, or a data frame, with times "t" and values of states or outputs by name; NaN: no value
+    free        the parameters and initial states to determine, with their bounds: `{k: (0.1, 10)}`, or
+                `{k: (0.1, 10, "log")}` if the logarithm is to vary
+    starts      how many starts, in a Latin hypercube within the bounds; or where they are, arrays by name
+    sweep       the values of all other parameters, one of each
+    start       the initial values of all other states
+    begin       the time of the initial values
+    sigma       standard deviations of the data: a number, or numbers or arrays of one for each time by name; without,
+                all are equal and estimated from the residuals
+    iterations  the most of each start
+    tolerance   relative change of the loss at which a start has converged
+    seed        of the hypercube
+
+    Further arguments are those of `solve`: method, rtol, atol, device ... All starts are integrated as one ensemble,
+    with sensitivities, in every iteration."""
+    problem = LeastSquares(model, data, free, sweep, start, begin, sigma, options)
+    if hasattr(starts, "items"):
+        given = by_component(starts, "starts=")
+        missing = [name for name in problem.names if name not in given]
+        if missing or len(given) != len(problem.names):
+            raise Error(f"starts= has {', '.join(given) or 'nothing'}: give values of {', '.join(problem.names)}")
+        values = np.stack(np.broadcast_arrays(*(np.atleast_1d(np.asarray(given[n], float)) for n in problem.names)),
+                          axis=1)
+        least, most = problem.bounds
+        if not ((values >= least) & (values <= most)).all():
+            raise Error("starts= has values outside the bounds of free=: give starts within them")
+        varied = logarithms(problem.free, values)
+    else:
+        count = whole(starts, "starts")
+        if count < 1:
+            raise Error(f"starts is {count}: give at least one")
+        varied = _hypercube(count, problem.free, seed)
+    descent = _Descent(problem, varied, tolerance)
+    for _ in range(whole(iterations, "iterations")):
+        if not descent.step():
+            break
+    descent.state[descent.state == _running] = _stopped
+    return Fit(problem, descent, varied)

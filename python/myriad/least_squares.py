@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: MIT
+"""Least squares of a model and data: residuals and their derivatives, for many sets of parameters at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import kinds
+from .components import Components, by_component, unknown
+from .errors import Error
+from .inputs import by_name, real
+from .solve import solve
+from .statuses import status_names
+from .symbols import time
+
+if TYPE_CHECKING:
+    from .hints import AnyModel, Array, ByComponent, Values
+    from .run import Run
+
+__all__ = ["LeastSquares", "least_squares"]
+
+_time_names = ("t", "time")
+
+
+class Free:
+    """A component that a fit determines: its bounds, and whether its logarithm is what varies."""
+
+    def __init__(self, name: str, given: Any) -> None:
+        form = f"free={{{name}: (least, most)}} or free={{{name}: (least, most, \"log\")}}"
+        parts = list(given) if isinstance(given, (tuple, list)) else []
+        if len(parts) not in (2, 3) or len(parts) == 3 and parts[2] not in ("log", "linear"):
+            raise Error(f"the bounds of '{name}' are {given!r}: give {form}")
+        self.name, self.log = name, len(parts) == 3 and parts[2] == "log"
+        self.least, self.most = (real(p, f"a bound of '{name}'") for p in parts[:2])
+        if not (np.isfinite(self.least) and np.isfinite(self.most) and self.least < self.most):
+            raise Error(f"the bounds of '{name}' are {self.least:g} and {self.most:g}: give two finite numbers, the "
+                        "smaller one first")
+        if self.log and self.least <= 0:
+            raise Error(f"the lower bound of '{name}' is {self.least:g}, and its logarithm varies: give a positive "
+                        "one, or leave out \"log\"")
+
+
+class LeastSquares:
+    """The residuals (model - data) / sigma of a model and data, for `my.fit` and for other optimisers, as in
+    `scipy.optimize.least_squares(problem.residuals, start, problem.jacobian, bounds=problem.bounds)`. Arguments are
+    the values of the free components in the order of `names`, of one set, or of several in rows, which are integrated
+    as one ensemble; residuals are in the order of `labels`."""
+
+    def __init__(self, model: AnyModel, data: Any, free: ByComponent, sweep: ByComponent | None,
+                 start: ByComponent | None, begin: float, sigma: Any, options: Mapping[str, Any]) -> None:
+        self.model = model
+        self._components = components = Components(model)
+        self.free = [Free(components.component(name), bounds) for name, bounds in by_component(
+            by_name(free, "free", "free={k: (0.1, 10, \"log\")}"), "free=").items()]
+        self.names = [f.name for f in self.free]  #: of the free components
+        if not self.free:
+            raise Error("free= names no component: give those to fit with their bounds, as in free={k: (0.1, 10)}")
+        possible = components.of(("state", "parameter"))
+        for name in self.names:
+            if components.place.get(name, ("",))[0] in kinds.shared:
+                raise Error(f"'{name}' is shared by all instances, and each start of a fit has its own value: make it "
+                            "a parameter of the model")
+            if name not in possible:
+                raise unknown(name, possible, "component that a fit can determine")
+        self._sweep = by_component(by_name(sweep, "sweep", "sweep={B: 0.3}"), "sweep=")
+        self._start = by_component(by_name(start, "start", "start={x: 1}"), "start=")
+        for name in self.names:
+            if name in self._sweep or name in self._start:
+                raise Error(f"'{name}' is free and has a value: give it in free= alone")
+        for where, values in (("sweep", self._sweep), ("start", self._start)):
+            for name, value in values.items():
+                if np.ndim(value) != 0:
+                    raise Error(f"'{name}' has several values in {where}=: a fit has one of each component that is not "
+                                "free")
+        for name in ("samples", "record", "phases", "sensitivities", "size"):
+            if name in options:
+                raise Error(f"a fit chooses {name}= itself: leave it out")
+        self._options = dict(options)
+        self._begin = real(begin, "begin")
+        self._read(data, sigma)
+        self._last: tuple[Any, ...] = ()
+
+    def _read(self, data: Any, sigma: Any) -> None:
+        """Takes times, values and their standard deviations."""
+        if not hasattr(data, "items"):
+            raise Error(f"data is a {type(data).__name__}: give a dict or a data frame with times and values by name, "
+                        "as in {\"t\": times, x: values}")
+        components = self._components
+        columns = {}
+        for key, values in data.items():
+            is_time = key is time or isinstance(key, str) and key in _time_names and key not in components.place
+            columns["t" if is_time else components.component(key)] = np.asarray(values, float)
+        times = columns.pop("t", None)
+        if times is None:
+            raise Error("data has no times: give them as \"t\"")
+        if not columns:
+            raise Error("data has times alone: give values by the names of states or outputs")
+        possible = [*components.states, *components.outputs]
+        for name, values in columns.items():
+            if name not in possible:
+                raise unknown(name, possible, "state or output of the model, which data are compared with")
+            if values.shape != times.shape or values.ndim != 1:
+                raise Error(f"data has {values.size} values of '{name}' and {times.size} times: give one for each "
+                            "time, NaN where there is none")
+            if np.isinf(values).any() or np.isnan(values).all():
+                raise Error(f"data of '{name}' has infinite values, or none: give numbers, NaN where there is none")
+        if not np.isfinite(times).all() or (times < self._begin).any():
+            wrong = times[~(np.isfinite(times) & (times >= self._begin))][0]
+            raise Error(f"data has the time {wrong:g}, and the model begins at {self._begin:g}: give finite times from "
+                        "there on, or begin=")
+        if not (times > self._begin).any():
+            raise Error(f"all times of data are {self._begin:g}, where the model begins: give later ones too")
+        self.data = columns
+        self.times, where = np.unique(times, return_inverse=True)
+        self._there = {name: np.flatnonzero(~np.isnan(values)) for name, values in columns.items()}
+        self._where = {name: where[there] for name, there in self._there.items()}
+        #: (name, time) of each residual
+        self.labels = [(name, float(times[i])) for name, there in self._there.items() for i in there]
+        self.has_sigma = sigma is not None
+        given = by_component(sigma, "sigma=") if hasattr(sigma, "items") else dict.fromkeys(columns, sigma)
+        for name in given:
+            if components.component(name) not in columns:
+                raise unknown(components.component(name), list(columns), "quantity in data")
+        deviations = []
+        for name, there in self._there.items():
+            of_name = given.get(name)
+            if of_name is None and self.has_sigma:
+                raise Error(f"sigma= has none for '{name}': give the standard deviation of each quantity in data")
+            values = np.asarray(1.0 if of_name is None else of_name, float)
+            if values.ndim > 1 or values.ndim == 1 and values.shape != times.shape:
+                raise Error(f"sigma of '{name}' has {values.size} values for {times.size} times: give one, or one for "
+                            "each time")
+            values = np.broadcast_to(values, times.shape)[there]
+            if not (np.isfinite(values) & (values > 0)).all():
+                raise Error(f"sigma of '{name}' has values that are not positive: give standard deviations")
+            deviations.append(values)
+        self._sigma = np.concatenate(deviations)
+        self._observed = np.concatenate([columns[name][there] for name, there in self._there.items()])
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """The lower and the upper bounds of the free components."""
+        return np.array([f.least for f in self.free]), np.array([f.most for f in self.free])
+
+    def _sets(self, values: Values) -> Array:
+        sets = np.asarray(values, float)
+        if sets.ndim not in (1, 2) or sets.shape[-1] != len(self.free):
+            raise Error(f"the values of free components have the shape {sets.shape}: give {len(self.free)}, or rows of "
+                        f"{len(self.free)}, in the order {', '.join(self.names)}")
+        return sets
+
+    def run(self, values: Values, sensitivities: bool = True) -> Run:
+        """The run of one set of values, or of several in rows."""
+        sets = np.atleast_2d(self._sets(values))
+        given = {name: np.ascontiguousarray(sets[:, i]) for i, name in enumerate(self.names)}
+        states = [name for name in self.data if name in self._components.states]
+        samples: dict[str, Any] = {"times": self.times}
+        if len(states) == len(self.data):
+            samples["states"] = states
+        initial = {name: value for name, value in given.items() if name in self._components.states}
+        return solve(self.model, {**self._sweep, **{n: v for n, v in given.items() if n not in initial}},
+                     start={**self._start, **initial}, time=(self._begin, float(self.times[-1])), samples=samples,
+                     sensitivities=self.names if sensitivities else None, **self._options)
+
+    def evaluate(self, values: Values) -> tuple[Array, Array]:
+        """Residuals and their derivatives of sets in rows, [set, residual] and [set, residual, free component]. NaN
+        where the model has no solution up to a time of the data."""
+        run = self.run(values)
+        ended = run.status > status_names.index("success")
+        residuals = np.concatenate([run[n][:, w] for n, w in self._where.items()], axis=1)
+        jacobian = np.concatenate([run.sensitivity[n][:, w] for n, w in self._where.items()], axis=1)
+        residuals = (residuals - self._observed) / self._sigma
+        jacobian = jacobian / self._sigma[:, None]
+        lost = ended & ~np.isfinite(residuals).all(axis=1)
+        residuals[lost] = jacobian[lost] = np.nan
+        return residuals, jacobian
+
+    def _once(self, values: Values) -> tuple[Array, Array]:
+        """`evaluate`, once for residuals and derivatives of the same values."""
+        sets = self._sets(values)
+        if not self._last or not np.array_equal(self._last[0], sets):
+            self._last = (sets.copy(), *self.evaluate(sets))
+        return self._last[1], self._last[2]
+
+    def residuals(self, values: Values) -> Array:
+        """The residuals of one set of values, or rows of those of several."""
+        found = self._once(values)[0]
+        return found[0].copy() if np.ndim(values) == 1 else found.copy()
+
+    def jacobian(self, values: Values) -> Array:
+        """The derivatives of the residuals by the free components, one row for each residual."""
+        found = self._once(values)[1]
+        return found[0].copy() if np.ndim(values) == 1 else found.copy()
+
+    def loss(self, values: Values) -> Any:
+        """Half the sum of the squares of the residuals: a number, or one for each set."""
+        return 0.5 * np.sum(np.square(self.residuals(values)), axis=-1)
+
+    def gradient(self, values: Values) -> Array:
+        """The derivatives of the loss by the free components."""
+        return np.einsum("...r,...rp->...p", self.residuals(values), self.jacobian(values))
+
+
+def least_squares(model: AnyModel, data: Any, *, free: ByComponent, sweep: ByComponent | None = None,
+                  start: ByComponent | None = None, begin: float = 0.0, sigma: Any = None, **options: Any
+                  ) -> LeastSquares:
+    """The least-squares problem of a model and data, for optimisers and samplers of other packages; arguments as of
+    `fit`. It has `residuals`, `jacobian`, `loss`, `gradient` and `bounds`."""
+    return LeastSquares(model, data, free, sweep, start, begin, sigma, options)
+
+
+def logarithms(free: Sequence[Free], values: Array) -> Array:
+    """Values of free components as what varies: logarithms, where these vary."""
+    return np.stack([np.log(values[..., i]) if f.log else values[..., i] for i, f in enumerate(free)], axis=-1)
+
+
+def from_logarithms(free: Sequence[Free], varied: Array) -> Array:
+    """The reverse of `logarithms`, within the bounds in spite of rounding."""
+    return np.stack([np.clip(np.exp(varied[..., i]) if f.log else varied[..., i], f.least, f.most)
+                     for i, f in enumerate(free)], axis=-1)

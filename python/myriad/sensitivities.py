@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: MIT
+"""Forward sensitivities: a model with the derivatives of its solution, by `myriad::with_sensitivities`."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .components import Components, unknown
+from .core_options import per_state
+from .derivatives import derivatives
+from .errors import Error, at, users_line
+from .expression import Node, symbols_of
+from .extended import Extended
+from .statuses import status_names
+from .symbols import time
+
+if TYPE_CHECKING:
+    from .cpp_model import CppModel
+    from .hints import Array, Component, SomeComponents
+    from .model import Model
+    from .options import Options
+    from .run import Run
+
+__all__ = ["with_sensitivities", "WithSensitivities", "Sensitivities"]
+
+_not_controlled = 1e30  # a tolerance that no error exceeds
+
+
+def with_sensitivities(model: Model | CppModel, by: SomeComponents) -> WithSensitivities:
+    """The model with the derivatives of its solution by some of its components: initial states, parameters and shared
+    values. `solve(model, ..., sensitivities=[k, x])` makes one."""
+    return WithSensitivities(model, by)
+
+
+class WithSensitivities(Extended):
+    """A model with sensitivities. The derivative of state or accessory c by component k is the state or accessory
+    `<c>_by_<k>`, that of the time at which the last phase ended the accessory `time_by_<k>`."""
+
+    def __init__(self, model: Model | CppModel, by: SomeComponents) -> None:
+        line = at(users_line())
+        own = Components(model)
+        if isinstance(model, Extended):
+            raise Error(f"the model has {'sensitivities' if isinstance(model, WithSensitivities) else 'tangents'} "
+                        f"already{line}: give the model alone")
+        kinds_of = ("state", "parameter", "shared")
+        wanted = [by] if isinstance(by, (str, Node)) else list(by)
+        names = [own.component(one) for one in wanted]
+        possible = [name for name in own.of(kinds_of) if name not in own.tables]
+        for name in names:
+            if name not in possible:
+                raise unknown(name, possible, "component that sensitivities can be by")
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if not names or twice is not None:
+            what = f"'{twice}' is there twice" if twice else "no component is named"
+            raise Error(f"sensitivities={wanted!r}{line}: {what}; name each component once, as in sensitivities=[k, x]")
+        for what in ("writes_parameters", "writes_time_domain"):
+            if getattr(model, what, False):
+                raise Error(f"the hooks of the model assign {what[7:].replace('_', ' ')}{line}, and what they assign "
+                            "has no sensitivities: use an accessory, or end phases by an event")
+        self.by = names
+        self.n_original = len(own.states)
+        self.places = [own.place[name] for name in names]
+        accessories = [f"{a}_by_{k}" for k in names for a in own.names["accessory"]]
+        start = {f"{c}_by_{k}": float(c == k) for k in names for c in own.states}
+        super().__init__(model, {"state": list(start), "accessory": [
+            *accessories, *(f"time_by_{k}" for k in names), "time_of_event", "undefined_derivatives"]}, start,
+            "sensitivities")
+
+    def source(self) -> tuple[str, str]:
+        """The text that kernels are compiled from, and the name of its struct."""
+        text, struct = self.model.source()
+        wrt = ", ".join(f"static_cast<{self._enumeration(kind, struct)}>({number})" for kind, number in self.places)
+        return (f"{text}\n#include <myriad/sensitivity.hpp>\n"
+                f"using {struct}_sensitivities = myriad::with_sensitivities<{struct}, {wrt}>;\n"), (
+                    f"{struct}_sensitivities")
+
+    @staticmethod
+    def _enumeration(kind: str, struct: str) -> str:
+        return f"decltype({struct}::n_{kind})"
+
+    def __repr__(self) -> str:
+        return f"<sensitivities of {self.model!r} by {', '.join(self.by)}>"
+
+    # What a call of `solve` means for them
+
+    def _derivatives_of(self, chosen: Any, components: Components) -> list[Any]:
+        """Some components and their derivatives."""
+        listed = [chosen] if isinstance(chosen, (str, Node)) else list(chosen)
+        names = [components.component(one) for one in listed]
+        have = [n for n in names if components.place.get(n, ("",))[0] in ("state", "accessory")]
+        return [*listed, *(f"{n}_by_{k}" for k in self.by for n in have if f"{n}_by_{k}" in components.place)]
+
+    def options(self, given: Options, components: Components, values: Mapping[str, Any], control: bool) -> Options:
+        """The options of a call of the model alone as those of the model with sensitivities: their records, samples and
+        tolerances. `values` of components are what absolute tolerances are relative to."""
+        record, samples = given.record, given.samples
+        if record is not None:
+            chosen = dict(record) if isinstance(record, Mapping) else {"states": record}
+            for key in ("states", "accessories"):
+                if key in chosen:
+                    chosen[key] = self._derivatives_of(chosen[key], components)
+            record = chosen
+        if isinstance(samples, Mapping) and "states" in samples:
+            samples = {**samples, "states": self._derivatives_of(samples["states"], components)}
+        own = Components(self.model)
+        rtol = self._tolerances(given.rtol, own, "rtol", [1.0] * len(self.by), control)
+        atol = self._tolerances(given.atol, own, "atol", [_scale(values.get(k)) for k in self.by], control)
+        return dataclasses.replace(given, record=record, samples=samples, rtol=rtol, atol=atol)
+
+    def _tolerances(self, value: Any, own: Components, name: str, scales: Sequence[float], control: bool
+                    ) -> list[float]:
+        of_states = per_state(value, own, name, self.n_original)
+        if len(of_states) == 1:
+            of_states = of_states * self.n_original
+        return [*of_states, *(t * scale if control else _not_controlled for scale in scales for t in of_states)]
+
+    def check_start(self, components: Components, given: Collection[str]) -> None:
+        """Refuses initial values that follow from components that there are derivatives by."""
+        for name in Components(self.model).of(("state", "accessory")):
+            if name in self.by and name not in given:
+                continue
+            if components.follows(name, self.by, given):
+                raise Error(f"the initial value of '{name}' follows from components that sensitivities are by: give it "
+                            "in start=")
+
+
+def _scale(value: Any) -> float:
+    """The absolute tolerance of a derivative by a component over that of the state: as small as one over its largest
+    value, so that their product is as accurate as the state."""
+    if value is None or hasattr(value, "address"):
+        return 1.0
+    largest = np.max(np.abs(np.asarray(value, float)), initial=1.0)
+    return float(1 / largest) if np.isfinite(largest) else 1.0
+
+
+class Sensitivities(Mapping[Any, Any]):
+    """The derivatives of a run's results. `run.sensitivity[x, k]` has the shape of `run[x]`, `run.sensitivity[x]` one
+    more axis behind it, along the components that the derivatives are by, `run.sensitivity.by`. x is a state, a real
+    accessory, an output, or `myriad.time` for the time at which the last phase ended."""
+
+    def __init__(self, run: Run, by: Sequence[str]) -> None:
+        self._run = run
+        self.by = list(by)  #: the names of the components that derivatives are by
+
+    def __getitem__(self, key: Component | tuple[Component, Component]) -> Array:
+        components = self._run._components
+        if isinstance(key, tuple):
+            of, wrt = key
+            k = components.component(wrt)
+            if k not in self.by:
+                raise KeyError(f"there are no sensitivities by {k!r}: they are by {', '.join(self.by)}")
+            return self._by(of, k)
+        return np.stack([self._by(key, k) for k in self.by], axis=-1)
+
+    def _by(self, of: Component, k: str) -> Array:
+        run = self._run
+        components = run._components
+        if of is time:
+            return self._defined(run[f"time_by_{k}"])
+        name = components.component(of)
+        if name in components.outputs and name not in components.place:
+            return self._of_output(components.outputs[name], k)
+        derivative = f"{name}_by_{k}"
+        if derivative not in components.place or components.place[derivative][0] not in ("state", "accessory"):
+            raise KeyError(f"there are no sensitivities of {name!r}: states, real accessories and outputs have them")
+        values = run[derivative]
+        return values if values.ndim == 2 else self._defined(values)
+
+    def _defined(self, values: Array) -> Array:
+        """NaN where an instance ended since its derivatives do not exist."""
+        lost = (self._run["undefined_derivatives"] > 0) & (self._run.status == status_names.index("not_finite"))
+        return np.where(lost, np.nan, values) if lost.any() else values
+
+    def _of_output(self, expression: Node, k: str) -> Array:
+        """By the chain rule, where the run has the states that the output depends on."""
+        run = self._run
+        components = run._components
+        symbols = [s for s in symbols_of([expression]) if s not in components.constants]
+        found = derivatives([expression], symbols)
+        if found is None:
+            raise Error("an output that looks up a table has no sensitivities")
+        place = run._place_of(expression)
+        total = np.zeros(np.shape(run._output(expression)))
+        for number, partial in found[0].items():
+            symbol = symbols[number]
+            kind, name = symbol.value
+            if kind == "state":
+                inner: Any = self._by(name, k)
+            elif symbol is time:
+                inner = run[f"time_by_{k}"] if place is None else 0.0
+            else:
+                inner = float(name == k)
+            total = total + run._output(partial) * inner
+        return total
+
+    def __iter__(self) -> Iterator[str]:
+        components = self._run._components
+        return iter([n for n in components.of(("state", "accessory")) if f"{n}_by_{self.by[0]}" in components.place])
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
+
+    def __repr__(self) -> str:
+        return f"<sensitivities of {', '.join(self)} by {', '.join(self.by)}>"
+
+
+def note(run: Run) -> str | None:
+    """What to know of derivatives that do not exist."""
+    count = int(np.count_nonzero(run["undefined_derivatives"]))
+    if count == 0:
+        return None
+    return (f"in {count} instance{'s' if count > 1 else ''} a derivative does not exist, as the function of an event "
+            "passed zero with no slope in time: such derivatives are NaN, and an instance whose state would have one "
+            "ended as not_finite")

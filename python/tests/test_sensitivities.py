@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""Sensitivities of compiled models, compared with closed forms; the C++ library's tests have events and phases."""
+
+import numpy as np
+import pytest
+from conftest import OSCILLATOR
+
+import myriad as my
+
+x, v = my.states("x v")
+k = my.parameter("k")
+B = my.shared("B")
+spring = my.model({x: v, v: B - k * x}, name="spring")
+tight = {"rtol": 1e-10, "atol": 1e-10}
+K = np.array([1.0, 2.0, 3.0])
+
+
+def position(k, x0, B, t):
+    return (x0 - B / k) * np.cos(np.sqrt(k) * t) + B / k
+
+
+def by_differences(f, at, d=1e-4):
+    """Central differences of fourth order, whose error is d^4 and rounding over d."""
+    return (8 * (f(at + d) - f(at - d)) - (f(at + 2 * d) - f(at - 2 * d))) / (12 * d)
+
+
+def test_sensitivities_of_a_spring_are_those_of_its_closed_form():
+    run = my.solve(spring, {k: K, B: 0.5}, start={x: 1, v: 0}, time=(0, 2), samples=[0.5, 1, 2], record=[x],
+                   sensitivities=[k, x, B], **tight)
+    t = np.array([0.5, 1, 2])
+    expected = np.stack([by_differences(lambda k: position(k, 1, 0.5, t), K[:, None]),
+                         np.cos(np.sqrt(K[:, None]) * t), (1 - np.cos(np.sqrt(K[:, None]) * t)) / K[:, None]], axis=-1)
+    assert run.sensitivity.by == ["k", "x", "B"]
+    assert list(run.sensitivity) == ["x", "v"]
+    np.testing.assert_allclose(run.sensitivity[x], expected, rtol=1e-7, atol=1e-9)
+    np.testing.assert_array_equal(run.sensitivity["x", k], run.sensitivity[x][..., 0])
+    np.testing.assert_allclose(run.records["x_by_k"][:, 0], expected[:, -1, 0], rtol=1e-7, atol=1e-9)
+    np.testing.assert_array_equal(run.states["x_by_k"], run.records["x_by_k"][:, 0])
+    np.testing.assert_array_equal(run.sensitivity[my.time], np.zeros((3, 3)))
+
+
+def test_without_error_control_the_solution_is_that_without_sensitivities():
+    call = {"start": {x: 1, v: 0}, "time": (0, 2), "step": 1e-3, "rtol": [1e-6, 1e-7], "atol": {v: 1e-5}}
+    alone = my.solve(spring, {k: K, B: 0.5}, **call)
+    run = my.solve(spring, {k: K, B: 0.5}, sensitivities=[k], sensitivity_control=False, **call)
+    np.testing.assert_array_equal(run[x], alone[x])
+    assert (my.solve(spring, {k: K, B: 0.5}, sensitivities=[k], **call)[x] != alone[x]).any()
+
+
+def test_an_event_that_ends_a_phase_has_the_sensitivity_of_its_time():
+    # A ball thrown up lands at T = (v0 + sqrt(v0^2 + 2 g x0)) / g with speed sqrt(v0^2 + 2 g x0).
+    g, lands = my.parameter("g"), my.accessory("landed")
+    ball = my.model({x: v, v: -g}, accessories={lands: 0},
+                    events=my.event(x, direction="falling", do={lands: my.time, my.end_phase: True}), name="ball")
+    G = np.array([1.0, 9.81])
+    run = my.solve(ball, {g: G}, start={x: 2, v: 0.5}, time=(0, 100), sensitivities=[g, x], **tight)
+    landing = lambda g, x0: (0.5 + np.sqrt(0.25 + 2 * g * x0)) / g  # noqa: E731
+    np.testing.assert_allclose(run.t, landing(G, 2), rtol=1e-9)
+    expected = [by_differences(lambda g: landing(g, 2), G), by_differences(lambda x0: landing(G, x0), 2.0)]
+    np.testing.assert_allclose(run.sensitivity[my.time], np.stack(expected, axis=-1), rtol=1e-7)
+    np.testing.assert_allclose(run.sensitivity[lands], np.stack(expected, axis=-1), rtol=1e-7)
+    speed = lambda g: -np.sqrt(0.25 + 4 * g)  # noqa: E731
+    np.testing.assert_allclose(run.sensitivity[v, g], by_differences(speed, G), rtol=1e-7)
+    np.testing.assert_allclose(run.sensitivity[x, g], 0, atol=1e-9)
+
+
+def test_a_model_in_cpp_has_sensitivities():
+    model = my.CppModel(OSCILLATOR, "oscillator", "x v", "w")
+    w = np.array([1.0, 2.0])
+    run = my.solve(model, {"w": w}, start={"x": 1, "v": 0}, time=(0, 1), sensitivities="w", **tight)
+    np.testing.assert_allclose(run.sensitivity["x", "w"], -np.sin(w), rtol=1e-7)
+
+
+def test_a_derivative_that_does_not_exist_is_nan_and_noted():
+    # A function that jumps has no slope by which its time would depend on c.
+    c, seen = my.parameter("c"), my.accessory("seen")
+    model = my.model({x: -k * x}, accessories={seen: 0}, parameters=[c],
+                     events=my.event(my.where(my.time < c, -1.0, 1.0), do={seen: my.time}), name="jumping")
+    run = my.solve(model, {k: 1, c: 1}, start={x: 1}, time=(0, 2), sensitivities=[c, k])
+    assert run[seen][0] == pytest.approx(1)
+    assert np.isnan(run.sensitivity[seen, c][0])
+    np.testing.assert_allclose(run.sensitivity[x, k], -2 * np.exp(-2), rtol=1e-6)
+    assert any("a derivative does not exist" in note for note in run.report.notes)
+
+
+@pytest.mark.parametrize("by, message", [
+    (["z"], "'z' is no component that sensitivities can be by"),
+    ([], "no component is named"),
+    ([k, "k"], "'k' is there twice"),
+])
+def test_wrong_components_are_refused(by, message):
+    with pytest.raises(my.Error, match=message):
+        my.solve(spring, {k: K, B: 0.5}, start={x: 1, v: 0}, time=(0, 2), sensitivities=by)
+
+
+def test_a_model_that_assigns_parameters_is_refused():
+    model = my.model({x: -k * x}, finalise={k: 2 * k})
+    with pytest.raises(my.Error, match="the hooks of the model assign parameters"):
+        my.with_sensitivities(model, [k])
+
+
+def test_runs_without_sensitivities_say_how_to_get_them():
+    run = my.solve(spring, {k: K, B: 0.5}, start={x: 1, v: 0}, time=(0, 2), interpreted=True)
+    with pytest.raises(my.Error, match="give sensitivities= to solve"):
+        run.sensitivity  # noqa: B018
