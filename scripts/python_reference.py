@@ -25,7 +25,7 @@ PAGES = {
                      ["solve", "options", "run", "statuses", "grid", "axes", "device", "errors", "methods"]),
     "python_model": ("Python: models", "Equations, events and hooks, and the symbols and functions in them.",
                      ["model", "symbols", "expression", "interpolate", "table", "tangents", "cpp_model", "sbml",
-                      "xpp"]),
+                      "units", "xpp"]),
     "python_fit": ("Python: sensitivities and fits", "Derivatives of results, and what is fitted to data by them.",
                    ["sensitivities", "least_squares", "fit"]),
     "python_study": ("Python: studies", "Studies, reductions, and results on disk.",

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "myriad/host/backend/device.hpp"
+#include "myriad/host/ensemble/couplings.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/ensemble/exponents.hpp"
 #include "myriad/host/ensemble/sensitivities.hpp"

@@ -29,6 +29,7 @@ from .study_result import Damage as Damage, StudyResult as StudyResult, open_stu
 from .symbols import *  # noqa: F403
 from .table import *  # noqa: F403
 from .tangents import *  # noqa: F403
+from .units import *  # noqa: F403
 from .xpp import XppModel as XppModel, read_xpp as read_xpp
 
 __version__ = _core.version
@@ -38,7 +39,7 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
            "open_study", "plots", "read_antimony", "read_sbml", "read_xpp", "reduce", "solve", "status_names", "study",
            "verify",
            *(name for part in ("axes", "expression", "fit", "grid", "interpolate", "least_squares", "model",
-                               "sensitivities", "symbols", "table", "tangents")
+                               "sensitivities", "symbols", "table", "tangents", "units")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]

@@ -14,6 +14,7 @@ from . import symbols as sym
 from .errors import Error
 from .expression import Node, evaluate, is_sympy, symbols_of, text
 from .parse import sympy_name
+from .units import one_by_one, spread
 
 if TYPE_CHECKING:
     from .hints import AnyModel, Array, ByComponent, Component, SomeComponents
@@ -32,8 +33,8 @@ def name_of(key: Component) -> str:
 
 def by_component(values: ByComponent, what: str) -> dict[str, Any]:
     """Values by the names of components; refuses one that is given by its symbol and by its name."""
-    named = {}
-    for key, value in values.items():
+    named: dict[str, Any] = {}
+    for key, value in spread(values, what, None).items():
         name = name_of(key)
         if name in named:
             raise Error(f"'{name}' is given twice in {what}: give it once")
@@ -123,7 +124,7 @@ class Components:
         found: dict[str, list[int]] = {kind: [] for kind in some_kinds}
         chosen = [chosen] if isinstance(chosen, (str, Node)) else chosen
         try:
-            chosen = list(chosen)
+            chosen = one_by_one(chosen)
         except TypeError:
             raise Error(f"{what}{chosen!r} names no components: give a list of them, as in {what}[x, v]") from None
         for key in chosen:

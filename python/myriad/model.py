@@ -20,6 +20,7 @@ from .expression import (Node, as_condition, as_number, draws, evaluate, integer
 from .mass_matrix import left_sides, read_mass_matrix
 from .parse import from_sympy, parse, parse_equations, sympy_name
 from .table import element_name, tables_of
+from .units import spread
 from .whole_numbers import check_constants
 
 if TYPE_CHECKING:
@@ -253,6 +254,7 @@ class Model(kinds.ComponentNames):
         if not isinstance(equations, dict) or not equations:
             raise Error(f"the equations of a model are {type(equations).__name__}{at(self.line)}: give a dictionary "
                         "{state: derivative}, a function f(t, y, ...) or a string \"x' = v; v' = -x\"")
+        equations = spread(equations, "equations", self.line)
         targets, rhs = [], []
         for key in equations:
             if isinstance(key, str) and key not in self._declared:
@@ -411,7 +413,7 @@ class Model(kinds.ComponentNames):
     def _items(given: ByComponent | None, what: str, line: tuple[str, int] | None) -> Iterable[tuple[Any, Any]]:
         if given is not None and not hasattr(given, "items"):
             raise Error(f"{what} is a {type(given).__name__}{at(line)}: give a dict, as in {{target: value}}")
-        return (given or {}).items()
+        return spread(given or {}, what, line).items()
 
     def _assignments(self, given: ByComponent | None, what: str, taken: Iterable[Node] = (),
                      line: tuple[str, int] | None = None) -> Assignments:

@@ -21,6 +21,7 @@ KERNEL_LIBRARY = {
 CUDA_CODE = {
     "myriad/kernel/core/macros.hpp",            # execution spaces, unrolling, barriers
     "myriad/kernel/core/vec.hpp",               # indices out of range, which nvcc's host compiler refuses
+    "myriad/kernel/model/unit_views.hpp",       # numbers of units, likewise
     "myriad/kernel/scalar/math.hpp",            # functions of one number
     "myriad/kernel/scalar/trigonometry.hpp",
     "myriad/kernel/scalar/control_number.hpp",  # the step-size control's kind of number

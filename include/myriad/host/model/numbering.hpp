@@ -6,9 +6,12 @@
 #include <bit>
 #include <cstdint>
 #include <iosfwd>
+#include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/kernel/core/abi.hpp"
@@ -71,6 +74,14 @@ constexpr auto enumerators_of() {
     (std::make_integer_sequence<int, count>{});
 }
 
+/// "x_0", "v_0", "x_1", ...: the components of all units, which are named like those of one.
+std::vector<std::string> names_in_units(std::span<const std::string_view> of_one, int units);
+template <class C, int count>
+std::vector<std::string> names_in_units(int units) {
+    static constexpr auto of_one = enumerators_of<C, count>();
+    return names_in_units(of_one, units);
+}
+
 /// Throws `error` if there is no component of that number.
 void check_component(std::int64_t number, int count, std::string_view what);
 
@@ -106,6 +117,13 @@ void check_component(std::int64_t number, int count, std::string_view what);
                     static constexpr auto names = enumerators_of<typename Model::kind, named_ones(count)>();          \
                     if (c < named_ones(count)) label.enumerator = names[static_cast<std::size_t>(c)];                 \
                 }                                                                                                     \
+            }                                                                                                         \
+            if constexpr (requires { typename Model::unit_##kind; } && n_unit < Model >> 0) {                         \
+                static const std::vector<std::string> names =                                                         \
+                    names_in_units<typename Model::unit_##kind, n_unit_##kind<Model>>(n_unit<Model>);                 \
+                const int in_units = c - n_##kind<typename Model::unit_type>;                                         \
+                if (in_units >= 0 && static_cast<std::size_t>(in_units) < names.size())                               \
+                    label.enumerator = names[static_cast<std::size_t>(in_units)];                                     \
             }                                                                                                         \
             return label;                                                                                             \
         }                                                                                                             \

@@ -27,6 +27,14 @@ MYRIAD_ENUMERATED_KINDS(MYRIAD_COUNT_OF_KIND)
 #undef MYRIAD_COUNT_OF_KIND
 /// Number of states, the last ones, that event functions do not read (`with_tangents`).
 MYRIAD_MODEL_COUNT(n_tangent)
+// Of one unit, in a model of coupled units, and what units publish for each other.
+#define MYRIAD_COUNT_OF_UNIT(kind, ...) MYRIAD_MODEL_COUNT(n_unit_##kind)
+MYRIAD_COMPONENT_KINDS(MYRIAD_COUNT_OF_UNIT)
+#undef MYRIAD_COUNT_OF_UNIT
+MYRIAD_MODEL_COUNT(n_unit_observed)
+MYRIAD_MODEL_COUNT(n_publication)
+/// Number of coupled units; zero of a model that is written as a whole.
+MYRIAD_MODEL_COUNT(n_unit)
 #undef MYRIAD_MODEL_COUNT
 
 // Enumerations: `enum state { ..., n_state };`, or an unnamed one, recognised by its count. enumerates_<kind>: whether
@@ -139,6 +147,7 @@ MYRIAD_HOOK_NAME(after_stop)
 MYRIAD_HOOK_NAME(condition)
 MYRIAD_HOOK_NAME(after_trigger)
 MYRIAD_HOOK_NAME(finalise)
+MYRIAD_HOOK_NAME(publish)
 #define MYRIAD_NAME_OF_COUNT(kind, ...) MYRIAD_HOOK_NAME(n_##kind)
 MYRIAD_ENUMERATED_KINDS(MYRIAD_NAME_OF_COUNT)
 #undef MYRIAD_NAME_OF_COUNT

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// Couplings of units by matrices: what a model declares, and where the entries lie among the shared values.
+#pragma once
+
+#include <cstdint>
+#include <iterator>
+#include <type_traits>
+
+#include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/model/summaries.hpp"
+
+namespace myriad {
+
+/// Which entries of a coupling's matrix there are.
+enum class coupling_shape : std::uint8_t {
+    full,       ///< all of them
+    banded,     ///< those near the diagonal
+    circulant,  ///< every row is the one above it, moved by one place to the right, round the end
+};
+
+/// A sum over all units: a matrix times what the units publish. Made by `full_coupling`, `banded_coupling` and
+/// `circulant_coupling`; its entries are set by `set_coupling`, on the host, and are the same for all instances.
+struct coupling {
+    int publication;               ///< number of the publication that is summed
+    coupling_shape shape;          ///< which entries there are
+    int bandwidth;                 ///< diagonals with entries on either side of the main one; -1: all
+    const char* publication_type;  ///< a mark of the type of the publication, for checks
+};
+
+/// By a matrix of any entries.
+template <class Publication>
+constexpr coupling full_coupling(Publication publication) {
+    return {static_cast<int>(publication), coupling_shape::full, -1, &detail::type_mark<Publication>};
+}
+/// By a matrix with entries on the diagonal, and on `bandwidth` diagonals on either side of it.
+template <class Publication>
+constexpr coupling banded_coupling(Publication publication, int bandwidth) {
+    return {static_cast<int>(publication), coupling_shape::banded, bandwidth, &detail::type_mark<Publication>};
+}
+/// By a circulant matrix: a ring, in which all units are coupled alike. With `bandwidth`, a unit is coupled to that
+/// many neighbours on either side; without, to all units.
+template <class Publication>
+constexpr coupling circulant_coupling(Publication publication, int bandwidth = -1) {
+    return {static_cast<int>(publication), coupling_shape::circulant, bandwidth, &detail::type_mark<Publication>};
+}
+
+}  // namespace myriad
+
+namespace myriad::detail {
+
+template <class Unit>
+constexpr int n_coupling_of() {
+    if constexpr (requires { std::size(Unit::couplings); }) {
+        return static_cast<int>(std::size(Unit::couplings));
+    } else {
+        return 0;
+    }
+}
+/// Number of couplings that units declare.
+template <class Unit>
+inline constexpr int n_coupling = n_coupling_of<Unit>();
+
+/// Where the entries of a matrix lie, row by row, and how many of them a row has.
+struct coupling_layout {
+    int publication;
+    coupling_shape shape;
+    int bandwidth;
+    int units;
+
+    constexpr int entries_of_row() const { return bandwidth < 0 ? units : 2 * bandwidth + 1; }
+    constexpr int entries() const {
+        return shape == coupling_shape::circulant ? entries_of_row() : units * entries_of_row();
+    }
+    /// The column of entry k of a row; outside the matrix near the corners of a banded one.
+    constexpr int column(int row, int k) const {
+        if (shape == coupling_shape::full) return k;
+        const int j = row + k - (bandwidth < 0 ? 0 : bandwidth);
+        if (shape == coupling_shape::banded) return j;
+        return j < 0 ? j + units : j >= units ? j - units : j;
+    }
+    constexpr int entry(int row, int k) const {
+        return shape == coupling_shape::circulant ? k : row * entries_of_row() + k;
+    }
+    constexpr bool in_matrix(int column) const { return column >= 0 && column < units; }
+};
+/// Without the mark of a type, which device code cannot use.
+template <class Unit, int units, int k>
+inline constexpr coupling_layout coupling_layout_of{Unit::couplings[k].publication, Unit::couplings[k].shape,
+                                                    Unit::couplings[k].bandwidth, units};
+
+/// Number of entries of the couplings before coupling `end`.
+template <class Unit, int units, int end = n_coupling<Unit>>
+constexpr int coupling_entries_before() {
+    if constexpr (end == 0) {
+        return 0;
+    } else {
+        return coupling_entries_before<Unit, units, end - 1>() + coupling_layout_of<Unit, units, end - 1>.entries();
+    }
+}
+
+/// Whether a mark of a type stands for a number, or for the units' enumeration of publications.
+template <class Unit>
+constexpr bool marks_publication(const char* mark) {
+    bool own = mark == &type_mark<int> || mark == &type_mark<std::remove_cv_t<decltype(Unit::n_publication)>>;
+    if constexpr (requires { typename Unit::publication; }) own = own || mark == &type_mark<typename Unit::publication>;
+    return own;
+}
+
+/// Refuses couplings of something that is not published, and bands that do not fit.
+template <class Unit, int units>
+constexpr bool check_couplings() {
+    if constexpr (n_coupling < Unit >> 0) {
+        constexpr auto all_of = [](auto holds) {
+            for (const coupling& c : Unit::couplings)
+                if (!holds(c)) return false;
+            return true;
+        };
+        static_assert(n_publication<Unit> > 0,
+                      "a coupling sums what units publish: give them `enum publication { ..., n_publication };` and a "
+                      "function `publish`");
+        static_assert(all_of([](const coupling& c) {
+                          return c.publication >= 0 && c.publication < n_publication<Unit> &&
+                                 marks_publication<Unit>(c.publication_type);
+                      }),
+                      "a coupling sums something that is not published: its first argument is an enumerator of "
+                      "`publication`");
+        static_assert(all_of([](const coupling& c) {
+                          return c.shape == coupling_shape::circulant ? c.bandwidth >= -1 && 2 * c.bandwidth < units
+                                 : c.shape == coupling_shape::banded  ? c.bandwidth >= 0 && c.bandwidth < units
+                                                                      : c.bandwidth == -1;
+                      }),
+                      "the band of a coupling does not fit: a banded matrix has fewer diagonals on either side of the "
+                      "main one than there are units, a circulant one fewer than half as many");
+    }
+    return true;
+}
+
+}  // namespace myriad::detail

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""Coupled units: components over units, couplings by matrices, events of each."""
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+n = 12
+rng = np.random.default_rng(3)
+full = rng.normal(size=(n, n))
+banded = np.where(np.abs(np.subtract.outer(np.arange(n), np.arange(n))) <= 2, full, 0)
+weights = rng.normal(size=n)
+all_round = np.stack([np.roll(weights, i) for i in range(n)])
+near = weights * (np.minimum(np.arange(n), n - np.arange(n)) <= 1)
+ring = np.stack([np.roll(near, i) for i in range(n)])
+x0, v0 = rng.normal(size=n), rng.normal(size=n)
+
+
+@pytest.mark.parametrize("couple, matrix", [
+    (lambda u: u.full_coupling("A", full), full),
+    (lambda u: u.banded_coupling("A", banded, 2), banded),
+    (lambda u: u.circulant_coupling("A", all_round), all_round),
+    (lambda u: u.circulant_coupling("A", ring, 1), ring)])
+def test_a_coupling_is_the_product_with_its_matrix(couple, matrix):
+    units = my.units(n)
+    x, v = units.states("x v")
+    A = couple(units)
+    model = my.model({x: v, v: A @ np.sin(x) - 0.5 * v})
+    assert model.states == [f"x_{i}" for i in range(n)] + [f"v_{i}" for i in range(n)]
+    np.testing.assert_allclose(model.derivatives(0.3, np.concatenate([x0, v0])),
+                               np.concatenate([v0, matrix @ np.sin(x0) - 0.5 * v0]), rtol=1e-12, atol=1e-12)
+
+
+def test_models_with_other_matrices_have_the_same_code():
+    def model(matrix):
+        units = my.units(n)
+        x = units.state("x")
+        return my.model({x: units.banded_coupling("A", matrix, 2) @ x})
+    assert model(banded).hash == model(2 * banded).hash
+
+
+def test_equations_have_a_value_for_each_unit_or_one_for_all():
+    units = my.units(3)
+    x, v = units.states("x v")
+    k, c = units.parameter("k"), my.parameter("c")
+    model = my.model({x: -c, v: [k[0] * x[2], x[0] + v[1], 7]})
+    assert model.parameters == ["c", "k_0"]
+    given = {"c": 2.0, "k_0": 3.0}
+    assert list(model.derivatives(0.0, [1, 2, 3, 4, 5, 6], **given)) == [-2, -2, -2, 9, 6, 7]
+
+
+def test_hooks_events_and_summaries_of_units_are_written_out():
+    units = my.units(3)
+    x, v = units.states("x v")
+    top, count = units.accessory("top"), units.integer_accessory("count")
+    model = my.model({x: v, v: -x}, accessories={top: my.phase_maximum(x), count: 0},
+                     events=units.events(v, name="turn", direction="falling",
+                                         do=lambda i: {count[i]: count[i] + 1, v[(i + 1) % 3]: -v[(i + 1) % 3]}),
+                     finalise={x: 2 * x})
+    assert [e.name for e in model.events] == ["turn_0", "turn_1", "turn_2"]
+    assert model.accessories == ["top_0", "top_1", "top_2"]
+    assert model.integer_accessories == ["count_0", "count_1", "count_2"]
+    code = model.cpp()
+    assert "lane.y[v_0] = -lane.y[v_0]" in code and "lane.y[x_2] = 2 * lane.y[x_2]" in code
+    assert "{observed_x_1, myriad::over_phase::maximum, top_1}" in code
+
+
+@pytest.mark.parametrize("make, message", [
+    (lambda u: u.full_coupling("A", np.ones((3, 2))), "the coupling A is not square, but has shape (3, 2)"),
+    (lambda u: u.full_coupling("A", np.ones((2, 2))), "the coupling A has 2 rows, but there are 3 units"),
+    (lambda u: u.full_coupling("A", [[1, 2, 3], [1, 2, 3], [1, 2, np.inf]]), "has entries that are not finite"),
+    (lambda u: u.circulant_coupling("A", [[1, 2, 3], [3, 1, 2], [2, 4, 1]]),
+     "the coupling A is not circulant: entry (2, 1) is 4.0, but 3.0 in row 0"),
+    (lambda u: u.banded_coupling("A", np.ones((3, 3)), 1), "entry (0, 2) of the coupling A is 1.0, outside the band"),
+    (lambda u: u.banded_coupling("A", np.ones((3, 3)), 3), "give a whole number from 0 to 2"),
+    (lambda u: u.circulant_coupling("A", np.ones((3, 3)), 0), "entry (0, 1) of the coupling A is 1.0, outside the"),
+    (lambda u: u.circulant_coupling("A", np.ones((3, 3)), 2), "give a whole number from 0 to 1"),
+    (lambda u: u.full_coupling("A", np.ones((3, 3))) @ [1, 2], "the coupling A sums values of shape (2,)"),
+    (lambda u: u.events([1, 2], name="e"), "the events e have shape (2,)"),
+    (lambda u: u.state("x y"), "'x y' is no name for a state"),
+    (lambda u: my.units(0), "there are 0 units"),
+    (lambda u: my.model({u.state("x"): [1, 2]}), "equations has values of shape (2,) for x_0 to x_2"),
+    (lambda u: my.model({u.state("x"): 1, my.state("x_1"): 2}), "x_1 stands in equations twice"),
+    (lambda u: u.state("x")[3], "index 3 is out of bounds"),
+])
+def test_units_that_do_not_fit_are_refused(make, message):
+    with pytest.raises((my.Error, IndexError)) as refused:
+        make(my.units(3))
+    assert message in str(refused.value)
+
+
+def test_values_of_a_run_are_given_for_all_units():
+    units = my.units(2)
+    x, k = units.state("x"), units.parameter("k")
+    rates = np.array([1.0, 2.0, 3.0])
+    run = my.solve(my.model({x: -k * x}), {k: [rates, 4.0]}, start={x: 1}, time=(0, 1), rtol=1e-9,
+                   record=dict(states=[x]))
+    np.testing.assert_allclose(run["x_0"][:, 0], np.exp(-rates), rtol=1e-7)
+    np.testing.assert_allclose(run["x_1"][:, 0], np.exp(-4.0) * np.ones(3), rtol=1e-7)
