@@ -20,6 +20,7 @@ from .grid import Sweep
 from .inputs import Along, by_name, numbers, whole, whole_numbers
 from .methods import default, fixed_step, method_type
 from .options import Options, SolveArguments
+from .per_phase import prepared
 from .progress import ProgressDisplay
 from .run import Interrupted, Run
 from .statements import with_event_names
@@ -253,6 +254,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
     chosen = default if method is None else method
+    model = prepared(model)
     components = Components(model)
     given, domain, count = _gather(components, sweep, start, time, size)
     samples = given_options.samples is not None
